@@ -1,0 +1,351 @@
+"""Frictionless contact of an elastic half-space with a rough or smooth body, at given approach or load."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections import OrderedDict
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError, Outcome, UnconvergedWarning
+from asperity.kernels.convolution import convolve, even_spectrum
+from asperity.kernels.love import influence_table
+from asperity.kernels.projected_cg import inverse_stencil, solve, unit_indentation
+
+MAX_ITERATIONS = 2000
+_SPECTRA_KEPT = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A solved contact.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (nx, ny)
+        Contact pressure, Pa.
+    force : float
+        Resultant, N.
+    approach : float
+        Approach of the bodies, m, positive closing.
+    area : float
+        Real area of contact, m²: cells under pressure.
+    iterations : int
+        Conjugate-gradient iterations, all inner solutions together.
+    residual : float
+        Largest complementarity residual relative to the largest overlap of the undeformed bodies.
+    outcome : Outcome
+        How the solution ended, with advice.
+    """
+
+    pressure: NDArray[np.float64]
+    force: float
+    approach: float
+    area: float
+    iterations: int
+    residual: float
+    outcome: Outcome
+    half_space: HalfSpace = field(repr=False)
+    undeformed_gap: NDArray[np.float64] = field(repr=False)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance was met."""
+        return self.outcome.ok
+
+    @cached_property
+    def gap(self) -> NDArray[np.float64]:
+        """Gap after deformation, m, shape (nx, ny)."""
+        return self.undeformed_gap + self.half_space.displacement(self.pressure) - self.approach
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Tangent stiffness dF/dδ of this contact, N/m: one linear solution on the contact set, exact."""
+        return self.half_space.tangent_stiffness(self.pressure)
+
+    @property
+    def reaches_edge(self) -> bool:
+        """Whether cells on the window's edge carry pressure: the contact may be cut off there."""
+        p = self.pressure
+        return bool(p[0].any() or p[-1].any() or p[:, 0].any() or p[:, -1].any())
+
+
+class HalfSpace:
+    """Elastic half-space on a grid of rectangular cells, free (not periodic) boundary.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        (nx, ny) cells.
+    spacing : tuple of float
+        (dx, dy), m.
+    modulus : float
+        Contact modulus E*, Pa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂.
+    hardness : float, optional
+        Pressure cap, Pa: asperities flow at this pressure.
+
+    Notes
+    -----
+    Pressure is constant on each cell (Love 1929); valid while the contact is small against the bodies and
+    slopes are small. Solved as 0 ≤ p ⟂ (K p + gap − approach) ≥ 0 by preconditioned projected conjugate
+    gradients on the bounding box of the overlap, outside of which no pressure can act.
+    """
+
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        spacing: tuple[float, float],
+        modulus: float,
+        hardness: float | None = None,
+    ) -> None:
+        if len(shape) != 2 or any(int(n) != n or n < 1 for n in shape):
+            raise InputError("half-space shape", shape, "two positive whole numbers (nx, ny)")
+        if len(spacing) != 2 or not all(math.isfinite(d) and d > 0 for d in spacing):
+            raise InputError("half-space spacing", spacing, "two positive lengths (dx, dy) in m")
+        if not (math.isfinite(modulus) and modulus > 0):
+            raise InputError("contact modulus", modulus, "a positive number, Pa", "Steel on steel has 115e9.")
+        if hardness is not None and not (math.isfinite(hardness) and hardness > 0):
+            raise InputError("hardness", hardness, "a positive number, Pa, or None")
+        self.shape = (int(shape[0]), int(shape[1]))
+        self.spacing = (float(spacing[0]), float(spacing[1]))
+        self.modulus = float(modulus)
+        self.hardness = None if hardness is None else float(hardness)
+        reach = max(*self.shape, 32)
+        self._table = influence_table(reach, reach, *self.spacing) / (math.pi * self.modulus)
+        self._taps = inverse_stencil(self._table)
+        self._spectra: OrderedDict[tuple[int, int], NDArray[np.float64]] = OrderedDict()
+
+    @property
+    def cell_area(self) -> float:
+        """Area of one cell, m²."""
+        return self.spacing[0] * self.spacing[1]
+
+    def displacement(self, pressure: ArrayLike) -> NDArray[np.float64]:
+        """Surface displacement under a pressure, m, positive into the material.
+
+        Parameters
+        ----------
+        pressure : array_like, shape (nx, ny)
+            Pressure, Pa.
+
+        Returns
+        -------
+        ndarray, shape (nx, ny)
+            Displacement, m.
+        """
+        p = self._field("pressure", pressure)
+        return convolve(p, self._spectrum(*self.shape))
+
+    def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
+        """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
+
+        Parameters
+        ----------
+        pressure : array_like, shape (nx, ny)
+            A solved pressure, Pa. Cells at the hardness cap carry no further load.
+        rtol : float
+            Relative residual of the linear solution.
+
+        Returns
+        -------
+        float
+            dA · 1ᵀ A⁻¹ 1 on the contact set, N/m.
+        """
+        p = self._field("pressure", pressure)
+        free = (p > 0.0) & (p < self._cap)
+        if not free.any():
+            return 0.0
+        box = _bounding_box(free)
+        spectrum = self._spectrum(*free[box].shape)
+        unit, converged = unit_indentation(free[box], spectrum, self._taps, rtol, MAX_ITERATIONS)
+        if not converged:
+            _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
+        return float(unit.sum()) * self.cell_area
+
+    def solve(
+        self,
+        gap: ArrayLike,
+        approach: float | None = None,
+        load: float | None = None,
+        start: ArrayLike | None = None,
+        rtol: float = 1e-6,
+    ) -> Contact:
+        """Solve the contact at a prescribed approach or load.
+
+        Parameters
+        ----------
+        gap : array_like, shape (nx, ny)
+            Separation of the undeformed bodies at zero approach, m.
+        approach : float, optional
+            Approach, m, positive closing. Exactly one of `approach` and `load` is given.
+        load : float, optional
+            Resultant force, N.
+        start : array_like, shape (nx, ny), optional
+            Pressure to start from, Pa.
+        rtol : float
+            Largest complementarity residual relative to the largest overlap of the undeformed bodies.
+
+        Returns
+        -------
+        Contact
+            The solution; one that did not converge says so in `converged` and `outcome`, and warns.
+
+        Raises
+        ------
+        InputError
+            For input that has no meaning.
+        """
+        g = self._field("gap", gap)
+        if (approach is None) == (load is None):
+            given = "both" if approach is not None else "neither"
+            raise InputError("approach and load", given, "exactly one of them", "Give one of the two.")
+        if not (math.isfinite(rtol) and 0 < rtol < 1):
+            raise InputError("rtol", rtol, "a number between 0 and 1, as 1e-6")
+        p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self._cap)
+        if approach is not None:
+            if not math.isfinite(approach):
+                raise InputError("approach", approach, "a finite length, m")
+            contact = self._at_approach(g, float(approach), p, rtol)
+        else:
+            contact = self._at_load(g, self._checked_load(load), p, rtol)
+        if not contact.converged:
+            _warn_unconverged(f"contact at approach {contact.approach:.4g} m", contact.outcome)
+        return contact
+
+    @property
+    def _cap(self) -> float:
+        return math.inf if self.hardness is None else self.hardness
+
+    def _checked_load(self, load: float | None) -> float:
+        if load is None or not (math.isfinite(load) and load >= 0):
+            raise InputError("load", load, "a force ≥ 0, N")
+        largest = self._cap * self.cell_area * self.shape[0] * self.shape[1]
+        if load >= largest:
+            raise InputError(
+                "load",
+                f"{load:.4g} N",
+                f"less than hardness × window area = {largest:.4g} N",
+                "Enlarge the window, raise the hardness or lower the load.",
+            )
+        return float(load)
+
+    def _field(self, name: str, values: ArrayLike) -> NDArray[np.float64]:
+        a = np.ascontiguousarray(values, dtype=np.float64)
+        if a.shape != self.shape:
+            raise InputError(f"{name} shape", a.shape, f"the half-space's shape {self.shape}")
+        if not np.isfinite(a).all():
+            bad = int(a.size - np.isfinite(a).sum())
+            raise InputError(
+                name,
+                f"{bad} of {a.size} values NaN or infinite",
+                "finite numbers",
+                "Fill missing points first.",
+            )
+        return a
+
+    def _spectrum(self, nx: int, ny: int) -> NDArray[np.float64]:
+        """Kernel spectrum of an (nx, ny) box; boxes recur along a path, so the last ones are kept."""
+        key = (nx, ny)
+        if key in self._spectra:
+            self._spectra.move_to_end(key)
+        else:
+            self._spectra[key] = even_spectrum(self._table, nx, ny)
+            if len(self._spectra) > _SPECTRA_KEPT:
+                self._spectra.popitem(last=False)
+        return self._spectra[key]
+
+    def _at_approach(
+        self, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64] | None, rtol: float
+    ) -> Contact:
+        pressure = np.zeros(self.shape)
+        overlap = approach - gap
+        largest = float(overlap.max())
+        if largest <= 0.0:
+            return Contact(pressure, 0.0, approach, 0.0, 0, 0.0, Outcome.NO_CONTACT, self, gap)
+        box = _bounding_box(overlap > 0.0)
+        inside = np.ascontiguousarray(overlap[box])
+        spectrum = self._spectrum(*inside.shape)
+        p = self._first_guess(inside, spectrum) if start is None else np.ascontiguousarray(start[box])
+        if p is start or p.base is not None:
+            p = p.copy()
+        if not p.any():
+            p = self._first_guess(inside, spectrum)
+        tolerance = rtol * largest
+        iterations, worst = solve(inside, spectrum, self._taps, p, self._cap, tolerance, MAX_ITERATIONS)
+        if worst <= tolerance:
+            outcome = Outcome.CONVERGED
+        else:
+            outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.SINGULAR
+        pressure[box] = p
+        force = float(p.sum()) * self.cell_area
+        area = int(np.count_nonzero(p)) * self.cell_area
+        return Contact(pressure, force, approach, area, iterations, worst / largest, outcome, self, gap)
+
+    def _first_guess(
+        self, overlap: NDArray[np.float64], spectrum: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Pressure of Hertzian form over the deeper half of the overlap, scaled to least energy."""
+        p = np.sqrt(np.maximum(overlap - 0.5 * overlap.max(), 0.0))
+        scale = float(np.vdot(p, overlap)) / float(np.vdot(p, convolve(p, spectrum)))
+        return np.minimum(p * scale, self._cap)
+
+    def _at_load(
+        self, gap: NDArray[np.float64], load: float, start: NDArray[np.float64] | None, rtol: float
+    ) -> Contact:
+        """Find the approach by a safeguarded secant on F^(2/3), which is nearly linear in the approach."""
+        touch = float(gap.min())
+        if load == 0.0:
+            return self._at_approach(gap, touch, None, rtol)
+        low, high = touch, math.inf
+        approach, previous, iterations = self._estimated_approach(gap, load), (touch, 0.0), 0
+        goal = load ** (2.0 / 3.0)
+        for attempt in range(120):
+            accuracy = max(rtol, 1e-3) if attempt == 0 else rtol
+            contact = self._at_approach(gap, approach, start, accuracy)
+            iterations += contact.iterations
+            if not contact.converged:
+                break
+            if accuracy == rtol and abs(contact.force - load) <= 0.1 * rtol * load:
+                break
+            start = contact.pressure
+            low, high = (approach, high) if contact.force < load else (low, approach)
+            if high - low <= 4.0 * np.finfo(float).eps * max(abs(low), abs(approach)):
+                break
+            transformed = contact.force ** (2.0 / 3.0)
+            rise = transformed - previous[1]
+            slope = rise / (approach - previous[0]) if approach != previous[0] else 0.0
+            previous = (approach, transformed)
+            following = approach + (goal - transformed) / slope if slope > 0.0 else math.nan
+            stalled = attempt > 8 and attempt % 2  # F(δ) has steps where cells flow: halve the bracket
+            if not low < following < high or (stalled and math.isfinite(high)):
+                following = 0.5 * (low + high) if math.isfinite(high) else touch + 2.0 * (approach - touch)
+            approach = following
+        outcome = contact.outcome
+        if contact.converged and abs(contact.force - load) > 10.0 * rtol * load:
+            outcome = Outcome.ITERATION_LIMIT
+        return replace(contact, iterations=iterations, outcome=outcome)
+
+    def _estimated_approach(self, gap: NDArray[np.float64], load: float) -> float:
+        """Approach at which E* √A × (mean overlap on A) reaches the load: within a few per cent for Hertz."""
+        ordered = np.sort(gap, axis=None)
+        n = np.arange(1, ordered.size + 1)
+        # force when the approach equals the next gap value: overlap area n dA, mean overlap δ − mean gap
+        mean_gap = np.cumsum(ordered) / n
+        foundation = self.modulus * np.sqrt(n * self.cell_area)
+        force = foundation * (ordered - mean_gap)
+        i = int(np.searchsorted(np.maximum.accumulate(force), load))
+        i = min(max(i, 1), ordered.size - 1) if ordered.size > 1 else 0
+        return float(mean_gap[i] + load / foundation[i])
+
+
+def _bounding_box(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    return slice(int(rows[0]), int(rows[-1]) + 1), slice(int(columns[0]), int(columns[-1]) + 1)
+
+
+def _warn_unconverged(what: str, outcome: Outcome) -> None:
+    warnings.warn(f"{what} did not converge: {outcome.value}", UnconvergedWarning, stacklevel=3)
