@@ -1,0 +1,150 @@
+"""One netCDF-4 file per run: groups with units, long names and provenance."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Hashable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from asperity.errors import InputError
+from asperity.store import atomic_write
+
+if TYPE_CHECKING:
+    import xarray
+    from numpy.typing import ArrayLike
+
+GROUPS = ("scenario", "surface", "contact", "rolling", "spectra")
+LARGEST_FILE = 16 * 2**30  # bytes
+
+
+def variable(
+    dims: str | Sequence[str], values: ArrayLike, units: str, long_name: str, **attrs: Any
+) -> xarray.Variable:
+    """Make a variable of a result.
+
+    Parameters
+    ----------
+    dims : str or sequence of str
+        Names of the dimensions of `values`.
+    values : array_like
+        The values, in `units`.
+    units : str
+        Their unit in SI, ``"1"`` for a pure number, ``"dB re 1 N"`` for a level.
+    long_name : str
+        What the variable is, in the words that a figure's axis carries.
+    **attrs
+        More attributes: strings and numbers.
+
+    Returns
+    -------
+    xarray.Variable
+    """
+    import xarray
+
+    return xarray.Variable(dims, values, {"units": units, "long_name": long_name, **attrs})
+
+
+def checked(tree: xarray.DataTree) -> xarray.DataTree:
+    """Return `tree` itself, once every variable and coordinate in it has units and a long name.
+
+    Parameters
+    ----------
+    tree : xarray.DataTree
+        A result.
+
+    Returns
+    -------
+    xarray.DataTree
+        `tree`.
+
+    Raises
+    ------
+    ValueError
+        If any variable lacks ``units`` or ``long_name``: a fault of the program, not of its input.
+    """
+    bare: list[Hashable] = [
+        f"{node.path}/{name}".replace("//", "/")
+        for node in tree.subtree
+        for name, values in node.to_dataset(inherit=False).variables.items()
+        if not {"units", "long_name"} <= values.attrs.keys()
+    ]
+    if bare:
+        raise ValueError(f"results without units or long_name: {', '.join(map(str, bare))}")
+    return tree
+
+
+def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
+    """Write a result to one netCDF-4 file, completely or not at all.
+
+    Parameters
+    ----------
+    tree : xarray.DataTree
+        The result; every variable with units and a long name.
+    path : path
+        The file.
+
+    Returns
+    -------
+    Path
+        The file written.
+    """
+    import numpy as np
+
+    checked(tree)
+    encoding = {
+        node.path: {
+            name: {"zlib": True, "complevel": 1, "shuffle": True}
+            for name, values in node.to_dataset(inherit=False).variables.items()
+            if np.issubdtype(values.dtype, np.number) and values.ndim
+        }
+        for node in tree.subtree
+    }
+
+    def write(file: Any) -> None:
+        tree.to_netcdf(file.name, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
+
+    return atomic_write(path, write)
+
+
+def load(path: str | os.PathLike[str]) -> xarray.DataTree:
+    """Read a result that a run has written.
+
+    Parameters
+    ----------
+    path : path
+        A ``run.nc``, or the folder that holds one.
+
+    Returns
+    -------
+    xarray.DataTree
+        The result, in memory; the file is closed.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, too large or not a result of this program.
+    """
+    import xarray
+
+    path = Path(path)
+    if path.is_dir():
+        path = path / "run.nc"
+    allowed = "a result file that a run has written (run.nc)"
+    if not path.is_file():
+        raise InputError(str(path), "no such file", allowed, "Check the path.")
+    if path.stat().st_size > LARGEST_FILE:
+        raise InputError(str(path), f"{path.stat().st_size / 2**30:.0f} GiB", f"{allowed} of at most 16 GiB")
+    with open(path, "rb") as file:
+        signature = file.read(8)
+    if signature != b"\x89HDF\r\n\x1a\n":
+        raise InputError(str(path), "a file that is not netCDF-4", allowed)
+    try:
+        with xarray.open_datatree(path, engine="h5netcdf") as opened:
+            tree = opened.load()
+    except Exception as error:  # h5py and xarray raise errors of many kinds on damaged files
+        received = f"a damaged file ({type(error).__name__})"
+        raise InputError(str(path), received, allowed, "Run its case again.") from error
+    if "asperity_version" not in tree.attrs or not set(GROUPS) <= set(tree.children):
+        raise InputError(str(path), "a netCDF-4 file of another kind", allowed)
+    return tree

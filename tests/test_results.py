@@ -1,0 +1,93 @@
+"""The result file: what is written comes back, and what is not ours is refused."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import asperity
+from asperity.errors import InputError
+from asperity.results import GROUPS, checked, load, save, variable
+
+
+def small_tree():
+    time = variable("time", np.arange(5) * 1e-3, "s", "Time")
+    laws = variable("law", ["areal", "linear"], "", "Law of the contact force")
+    force = variable(
+        ("law", "time"), np.arange(10.0).reshape(2, 5), "N", "Contact force", note="compression positive"
+    )
+    groups = {f"/{name}": xr.Dataset() for name in GROUPS}
+    groups["/rolling"] = xr.Dataset({"contact_force": force}, coords={"time": time, "law": laws})
+    groups["/scenario"] = xr.Dataset(attrs={"kind": "ball-on-beam"})
+    groups["/"] = xr.Dataset(
+        attrs={"asperity_version": "0.1.0", "seed": 1, "case": "kind = 'ball-on-beam'  # µm"}
+    )
+    return xr.DataTree.from_dict(groups)
+
+
+def test_a_result_comes_back_as_it_was(tmp_path):
+    tree = small_tree()
+    path = save(tree, tmp_path / "run.nc")
+    xr.testing.assert_identical(load(path), tree)
+
+
+def test_a_folder_stands_for_its_run(tmp_path):
+    save(small_tree(), tmp_path / "run.nc")
+    xr.testing.assert_identical(asperity.load(tmp_path), small_tree())
+
+
+def test_the_file_is_closed_after_loading(tmp_path):
+    path = save(small_tree(), tmp_path / "run.nc")
+    tree = load(path)
+    path.unlink()
+    save(small_tree(), path)
+    assert tree["rolling/contact_force"].values[1, 4] == 9.0
+
+
+def test_a_variable_without_units_is_refused_and_nothing_written(tmp_path):
+    bare = xr.DataTree.from_dict({"/contact": xr.Dataset({"force": ("approach", [1.0])})})
+    with pytest.raises(ValueError, match="/contact/force"):
+        checked(bare)
+    with pytest.raises(ValueError, match="without units"):
+        save(bare, tmp_path / "run.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_result_that_fails_to_be_written_leaves_the_old_one(tmp_path):
+    path = save(small_tree(), tmp_path / "run.nc")
+    broken = small_tree()
+    broken.attrs["case"] = object()
+    with pytest.raises(TypeError):
+        save(broken, path)
+    xr.testing.assert_identical(load(path), small_tree())
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.nc"]
+
+
+def test_a_missing_file_is_named(tmp_path):
+    with pytest.raises(InputError, match=r"absent\.nc: received no such file"):
+        load(tmp_path / "absent.nc")
+
+
+def test_a_text_file_is_refused(tmp_path):
+    (tmp_path / "run.nc").write_text("time, force")
+    with pytest.raises(InputError, match="not netCDF-4"):
+        load(tmp_path / "run.nc")
+
+
+def test_a_truncated_file_is_refused(tmp_path):
+    path = save(small_tree(), tmp_path / "run.nc")
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    with pytest.raises(InputError, match="a damaged file"):
+        load(path)
+
+
+def test_a_netcdf_file_of_another_kind_is_refused(tmp_path):
+    xr.Dataset({"force": ("time", [1.0])}).to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
+    with pytest.raises(InputError, match="of another kind"):
+        load(tmp_path / "run.nc")
+
+
+def test_a_file_too_large_is_refused(tmp_path, monkeypatch):
+    path = save(small_tree(), tmp_path / "run.nc")
+    monkeypatch.setattr("asperity.results.LARGEST_FILE", 10)
+    with pytest.raises(InputError, match="GiB"):
+        load(path)
