@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 import math
+import re
 from functools import lru_cache
 from typing import Any
 
 from asperity.errors import InputError
+
+_NUMBER = re.compile(
+    r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?inf|nan)(?![0-9.,_])\s*(.*)",
+    re.IGNORECASE | re.DOTALL,
+)
+# Names, single-digit powers, products and quotients: nothing that takes the unit library long.
+_POWER = r"(?:(?:\^|\*\*)?-?[1-9]|[²³])?"
+_UNIT = re.compile(rf"[A-Za-zµμΩ°%]+{_POWER}(?:\s*[ */·]\s*[A-Za-zµμΩ°%]+{_POWER})*")
+_LONGEST = 40  # characters
 
 
 @lru_cache(maxsize=1)
@@ -25,7 +35,7 @@ def factor(unit: str, dimension: str) -> float:
     unit : str
         A unit, as ``"um"``, ``"µm"``, ``"N s/m"``.
     dimension : str
-        The SI unit it must be compatible with, as ``"m"``.
+        The SI unit it must be compatible with, as ``"m"``; ``"dB"`` allows ``"dB"`` alone.
 
     Returns
     -------
@@ -39,13 +49,27 @@ def factor(unit: str, dimension: str) -> float:
     """
     import pint
 
+    unit = unit.strip()
+    allowed = f"a unit that converts to {dimension}" if dimension else "no unit"
+    if "dB" in (unit, dimension):  # a level is not a multiple of a physical unit
+        if unit == dimension:
+            return 1.0
+        raise InputError("unit", repr(unit), allowed, f"Write the quantity as in '1 {dimension}'.")
+    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
+        raise InputError(
+            "unit", repr(unit[:_LONGEST]), allowed, "Write names, '/', '*' and powers, as in 'kg/m^3'."
+        )
     try:
-        return float(_registry().Quantity(1.0, unit.strip()).to(dimension).magnitude)
+        return float(_registry().Quantity(1.0, unit.replace("·", "*")).to(dimension).magnitude)
     except pint.DimensionalityError:
-        allowed = f"a unit that converts to {dimension}"
-        raise InputError("unit", repr(unit), allowed, f"Write the quantity with such a unit, as in '1 {dimension}'.") from None
+        remedy = (
+            f"Write the quantity with such a unit, as in '1 {dimension}'."
+            if dimension
+            else "Leave the unit away."
+        )
+        raise InputError("unit", repr(unit), allowed, remedy) from None
     except Exception:  # pint raises errors of many kinds on malformed text
-        raise InputError("unit", repr(unit), f"a unit that converts to {dimension}", "Check its spelling.") from None
+        raise InputError("unit", repr(unit), allowed, "Check its spelling.") from None
 
 
 def quantity(text: str, dimension: str) -> float:
@@ -56,7 +80,7 @@ def quantity(text: str, dimension: str) -> float:
     text : str
         A number and a unit, as ``"25 mm"``; ``"inf"`` needs no unit.
     dimension : str
-        The SI unit it must be compatible with; ``""`` for a pure number.
+        The SI unit it must be compatible with; ``""`` for a pure number, ``"dB"`` for a level.
 
     Returns
     -------
@@ -68,20 +92,21 @@ def quantity(text: str, dimension: str) -> float:
     InputError
         If the text is not a finite (or infinite, written ``inf``) number with a compatible unit.
     """
-    number, _, unit = text.strip().partition(" ")
-    if not unit:
-        digits = len(number.rstrip("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZµμ°/^²³%"))
-        if number.lower().lstrip("+-") not in ("inf", "nan"):
-            number, unit = number[:digits], number[digits:]
-    allowed = f"a number and a unit of {dimension}, as '1 {dimension}'" if dimension else "a number"
-    try:
-        value = float(number)
-    except ValueError:
-        raise InputError("quantity", repr(text), allowed, "Write the number first, then the unit.") from None
+    received = repr(text if len(text) <= _LONGEST else text[:_LONGEST] + "…")
+    allowed = f"a number and a unit, as '1 {dimension}'" if dimension else "a number"
+    match = _NUMBER.fullmatch(text)
+    if match is None:
+        remedy = "Write the number first, with a decimal point, then the unit."
+        raise InputError("quantity", received, allowed, remedy)
+    number, unit = match[1].lower(), match[2].strip()
+    value = float(number)
+    infinite = number.lstrip("+-") == "inf"
     if math.isnan(value):
-        raise InputError("quantity", repr(text), allowed, "NaN is not a value; give a number.")
-    if not unit:
-        if dimension and not math.isinf(value):
-            raise InputError("quantity", repr(text), allowed, "Add the unit.")
-        return value
-    return value * factor(unit, dimension)
+        raise InputError("quantity", received, allowed, "NaN is not a value; give a number.")
+    if not unit and dimension and not infinite:
+        raise InputError("quantity", received, allowed, "Add the unit.")
+    if unit:
+        value *= factor(unit, dimension)
+    if math.isinf(value) and not infinite:
+        raise InputError("quantity", received, allowed, "The number is too large; 'inf' stands for infinity.")
+    return value

@@ -1,0 +1,48 @@
+"""What errors say, and what the command line returns for them."""
+
+import pytest
+
+from asperity import errors
+from asperity.errors import CaseError, ComputationError, InputError, Outcome, PhysicsWarning
+
+
+def test_an_input_error_says_what_was_received_what_is_allowed_and_what_to_do():
+    error = InputError("radius", "-1 mm", "a length greater than 0", "Give the radius of the ball.")
+    assert (
+        str(error) == "radius: received -1 mm; allowed: a length greater than 0. Give the radius of the ball."
+    )
+    assert error.exit_code == 2
+    assert isinstance(error, ValueError)
+
+
+def test_an_input_error_needs_no_remedy():
+    assert str(InputError("radius", 0, "a length")) == "radius: received 0; allowed: a length."
+
+
+def test_a_case_error_lists_every_error():
+    error = CaseError("case.toml", ["first", "second"])
+    assert str(error) == "case.toml: 2 errors\n  - first\n  - second"
+    assert str(CaseError("case.toml", ["only"])).startswith("case.toml: 1 error\n")
+    assert error.errors == ["first", "second"]
+    assert error.exit_code == 2
+    assert isinstance(error, InputError)
+
+
+def test_a_computation_error_says_what_to_try():
+    error = ComputationError("the contact at position 3 did not converge", "a larger rtol")
+    assert str(error) == "the contact at position 3 did not converge. Try: a larger rtol."
+    assert error.exit_code == 3
+
+
+def test_every_physics_warning_has_a_class_with_a_meaning():
+    classes = [kind for kind in vars(errors).values() if isinstance(kind, type) and issubclass(kind, Warning)]
+    assert len(classes) > 5
+    for kind in classes:
+        assert issubclass(kind, PhysicsWarning)
+        assert kind.__doc__
+
+
+@pytest.mark.parametrize("outcome", Outcome)
+def test_outcomes_that_failed_give_advice(outcome):
+    assert outcome.ok is (outcome in (Outcome.CONVERGED, Outcome.NO_CONTACT))
+    assert outcome.ok or "; try" in outcome.value
