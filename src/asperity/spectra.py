@@ -1,0 +1,309 @@
+"""Spectra: power spectral density, base-10 one-third octaves, levels, A-weighting.
+
+The same functions serve time signals (s, Hz) and textures (m, cycles per metre): one-third octaves
+in wavelength are those in wavenumber read backwards, since both have their centres at powers of
+10^(1/10) of the SI unit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import signal as _signal
+
+from asperity.errors import InputError
+
+HALF_BAND = 10.0 ** (1.0 / 20.0)
+"""Ratio of a one-third octave's upper edge to its centre, base 10 (IEC 61260-1)."""
+
+
+def psd(
+    signal: ArrayLike, spacing: float, *, segment: int | None = None, overlap: float = 0.5
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """One-sided power spectral density by Welch's method with a Hann window.
+
+    The mean over the whole record is removed. The sum of the PSD times the frequency step is the
+    variance of the signal, weighted by the squared windows.
+
+    Parameters
+    ----------
+    signal : array_like, shape (..., n)
+        Uniformly sampled signal in any unit U; the last axis is time or distance.
+    spacing : float
+        Step between samples, s or m.
+    segment : int, optional
+        Samples per segment; the whole record in one segment by default. Shorter segments give a
+        smoother estimate and a coarser frequency step, 1/(segment · spacing).
+    overlap : float, optional
+        Shared part of neighbouring segments, 0 <= overlap < 1.
+
+    Returns
+    -------
+    frequency : ndarray, shape (f,)
+        Hz, or cycles per metre, from zero to half the sampling frequency.
+    psd : ndarray, shape (..., f)
+        U² per Hz, or U² per cycle per metre.
+
+    Raises
+    ------
+    InputError
+        If the signal is shorter than two samples or not finite, or a parameter is out of range.
+
+    References
+    ----------
+    P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
+    """
+    values = np.asarray(signal, dtype=np.float64)
+    _check_signal(values, spacing)
+    length = values.shape[-1] if segment is None else int(segment)
+    if not 2 <= length <= values.shape[-1]:
+        raise InputError("segment", length, f"2 to {values.shape[-1]} samples", "Shorten the segment.")
+    if not 0.0 <= overlap < 1.0:
+        raise InputError("overlap", overlap, "0 <= overlap < 1")
+    frequency, density = _signal.welch(
+        values - values.mean(axis=-1, keepdims=True),
+        fs=1.0 / spacing,
+        window="hann",
+        nperseg=length,
+        noverlap=int(overlap * length),
+        detrend=False,
+        scaling="density",
+        axis=-1,
+    )
+    return frequency, density
+
+
+def _check_signal(values: NDArray[np.float64], spacing: float) -> None:
+    if values.ndim < 1 or values.shape[-1] < 2:
+        raise InputError("signal", f"shape {values.shape}", "at least 2 samples on the last axis")
+    if not np.isfinite(values).all():
+        raise InputError("signal", "NaN or infinite values", "finite values", "Fill or cut missing samples.")
+    if not (np.isfinite(spacing) and spacing > 0.0):
+        raise InputError("spacing", spacing, "a positive finite step")
+
+
+def third_octave_bands(
+    f_low: float, f_high: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Exact one-third octaves of base 10, from the band that holds `f_low` to that of `f_high`.
+
+    Parameters
+    ----------
+    f_low, f_high : float
+        Frequencies, Hz (or cycles per metre), 0 < f_low <= f_high.
+
+    Returns
+    -------
+    centres, edges_low, edges_high : ndarray, shape (b,)
+        Centres 1000 · 10^(n/10) and edges, a factor 10^(1/20) below and above, Hz, rising.
+
+    Raises
+    ------
+    InputError
+        If the frequencies are not positive and rising.
+
+    References
+    ----------
+    IEC 61260-1:2014, clauses 5.2 to 5.6 (base-ten system, b = 3).
+    """
+    if not 0.0 < f_low <= f_high < np.inf:
+        raise InputError("band limits", f"{f_low} to {f_high}", "0 < f_low <= f_high, finite")
+    first, last = (int(np.rint(10.0 * np.log10(f / 1000.0))) for f in (f_low, f_high))
+    centres = 1000.0 * 10.0 ** (np.arange(first, last + 1) / 10.0)
+    return centres, centres / HALF_BAND, centres * HALF_BAND
+
+
+def wavelength_bands(
+    shortest: float, longest: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """One-third octaves of base 10 in wavelength, from the longest to the shortest.
+
+    Parameters
+    ----------
+    shortest, longest : float
+        Wavelengths, m, 0 < shortest <= longest; the bands that hold them are the last and the first.
+
+    Returns
+    -------
+    wavelengths, edges_short, edges_long : ndarray, shape (b,)
+        Centres 10^(n/10) m and edges, m, falling, so that their wavenumbers rise.
+
+    Raises
+    ------
+    InputError
+        If the wavelengths are not positive and rising.
+    """
+    if not 0.0 < shortest <= longest < np.inf:
+        raise InputError("wavelengths", f"{shortest} to {longest}", "0 < shortest <= longest, finite")
+    centres, low, high = third_octave_bands(1.0 / longest, 1.0 / shortest)
+    return 1.0 / centres, 1.0 / high, 1.0 / low
+
+
+def band_energies(
+    frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, edges_high: ArrayLike
+) -> NDArray[np.float64]:
+    """Mean square in bands; a line that straddles an edge is shared in proportion.
+
+    Each line stands for the frequencies half a step around it, so neighbouring bands add up to
+    the energy of their union.
+
+    Parameters
+    ----------
+    frequency : array_like, shape (f,)
+        Uniform frequencies, Hz or cycles per metre, rising.
+    psd : array_like, shape (..., f)
+        One-sided density, U² per Hz.
+    edges_low, edges_high : array_like, shape (b,)
+        Band edges, Hz.
+
+    Returns
+    -------
+    ndarray, shape (..., b)
+        Mean square, U². Parts of a band outside the frequencies hold nothing.
+
+    Raises
+    ------
+    InputError
+        If the frequencies are not uniform or the shapes disagree.
+    """
+    lines, density = np.asarray(frequency, dtype=np.float64), np.asarray(psd, dtype=np.float64)
+    step = _frequency_step(lines, density)
+    cell_edges = np.concatenate([lines - step / 2.0, [lines[-1] + step / 2.0]])
+    start = np.zeros((*density.shape[:-1], 1))
+    cumulative = np.concatenate([start, np.cumsum(density, axis=-1) * step], axis=-1)
+    low, high = (_interpolate_last(cell_edges, cumulative, np.atleast_1d(e)) for e in (edges_low, edges_high))
+    return high - low
+
+
+def _frequency_step(lines: NDArray[np.float64], density: NDArray[np.float64]) -> float:
+    if lines.ndim != 1 or lines.size < 2 or density.shape[-1:] != lines.shape:
+        received = f"shapes {lines.shape} and {density.shape}"
+        raise InputError("frequency and psd", received, "(f,) and (..., f), f >= 2")
+    step = (lines[-1] - lines[0]) / (lines.size - 1)
+    if not (step > 0.0 and np.allclose(np.diff(lines), step, rtol=1e-6, atol=0.0)):
+        raise InputError("frequency", "unequal steps", "uniform, rising frequencies")
+    return float(step)
+
+
+def _interpolate_last(
+    x: NDArray[np.float64], values: NDArray[np.float64], at: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Linear interpolation along the last axis, constant outside."""
+    inside = np.clip(at, x[0], x[-1])
+    index = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, x.size - 2)
+    share = (inside - x[index]) / (x[index + 1] - x[index])
+    return values[..., index] * (1.0 - share) + values[..., index + 1] * share
+
+
+def band_levels(
+    frequency: ArrayLike,
+    psd: ArrayLike,
+    reference: float = 1.0,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """One-third-octave band levels of a PSD.
+
+    For a texture, `frequency` is in cycles per metre and the wavelengths of the bands are
+    ``1 / centres``.
+
+    Parameters
+    ----------
+    frequency : array_like, shape (f,)
+        Uniform frequencies, Hz or cycles per metre, rising.
+    psd : array_like, shape (..., f)
+        One-sided density, U² per Hz.
+    reference : float, optional
+        Reference value, U (1e-6 for dB re 1 µm and dB re 1 µm/s²).
+    low, high : float, optional
+        Frequencies that lie in the first and the last band, Hz. By default all bands that the
+        frequencies cover and that are at least one frequency step wide.
+
+    Returns
+    -------
+    centres : ndarray, shape (b,)
+        Band centres, Hz.
+    levels : ndarray, shape (..., b)
+        10 lg(mean square / reference²), dB; minus infinity for an empty band.
+
+    Raises
+    ------
+    InputError
+        If the frequencies are not uniform, no band is covered or the reference is not positive.
+    """
+    lines = np.asarray(frequency, dtype=np.float64)
+    step = _frequency_step(lines, np.asarray(psd, dtype=np.float64))
+    if not reference > 0.0:
+        raise InputError("reference", reference, "a positive value")
+    smallest, largest = _covered_centres(lines, step)
+    first, last = smallest if low is None else low, largest if high is None else high
+    if first > last * HALF_BAND:
+        raise InputError(
+            "frequency", f"{lines.size} lines", "enough lines to cover a band"
+        )
+    centres, edges_low, edges_high = third_octave_bands(first, max(first, last))
+    energies = np.maximum(band_energies(lines, psd, edges_low, edges_high), 0.0)
+    with np.errstate(divide="ignore"):
+        return centres, 10.0 * np.log10(energies / reference**2)
+
+
+def _covered_centres(lines: NDArray[np.float64], step: float) -> tuple[float, float]:
+    """First and last centre of the bands that the lines cover and that are a step wide."""
+    widest_step = step / (HALF_BAND - 1.0 / HALF_BAND)
+    above = max(widest_step, (lines[0] - step / 2.0) * HALF_BAND)
+    below = (lines[-1] + step / 2.0) / HALF_BAND
+    first, last = np.ceil(10.0 * np.log10(above) - 1e-9), np.floor(10.0 * np.log10(below) + 1e-9)
+    return float(10.0 ** (first / 10.0)), float(10.0 ** (last / 10.0))
+
+
+def energy_sum(levels: ArrayLike, axis: int = -1) -> NDArray[np.float64]:
+    """Level of the sum of the energies of levels.
+
+    Parameters
+    ----------
+    levels : array_like
+        Levels, dB, all with the same reference.
+    axis : int, optional
+        Axis to sum over.
+
+    Returns
+    -------
+    ndarray
+        10 lg Σ 10^(L/10), dB.
+    """
+    with np.errstate(divide="ignore"):
+        return 10.0 * np.log10(np.sum(10.0 ** (np.asarray(levels, dtype=np.float64) / 10.0), axis=axis))
+
+
+def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
+    """A-weighting of sound pressure levels.
+
+    Parameters
+    ----------
+    frequency : array_like
+        Frequencies, Hz, >= 0.
+
+    Returns
+    -------
+    ndarray
+        dB to add to an unweighted level; 0 dB at 1 kHz within 0.001 dB, minus infinity at 0 Hz.
+
+    Raises
+    ------
+    InputError
+        If a frequency is negative.
+
+    References
+    ----------
+    IEC 61672-1:2013, annex E, Eq. (E.6), with the rounded constants 20.60, 107.7, 737.9 and
+    12194 Hz and -2.000 dB.
+    """
+    f = np.asarray(frequency, dtype=np.float64)
+    if (f < 0.0).any():
+        raise InputError("frequency", float(f.min()), "0 Hz or more")
+    f2 = f * f
+    low = (f2 + 20.60**2) * np.sqrt((f2 + 107.7**2) * (f2 + 737.9**2))
+    gain = 12194.0**2 * f2 * f2 / (low * (f2 + 12194.0**2))
+    with np.errstate(divide="ignore"):
+        return 20.0 * np.log10(gain) + 2.000

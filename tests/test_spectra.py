@@ -1,0 +1,138 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from asperity import spectra
+from asperity.errors import InputError
+
+
+def test_psd_of_a_sine_holds_half_the_squared_amplitude():
+    time = np.arange(4096) / 1000.0
+    frequency, density = spectra.psd(3.0 * np.sin(2 * np.pi * 125.0 * time), 1e-3, segment=512)
+    assert_allclose(density.sum() * frequency[1], 4.5, rtol=1e-12)
+    assert frequency[density.argmax()] == 125.0
+
+
+def test_psd_of_white_noise_is_flat_and_integrates_to_the_variance():
+    noise = np.random.default_rng(1).standard_normal((4, 2**16))
+    frequency, density = spectra.psd(noise, 0.5, segment=256)
+    assert density.shape == (4, 129)
+    assert_allclose(density.sum(axis=-1) * frequency[1], noise.var(axis=-1), rtol=5e-3)
+    assert_allclose(density[:, 2:-1].mean(axis=0), 2 * 0.5, rtol=0.08)
+
+
+def test_psd_removes_the_mean():
+    _, density = spectra.psd(np.full(64, 7.0), 1.0)
+    assert_allclose(density, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("signal", "spacing", "options", "text"),
+    [
+        ([1.0], 1.0, {}, "signal: received shape"),
+        ([1.0, np.nan, 2.0], 1.0, {}, "NaN or infinite"),
+        ([1.0, 2.0], -1.0, {}, "spacing: received -1.0"),
+        ([1.0, 2.0], 1.0, {"segment": 3}, "segment: received 3"),
+        ([1.0, 2.0], 1.0, {"overlap": 1.0}, "overlap: received 1.0"),
+    ],
+)
+def test_psd_says_what_is_wrong(signal, spacing, options, text):
+    with pytest.raises(InputError, match=text):
+        spectra.psd(signal, spacing, **options)
+
+
+def test_exact_base_ten_bands():
+    centres, low, high = spectra.third_octave_bands(100.0, 5000.0)
+    assert centres.size == 18
+    assert_allclose(centres[[0, 10, 17]], [100.0, 1000.0, 5011.872336], rtol=1e-9)
+    assert_allclose(high[:-1], low[1:], rtol=1e-14)
+    assert_allclose([low[10], high[10]], [891.250938, 1122.018454], rtol=1e-9)
+
+
+def test_wavelength_bands_are_wavenumber_bands_read_backwards():
+    wavelengths, short, long = spectra.wavelength_bands(0.01, 0.1)
+    assert_allclose(wavelengths[[0, 1, -1]], [0.1, 0.0794328, 0.01], rtol=1e-6)
+    assert (short < wavelengths).all()
+    assert_allclose(short[:-1], long[1:])
+
+
+@pytest.mark.parametrize("limits", [(0.0, 1.0), (2.0, 1.0), (1.0, np.inf)])
+def test_band_limits_must_rise(limits):
+    with pytest.raises(InputError, match="band limits"):
+        spectra.third_octave_bands(*limits)
+    with pytest.raises(InputError, match="wavelengths"):
+        spectra.wavelength_bands(*limits)
+
+
+@settings(max_examples=50)
+@given(st.lists(st.floats(1.0, 499.0), min_size=1, max_size=6), st.integers(0, 2**31))
+def test_neighbouring_bands_add_up_to_their_union(cuts, seed):
+    frequency = np.arange(501.0)
+    density = np.random.default_rng(seed).random(501)
+    edges = np.concatenate([[0.5], np.sort(cuts), [499.5]])
+    parts = spectra.band_energies(frequency, density, edges[:-1], edges[1:])
+    assert_allclose(parts.sum(), density[1:500].sum(), rtol=1e-12)
+
+
+def test_a_line_on_an_edge_is_shared_in_proportion():
+    energies = spectra.band_energies([0.0, 1.0, 2.0], [0.0, 8.0, 0.0], [0.0, 0.75], [0.75, 2.0])
+    assert_allclose(energies, [2.0, 6.0])
+
+
+def test_band_level_of_a_known_sine():
+    time = np.arange(20000) / 20000.0
+    sine = 2e-6 * np.sin(2 * np.pi * 1000.0 * time)
+    centres, levels = spectra.band_levels(*spectra.psd(sine, 1 / 20000.0), reference=1e-6)
+    assert_allclose(levels[np.isclose(centres, 1000.0)], 10 * np.log10(2.0), atol=1e-9)
+    assert levels[np.isclose(centres, 100.0)] < -100.0
+
+
+def test_bands_are_those_that_the_lines_cover():
+    frequency = np.arange(0.0, 501.0)
+    centres, levels = spectra.band_levels(frequency, np.ones(501))
+    assert_allclose(centres[[0, -1]], [5.01187, 398.107], rtol=1e-5)
+    assert_allclose(levels, 10 * np.log10(centres * (10**0.05 - 10**-0.05)), atol=1e-9)
+    chosen, _ = spectra.band_levels(frequency, np.ones(501), low=100.0, high=200.0)
+    assert_allclose(chosen, [100.0, 125.8925, 158.4893, 199.5262], rtol=1e-6)
+
+
+def test_an_empty_band_has_no_level():
+    _, levels = spectra.band_levels(np.arange(100.0), np.zeros((2, 100)))
+    assert np.isneginf(levels).all()
+
+
+@pytest.mark.parametrize(
+    ("frequency", "density", "options", "text"),
+    [
+        ([0.0, 1.0, 3.0], [1.0, 1.0, 1.0], {}, "unequal steps"),
+        ([0.0, 1.0], [1.0, 1.0, 1.0], {}, "frequency and psd"),
+        ([0.0, 1.0], [1.0, 1.0], {}, "enough lines"),
+        (np.arange(100.0), np.ones(100), {"reference": 0.0}, "reference"),
+    ],
+)
+def test_band_levels_say_what_is_wrong(frequency, density, options, text):
+    with pytest.raises(InputError, match=text):
+        spectra.band_levels(frequency, density, **options)
+
+
+def test_energy_sum():
+    assert_allclose(spectra.energy_sum([60.0, 60.0]), 63.0103, atol=1e-4)
+    assert_allclose(spectra.energy_sum([[0.0, -np.inf], [10.0, 10.0]], axis=0), [10.41393, 10.0], atol=1e-5)
+
+
+def test_a_weighting_printed_in_iec_61672_1_table_3():
+    exact = 1000.0 * 10.0 ** (np.arange(-20, 14) / 10.0)
+    printed = (
+        "-70.4 -63.4 -56.7 -50.5 -44.7 -39.4 -34.6 -30.2 -26.2 -22.5 -19.1 -16.1 -13.4 -10.9 -8.6 -6.6 -4.8 "
+        "-3.2 -1.9 -0.8 0 0.6 1.0 1.2 1.3 1.2 1.0 0.5 -0.1 -1.1 -2.5 -4.3 -6.6 -9.3"
+    )
+    assert_allclose(spectra.a_weighting(exact), [float(v) for v in printed.split()], atol=0.0501)
+    assert_allclose(spectra.a_weighting(1000.0), 0.0, atol=1e-3)
+
+
+def test_a_weighting_at_zero_and_below():
+    assert np.isneginf(spectra.a_weighting(0.0))
+    with pytest.raises(InputError, match="0 Hz or more"):
+        spectra.a_weighting([-1.0])
