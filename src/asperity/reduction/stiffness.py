@@ -1,0 +1,254 @@
+"""The force-approach curve f(approach), from which the state-dependent contact stiffness follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError
+from asperity.kernels.monotone import cubic_coefficients, monotone_slopes
+
+
+@dataclass(frozen=True, eq=False)
+class ForceCurve:
+    """Contact force as a monotone, once differentiable function of the approach.
+
+    The curve is a monotone piecewise cubic of ``g = F**(1/exponent)``: with the exponent 3/2 a
+    Hertzian contact is a straight line in g, so the interpolation is exact for it and the
+    square-root start of the stiffness needs no polynomial. Below the first knot the force is zero
+    (unless `bilateral`); above the last one g goes on with its end slope.
+
+    Parameters
+    ----------
+    knots : ndarray (k,)
+        Approaches, m, increasing.
+    coefficients : ndarray (k - 1, 4)
+        Cubic coefficients of g in each interval, highest power first, in (approach - knot).
+    exponent : float
+        Exponent of g in the force.
+    upper : float
+        Largest approach that the data cover, m; beyond it the curve is a continuation.
+    bilateral : bool
+        Whether the curve goes on below the first knot, into tension, instead of being zero there.
+    """
+
+    knots: NDArray
+    coefficients: NDArray
+    exponent: float = 1.5
+    upper: float = np.inf
+    bilateral: bool = False
+
+    @classmethod
+    def from_samples(cls, approach: ArrayLike, force: ArrayLike, exponent: float = 1.5) -> ForceCurve:
+        """Curve through computed pairs of approach and force.
+
+        Of leading samples with zero force only the last is kept: contact starts there. If none is
+        zero, g is continued downwards with its first slope until it vanishes.
+
+        Parameters
+        ----------
+        approach : array_like (n,)
+            Approaches, m, increasing.
+        force : array_like (n,)
+            Forces, N, not negative, and increasing once positive; at least two positive.
+        exponent : float
+            Exponent of the start of the force, 3/2 for contact of solids.
+
+        Returns
+        -------
+        ForceCurve
+            The curve; it passes through the samples.
+
+        Raises
+        ------
+        InputError
+            If the samples do not rise as stated.
+        """
+        s, f = np.asarray(approach, dtype=float), np.asarray(force, dtype=float)
+        _check_samples(s, f)
+        first = int(np.argmax(f > 0.0))
+        s, g = s[max(first - 1, 0) :], f[max(first - 1, 0) :] ** (1.0 / exponent)
+        if g[0] > 0.0:
+            slope = monotone_slopes(s, g)[0]
+            s, g = np.concatenate([[s[0] - g[0] / slope], s]), np.concatenate([[0.0], g])
+        return cls(s, cubic_coefficients(s, g, monotone_slopes(s, g)), exponent, float(s[-1]))
+
+    @classmethod
+    def hertz(cls, stiffness: float) -> ForceCurve:
+        """Hertzian point contact, F = K s^1.5, exact at every approach.
+
+        Parameters
+        ----------
+        stiffness : float
+            Hertz constant K, N/m^1.5 (4/3 E* sqrt(R) for a ball).
+
+        Returns
+        -------
+        ForceCurve
+            The curve.
+        """
+        _check_positive("Hertz constant (N/m^1.5)", stiffness)
+        slope = float(np.cbrt(stiffness)) ** 2
+        return cls(np.array([0.0, 1.0]), np.array([[0.0, 0.0, slope, 0.0]]))
+
+    @classmethod
+    def linear(cls, force: float, stiffness: float, approach: float = 0.0) -> ForceCurve:
+        """Linear spring through a working point, acting in tension too.
+
+        Parameters
+        ----------
+        force : float
+            Force at the working point, N.
+        stiffness : float
+            Stiffness, N/m.
+        approach : float
+            Approach at the working point, m.
+
+        Returns
+        -------
+        ForceCurve
+            F = force + stiffness * (s - approach), bilateral.
+        """
+        _check_positive("contact stiffness (N/m)", stiffness)
+        knots = np.array([approach, approach + 1.0])
+        return cls(knots, np.array([[0.0, 0.0, stiffness, force]]), 1.0, bilateral=True)
+
+    @property
+    def first_touch(self) -> float:
+        """Approach below which the force is zero, m (minus infinity for a bilateral curve)."""
+        return -np.inf if self.bilateral else float(self.knots[0])
+
+    def force(self, approach: ArrayLike) -> NDArray:
+        """Contact force.
+
+        Parameters
+        ----------
+        approach : array_like
+            Approaches, m.
+
+        Returns
+        -------
+        ndarray
+            Force, N, of the same shape.
+        """
+        g, _ = self._root(np.asarray(approach, dtype=float))
+        return g if self.exponent == 1.0 else g**self.exponent
+
+    def stiffness(self, approach: ArrayLike) -> NDArray:
+        """Tangent stiffness dF/ds.
+
+        Parameters
+        ----------
+        approach : array_like
+            Approaches, m.
+
+        Returns
+        -------
+        ndarray
+            Stiffness, N/m, of the same shape.
+        """
+        g, slope = self._root(np.asarray(approach, dtype=float))
+        return slope if self.exponent == 1.0 else self.exponent * g ** (self.exponent - 1.0) * slope
+
+    def secant(self, approach: ArrayLike, datum: float) -> NDArray:
+        """Secant stiffness k_c(r) = F/r on the state r = approach + datum (thesis Eq. 2.3).
+
+        Parameters
+        ----------
+        approach : array_like
+            Approaches, m.
+        datum : float
+            Offset of the state, m; at least minus the first touch, so that r > 0 in contact.
+
+        Returns
+        -------
+        ndarray
+            Stiffness, N/m; zero where r <= 0.
+        """
+        state = np.asarray(approach, dtype=float) + datum
+        return np.where(state > 0.0, self.force(approach) / np.where(state > 0.0, state, 1.0), 0.0)
+
+    def inverse(self, force: ArrayLike) -> NDArray:
+        """Approach at which the curve has a given force.
+
+        Parameters
+        ----------
+        force : array_like
+            Forces, N; not negative unless the curve is bilateral.
+
+        Returns
+        -------
+        ndarray
+            Approaches, m; the first touch for zero force.
+
+        Raises
+        ------
+        InputError
+            If a force is negative on a curve without tension.
+        """
+        f = np.asarray(force, dtype=float)
+        if not self.bilateral and np.any(f < 0.0):
+            remedy = "A contact without adhesion only pushes."
+            raise InputError("contact force (N)", f.min(), "zero or more", remedy)
+        g = f if self.exponent == 1.0 else f ** (1.0 / self.exponent)
+        interval = np.clip(np.searchsorted(self.coefficients[:, 3], g) - 1, 0, len(self.coefficients) - 1)
+        cubic, square, slope, value = np.moveaxis(self.coefficients[interval], -1, 0)
+        low, high = self.knots[interval], self.knots[interval + 1]
+        for _ in range(64):  # halving a cubic's interval to rounding
+            middle = 0.5 * (low + high)
+            below = self._root(middle)[0] < g
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        end_value, end_slope = self._root(self.knots[-1])
+        beyond = self.knots[-1] + (g - end_value) / end_slope
+        curved = np.where(g > end_value, beyond, 0.5 * (low + high))
+        straight = (cubic == 0.0) & (square == 0.0)
+        return np.where(straight, self.knots[interval] + (g - value) / slope, curved)
+
+    def _root(self, s: NDArray) -> tuple[NDArray, NDArray]:
+        """The interpolated g and its slope."""
+        interval = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.coefficients) - 1)
+        cubic, square, slope, value = np.moveaxis(self.coefficients[interval], -1, 0)
+        u = s - self.knots[interval]
+        width = (self.knots[1:] - self.knots[:-1])[interval]
+        within = np.clip(u, 0.0, width)
+        g = ((cubic * within + square) * within + slope) * within + value
+        derivative = (3.0 * cubic * within + 2.0 * square) * within + slope
+        g = g + derivative * (u - within)
+        if self.bilateral:
+            return g, derivative
+        touching = s > self.knots[0]
+        return np.where(touching, np.maximum(g, 0.0), 0.0), np.where(touching, derivative, 0.0)
+
+
+def _check_positive(what: str, value: float) -> None:
+    if not (np.isfinite(value) and value > 0.0):
+        raise InputError(what, value, "a finite positive number")
+
+
+def _check_samples(approach: NDArray, force: NDArray) -> None:
+    if approach.ndim != 1 or approach.shape != force.shape:
+        raise InputError(
+            "force curve samples", f"shapes {approach.shape} and {force.shape}", "two lists of one length"
+        )
+    if not (np.all(np.isfinite(approach)) and np.all(np.isfinite(force))):
+        raise InputError("force curve samples", "NaN or infinite values", "finite numbers")
+    if np.any(np.diff(approach) <= 0.0):
+        raise InputError(
+            "approaches of the force curve", "not increasing", "strictly increasing approaches (m)"
+        )
+    positive = force > 0.0
+    if np.any(force < 0.0) or positive.sum() < 2:
+        received = f"{positive.sum()} positive and {np.sum(force < 0.0)} negative forces"
+        remedy = "Choose approaches that reach into the contact."
+        raise InputError(
+            "forces of the force curve", received, "at least two positive, none negative", remedy
+        )
+    if np.any(np.diff(force[np.argmax(positive) :]) <= 0.0):
+        raise InputError(
+            "forces of the force curve",
+            "forces that fall or stay while the approach grows",
+            "strictly increasing forces once in contact (N)",
+            "Average more samples or tighten the contact solver.",
+        )

@@ -1,0 +1,155 @@
+"""The state-dependent line texture: what a point force follows at each state of the contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class StateTexture:
+    """Filtered line textures along the path, one for each state (thesis Eq. 2.7).
+
+    Parameters
+    ----------
+    heights : ndarray (s, m)
+        Texture at state i and position m, m, positive *away* from the contact (h = -z).
+    approaches : ndarray (s,)
+        Approaches of the states, m, increasing; between them the texture is interpolated
+        linearly, outside them the nearest is used.
+    start : float
+        Position of the first point on the path, m.
+    spacing : float
+        Distance of the points, m.
+
+    Raises
+    ------
+    InputError
+        If shapes, spacing or values do not fit.
+    """
+
+    heights: NDArray
+    approaches: NDArray
+    start: float
+    spacing: float
+
+    def __post_init__(self) -> None:
+        heights = np.atleast_2d(np.asarray(self.heights, dtype=float))
+        approaches = np.atleast_1d(np.asarray(self.approaches, dtype=float))
+        check_states("state texture", heights, approaches, self.spacing)
+        object.__setattr__(self, "heights", heights)
+        object.__setattr__(self, "approaches", approaches)
+
+    @classmethod
+    def unfiltered(cls, heights: ArrayLike, spacing: float, start: float = 0.0) -> StateTexture:
+        """One line texture for all states.
+
+        Parameters
+        ----------
+        heights : array_like (m,)
+            Texture, m, positive away from the contact.
+        spacing : float
+            Distance of the points, m.
+        start : float
+            Position of the first point, m.
+
+        Returns
+        -------
+        StateTexture
+            The texture with a single state.
+        """
+        return cls(np.atleast_2d(np.asarray(heights, dtype=float)), np.zeros(1), start, spacing)
+
+    def at(self, positions: ArrayLike) -> NDArray:
+        """Texture at given positions, by cubic splines along the path.
+
+        Parameters
+        ----------
+        positions : array_like (n,)
+            Positions on the path, m.
+
+        Returns
+        -------
+        ndarray (n, s)
+            Texture of every state, m.
+
+        Raises
+        ------
+        InputError
+            If a position lies outside the texture.
+        """
+        return along_path("state texture", self.heights, self.start, self.spacing, positions)
+
+
+def check_states(what: str, values: NDArray, approaches: NDArray, spacing: float) -> None:
+    """Refuse state functions along a path whose shapes or values do not fit.
+
+    Parameters
+    ----------
+    what : str
+        What they are, for the message.
+    values : ndarray (s, m)
+        Value at each state and position.
+    approaches : ndarray (s,)
+        Approaches of the states, m.
+    spacing : float
+        Distance of the positions, m.
+
+    Raises
+    ------
+    InputError
+        If they do not fit.
+    """
+    if values.ndim != 2 or values.shape[0] != len(approaches) or values.shape[1] < 4:
+        received = f"{values.shape} values for {len(approaches)} states"
+        raise InputError(what, received, "an array (states, positions) with at least 4 positions")
+    if not (np.all(np.isfinite(values)) and np.all(np.isfinite(approaches))):
+        raise InputError(what, "NaN or infinite values", "finite numbers", "Fill missing points first.")
+    if np.any(np.diff(approaches) <= 0.0):
+        raise InputError(f"approaches of the {what}", approaches, "strictly increasing approaches (m)")
+    if not (np.isfinite(spacing) and spacing > 0.0):
+        raise InputError(f"spacing of the {what} (m)", spacing, "a finite positive number")
+
+
+def along_path(what: str, values: NDArray, start: float, spacing: float, positions: ArrayLike) -> NDArray:
+    """Cubic spline interpolation of rows along a path.
+
+    Parameters
+    ----------
+    what : str
+        What is interpolated, for the message.
+    values : ndarray (s, m)
+        Rows sampled at ``start + spacing * arange(m)``.
+    start, spacing : float
+        Sampling of the rows, m.
+    positions : array_like (n,)
+        Where to interpolate, m.
+
+    Returns
+    -------
+    ndarray (n, s)
+        Interpolated values.
+
+    Raises
+    ------
+    InputError
+        If a position lies outside the rows.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
+    last = values.shape[1] - 1
+    slack = 1e-6  # of a spacing: rounding of the positions
+    if index.min() < -slack or index.max() > last + slack:
+        raise InputError(
+            "path of the ball (m)",
+            f"{start + spacing * index.min():.6g} to {start + spacing * index.max():.6g}",
+            f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known",
+            "Shorten the duration or provide a longer texture.",
+        )
+    spline = make_interp_spline(np.arange(last + 1.0), values.T, k=3)
+    return spline(np.clip(index, 0.0, last))

@@ -1,0 +1,177 @@
+"""The force curve, the state texture and the force table."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from asperity.errors import InputError
+from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import StateTexture
+
+K = 3.2e10
+
+
+def rising(draw_steps):
+    """Samples of a curve that rises by given steps of approach (um) and force (N)."""
+    steps = np.array(draw_steps)
+    return -2e-6 + 1e-6 * np.cumsum(steps[:, 0]), np.cumsum(steps[:, 1]) - steps[0, 1]
+
+
+curves = st.lists(st.tuples(st.floats(0.05, 3.0), st.floats(1e-3, 20.0)), min_size=4, max_size=15).map(
+    lambda steps: ForceCurve.from_samples(*rising(steps))
+)
+
+
+def test_hertz_is_exact_and_unbounded():
+    curve = ForceCurve.hertz(K)
+    s = np.array([1e-9, 1e-6, 1e-4, 2.0])
+    assert_allclose(curve.force(s), K * s**1.5, rtol=1e-15)
+    assert_allclose(curve.stiffness(s), 1.5 * K * np.sqrt(s), rtol=1e-15)
+    assert_allclose(curve.inverse(K * s**1.5), s, rtol=1e-15)
+    assert curve.upper == np.inf
+    assert_allclose(curve.force([-1e-6, 0.0]), 0.0, atol=0.0)
+
+
+def test_samples_of_hertz_give_hertz_between_and_beyond():
+    s = np.array([0.3, 0.5, 1.0, 2.5, 4.0]) * 1e-6
+    curve = ForceCurve.from_samples(s, K * s**1.5)
+    fine = np.linspace(0.0, 8e-6, 41)
+    assert_allclose(curve.force(fine), K * fine**1.5, rtol=1e-12, atol=1e-14)
+    assert_allclose(curve.first_touch, 0.0, atol=1e-20)
+    assert curve.upper == s[-1]
+
+
+def test_linear_acts_in_tension():
+    curve = ForceCurve.linear(force=5.0, stiffness=2e7, approach=1e-6)
+    s = np.array([-3e-6, 1e-6, 2e-6])
+    assert_allclose(curve.force(s), 5.0 + 2e7 * (s - 1e-6), rtol=1e-12)
+    assert_allclose(curve.stiffness(s), 2e7)
+    assert_allclose(curve.inverse([-5.0, 0.0, 25.0]), [0.5e-6, 0.75e-6, 2e-6], rtol=1e-12)
+    assert curve.first_touch == -np.inf
+
+
+def test_secant_of_a_quadratic_force_is_the_printed_stiffness():
+    s = np.linspace(-3e-6, 5e-6, 9)
+    force = 1e12 * (s + 3e-6) ** 2
+    curve = ForceCurve.from_samples(s, force)
+    assert_allclose(curve.secant(s[1:], 3e-6), 1e12 * (s[1:] + 3e-6), rtol=1e-12)
+    assert curve.secant(-4e-6, 3e-6) == 0.0
+
+
+@given(curves)
+@settings(max_examples=60, deadline=None)
+def test_curve_is_monotone_smooth_and_inverted(curve):
+    low, high = curve.knots[0], curve.knots[-1]
+    s = np.sort(np.concatenate([np.linspace(low - 1e-7, high + 1e-6, 301), curve.knots]))
+    force = curve.force(s)
+    assert np.all(np.diff(force) >= 0.0)
+    assert np.all(curve.stiffness(s) >= 0.0)
+    inside = force > 0.0
+    assert_allclose(curve.force(curve.inverse(force[inside])), force[inside], rtol=1e-9)
+    assert_allclose(curve.inverse(force[inside].reshape(1, -1))[0], curve.inverse(force[inside]))
+    step = 1e-6 * (high - low)
+    jump = curve.stiffness(curve.knots + 1e-3 * step) - curve.stiffness(curve.knots - 1e-3 * step)
+    assert_allclose(jump, 0.0, atol=1e-3 * curve.stiffness(s).max())
+
+
+@given(curves)
+@settings(max_examples=40, deadline=None)
+def test_stiffness_is_the_derivative(curve):
+    width = np.diff(curve.knots)
+    s = (curve.knots[:-1] + np.outer([0.3, 0.6], width)).ravel()
+    step = 1e-5 * np.tile(width, 2)
+    difference = (curve.force(s + step) - curve.force(s - step)) / (2.0 * step)
+    assert_allclose(curve.stiffness(s), difference, rtol=1e-5)
+
+
+def test_curve_starts_at_the_last_zero_sample():
+    curve = ForceCurve.from_samples([-3e-6, -2e-6, -1e-6, 0.0, 1e-6], [0.0, 0.0, 0.0, 1.0, 4.0])
+    assert curve.first_touch == -1e-6
+    assert_allclose(curve.force([-1.5e-6, 0.0, 1e-6]), [0.0, 1.0, 4.0])
+
+
+@pytest.mark.parametrize(
+    ("approach", "force", "message"),
+    [
+        ([0.0, 1e-6], [0.0, 1.0], "at least two positive"),
+        ([0.0, 1e-6, 2e-6], [0.0, 2.0, 1.0], "strictly increasing forces"),
+        ([0.0, 0.0, 2e-6], [0.0, 1.0, 2.0], "strictly increasing ones"),
+        ([0.0, 1e-6, 2e-6], [-1.0, 1.0, 2.0], "none negative"),
+        ([0.0, 1e-6], [0.0, 1.0, 2.0], "two lists of one length"),
+        ([0.0, 1e-6, 2e-6], [0.0, np.nan, 2.0], "finite numbers"),
+    ],
+)
+def test_bad_samples_are_refused(approach, force, message):
+    with pytest.raises(InputError, match=message):
+        ForceCurve.from_samples(approach, force)
+
+
+def test_bad_constants_and_forces_are_refused():
+    with pytest.raises(InputError, match="Hertz constant"):
+        ForceCurve.hertz(0.0)
+    with pytest.raises(InputError, match="contact stiffness"):
+        ForceCurve.linear(1.0, np.nan)
+    with pytest.raises(InputError, match="only pushes"):
+        ForceCurve.hertz(K).inverse(-1.0)
+
+
+def test_texture_interpolates_a_sine_to_fourth_order():
+    errors = []
+    for points in (100, 200):
+        x = np.linspace(0.0, 1e-3, points + 1)
+        heights = 1e-6 * np.stack([np.sin(2 * np.pi * x / 1e-4), np.cos(2 * np.pi * x / 1e-4)])
+        texture = StateTexture(heights, [0.0, 1e-6], 0.0, x[1])
+        where = np.linspace(2e-4, 8e-4, 777)
+        errors.append(np.abs(texture.at(where)[:, 1] - 1e-6 * np.cos(2 * np.pi * where / 1e-4)).max())
+    assert 3.7 < np.log2(errors[0] / errors[1]) < 4.4
+
+
+def test_unfiltered_texture_has_one_state():
+    texture = StateTexture.unfiltered([0.0, 1.0, 2.0, 3.0], spacing=0.5, start=10.0)
+    assert_allclose(texture.at([10.0, 10.75, 11.5])[:, 0], [0.0, 1.5, 3.0], atol=1e-12)
+
+
+def test_path_outside_the_texture_is_refused():
+    texture = StateTexture.unfiltered(np.zeros(10), spacing=1e-3)
+    with pytest.raises(InputError, match="longer texture"):
+        texture.at([0.0, 0.02])
+
+
+@pytest.mark.parametrize(
+    ("heights", "approaches", "spacing", "message"),
+    [
+        (np.zeros((2, 8)), [0.0], 1e-6, "2, 8"),
+        (np.zeros((2, 8)), [1e-6, 0.0], 1e-6, "strictly increasing"),
+        (np.full((1, 8), np.nan), [0.0], 1e-6, "missing points"),
+        (np.zeros((1, 8)), [0.0], 0.0, "spacing"),
+    ],
+)
+def test_bad_textures_are_refused(heights, approaches, spacing, message):
+    with pytest.raises(InputError, match=message):
+        StateTexture(heights, approaches, 0.0, spacing)
+
+
+def test_table_never_pulls_and_never_falls():
+    rng = np.random.default_rng(5)
+    forces = np.maximum(0.0, np.cumsum(rng.uniform(0.0, 1.0, (6, 200)), axis=0) - 1.0)
+    table = ForceTable(forces, np.arange(6) * 1e-6, 0.0, 1e-5)
+    fine = table.at(np.linspace(0.0, 199e-5, 3001))
+    assert fine.min() >= 0.0
+    assert np.diff(fine, axis=1).min() >= 0.0
+    assert_allclose(table.at(np.arange(200) * 1e-5), forces.T, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("forces", "approaches", "message"),
+    [
+        (np.ones((1, 8)), [0.0], "at least two states"),
+        (-np.ones((2, 8)), [0.0, 1.0], "zero or more"),
+        (np.stack([np.ones(8), np.zeros(8)]), [0.0, 1.0], "forces that rise"),
+    ],
+)
+def test_bad_tables_are_refused(forces, approaches, message):
+    with pytest.raises(InputError, match=message):
+        ForceTable(forces, approaches, 0.0, 1e-6)
