@@ -1,0 +1,266 @@
+"""From raw heights to the roughness that is meant: levelling, wavelength band, missing points, grid."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft, interpolate, signal, sparse
+
+from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
+from asperity.surfaces.form import Form, Surface, fit_form, polynomial, remove_form
+from asperity.surfaces.heightmap import Profile
+
+__all__ = ["GAUSSIAN_CONSTANT", "Form", "band_limit", "fill", "fit_form", "level", "remove_form", "resample"]
+
+GAUSSIAN_CONSTANT = float(np.sqrt(np.log(2.0) / np.pi))
+"""ISO 16610-21, clause 4.1: makes the transmission 50 % at the cut-off wavelength."""
+
+FILLED_SHARE_WARNED = 0.05
+
+
+def level(surface: Surface, degree: int = 1) -> Surface:
+    """Remove the least-squares polynomial of a total degree; missing points stay missing.
+
+    Parameters
+    ----------
+    surface : HeightMap or Profile
+        Heights, m.
+    degree : int, optional
+        0 removes the mean, 1 the mean plane or line, 2 a paraboloid.
+
+    Returns
+    -------
+    HeightMap or Profile
+        Heights with zero mean, m.
+
+    Raises
+    ------
+    InputError
+        If the degree is not 0, 1 or 2, or there are fewer points than coefficients.
+    """
+    if degree not in (0, 1, 2):
+        raise InputError("degree", degree, "0 (mean), 1 (plane) or 2", "Use remove_form for more.")
+    return replace(surface, heights=surface.heights - polynomial(surface, degree))
+
+
+def band_limit(surface: Surface, longest: float | None = None, shortest: float | None = None) -> Surface:
+    """Keep a band of wavelengths with zero-phase Gaussian filters.
+
+    Transmission is 50 % at each limit. `shortest` is the nesting index of the S-filter (low pass),
+    `longest` that of the L-filter (high pass, the heights less their low pass).
+
+    Parameters
+    ----------
+    surface : HeightMap or Profile
+        Heights, m. Missing points stay missing and carry no weight.
+    longest, shortest : float, optional
+        Cut-off wavelengths, m; None leaves that side open.
+
+    Returns
+    -------
+    HeightMap or Profile
+        Filtered heights, m.
+
+    Raises
+    ------
+    InputError
+        If a cut-off is shorter than two samples or they are not in order.
+
+    Warns
+    -----
+    ShortRecordWarning
+        If `longest` exceeds the surface: the high pass then removes little more than the mean.
+
+    Notes
+    -----
+    At edges and beside missing points the weights are normalised to those that fall on data (a
+    regression of degree zero): a constant passes unchanged, but within half a cut-off of an edge a
+    slope is bent. Level or remove the form first, or cut the margin off afterwards.
+
+    References
+    ----------
+    ISO 16610-21:2011 (profiles) and ISO 16610-61:2015 (areas): s(x) = exp(-π (x/αλ)²)/(αλ),
+    α = √(ln 2/π), cut at one cut-off wavelength on either side.
+    """
+    spacings = np.atleast_1d(np.asarray(surface.spacing))
+    for name, cut_off in (("longest", longest), ("shortest", shortest)):
+        if cut_off is not None and not 2.0 * spacings.max() <= cut_off < np.inf:
+            allowed = f"at least two samples, {2.0 * spacings.max():.4g} m, and finite"
+            raise InputError(f"{name} wavelength", f"{cut_off:.4g} m", allowed)
+    if longest is not None and shortest is not None and not longest > shortest:
+        raise InputError("wavelengths", f"shortest {shortest}, longest {longest}", "shortest < longest")
+    size = float(np.max(surface.size))
+    if longest is not None and longest > size:
+        message = (
+            f"cut-off {longest:.4g} m exceeds the surface, {size:.4g} m: the high pass removes little more "
+            "than the mean; use a shorter cut-off or a longer surface"
+        )
+        warnings.warn(message, ShortRecordWarning, stacklevel=2)
+    heights = surface.heights
+    if shortest is not None:
+        heights = _gaussian(heights, spacings, shortest)
+    if longest is not None:
+        heights = heights - _gaussian(heights, spacings, longest)
+    return replace(surface, heights=heights)
+
+
+def _gaussian(
+    heights: NDArray[np.float64], spacings: NDArray[np.float64], cut_off: float
+) -> NDArray[np.float64]:
+    valid = np.isfinite(heights)
+    weighted, weight = np.where(valid, heights, 0.0), valid.astype(np.float64)
+    for axis, spacing in enumerate(spacings):
+        reach = int(min(np.ceil(cut_off / spacing), heights.shape[axis]))
+        x = np.arange(-reach, reach + 1) * spacing
+        kernel = np.exp(-np.pi * (x / (GAUSSIAN_CONSTANT * cut_off)) ** 2)
+        kernel = np.expand_dims(kernel / kernel.sum(), tuple(a for a in range(heights.ndim) if a != axis))
+        weighted, weight = (_convolve(v, kernel, axis) for v in (weighted, weight))
+    return np.where(valid, weighted / np.where(valid, weight, 1.0), np.nan)
+
+
+def _convolve(values: NDArray[np.float64], kernel: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    full = signal.oaconvolve(values, kernel, mode="full", axes=axis)
+    start = (kernel.shape[axis] - 1) // 2
+    return np.take(full, np.arange(start, start + values.shape[axis]), axis=axis)
+
+
+def fill(surface: Surface) -> Surface:
+    """Fill missing points: the harmonic surface through their neighbours, or straight lines in a profile.
+
+    Parameters
+    ----------
+    surface : HeightMap or Profile
+        Heights, m, with NaN where missing.
+
+    Returns
+    -------
+    HeightMap or Profile
+        Complete heights, m; `source` states the share that was filled.
+
+    Warns
+    -----
+    MissingPointsWarning
+        If more than 5 % are filled: filled points carry no roughness.
+
+    Notes
+    -----
+    Solves the five-point Laplace equation on the missing points, with no slope at the border: no
+    new peak or valley arises.
+    """
+    missing = np.isnan(surface.heights)
+    share = float(missing.mean())
+    if share == 0.0:
+        return surface
+    if share > FILLED_SHARE_WARNED:
+        message = (
+            f"{share:.1%} of the points were missing and are filled, more than {FILLED_SHARE_WARNED:.0%}: "
+            "filled points are smooth and lower Sq and Sdq; measure again or crop"
+        )
+        warnings.warn(message, MissingPointsWarning, stacklevel=2)
+    heights = np.array(surface.heights)
+    heights[missing] = _harmonic(surface.heights, missing, np.atleast_1d(np.asarray(surface.spacing)))
+    source = f"{surface.source}; {share:.2%} of the points filled".lstrip("; ")
+    return replace(surface, heights=heights, source=source)
+
+
+def _harmonic(
+    heights: NDArray[np.float64], missing: NDArray[np.bool_], spacings: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Heights of the missing points, from the discrete Laplace equation."""
+    from scipy.sparse.linalg import spsolve
+
+    index = np.full(heights.shape, -1)
+    index[missing] = np.arange(missing.sum())
+    diagonal, right = np.zeros(missing.sum()), np.zeros(missing.sum())
+    rows, columns, values = [], [], []
+    for axis, spacing in enumerate(spacings):
+        weight = (spacings.max() / spacing) ** 2
+        low, high = (_slab(index, axis, s) for s in (slice(None, -1), slice(1, None)))
+        z_low, z_high = (_slab(heights, axis, s) for s in (slice(None, -1), slice(1, None)))
+        for here, there, z_there in ((low, high, z_high), (high, low, z_low)):
+            mine = here >= 0
+            np.add.at(diagonal, here[mine], weight)
+            known, unknown = mine & (there < 0), mine & (there >= 0)
+            np.add.at(right, here[known], weight * z_there[known])
+            rows.append(here[unknown])
+            columns.append(there[unknown])
+            values.append(np.full(unknown.sum(), -weight))
+    coupling = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    shape = (diagonal.size, diagonal.size)
+    matrix = sparse.csc_array(sparse.coo_array(coupling, shape=shape) + sparse.diags_array(diagonal))
+    return np.atleast_1d(spsolve(matrix, right))
+
+
+def _slab(values: NDArray[Any], axis: int, part: slice) -> NDArray[Any]:
+    return values[(slice(None),) * axis + (part,)]
+
+
+def resample(surface: Surface, spacing: float | tuple[float, float]) -> Surface:
+    """Bring a complete surface to another spacing, without aliasing.
+
+    Wavelengths shorter than two new samples are removed by a sharp zero-phase low pass (cosine
+    series, which mirrors the surface at its edges); what is left is interpolated. A finer grid
+    gains points but no shorter wavelengths.
+
+    Parameters
+    ----------
+    surface : HeightMap or Profile
+        Heights, m, without missing points; level it first, as a slope is broken at the edges.
+    spacing : float or tuple of float
+        New spacing, m; one number serves both directions.
+
+    Returns
+    -------
+    HeightMap or Profile
+        Points at the centres of the new cells that fit in the area, counted from its first edge.
+
+    Raises
+    ------
+    InputError
+        If points are missing, or the spacing is not positive or leaves fewer than two points.
+    """
+    if np.isnan(surface.heights).any():
+        received = f"{surface.missing_share:.2%} missing points"
+        raise InputError("surface to resample", received, "complete heights", "Use fill first.")
+    new = np.broadcast_to(np.asarray(spacing, dtype=np.float64), (surface.heights.ndim,))
+    size = np.atleast_1d(np.asarray(surface.size))
+    if not ((new > 0.0).all() and (new * 2.0 <= size * (1.0 + 1e-9)).all()):
+        raise InputError(
+            "spacing", spacing, f"above zero, at most half the surface, {size.min() / 2.0:.4g} m"
+        )
+    heights = surface.heights
+    for axis, (old_step, new_step) in enumerate(zip(np.atleast_1d(surface.spacing), new, strict=True)):
+        if not np.isclose(old_step, new_step, rtol=1e-9, atol=0.0):
+            heights = _resample_axis(heights, float(old_step), float(new_step), axis)
+    if isinstance(surface, Profile):
+        return replace(surface, heights=heights, spacing=float(new[0]))
+    return replace(surface, heights=heights, spacing=(float(new[0]), float(new[1])))
+
+
+def _resample_axis(
+    heights: NDArray[np.float64], old_step: float, new_step: float, axis: int
+) -> NDArray[np.float64]:
+    points = heights.shape[axis]
+    length = points * old_step
+    series = np.moveaxis(fft.dct(heights, type=2, axis=axis), axis, -1)
+    kept = int(min(points, np.floor(length / new_step + 1e-9)))  # term k has the wavelength 2 length/k
+    # four samples or more per shortest wavelength left: the quintic spline is then right within 0.2 %
+    dense = fft.next_fast_len(max(2 * kept, 16), real=True)
+    padded = np.zeros((*series.shape[:-1], dense))
+    padded[..., :kept] = series[..., :kept] * (dense / points)
+    values = fft.idct(padded, type=2, axis=-1)
+    centres = (np.arange(dense) + 0.5) * (length / dense)
+    new_centres = (np.arange(int(np.floor(length / new_step + 1e-9))) + 0.5) * new_step
+    margin = 8  # mirrored points, so that the spline has no free end
+    mirrored = np.concatenate(
+        [values[..., margin - 1 :: -1], values, values[..., : -margin - 1 : -1]], axis=-1
+    )
+    positions = np.concatenate(
+        [-centres[margin - 1 :: -1], centres, 2 * length - centres[: -margin - 1 : -1]]
+    )
+    spline = interpolate.make_interp_spline(positions, mirrored, k=5, axis=-1)
+    return np.moveaxis(spline(new_centres), -1, axis)
