@@ -98,7 +98,7 @@ def test_curve_starts_at_the_last_zero_sample():
     [
         ([0.0, 1e-6], [0.0, 1.0], "at least two positive"),
         ([0.0, 1e-6, 2e-6], [0.0, 2.0, 1.0], "strictly increasing forces"),
-        ([0.0, 0.0, 2e-6], [0.0, 1.0, 2.0], "strictly increasing ones"),
+        ([0.0, 0.0, 2e-6], [0.0, 1.0, 2.0], "strictly increasing approaches"),
         ([0.0, 1e-6, 2e-6], [-1.0, 1.0, 2.0], "none negative"),
         ([0.0, 1e-6], [0.0, 1.0, 2.0], "two lists of one length"),
         ([0.0, 1e-6, 2e-6], [0.0, np.nan, 2.0], "finite numbers"),
