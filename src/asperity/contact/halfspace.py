@@ -209,7 +209,7 @@ class HalfSpace:
         if approach is not None:
             if not math.isfinite(approach):
                 raise InputError("approach", approach, "a finite length, m")
-            contact = self._at_approach(g, float(approach), p, rtol)
+            contact = self.at_approach(g, float(approach), p, rtol)
         else:
             contact = self._at_load(g, self._checked_load(load), p, rtol)
         if not contact.converged:
@@ -258,9 +258,21 @@ class HalfSpace:
                 self._spectra.popitem(last=False)
         return self._spectra[key]
 
-    def _at_approach(
+    def at_approach(
         self, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64] | None, rtol: float
     ) -> Contact:
+        """Solve at a prescribed approach, unchecked and silent: for sweeps that count outcomes themselves.
+
+        Parameters
+        ----------
+        gap, approach, start, rtol
+            As in `solve`; arrays contiguous float64 of the right shape, `start` within the bounds.
+
+        Returns
+        -------
+        Contact
+            The solution; look at `converged`.
+        """
         pressure = np.zeros(self.shape)
         overlap = approach - gap
         largest = float(overlap.max())
@@ -299,13 +311,13 @@ class HalfSpace:
         """Find the approach by a safeguarded secant on F^(2/3), which is nearly linear in the approach."""
         touch = float(gap.min())
         if load == 0.0:
-            return self._at_approach(gap, touch, None, rtol)
+            return self.at_approach(gap, touch, None, rtol)
         low, high = touch, math.inf
         approach, previous, iterations = self._estimated_approach(gap, load), (touch, 0.0), 0
         goal = load ** (2.0 / 3.0)
         for attempt in range(120):
             accuracy = max(rtol, 1e-3) if attempt == 0 else rtol
-            contact = self._at_approach(gap, approach, start, accuracy)
+            contact = self.at_approach(gap, approach, start, accuracy)
             iterations += contact.iterations
             if not contact.converged:
                 break

@@ -1,0 +1,106 @@
+"""The areal texture: what a nominal contact patch sees of a rough surface, in closed form."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.signal import oaconvolve
+
+from asperity.errors import InputError
+from asperity.reduction.texture import StateTexture
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+
+
+def punch_weights(spacing: tuple[float, float], semi_axes: tuple[float, float]) -> NDArray[np.float64]:
+    """Share of the flat-punch pressure on each cell of a grid under an elliptic patch.
+
+    Parameters
+    ----------
+    spacing : tuple of float
+        (dx, dy), m.
+    semi_axes : tuple of float
+        (a_x, a_y) of the patch, m.
+
+    Returns
+    -------
+    ndarray, shape (odd, odd)
+        Weights that sum to one, the patch centred on the middle cell.
+
+    Notes
+    -----
+    w(ξ, η) = 1/(2π a_x a_y √(1 − ξ²/a_x² − η²/a_y²)), integrated over x in closed form and over y by Gauss's
+    rule after y = a_y sin θ. By reciprocity this is the weight with which small heights enter the force
+    of a Hertzian contact at constant approach; its transform is sin q/q, q² = (k_x a_x)² + (k_y a_y)².
+    """
+    dx, dy = spacing
+    a, b = semi_axes
+    columns = max(0, math.ceil(b / dy - 0.5))
+    rows = max(0, math.ceil(a / dx - 0.5))
+    edges_y = np.clip((np.arange(-columns, columns + 2) - 0.5) * dy / b, -1.0, 1.0)
+    edges_x = (np.arange(-rows, rows + 2) - 0.5) * dx
+    low, high = np.arcsin(edges_y[:-1]), np.arcsin(edges_y[1:])
+    theta = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * _NODES
+    chord = a * np.cos(theta)
+    cumulative = np.arcsin(np.clip(edges_x[:, None, None] / chord, -1.0, 1.0)) / math.pi
+    inside = np.diff(cumulative, axis=0) * np.cos(theta)
+    return 0.5 * np.sum(inside * _WEIGHTS, axis=2) * 0.5 * (high - low)
+
+
+def areal_texture(
+    heights: NDArray[np.float64],
+    spacing: tuple[float, float],
+    approaches: ArrayLike,
+    semi_axes: ArrayLike,
+    start: float = 0.0,
+) -> StateTexture:
+    """Average a strip of texture under the flat-punch weight of the patch of each state.
+
+    Parameters
+    ----------
+    heights : ndarray, shape (n, ny)
+        Strip of the path, m, peaks positive; the contact runs along its middle, so ny is odd.
+    spacing : tuple of float
+        (dx, dy), m.
+    approaches : array_like, shape (k,)
+        Approaches of the states, m.
+    semi_axes : array_like, shape (k, 2)
+        Semi-axes (a_x, a_y) of the nominal patch in each state, m.
+    start : float
+        Position of the first row, m.
+
+    Returns
+    -------
+    StateTexture
+        h̃_a, m, positive away from the contact. Its ends, one semi-axis long, see zeros beyond the strip.
+
+    Raises
+    ------
+    InputError
+        If the strip is narrower than the widest patch, or its width is even.
+    """
+    axes = np.atleast_2d(np.asarray(semi_axes, dtype=np.float64))
+    n, ny = heights.shape
+    if ny % 2 == 0:
+        raise InputError(
+            "width of the texture strip", f"{ny} lines", "an odd number, so that one is the middle"
+        )
+    if axes[:, 1].max() > 0.5 * ny * spacing[1]:
+        raise InputError(
+            "width of the texture strip",
+            f"{ny * spacing[1]:.3g} m",
+            f"at least the width of the widest patch, {2 * axes[:, 1].max():.3g} m",
+            "Enlarge the window.",
+        )
+    middle = ny // 2
+    folded = heights[:, middle:].copy()
+    folded[:, 1:] += heights[:, middle - 1 :: -1] if middle else 0.0  # the patch is symmetric across
+    result = np.empty((len(axes), n))
+    for i, (a, b) in enumerate(axes):
+        weights = punch_weights(spacing, (float(a), float(b)))
+        half = weights[:, weights.shape[1] // 2 :][:, : folded.shape[1]]
+        filtered = oaconvolve(folded[:, : half.shape[1]], half, mode="full", axes=0).sum(axis=1)
+        result[i] = -filtered[half.shape[0] // 2 :][:n]
+    return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing[0])

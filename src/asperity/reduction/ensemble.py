@@ -1,0 +1,179 @@
+"""The contact stiffness k_c(r) from an ensemble of surface samples on one common datum."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+from asperity.reduction.areal import punch_weights
+from asperity.reduction.scan import Cache, scan_forces
+from asperity.reduction.stiffness import ForceCurve
+
+
+@dataclass(frozen=True, eq=False)
+class StiffnessEnsemble:
+    """Loading curves of N samples at common approaches.
+
+    Attributes
+    ----------
+    approaches : ndarray, shape (k,)
+        Approaches from the samples' patch planes, m, positive closing.
+    forces : ndarray, shape (N, k)
+        Contact force of each sample, N.
+    datum : float
+        d0, m: the state is r = approach + d0, one offset for all samples, no less than the highest
+        first touch, so that F(r = 0) = 0 for each of them.
+    """
+
+    approaches: NDArray[np.float64]
+    forces: NDArray[np.float64]
+    datum: float
+
+    @property
+    def mean_force(self) -> NDArray[np.float64]:
+        """Ensemble mean of the force, N, shape (k,)."""
+        return np.asarray(self.forces.mean(axis=0))
+
+    @property
+    def force_spread(self) -> NDArray[np.float64]:
+        """Standard deviation of the force between samples, N, shape (k,)."""
+        if len(self.forces) < 2:
+            return np.zeros(self.forces.shape[1])
+        return np.asarray(self.forces.std(axis=0, ddof=1))
+
+    @property
+    def states(self) -> NDArray[np.float64]:
+        """States r = approach + d0, m, shape (k,)."""
+        return self.approaches + self.datum
+
+    @property
+    def curve(self) -> ForceCurve:
+        """f(approach): monotone fit through the ensemble mean; k_c(r) = f/r (Eq. 2.3) is its secant."""
+        return ForceCurve.from_samples(self.approaches, self.mean_force)
+
+
+def patches(
+    maps: Sequence[NDArray[np.float64]],
+    shape: tuple[int, int],
+    count: int,
+    weights: NDArray[np.float64],
+) -> list[NDArray[np.float64]]:
+    """Cut samples out of measured maps, each levelled to the plane that the nominal patch feels.
+
+    Parameters
+    ----------
+    maps : sequence of ndarray, shape (≥ nx, ≥ ny)
+        Heights, m.
+    shape : tuple of int
+        (nx, ny) cells of a sample.
+    count : int
+        Number of samples; at least one from each map, evenly spread over it, overlapping if need be.
+    weights : ndarray
+        From `punch_weights` at the working load: wavelengths longer than the patch, which the texture of
+        the path carries, must not be counted a second time inside the samples.
+
+    Returns
+    -------
+    list of ndarray, shape (nx, ny)
+        Heights from each sample's own patch plane, m.
+
+    Raises
+    ------
+    InputError
+        If a map is smaller than a sample.
+    """
+    result = []
+    for index, heights in enumerate(maps):
+        spare = (heights.shape[0] - shape[0], heights.shape[1] - shape[1])
+        if min(spare) < 0:
+            raise InputError(
+                "window of the contact",
+                f"{shape[0]} × {shape[1]} cells",
+                f"no more than the map's {heights.shape[0]} × {heights.shape[1]} cells at this spacing",
+                "Choose a smaller window or provide larger maps.",
+            )
+        share = count // len(maps) + (index < count % len(maps))
+        for i, j in _spread(spare, max(share, 1)):
+            cut = heights[i : i + shape[0], j : j + shape[1]]
+            result.append(cut - weighted_mean(cut, weights))
+    return result
+
+
+def _spread(spare: tuple[int, int], count: int) -> list[tuple[int, int]]:
+    """`count` offsets spread evenly over a rectangle: the points of a rank-one lattice."""
+    golden = 0.5 * (np.sqrt(5.0) - 1.0)
+    along = (np.arange(count) + 0.5) / count
+    across = np.mod(0.5 + golden * np.arange(count), 1.0)
+    return [(round(u * spare[0]), round(v * spare[1])) for u, v in zip(along, across, strict=True)]
+
+
+def weighted_mean(heights: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
+    """Mean height under a patch at the middle of a sample.
+
+    Parameters
+    ----------
+    heights : ndarray, shape (nx, ny)
+        Heights, m; nx and ny odd.
+    weights : ndarray, shape (odd, odd)
+        From `punch_weights`.
+
+    Returns
+    -------
+    float
+        Mean, m.
+    """
+    mx, my = (min(w, h) // 2 for w, h in zip(weights.shape, heights.shape, strict=True))
+    cx, cy = heights.shape[0] // 2, heights.shape[1] // 2
+    wx, wy = weights.shape[0] // 2, weights.shape[1] // 2
+    inner = weights[wx - mx : wx + mx + 1, wy - my : wy + my + 1]
+    return float(np.vdot(heights[cx - mx : cx + mx + 1, cy - my : cy + my + 1], inner) / inner.sum())
+
+
+def stiffness_ensemble(
+    samples: Sequence[NDArray[np.float64]],
+    spacing: tuple[float, float],
+    body: NDArray[np.float64],
+    modulus: float,
+    approaches: NDArray[np.float64],
+    datum: float,
+    hardness: float | None = None,
+    *,
+    rtol: float = 1e-6,
+    cache: Cache | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
+) -> StiffnessEnsemble:
+    """Press the body on each sample, stepping the approach up.
+
+    Parameters
+    ----------
+    samples : sequence of ndarray, shape (nx, ny)
+        Heights, m, from `patches`.
+    spacing, body, modulus, hardness, rtol, cache, progress
+        As in `asperity.reduction.scan.scan`.
+    approaches : ndarray, shape (k,)
+        Approaches, m, increasing.
+    datum : float
+        d0, m.
+
+    Returns
+    -------
+    StiffnessEnsemble
+        One loading curve a sample.
+    """
+    report = progress or (lambda done, total, message: None)
+    forces = []
+    for i, sample in enumerate(samples):
+        report(i, len(samples), "loading the samples")
+        scanned = scan_forces(
+            sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1, cache=cache
+        )
+        forces.append(scanned.forces[:, 0])
+    report(len(samples), len(samples), "loading the samples")
+    return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), np.array(forces), datum)
+
+
+__all__ = ["StiffnessEnsemble", "patches", "punch_weights", "stiffness_ensemble", "weighted_mean"]

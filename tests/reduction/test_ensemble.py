@@ -1,0 +1,62 @@
+"""k_c(r) from samples on one common datum."""
+
+import numpy as np
+import pytest
+
+from asperity.contact import Hertz
+from asperity.errors import InputError
+from asperity.reduction.areal import punch_weights
+from asperity.reduction.ensemble import patches, stiffness_ensemble, weighted_mean
+from asperity.reduction.scan import first_touch
+
+DX, MODULUS, RADIUS, N = 5e-6, 115e9, 10e-3, 51
+APPROACHES = np.linspace(-0.2e-6, 0.4e-6, 7)
+
+
+def body():
+    x = (np.arange(N) - N // 2) * DX
+    return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
+
+
+def loaded(samples):
+    datum = -min(first_touch(s, body()) for s in samples)
+    return stiffness_ensemble(samples, (DX, DX), body(), MODULUS, APPROACHES, max(datum, 0.0))
+
+
+def test_smooth_samples_give_hertz():
+    ensemble = loaded([np.zeros((N, N))] * 2)
+    hertz = Hertz(MODULUS, RADIUS, RADIUS)
+    expected = [hertz.force(d) for d in APPROACHES]
+    np.testing.assert_allclose(ensemble.mean_force, expected, rtol=5e-3, atol=1e-9)
+    assert ensemble.force_spread.max() == 0.0
+
+
+def test_rough_stiffness_is_below_hertz_deep_in_and_starts_before_it():
+    rng = np.random.default_rng(0)
+    samples = [0.1e-6 * rng.standard_normal((N, N)) for _ in range(4)]
+    ensemble = loaded(samples)
+    hertz = Hertz(MODULUS, RADIUS, RADIUS)
+    assert ensemble.datum > 0.0
+    assert np.all(ensemble.forces[:, APPROACHES + ensemble.datum <= 0.0] == 0.0)
+    assert ensemble.mean_force[2] > hertz.force(APPROACHES[2])  # mean planes just meeting
+    deep = -1
+    state = ensemble.states[deep]
+    assert ensemble.curve.secant(APPROACHES[deep], ensemble.datum) < hertz.force(state) / state
+    assert ensemble.curve.force(APPROACHES[deep]) == pytest.approx(ensemble.mean_force[deep], rel=1e-12)
+
+
+def test_patches_have_their_patch_mean_removed_and_cover_the_maps():
+    x = np.arange(120.0)
+    maps = [np.add.outer(x, 0.1 * x) + 7.0, np.add.outer(x, 0.1 * x)]
+    weights = punch_weights((1.0, 1.0), (10.0, 10.0))
+    cut = patches(maps, (N, N), 5, weights)
+    assert len(cut) == 5
+    for sample in cut:
+        assert sample.shape == (N, N)
+        assert weighted_mean(sample, weights) == pytest.approx(0.0, abs=1e-9)
+    assert len(patches(maps, (N, N), 1, weights)) == 2  # at least one from each map
+
+
+def test_small_map_is_refused():
+    with pytest.raises(InputError, match="window of the contact: received 51 × 51 cells"):
+        patches([np.zeros((60, 50))], (N, N), 1, punch_weights((1.0, 1.0), (5.0, 5.0)))
