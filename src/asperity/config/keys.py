@@ -1,0 +1,335 @@
+"""What may stand behind a key of a case: kinds of values, each with the text that explains it."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, NoReturn, get_args
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
+from pydantic.fields import FieldInfo
+
+from asperity.errors import InputError
+from asperity.units import factor, quantity
+
+_WORDS = {
+    "m": ("a length", "25 mm"),
+    "s": ("a time", "0.5 s"),
+    "m/s": ("a speed", "1 m/s"),
+    "kg": ("a mass", "0.5 kg"),
+    "N": ("a force", "5 N"),
+    "Pa": ("a pressure", "3 GPa"),
+    "Hz": ("a frequency", "5 kHz"),
+    "N s/m": ("a damping constant", "10 N s/m"),
+    "dB": ("a level", "+0 dB"),
+}
+
+
+def shown(value: object) -> str:
+    """Write a received value for a message, shortened to what a person needs to find it again."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python does not write out integers of many thousand digits
+        text = "a huge number"
+    return text if len(text) <= 60 else text[:57] + "…"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with a unit, written as a string.
+
+    Parameters
+    ----------
+    dimension : str
+        The SI unit of the value behind the door.
+    above : float, optional
+        The value must be greater than this.
+    at_least : float, optional
+        The value must not be less than this.
+    """
+
+    dimension: str
+    above: float | None = None
+    at_least: float | None = None
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        word, example = _WORDS[self.dimension]
+        return f'{word}{_range(self.above, self.at_least)}, with its unit, as "{example}"'
+
+    def __call__(self, value: object) -> float:
+        """Return the value in SI."""
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            self._fail(
+                value,
+                f'Add the unit and quotes, as "{shown(value)} {_WORDS[self.dimension][1].split(" ", 1)[1]}".',
+            )
+        if not isinstance(value, str):
+            self._fail(value)
+        try:
+            number = quantity(value, self.dimension)
+        except InputError as error:
+            self._fail(value, error.remedy)
+        if not math.isfinite(number):
+            self._fail(value, "Give a finite value.")
+        if _outside(number, self.above, self.at_least):
+            self._fail(value)
+        return number
+
+    def _fail(self, value: object, remedy: str = "") -> NoReturn:
+        raise InputError("quantity", shown(value), self.allowed, remedy)
+
+
+@dataclass(frozen=True)
+class Number:
+    """A pure number."""
+
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    whole: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return ("a whole number" if self.whole else "a number") + _range(
+            self.above, self.at_least, self.at_most
+        )
+
+    def __call__(self, value: object) -> float | int:
+        """Return the number."""
+        kinds = int if self.whole else int | float
+        if isinstance(value, bool) or not isinstance(value, kinds):
+            remedy = "Write it without quotes and unit." if isinstance(value, str) else ""
+            raise InputError("number", shown(value), self.allowed, remedy)
+        finite = isinstance(value, int) or math.isfinite(value)
+        if not finite or _outside(value, self.above, self.at_least, self.at_most):
+            raise InputError("number", shown(value), self.allowed)
+        return value if self.whole else float(value)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words; `words` is a tuple, or a callable that looks them up when they are needed."""
+
+    words: tuple[str, ...] | Callable[[], tuple[str, ...]]
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return ", ".join(f'"{word}"' for word in self._all())
+
+    def _all(self) -> tuple[str, ...]:
+        return self.words() if callable(self.words) else self.words
+
+    def __call__(self, value: object) -> str:
+        """Return the word."""
+        if not isinstance(value, str) or value not in self._all():
+            raise InputError("choice", shown(value), self.allowed, nearest(value, self._all()))
+        return value
+
+
+@dataclass(frozen=True)
+class Flag:
+    """Yes or no."""
+
+    allowed = "true or false"
+
+    def __call__(self, value: object) -> bool:
+        """Return the flag."""
+        if not isinstance(value, bool):
+            raise InputError("flag", shown(value), self.allowed, "Write it without quotes.")
+        return value
+
+
+@dataclass(frozen=True)
+class Text:
+    """A word, as the name of an array."""
+
+    allowed = "a text in quotes"
+
+    def __call__(self, value: object) -> str:
+        """Return the text."""
+        if not isinstance(value, str) or not value.strip():
+            raise InputError("text", shown(value), self.allowed)
+        return value
+
+
+@dataclass(frozen=True)
+class LengthUnit:
+    """The unit of heights in a file that does not name it."""
+
+    allowed = 'a unit of length, as "um"'
+
+    def __call__(self, value: object) -> str:
+        """Return the unit, once it is known to be one."""
+        if not isinstance(value, str):
+            raise InputError("unit", shown(value), self.allowed)
+        try:
+            factor(value, "m")
+        except InputError as error:
+            raise InputError("unit", shown(value), self.allowed, error.remedy) from None
+        return value
+
+
+@dataclass(frozen=True)
+class File:
+    """An existing file; a relative path starts at the folder of the case."""
+
+    allowed = "the path of an existing file, relative to the case"
+
+    def __call__(self, value: object, info: ValidationInfo) -> Path:
+        """Return the path."""
+        if not isinstance(value, str | Path) or "\0" in str(value) or not str(value):
+            raise InputError("file", shown(value), self.allowed)
+        path = Path((info.context or {}).get("folder", ".")) / value
+        if not path.is_file():
+            raise InputError("file", shown(str(value)), self.allowed, f"There is no file {path}.")
+        return path
+
+
+Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File
+
+
+def kind_of(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:
+    """Find the kind inside an annotation such as ``tuple[Length, ...] | None``."""
+    for item in metadata:
+        if isinstance(item, BeforeValidator) and isinstance(item.func, Kind):
+            return item.func
+    for inner in get_args(annotation):
+        found = kind_of(inner, getattr(annotation, "__metadata__", ()))
+        if found is not None:
+            return found
+    return None
+
+
+def allowed_in(field: FieldInfo) -> str:
+    """What may stand behind a key, in words."""
+    kind = kind_of(field.annotation, field.metadata)
+    if kind is None:
+        return "a section"
+    several = "tuple" in str(field.annotation)
+    return f"a list, each {kind.allowed}" if several else kind.allowed
+
+
+def key(default: Any, meaning: str, *, otherwise: str = "", example: str = "", goes_with: str = "") -> Any:
+    """Describe a key of a case.
+
+    Parameters
+    ----------
+    default : object
+        The default, as it would be written in TOML; None if there is no fixed one.
+    meaning : str
+        What the key is.
+    otherwise : str
+        What happens without the key, where `default` is None.
+    example : str
+        How the key is written in TOML, where `default` is None.
+    goes_with : str
+        The key, or ``key=value``, without which this one has no meaning.
+
+    Returns
+    -------
+    pydantic field
+    """
+    extra = {"otherwise": otherwise, "example": example, "goes_with": goes_with, "default": default}
+    return Field(default, description=meaning, json_schema_extra=extra)
+
+
+def extra_of(field: FieldInfo) -> dict[str, Any]:
+    """What `key` was told beyond the default and the meaning."""
+    return field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
+
+
+class Problems(ValueError):
+    """Several errors of one section, each an `InputError` about one key."""
+
+    def __init__(self, errors: list[InputError]) -> None:
+        self.errors = errors
+        super().__init__("; ".join(map(str, errors)))
+
+
+class Section(BaseModel):
+    """A frozen section of a case: unknown keys are errors, and all errors are reported together."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", validate_default=True, arbitrary_types_allowed=True
+    )
+
+    def problems(self) -> Iterator[InputError]:
+        """Errors between keys that are right one by one."""
+        yield from ()
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Section:
+        errors = [*_lonely(self), *self.problems()]
+        if errors:
+            raise Problems(errors)
+        return self
+
+
+def is_active(section: BaseModel, name: str) -> bool:
+    """Whether the key that `name` goes with is there."""
+    companion, _, value = extra_of(type(section).model_fields[name]).get("goes_with", "").partition("=")
+    if not companion:
+        return True
+    found = getattr(section, companion)
+    return found == value if value else found is not None
+
+
+def _lonely(section: BaseModel) -> Iterator[InputError]:
+    for name in sorted(section.model_fields_set):
+        if not is_active(section, name):
+            companion, _, value = extra_of(type(section).model_fields[name])["goes_with"].partition("=")
+            wanted = f'{companion} = "{value}"' if value else companion
+            yield InputError(name, shown(_plain(getattr(section, name))), f"only together with {wanted}")
+
+
+def _plain(value: object) -> object:
+    return str(value) if isinstance(value, Path) else value
+
+
+def nearest(word: object, words: tuple[str, ...] | list[str]) -> str:
+    """Sentence that names the nearest of `words`; empty if none is near."""
+    found = difflib.get_close_matches(str(word).lower(), words, n=1, cutoff=0.6)
+    return f'Did you mean "{found[0]}"?' if found else ""
+
+
+def _outside(value: float, above: float | None, at_least: float | None, at_most: float | None = None) -> bool:
+    return (
+        (above is not None and value <= above)
+        or (at_least is not None and value < at_least)
+        or (at_most is not None and value > at_most)
+    )
+
+
+def _range(above: float | None, at_least: float | None, at_most: float | None = None) -> str:
+    limits = []
+    if above is not None:
+        limits.append(f"greater than {above}")
+    if at_least is not None:
+        limits.append(f"at least {at_least}")
+    if at_most is not None:
+        limits.append(f"at most {at_most}")
+    return " " + " and ".join(limits) if limits else ""
+
+
+Length = Annotated[float, BeforeValidator(Quantity("m", above=0))]
+Position = Annotated[float, BeforeValidator(Quantity("m", at_least=0))]
+Approach = Annotated[float, BeforeValidator(Quantity("m"))]
+Duration = Annotated[float, BeforeValidator(Quantity("s", above=0))]
+Speed = Annotated[float, BeforeValidator(Quantity("m/s", above=0))]
+Mass = Annotated[float, BeforeValidator(Quantity("kg", above=0))]
+Force = Annotated[float, BeforeValidator(Quantity("N", above=0))]
+Pressure = Annotated[float, BeforeValidator(Quantity("Pa", above=0))]
+Frequency = Annotated[float, BeforeValidator(Quantity("Hz", above=0))]
+Damping = Annotated[float, BeforeValidator(Quantity("N s/m", at_least=0))]
+Level = Annotated[float, BeforeValidator(Quantity("dB"))]
+ExistingFile = Annotated[Path, BeforeValidator(File())]
+Name = Annotated[str, BeforeValidator(Text())]
+HeightUnit = Annotated[str, BeforeValidator(LengthUnit())]
+YesNo = Annotated[bool, BeforeValidator(Flag())]

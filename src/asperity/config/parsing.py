@@ -1,0 +1,166 @@
+"""From the text of a case to its object, or to all that is wrong with it."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from asperity.config.ball_on_beam import BallOnBeamCase
+from asperity.config.keys import Problems, allowed_in, nearest, shown
+from asperity.errors import CaseError, InputError
+
+KINDS: dict[str, type[BallOnBeamCase]] = {"ball-on-beam": BallOnBeamCase}
+LARGEST_CASE = 2**20  # bytes
+
+
+def load_case(path: str | os.PathLike[str]) -> BallOnBeamCase:
+    """Read a case from a TOML file.
+
+    Parameters
+    ----------
+    path : path
+        The case file.
+
+    Returns
+    -------
+    BallOnBeamCase
+        The case, in SI.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, no text or no TOML.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    path = Path(path)
+    allowed = "the path of a case file (TOML)"
+    if not path.is_file():
+        remedy = "Check the path, or write a case with 'asperity new ball-on-beam > case.toml'."
+        raise InputError(str(path), "no such file", allowed, remedy)
+    with open(path, "rb") as file:
+        content = file.read(LARGEST_CASE + 1)
+    if len(content) > LARGEST_CASE:
+        raise InputError(str(path), "more than 1 MiB", allowed, "Keep heights in a file of their own.")
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(str(path), f"a byte that is no UTF-8 at {error.start}", allowed) from None
+    return parse_case(text, path)
+
+
+def parse_case(text: str, source: str | os.PathLike[str] = "case") -> BallOnBeamCase:
+    """Read a case from its text.
+
+    Parameters
+    ----------
+    text : str
+        The case in TOML.
+    source : str or path
+        Where the text comes from, for messages; relative paths in the case start at its folder.
+
+    Returns
+    -------
+    BallOnBeamCase
+        The case, in SI.
+
+    Raises
+    ------
+    InputError
+        If the text is no TOML.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    try:
+        data = tomllib.loads(text.replace("\r\n", "\n"))
+    except (ValueError, RecursionError) as error:  # TOML errors, and numbers too long to read
+        remedy = 'Strings and quantities stand in double quotes: speed = "1 m/s".'
+        raise InputError(str(source), f"no TOML ({error})", "a case in TOML", remedy) from None
+    kind = data.get("kind")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise CaseError(str(source), [str(not_a_kind(kind))])
+    model = KINDS[kind]
+    try:
+        case = model.model_validate(data, context={"folder": Path(source).parent})
+    except ValidationError as error:
+        raise CaseError(str(source), _messages(error, model)) from None
+    case._text, case._given = text, data
+    return case
+
+
+def not_a_kind(kind: object) -> InputError:
+    """Error about a kind of case that this version does not have; None stands for a missing key."""
+    allowed = ", ".join(f'"{name}"' for name in KINDS)
+    if kind is None:
+        return InputError("kind", "nothing", allowed, 'Write kind = "ball-on-beam" as the first line.')
+    if kind == "wheel-on-rail":
+        return InputError("kind", shown(kind), allowed, "This version rolls balls on beams only.")
+    return InputError("kind", shown(kind), allowed, nearest(kind, list(KINDS)))
+
+
+def _messages(error: ValidationError, model: type[BaseModel]) -> list[str]:
+    messages: list[str] = []
+    for item in error.errors():
+        name = _dotted(item["loc"])
+        cause = item.get("ctx", {}).get("error")
+        if isinstance(cause, Problems):
+            messages += [_message(".".join(filter(None, (name, each.what))), each) for each in cause.errors]
+        elif isinstance(cause, InputError):
+            messages.append(_message(name, cause))
+        elif item["type"] == "extra_forbidden":
+            messages.append(_unknown(item["loc"], model))
+        else:
+            received = "nothing" if item["type"] == "missing" else shown(item["input"])
+            messages.append(str(InputError(name, received, _allowed(item["loc"], model))))
+    return messages
+
+
+def _message(name: str, error: InputError) -> str:
+    return str(InputError(name or "the case", error.received, error.allowed, error.remedy))
+
+
+def _dotted(location: tuple[int | str, ...]) -> str:
+    text = ""
+    for part in location:
+        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}"
+    return text.lstrip(".")
+
+
+def _sections(model: type[BaseModel]) -> dict[str, type[BaseModel]]:
+    found: dict[str, type[BaseModel]] = {}
+    for name, field in model.model_fields.items():
+        if isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
+            found[name] = field.annotation
+    return found
+
+
+def _unknown(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
+    """Message about an unknown key: the nearest one here, or the section in which it would be known."""
+    *path, name = map(str, location)
+    sections = _sections(model)
+    here: type[BaseModel] = sections[path[0]] if path else model
+    place = f"keys of [{path[0]}]" if path else "keys at the top of a case"
+    remedy = nearest(name, list(here.model_fields))
+    homes = [f"[{title}]" for title, section in sections.items() if name in section.model_fields]
+    if path and name in model.model_fields:
+        homes.insert(0, "the top of the case, above the first section")
+    if homes:
+        remedy = f"Move it to {homes[0]}."
+    return str(
+        InputError(_dotted(location), "an unknown key", f"{place}: {', '.join(here.model_fields)}", remedy)
+    )
+
+
+def _allowed(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
+    here: Any = model
+    allowed = ""
+    for part in location:
+        field = here.model_fields[part] if isinstance(here, type) and part in here.model_fields else None
+        if field is None:
+            break
+        allowed, here = allowed_in(field), field.annotation
+    return f"a section [{location[0]}]" if location[-1] in _sections(model) else allowed
