@@ -19,7 +19,7 @@ def body():
 
 
 def loaded(samples):
-    datum = -min(first_touch(s, body()) for s in samples)
+    datum = -min(first_touch(s, body()).min() for s in samples)
     return stiffness_ensemble(samples, (DX, DX), body(), MODULUS, APPROACHES, max(datum, 0.0))
 
 

@@ -112,11 +112,22 @@ def test_cache_knows_what_the_force_depends_on():
 
 def test_first_touch_is_where_the_force_starts():
     heights, body = rough(60, 41), ball(41)
-    touch = first_touch(heights, body)
+    touches = first_touch(heights, body)
+    touch = touches.min()
+    assert touches.shape == (20,)
     assert touch < 0.0
     below = scan_forces(heights, (DX, DX), body, MODULUS, [touch - 1e-12, touch + 1e-9]).forces
     assert not below[0].any()
-    assert below[1].any()
+    assert np.flatnonzero(below[1]).tolist() == np.flatnonzero(touches < touch + 1e-9).tolist()
+
+
+def test_planes_shift_the_approach_of_each_position():
+    heights, body = rough(44, 41), ball(41)
+    planes = np.array([0.0, 0.1e-6, -0.05e-6, 0.2e-6])
+    shifted = scan_forces(heights, (DX, DX), body, MODULUS, [0.1e-6], rtol=1e-9, planes=planes).forces[0]
+    for m, plane in enumerate(planes):
+        alone = scan_forces(heights[m : m + 41], (DX, DX), body, MODULUS, [0.1e-6 - plane], rtol=1e-9)
+        assert shifted[m] == pytest.approx(alone.forces[0, 0], rel=1e-7)
 
 
 def test_contact_at_the_edge_warns():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import warnings
 from collections.abc import Callable, Iterable
@@ -151,14 +150,17 @@ def scan_forces(
     workers: int | None = None,
     cache: Cache | None = None,
     progress: Callable[[int, int, str], None] | None = None,
+    planes: ArrayLike | None = None,
     message: str = "scanning the contact",
 ) -> ScannedForces:
-    """Scan as in `scan`, with approaches from the plane z = 0 instead of the mean plane.
+    """Scan as in `scan`, with approaches from given planes instead of the mean plane.
 
     Parameters
     ----------
     heights, spacing, body, modulus, approaches, hardness, stride, rtol, workers, cache, progress
         As in `scan`.
+    planes : array_like, shape (n_positions,), optional
+        Height of the plane from which approaches count at each position, m; zero by default.
     message : str
         What the progress bar says.
 
@@ -176,17 +178,19 @@ def scan_forces(
     delta = np.atleast_1d(np.asarray(approaches, dtype=np.float64))
     _check(heights, shape, delta, stride)
     positions = np.arange(0, heights.shape[0] - shape.shape[0] + 1, stride)
+    plane = np.broadcast_to(np.asarray(0.0 if planes is None else planes, dtype=np.float64), positions.shape)
 
     def solve_block(first: int) -> NDArray[np.float64]:
         block = positions[first : first + BLOCK]
         rows = np.ascontiguousarray(heights[block[0] : block[-1] + shape.shape[0]])
         parameters = [list(spacing), modulus, hardness, stride, rtol]
-        key = content_key("scan", rows, shape, delta, parameters) if cache is not None else ""
+        planes = np.ascontiguousarray(plane[first : first + BLOCK])
+        key = content_key("scan", rows, shape, delta, planes, parameters) if cache is not None else ""
         kept = cache.get(key) if cache is not None else None
         if kept is not None:
             return kept["block"]
         half_space = HalfSpace((shape.shape[0], shape.shape[1]), spacing, modulus, hardness)
-        solved = _solve_block(half_space, rows, shape, delta, stride, len(block), rtol)
+        solved = _solve_block(half_space, rows, shape, delta, planes, stride, rtol)
         if cache is not None:
             cache.put(key, {"block": solved})
         return solved
@@ -227,16 +231,16 @@ def _solve_block(
     rows: NDArray,
     body: NDArray,
     approaches: NDArray,
+    planes: NDArray,
     stride: int,
-    count: int,
     rtol: float,
 ) -> NDArray[np.float64]:
-    """Forces, iterations, unconverged and truncated of each approach and position, (4, k, count)."""
+    """Forces, iterations, unconverged and truncated of each approach and position, (4, k, positions)."""
     nx = body.shape[0]
-    result = np.zeros((4, len(approaches), count))
+    result = np.zeros((4, len(approaches), len(planes)))
     previous: list[NDArray | None] = [None] * len(approaches)
-    for m in range(count):
-        gap = body - rows[m * stride : m * stride + nx]
+    for m, plane in enumerate(planes):
+        gap = body + plane - rows[m * stride : m * stride + nx]
         touch = gap.min()
         below: NDArray | None = None
         for i, approach in enumerate(approaches):
@@ -304,8 +308,10 @@ def _warn(result: ScannedForces) -> None:
         )
 
 
-def first_touch(heights: NDArray[np.float64], body: NDArray[np.float64], stride: int = 1) -> float:
-    """Find the lowest approach at which the body touches the surface anywhere along it.
+def first_touch(
+    heights: NDArray[np.float64], body: NDArray[np.float64], stride: int = 1
+) -> NDArray[np.float64]:
+    """Find the approach at which the body first touches the surface, at each position.
 
     Parameters
     ----------
@@ -318,11 +324,9 @@ def first_touch(heights: NDArray[np.float64], body: NDArray[np.float64], stride:
 
     Returns
     -------
-    float
-        Approach, m; usually negative: peaks touch before the planes meet.
+    ndarray, shape (n_positions,)
+        Approaches from that plane, m; usually negative: peaks touch before the planes meet.
     """
     nx = body.shape[0]
-    lowest = math.inf
-    for m in range(0, heights.shape[0] - nx + 1, stride):
-        lowest = min(lowest, float((body - heights[m : m + nx]).min()))
-    return lowest
+    starts = range(0, heights.shape[0] - nx + 1, stride)
+    return np.array([float((body - heights[m : m + nx]).min()) for m in starts])
