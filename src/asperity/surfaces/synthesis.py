@@ -1,0 +1,319 @@
+"""Synthetic surfaces: self-affine, from band levels, and in the likeness of measured maps; all seeded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import fft
+
+from asperity.errors import InputError
+from asperity.spectra import third_octave_bands
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.translation import gaussian_correlation, height_transform
+
+
+def self_affine(
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    *,
+    rms: float,
+    hurst: float,
+    longest: float,
+    shortest: float,
+    anisotropy: float = 1.0,
+    seed: int,
+) -> HeightMap:
+    """Gaussian self-affine surface with a roll-off and a cut-off.
+
+    The power spectral density is C(q') = constant below 2π/longest and falls as
+    q'^(-2-2·hurst) up to the cut-off |q| = 2π/shortest, beyond which it is zero;
+    q'² = (qx √anisotropy)² + (qy/√anisotropy)².
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Points (nx, ny).
+    spacing : tuple of float
+        Spacing (dx, dy), m.
+    rms : float
+        Root mean square of the *ensemble* about zero, m, exact on this grid. One realisation
+        scatters about it, the more the fewer longest wavelengths fit in; it is not rescaled, since
+        that would make short pieces rougher than the long surface they stand for.
+    hurst : float
+        Hurst exponent, 0 < hurst <= 1.
+    longest, shortest : float
+        Roll-off and cut-off wavelength, m, shortest < longest, shortest at least two samples.
+    anisotropy : float, optional
+        Correlation length in x over that in y; their geometric mean stays.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    HeightMap
+        Cut from a surface that is at least one roll-off wavelength larger, so not periodic.
+
+    Raises
+    ------
+    InputError
+        If a parameter is out of range.
+
+    References
+    ----------
+    B. N. J. Persson et al., J. Phys.: Condens. Matter 17 (2005) R1, section 2 (spectrum).
+    """
+    steps = (float(spacing[0]), float(spacing[1]))
+    _check_shape(shape)
+    _check_self_affine(steps, rms, hurst, longest, shortest, anisotropy)
+    stretch = np.sqrt(anisotropy)
+    reach = (longest * stretch, longest / stretch)
+    grid = [
+        fft.next_fast_len(int(np.ceil(max(n + r / d, 2.0 * r / d))), real=True)
+        for n, r, d in zip(shape, reach, steps, strict=True)
+    ]
+    qx = 2.0 * np.pi * fft.fftfreq(grid[0], steps[0])[:, None]
+    qy = 2.0 * np.pi * fft.rfftfreq(grid[1], steps[1])[None, :]
+    scaled = np.maximum((qx * stretch) ** 2 + (qy / stretch) ** 2, (2.0 * np.pi / longest) ** 2)
+    power = scaled ** (-1.0 - hurst)
+    power[qx**2 + qy**2 > (2.0 * np.pi / shortest) ** 2 * (1.0 + 1e-12)] = 0.0
+    power[0, 0] = 0.0
+    field = _gaussian_field(power, grid, rms, seed)
+    source = f"self-affine: rms {rms:.4g} m, Hurst {hurst:g}, {shortest:.4g} to {longest:.4g} m, seed {seed}"
+    return HeightMap(field[: shape[0], : shape[1]], steps, source)
+
+
+def _check_shape(shape: tuple[int, int]) -> None:
+    if len(shape) != 2 or min(shape) < 2:
+        raise InputError("shape", shape, "(nx, ny), at least 2 points each")
+
+
+def _check_self_affine(
+    steps: tuple[float, float], rms: float, hurst: float, longest: float, shortest: float, anisotropy: float
+) -> None:
+    coarsest = 2.0 * max(steps)
+    checks = [
+        ("spacing", steps, min(steps) > 0.0, "above zero"),
+        ("rms", rms, 0.0 <= rms < np.inf, "zero or more, m"),
+        ("hurst", hurst, 0.0 < hurst <= 1.0, "above 0, up to 1"),
+        ("shortest", shortest, shortest >= coarsest * (1 - 1e-9), f"at least two samples, {coarsest:.4g} m"),
+        ("longest", longest, shortest < longest < np.inf, "longer than `shortest`"),
+        ("anisotropy", anisotropy, 0.0 < anisotropy < np.inf, "above zero"),
+    ]
+    for what, received, right, allowed in checks:
+        if not right:
+            raise InputError(what, received, allowed)
+
+
+def _gaussian_field(
+    power: NDArray[np.float64], grid: Sequence[int], rms: float, seed: int
+) -> NDArray[np.float64]:
+    """Periodic Gaussian field with this half spectrum, scaled to an expected mean square of rms²."""
+    doubled = power.sum() + power[:, 1 : (grid[1] + 1) // 2].sum()  # the half that rfft2 leaves out
+    noise = np.random.default_rng(seed).standard_normal((grid[0], grid[1]))
+    spectrum = fft.rfft2(noise, overwrite_x=True)
+    del noise
+    spectrum *= np.sqrt(power * (rms**2 * grid[0] * grid[1] / doubled))
+    return np.asarray(fft.irfft2(spectrum, s=tuple(grid), overwrite_x=True))
+
+
+def from_bands(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayLike, seed: int) -> Profile:
+    """Line with given one-third-octave levels in wavelength.
+
+    Amplitudes are fixed and phases random, so every realisation has the levels asked for. The
+    density is constant inside a band; bands that are not given hold nothing.
+
+    Parameters
+    ----------
+    n : int
+        Points.
+    spacing : float
+        Spacing, m.
+    wavelengths : array_like, shape (b,)
+        Band centres, m, in any order; nominal values (0.63 m) or exact ones (10^(n/10) m).
+    levels_db : array_like, shape (b,)
+        Levels, dB re 1 µm rms.
+    seed : int
+        Seed of the random phases.
+
+    Returns
+    -------
+    Profile
+        Heights, m; the line closes on itself, as around a wheel.
+
+    Raises
+    ------
+    InputError
+        If the line is shorter than the longest band's edge, the spacing too coarse for the
+        shortest, or the wavelengths are no distinct one-third octaves.
+
+    References
+    ----------
+    Levels as in ISO 3095:2013 and EN 15610:2019 (reference 1 µm).
+    """
+    centres, low, high, levels = _wavenumber_bands(wavelengths, levels_db)
+    if not (n >= 2 and spacing > 0.0):
+        raise InputError("line", f"{n} points at {spacing} m", "2 points or more at a positive spacing")
+    length = n * spacing
+    if low.min() * length < 1.0:
+        allowed = f"at least the longest band's edge, {1.0 / low.min():.4g} m"
+        raise InputError(
+            "length of the line", f"{n * spacing:.4g} m", allowed, "Leave out the longest bands."
+        )
+    if high.max() > 0.5 / spacing * (1.0 + 1e-9):
+        allowed = f"at most half the shortest band's edge, {0.5 / high.max():.4g} m"
+        raise InputError("spacing", f"{spacing:.4g} m", allowed, "Leave out the shortest bands.")
+    step = 1.0 / (n * spacing)
+    lines = np.arange(n // 2 + 1) * step
+    edges = np.clip(np.stack([lines - step / 2.0, lines + step / 2.0]), 0.0, None)
+    energy = np.zeros(lines.size)
+    for one_low, one_high, one_level in zip(low, high, levels, strict=True):
+        overlap = np.clip(np.minimum(edges[1], one_high) - np.maximum(edges[0], one_low), 0.0, None)
+        energy += 1e-12 * 10.0 ** (one_level / 10.0) * overlap / overlap.sum()
+    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, lines.size)
+    spectrum = n * np.sqrt(energy / 2.0) * np.exp(1j * phases)
+    if n % 2 == 0:
+        spectrum[-1] = n * np.sqrt(energy[-1])
+    source = f"one-third octaves {1.0 / centres.max():.4g} to {1.0 / centres.min():.4g} m, seed {seed}"
+    return Profile(fft.irfft(spectrum, n), spacing, source)
+
+
+def _wavenumber_bands(
+    wavelengths: ArrayLike, levels_db: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    given = np.atleast_1d(np.asarray(wavelengths, dtype=np.float64))
+    levels = np.atleast_1d(np.asarray(levels_db, dtype=np.float64))
+    if (
+        given.ndim != 1
+        or given.shape != levels.shape
+        or not (np.isfinite(levels) | np.isneginf(levels)).all()
+    ):
+        received = f"shapes {given.shape} and {levels.shape}"
+        raise InputError("wavelengths and levels", received, "two lists of equal length, levels not NaN")
+    if not ((given > 0.0) & np.isfinite(given)).all():
+        raise InputError("wavelengths", given, "positive and finite, m")
+    bands = [third_octave_bands(1.0 / w, 1.0 / w) for w in given]
+    centres, low, high = (np.array([b[k][0] for b in bands]) for k in range(3))
+    nominal = np.abs(given * centres - 1.0) < 0.03  # nominal values lie within 2.4 % of the exact ones
+    if not nominal.all() or np.unique(centres).size != centres.size:
+        remedy = "Give each band once by its centre, as 0.1, 0.125, 0.16 m."
+        raise InputError("wavelengths", given, "distinct centres of base-10 one-third octaves", remedy)
+    return centres, low, high, levels
+
+
+def from_map(
+    maps: HeightMap | Sequence[HeightMap],
+    shape: tuple[int, int],
+    seed: int,
+    spacing: float | tuple[float, float] | None = None,
+) -> HeightMap:
+    """Surface of any size with the spectrum and the height distribution of measured maps.
+
+    The two-sided angular spectrum, with its anisotropy, is the Hann-windowed periodogram averaged over
+    the levelled maps; its variance is that of the pooled heights. A Gaussian field with a
+    pre-distorted correlation is translated to the pooled height distribution.
+
+    Parameters
+    ----------
+    maps : HeightMap or sequence of HeightMap
+        One or more maps of one texture with the same spacing, complete; each is levelled by its
+        mean plane.
+    shape : tuple of int
+        Points (nx, ny) wanted.
+    seed : int
+        Seed of the random numbers.
+    spacing : float or tuple of float, optional
+        Spacing wanted, m; the maps are brought to it first (see `asperity.surfaces.levelling.resample`),
+        so that wavelengths below two new samples are left out. Default: that of the maps.
+
+    Returns
+    -------
+    HeightMap
+        Heights about zero, m; no realisation is rescaled, so Sq scatters as in pieces of one
+        long surface. No height exceeds the measured extremes.
+
+    Raises
+    ------
+    InputError
+        If the maps have missing points or different spacings, or the shape is too small.
+
+    Notes
+    -----
+    - Wavelengths longer than the map are not known. The correlation is taken as zero beyond the
+      map's length, which continues the spectrum from its value at the longest measured wavelength
+      smoothly to zero wavenumber (no trend, no added waviness). Wavelengths between a third of the
+      map's length and the length are smeared by the window.
+    - The field is made on a grid longer and wider than asked for by the size of the map, then cut:
+      it is not periodic, and a narrow strip holds waves much longer than its width.
+    - Where the distribution and the spectrum contradict each other (a distribution that is not
+      smooth needs short waves that a steep spectrum does not have), the distribution wins.
+
+    References
+    ----------
+    C. R. Dietrich and G. N. Newsam, SIAM J. Sci. Comput. 18 (1997) 1088 (circulant embedding).
+    M. Grigoriu, Applied Non-Gaussian Processes (1995), section 3.1 (translation).
+    """
+    _check_shape(shape)
+    levelled = _prepared([maps] if isinstance(maps, HeightMap) else list(maps), spacing)
+    pooled = np.concatenate([m.heights.ravel() for m in levelled])
+    transform = height_transform(pooled)
+    target = _correlation([m.heights for m in levelled])
+    needed = gaussian_correlation(transform, target)
+    lags = [(n + 1) // 2 for n in target.shape]
+    grid = [fft.next_fast_len(n + k, real=True) for n, k in zip(shape, lags, strict=True)]
+    power = fft.rfft2(_embedded(needed, grid), overwrite_x=True).real
+    np.maximum(power, 0.0, out=power)
+    field = _gaussian_field(power, grid, 1.0, seed)[: shape[0], : shape[1]]
+    sources = ", ".join(dict.fromkeys(m.source for m in levelled if m.source))
+    return HeightMap(
+        transform(field), levelled[0].spacing, f"synthesised from {sources or 'maps'}, seed {seed}"
+    )
+
+
+def _prepared(maps: list[HeightMap], spacing: float | tuple[float, float] | None) -> list[HeightMap]:
+    if not maps:
+        raise InputError("maps", "none", "one or more height maps")
+    for one in maps:
+        if np.isnan(one.heights).any():
+            received = f"{one.missing_share:.2%} missing points in {one.source or 'a map'}"
+            raise InputError("maps", received, "complete maps", "Use fill first.")
+        if not np.allclose(one.spacing, maps[0].spacing, rtol=1e-6, atol=0.0):
+            received = f"spacings {maps[0].spacing} and {one.spacing} m"
+            raise InputError("maps", received, "one spacing for all", "Use resample first.")
+    levelled = [level(one) for one in maps]
+    return levelled if spacing is None else [resample(one, spacing) for one in levelled]
+
+
+def _correlation(maps: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Correlation coefficients at all lags, odd size, zero lag first (wrapped), tapered by the window.
+
+    The window weighs the middle of the maps; what its mean square lacks of the plain one lies in
+    waves that it cannot resolve, and gets the window's own spectrum about zero wavenumber.
+    """
+    size = [2 * max(m.shape[axis] for m in maps) - 1 for axis in (0, 1)]
+    power, kernel = np.zeros((2, size[0], size[1] // 2 + 1))
+    for heights in maps:
+        window = np.outer(*(_hann(n) for n in heights.shape))
+        mean = np.sum(window * heights) / np.sum(window)
+        power += np.abs(fft.rfft2(window * (heights - mean), s=size)) ** 2
+        kernel += np.abs(fft.rfft2(window, s=size)) ** 2
+    correlation, taper = fft.irfft2(power, s=size), fft.irfft2(kernel, s=size)
+    variance = np.mean(np.concatenate([m.ravel() for m in maps]) ** 2)
+    resolved = correlation / (variance * taper[0, 0])
+    return np.asarray(resolved + (1.0 - resolved[0, 0]) * taper / taper[0, 0])
+
+
+def _hann(points: int) -> NDArray[np.float64]:
+    return np.sin(np.pi * (np.arange(points) + 0.5) / points) ** 2
+
+
+def _embedded(correlation: NDArray[np.float64], grid: Sequence[int]) -> NDArray[np.float64]:
+    """Wrapped correlation with zeros put between its positive and negative lags."""
+    embedded = np.zeros((grid[0], grid[1]))
+    nx, ny = ((n + 1) // 2 for n in correlation.shape)
+    for row, row_out in ((slice(0, nx), slice(0, nx)), (slice(nx, None), slice(grid[0] - nx + 1, None))):
+        embedded[row_out, :ny] = correlation[row, :ny]
+        embedded[row_out, grid[1] - ny + 1 :] = correlation[row, ny:]
+    return embedded
