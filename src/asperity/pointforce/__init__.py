@@ -1,0 +1,54 @@
+"""The moving point force: contact laws, one file each.
+
+Every law is a frozen description of the contact; ``law.prepare(positions)`` lays it out on the
+path, for the compiled stepper (`asperity.kernels.pointforce.Prepared`) or for stepping from
+Python (`asperity.pointforce.base.SteppedLaw`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from asperity.pointforce.areal import Areal
+from asperity.pointforce.base import Law, Prepared, SteppedLaw, force
+from asperity.pointforce.hertz import Hertz
+from asperity.pointforce.linear import Linear
+from asperity.pointforce.printed import Printed
+from asperity.pointforce.shifted import Shifted
+from asperity.pointforce.table import Table
+
+
+class Entry(NamedTuple):
+    """A law in the registry: its class and what it means, in one sentence."""
+
+    law: type
+    meaning: str
+
+
+LAWS: dict[str, Entry] = {
+    "printed": Entry(Printed, "The thesis as printed: secant stiffness times the filtered line texture."),
+    "shifted": Entry(
+        Shifted, "The same state functions, shifted by the texture; follows slow bumps fully."
+    ),
+    "areal": Entry(
+        Areal, "Force on the texture averaged over the contact by the flat-punch weight."
+    ),
+    "table": Entry(Table, "The scanned three-dimensional contact force, looked up."),
+    "hertz": Entry(Hertz, "Smooth bodies: Hertzian contact."),
+    "linear": Entry(Linear, "The contact linearised at its working point; it never lets go."),
+}
+
+__all__ = [
+    "LAWS",
+    "Areal",
+    "Entry",
+    "Hertz",
+    "Law",
+    "Linear",
+    "Prepared",
+    "Printed",
+    "Shifted",
+    "SteppedLaw",
+    "Table",
+    "force",
+]

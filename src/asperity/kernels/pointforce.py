@@ -1,0 +1,226 @@
+"""The moving point force, compiled: three forms that cover all laws made of state functions."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+SHIFTED = 0  # F = f(approach - h)
+SECANT = 1  # F = f(approach)/r (r - h), r = approach + datum: Eq. 2.1 as printed
+TABLE = 2  # F = g(approach)^1.5, g interpolated at every position
+
+
+class Prepared(NamedTuple):
+    """A law laid out on the positions of a path, for the compiled kernels.
+
+    Attributes
+    ----------
+    form : int
+        `SHIFTED`, `SECANT` or `TABLE`.
+    states : ndarray (s,)
+        Approaches of the states, m.
+    values : ndarray (n, s)
+        At every position: the texture h, m, or for `TABLE` the root g of the force, N^(2/3).
+    slopes : ndarray (n, s)
+        For `TABLE` the slope of g, N^(2/3)/m; else an array without rows.
+    knots, coefficients, exponent, bilateral
+        The force curve, as in `asperity.reduction.stiffness.ForceCurve`.
+    datum : float
+        Offset of the state r from the approach, m (`SECANT`).
+    damping : float
+        Contact damping, N s/m.
+    damped_in_flight : bool
+        Whether the damper also acts, and pulls, out of contact (Eq. 2.2).
+    upper : float
+        Largest argument that the data cover, m: of f, or the last state of a table.
+    """
+
+    form: int
+    states: NDArray
+    values: NDArray
+    slopes: NDArray
+    knots: NDArray
+    coefficients: NDArray
+    exponent: float
+    bilateral: bool
+    datum: float
+    damping: float
+    damped_in_flight: bool
+    upper: float
+
+
+@njit(cache=True)
+def curve_force(knots, coefficients, exponent, bilateral, s):  # type: ignore[no-untyped-def]
+    """Force and slope of a force curve at the approach `s`."""
+    if s <= knots[0] and not bilateral:
+        return 0.0, 0.0
+    last = coefficients.shape[0] - 1
+    i = 0 if last == 0 else min(max(np.searchsorted(knots, s) - 1, 0), last)
+    u = s - knots[i]
+    within = min(max(u, 0.0), knots[i + 1] - knots[i])
+    c3, c2, c1, c0 = coefficients[i, 0], coefficients[i, 1], coefficients[i, 2], coefficients[i, 3]
+    slope = (3.0 * c3 * within + 2.0 * c2) * within + c1
+    g = ((c3 * within + c2) * within + c1) * within + c0 + slope * (u - within)
+    return power(g, slope, exponent)
+
+
+@njit(cache=True)
+def power(g, slope, exponent):  # type: ignore[no-untyped-def]
+    """Force g**exponent and its slope."""
+    if exponent == 1.0:
+        return g, slope
+    if g <= 0.0:
+        return 0.0, 0.0
+    root = np.sqrt(g) if exponent == 1.5 else g ** (exponent - 1.0)
+    return root * g, exponent * root * slope
+
+
+@njit(cache=True)
+def texture_at(states, heights, approach):  # type: ignore[no-untyped-def]
+    """Texture between the states, linear in the approach, and its slope; constant outside."""
+    last = states.shape[0] - 1
+    if approach <= states[0]:
+        return heights[0], 0.0
+    if approach >= states[last]:
+        return heights[last], 0.0
+    i = np.searchsorted(states, approach) - 1
+    slope = (heights[i + 1] - heights[i]) / (states[i + 1] - states[i])
+    return heights[i] + slope * (approach - states[i]), slope
+
+
+@njit(cache=True)
+def table_root(states, values, slopes, approach):  # type: ignore[no-untyped-def]
+    """Monotone cubic g between the states, straight outside, and its slope."""
+    last = states.shape[0] - 1
+    if approach <= states[0]:
+        return values[0] + slopes[0] * (approach - states[0]), slopes[0]
+    if approach >= states[last]:
+        return values[last] + slopes[last] * (approach - states[last]), slopes[last]
+    i = np.searchsorted(states, approach) - 1
+    width = states[i + 1] - states[i]
+    t = (approach - states[i]) / width
+    secant = (values[i + 1] - values[i]) / width
+    start, end = slopes[i] - secant, slopes[i + 1] - secant
+    g = values[i] + width * t * (secant + (1.0 - t) * (start * (1.0 - t) - end * t))
+    slope = secant + start * (1.0 - t) * (1.0 - 3.0 * t) + end * t * (3.0 * t - 2.0)
+    return g, slope
+
+
+@njit(cache=True)
+def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
+    """Elastic force of a prepared law and its derivative with respect to the approach.
+
+    Parameters
+    ----------
+    law : Prepared
+        The law on the path.
+    step : int
+        Index of the position.
+    approach : float
+        Approach, m.
+
+    Returns
+    -------
+    force, slope : float
+        N, N/m.
+    """
+    if law.form == TABLE:
+        g, slope = table_root(law.states, law.values[step], law.slopes[step], approach)
+        return power(g, slope, 1.5)
+    height, height_slope = texture_at(law.states, law.values[step], approach)
+    if law.form == SHIFTED:
+        force, slope = curve_force(
+            law.knots, law.coefficients, law.exponent, law.bilateral, approach - height
+        )
+        return force, slope * (1.0 - height_slope)
+    r = approach + law.datum
+    if r <= 0.0 or r <= height:
+        return 0.0, 0.0
+    force, slope = curve_force(law.knots, law.coefficients, law.exponent, law.bilateral, approach)
+    secant = force / r
+    return secant * (r - height), (slope - secant) / r * (r - height) + secant * (1.0 - height_slope)
+
+
+@njit(cache=True)
+def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # type: ignore[no-untyped-def]
+    """Contact force with damping, when the approach rate itself falls with the force.
+
+    The rate at the end of a step is ``rate - rate_compliance * F``, so ``F = elastic + c *
+    (rate - rate_compliance * F)`` is solved for F. Out of contact the damper is idle and in
+    contact the sum never pulls, unless `in_flight`.
+
+    Parameters
+    ----------
+    elastic, slope : float
+        Elastic force, N, and its derivative, N/m.
+    rate : float
+        Approach rate at zero force, m/s.
+    rate_compliance : float
+        Loss of rate per force, m/(s N); zero when `rate` is the rate itself.
+    damping : float
+        c, N s/m.
+    in_flight : bool
+        Whether the damper acts always, and both ways.
+
+    Returns
+    -------
+    force, slope : float
+        N, N/m.
+    """
+    if damping == 0.0 or (elastic <= 0.0 and not in_flight):
+        return elastic, slope
+    share = 1.0 / (1.0 + damping * rate_compliance)
+    force = (elastic + damping * rate) * share
+    if force < 0.0 and not in_flight:
+        return 0.0, 0.0
+    return force, slope * share
+
+
+@njit(cache=True)
+def evaluate_all(law, approach):  # type: ignore[no-untyped-def]
+    """Elastic force at every position of the path, for one approach each.
+
+    Parameters
+    ----------
+    law : Prepared
+        The law on the path of n positions.
+    approach : ndarray (n,)
+        Approaches, m.
+
+    Returns
+    -------
+    force, slope : ndarray (n,)
+        N, N/m.
+    """
+    force, slope = np.empty(approach.size), np.empty(approach.size)
+    for i in range(approach.size):
+        force[i], slope[i] = evaluate(law, i, approach[i])
+    return force, slope
+
+
+@njit(cache=True)
+def count_beyond(law, approach):  # type: ignore[no-untyped-def]
+    """Number of positions at which the law is continued beyond its data.
+
+    Parameters
+    ----------
+    law : Prepared
+        The law on the path of n positions.
+    approach : ndarray (n,)
+        Approaches, m.
+
+    Returns
+    -------
+    int
+        Count.
+    """
+    count = 0
+    for i in range(approach.size):
+        argument = approach[i]
+        if law.form == SHIFTED:
+            argument -= texture_at(law.states, law.values[i], approach[i])[0]
+        count += argument > law.upper
+    return count

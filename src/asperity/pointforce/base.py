@@ -1,0 +1,179 @@
+"""What a contact law is: protocols, and the two ways of laying one out on a path."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError
+from asperity.kernels.monotone import monotone_slopes
+from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
+from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import StateTexture
+
+
+@runtime_checkable
+class SteppedLaw(Protocol):
+    """A law on a path that is evaluated from Python, one solution of the contact at a time."""
+
+    def evaluate(self, step: int, approach: float) -> tuple[float, float]:
+        """Elastic force, N, and dF/d(approach), N/m, at a step of the path."""
+        ...
+
+    def accept(self, step: int) -> None:
+        """Keep the last evaluation of this step as the start of the next."""
+        ...
+
+    def state(self) -> dict[str, NDArray]:
+        """What `restore` needs to go on from here exactly."""
+        ...
+
+    def restore(self, state: dict[str, NDArray]) -> None:
+        """Go on from a saved state."""
+        ...
+
+
+class Law(Protocol):
+    """A contact law: contact force from approach, approach rate and position on the path."""
+
+    @property
+    def name(self) -> str:
+        """Name in the registry and in results."""
+        ...
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+        ...
+
+    def prepare(self, positions: ArrayLike) -> Prepared | SteppedLaw:
+        """Lay the law out on the positions (n,) of the contact, m."""
+        ...
+
+
+def check_damping(damping: float) -> None:
+    """Refuse a contact damping that is negative or not finite.
+
+    Parameters
+    ----------
+    damping : float
+        N s/m.
+
+    Raises
+    ------
+    InputError
+        If so.
+    """
+    if not (np.isfinite(damping) and damping >= 0.0):
+        raise InputError("contact damping (N s/m)", damping, "zero or a finite positive number")
+
+
+def on_curve(
+    curve: ForceCurve,
+    texture: StateTexture | None,
+    positions: ArrayLike,
+    *,
+    form: int = SHIFTED,
+    datum: float = 0.0,
+    damping: float = 0.0,
+    damped_in_flight: bool = False,
+) -> Prepared:
+    """Lay out a law that is a force curve following a line texture.
+
+    Parameters
+    ----------
+    curve : ForceCurve
+        Force against approach.
+    texture : StateTexture or None
+        Texture that the force follows; None for a smooth path.
+    positions : array_like (n,)
+        Positions of the contact, m.
+    form : int
+        `SHIFTED` or `SECANT` of `asperity.kernels.pointforce`.
+    datum, damping, damped_in_flight
+        As in `asperity.kernels.pointforce.Prepared`.
+
+    Returns
+    -------
+    Prepared
+        Arrays for the kernel.
+    """
+    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    states = np.zeros(1) if texture is None else texture.approaches
+    values = np.zeros((at.size, 1)) if texture is None else texture.at(at)
+    return Prepared(
+        form,
+        np.ascontiguousarray(states, dtype=float),
+        np.ascontiguousarray(values, dtype=float),
+        np.zeros((0, len(states))),
+        np.ascontiguousarray(curve.knots, dtype=float),
+        np.ascontiguousarray(curve.coefficients, dtype=float),
+        float(curve.exponent),
+        bool(curve.bilateral),
+        float(datum),
+        float(damping),
+        bool(damped_in_flight),
+        float(curve.upper),
+    )
+
+
+def on_table(table: ForceTable, positions: ArrayLike, *, damping: float = 0.0) -> Prepared:
+    """Lay out a law that looks the force up in a table.
+
+    Parameters
+    ----------
+    table : ForceTable
+        Forces of the path.
+    positions : array_like (n,)
+        Positions of the contact, m.
+    damping : float
+        Contact damping, N s/m.
+
+    Returns
+    -------
+    Prepared
+        Arrays for the kernel: g = F^(2/3) and its monotone slopes at every position.
+    """
+    root = np.cbrt(table.at(positions)) ** 2
+    return Prepared(
+        TABLE,
+        np.ascontiguousarray(table.approaches, dtype=float),
+        np.ascontiguousarray(root),
+        monotone_slopes(table.approaches, root),
+        np.zeros(2),
+        np.zeros((1, 4)),
+        1.5,
+        False,
+        0.0,
+        float(damping),
+        False,
+        float(table.approaches[-1]),
+    )
+
+
+def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray:
+    """Elastic contact force of a law, without damping.
+
+    Parameters
+    ----------
+    law : Law
+        Any law.
+    positions : array_like (n,)
+        Positions on the path, m.
+    approach : array_like (n,) or float
+        Approach at each position, m.
+
+    Returns
+    -------
+    ndarray (n,)
+        Force, N.
+    """
+    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    delta = np.ascontiguousarray(np.broadcast_to(np.asarray(approach, dtype=float), at.shape))
+    prepared = law.prepare(at)
+    if isinstance(prepared, Prepared):
+        return evaluate_all(prepared, delta)[0]
+    return np.array([prepared.evaluate(step, value)[0] for step, value in enumerate(delta)])
