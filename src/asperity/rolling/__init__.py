@@ -1,0 +1,1 @@
+"""Rolling in time: structures coupled through a contact law."""

@@ -1,0 +1,1 @@
+"""The bodies that vibrate: the rigid ball and the beam."""

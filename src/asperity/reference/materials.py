@@ -1,0 +1,117 @@
+"""Named elastic materials, each with its source."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.errors import InputError
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic elastic material.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    youngs_modulus : float
+        E, Pa.
+    poisson_ratio : float
+        nu, between -1 and 0.5.
+    density : float
+        kg/m^3.
+    citation : str
+        Where the values come from.
+
+    Raises
+    ------
+    InputError
+        If a value is outside what an elastic solid can have.
+    """
+
+    name: str
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    citation: str = ""
+
+    def __post_init__(self) -> None:
+        for what, value in (
+            ("Young's modulus (Pa)", self.youngs_modulus),
+            ("density (kg/m^3)", self.density),
+        ):
+            if not (np.isfinite(value) and value > 0.0):
+                raise InputError(f"{what} of {self.name}", value, "a finite positive number")
+        if not -1.0 < self.poisson_ratio <= 0.5:
+            raise InputError(f"Poisson's ratio of {self.name}", self.poisson_ratio, "above -1, at most 0.5")
+
+
+MATERIALS: dict[str, Material] = {
+    material.name: material
+    for material in (
+        Material("steel", 210e9, 0.3, 7850.0, "EN 1993-1-1:2005, 3.2.6; density EN 1991-1-1:2002, table A.4"),
+        Material("aluminium", 70e9, 0.3, 2700.0, "EN 1999-1-1:2007, 3.2.5"),
+        Material("glass", 70e9, 0.2, 2500.0, "soda-lime silicate glass, EN 572-1:2012, table 1"),
+        Material(
+            "silicon nitride",
+            310e9,
+            0.27,
+            3200.0,
+            "typical of bearing grades; ASTM F2094 asks for 270-330 GPa, 0.23-0.29, 3.0-3.4 g/cm^3",
+        ),
+        Material(
+            "tungsten carbide",
+            630e9,
+            0.22,
+            14900.0,
+            "typical of cemented carbide with 6 % cobalt; makers state 600-650 GPa",
+        ),
+    )
+}
+
+
+def material(name: str) -> Material:
+    """Look a material up by its name.
+
+    Parameters
+    ----------
+    name : str
+        As in `MATERIALS`; capitals do not matter.
+
+    Returns
+    -------
+    Material
+        The material.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name; the nearest is named.
+    """
+    key = name.strip().lower()
+    if key in MATERIALS:
+        return MATERIALS[key]
+    near = difflib.get_close_matches(key, MATERIALS, n=1)
+    remedy = f"Did you mean '{near[0]}'?" if near else ""
+    raise InputError("material", repr(name), "one of " + ", ".join(MATERIALS), remedy)
+
+
+def contact_modulus(first: Material, second: Material) -> float:
+    """Contact modulus E* of two bodies.
+
+    Parameters
+    ----------
+    first, second : Material
+        The bodies.
+
+    Returns
+    -------
+    float
+        E*, Pa: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, Eq. 4.22).
+    """
+    compliance = sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in (first, second))
+    return 1.0 / compliance

@@ -1,0 +1,230 @@
+"""Finite Euler-Bernoulli beam in its modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError
+from asperity.reference.materials import Material
+
+SUPPORTS = ("simply-supported", "free", "clamped")
+
+
+@dataclass(frozen=True)
+class Beam:
+    """Uniform Euler-Bernoulli beam with modal damping.
+
+    All modes have the damping ratio ``loss_factor / 2``, which dissipates at resonance what a
+    hysteretic loss factor does. Free ends carry the two rigid modes on a soft suspension.
+
+    Parameters
+    ----------
+    length : float
+        m.
+    bending_stiffness : float
+        B = E I, N m^2.
+    mass_per_length : float
+        kg/m.
+    support : {"simply-supported", "free", "clamped"}
+        Condition of both ends.
+    loss_factor : float
+        Twice the modal damping ratio.
+    highest_frequency : float
+        All modes with natural frequencies up to here are kept, Hz; at least one.
+    suspension_frequency : float
+        Natural frequency of the rigid translation and rotation of a free beam, Hz.
+
+    Raises
+    ------
+    InputError
+        If a value is not positive, the support unknown, or no mode lies below the highest frequency.
+
+    Notes
+    -----
+    Shear and rotary inertia are left out: valid while the bending wavelength is longer than about
+    ten heights.
+    """
+
+    length: float
+    bending_stiffness: float
+    mass_per_length: float
+    support: str = "simply-supported"
+    loss_factor: float = 0.005
+    highest_frequency: float = 10e3
+    suspension_frequency: float = 5.0
+
+    def __post_init__(self) -> None:
+        for what, value in (
+            ("beam length (m)", self.length),
+            ("bending stiffness of the beam (N m^2)", self.bending_stiffness),
+            ("mass per length of the beam (kg/m)", self.mass_per_length),
+            ("highest frequency of the beam (Hz)", self.highest_frequency),
+            ("suspension frequency of the beam (Hz)", self.suspension_frequency),
+        ):
+            if not (np.isfinite(value) and value > 0.0):
+                raise InputError(what, value, "a finite positive number")
+        if not 0.0 <= self.loss_factor < 2.0:
+            raise InputError("loss factor of the beam", self.loss_factor, "zero or more, below 2")
+        if self.support not in SUPPORTS:
+            raise InputError("beam support", repr(self.support), "one of " + ", ".join(SUPPORTS))
+        if len(self._bending_roots) == 0:
+            raise InputError(
+                "highest frequency of the beam (Hz)",
+                self.highest_frequency,
+                "above the first natural frequency of bending",
+                "Raise it, or take a longer or softer beam.",
+            )
+
+    @classmethod
+    def rectangular(
+        cls, length: float, width: float, height: float, material: Material, **options: Any
+    ) -> Beam:
+        """Beam of rectangular section.
+
+        Parameters
+        ----------
+        length, width, height : float
+            m; the height is the dimension in the direction of bending.
+        material : Material
+            Gives E and the density.
+        **options
+            Further parameters of `Beam`.
+
+        Returns
+        -------
+        Beam
+            With B = E b h^3/12 and m' = rho b h.
+
+        Raises
+        ------
+        InputError
+            As `Beam`.
+        """
+        for what, value in (("beam width (m)", width), ("beam height (m)", height)):
+            if not (np.isfinite(value) and value > 0.0):
+                raise InputError(what, value, "a finite positive number")
+        stiffness = material.youngs_modulus * width * height**3 / 12.0
+        return cls(length, stiffness, material.density * width * height, **options)
+
+    @cached_property
+    def _bending_roots(self) -> NDArray:
+        """Wavenumber times length of the bending modes up to the highest frequency."""
+        unit = np.sqrt(self.bending_stiffness / self.mass_per_length) / self.length**2  # omega of root 1
+        largest = np.sqrt(2.0 * np.pi * self.highest_frequency / unit)
+        n = np.arange(1, int(largest / np.pi) + 2)
+        if self.support == "simply-supported":
+            roots = n * np.pi
+        else:
+            # cos x cosh x = 1 split into even modes, tan(x/2) = -tanh(x/2), and odd ones
+            turns, sign = np.pi * ((n + 1) // 2), np.where(n % 2 == 1, -1.0, 1.0)
+            roots = (n + 0.5) * np.pi
+            for _ in range(20):  # contracts by a factor 30 or more
+                roots = 2.0 * (turns + sign * np.arctan(np.tanh(0.5 * roots)))
+        return roots[roots <= largest]
+
+    @property
+    def _rigid_modes(self) -> int:
+        return 2 if self.support == "free" else 0
+
+    @cached_property
+    def natural_frequencies(self) -> NDArray:
+        """Undamped natural frequencies of all modes, Hz; rigid modes of a free beam first."""
+        unit = np.sqrt(self.bending_stiffness / self.mass_per_length) / self.length**2
+        rigid = np.full(self._rigid_modes, self.suspension_frequency)
+        return np.concatenate([rigid, self._bending_roots**2 * unit / (2.0 * np.pi)])
+
+    @property
+    def damping_ratio(self) -> float:
+        """Damping ratio of every mode: half the loss factor."""
+        return 0.5 * self.loss_factor
+
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+        return self.mass_per_length * self.length
+
+    def shapes(self, x: ArrayLike) -> tuple[NDArray, NDArray]:
+        """Mass-normalised mode shapes and their slopes.
+
+        Parameters
+        ----------
+        x : array_like (n,)
+            Positions from the left end, m.
+
+        Returns
+        -------
+        shapes, slopes : ndarray (n, modes)
+            kg^-1/2, and kg^-1/2 per metre.
+
+        Raises
+        ------
+        InputError
+            If a position is off the beam.
+        """
+        at = np.atleast_1d(np.asarray(x, dtype=float))
+        if at.min() < -1e-9 * self.length or at.max() > self.length * (1.0 + 1e-9):
+            received = f"{at.min():.6g} to {at.max():.6g}"
+            raise InputError("positions on the beam (m)", received, f"0 to {self.length:.6g}")
+        scale = 1.0 / np.sqrt(self.mass)
+        if self.support == "simply-supported":
+            k = self._bending_roots / self.length
+            scale *= np.sqrt(2.0)
+            return scale * np.sin(np.outer(at, k)), scale * k * np.cos(np.outer(at, k))
+        shapes, slopes = self._centred_shapes(at)
+        if self.support == "free":
+            rotation = np.sqrt(12.0) / self.length
+            rigid = np.stack([np.ones_like(at), rotation * (at - 0.5 * self.length)], axis=1)
+            rigid_slopes = np.stack([np.zeros_like(at), np.full_like(at, rotation)], axis=1)
+            shapes, slopes = np.hstack([rigid, shapes]), np.hstack([rigid_slopes, slopes])
+        return scale * shapes, scale * slopes
+
+    def _centred_shapes(self, at: NDArray) -> tuple[NDArray, NDArray]:
+        """Bending modes of free and clamped beams, even or odd about the middle.
+
+        cos(kx)/cos(kL/2) -+ cosh(kx)/cosh(kL/2) and the same with sines, written with decaying
+        exponentials only; the mean square over the length is one.
+        """
+        k = self._bending_roots / self.length
+        even = np.arange(len(k)) % 2 == 0
+        phase = np.outer(at - 0.5 * self.length, k)
+        half = 0.5 * self._bending_roots
+        near, far = np.exp(-np.outer(self.length - at, k)), np.exp(-np.outer(at, k))
+        parity = np.where(even, 1.0, -1.0)
+        end = 1.0 + parity * np.exp(-2.0 * half)
+        hyperbolic, hyperbolic_slope = (near + parity * far) / end, (near - parity * far) / end
+        cosine, sine = np.cos(phase), np.sin(phase)
+        trigonometric = np.where(even, cosine / np.cos(half), sine / np.sin(half))
+        trigonometric_slope = np.where(even, -sine / np.cos(half), cosine / np.sin(half))
+        sign = 1.0 if self.support == "free" else -1.0
+        return trigonometric + sign * hyperbolic, k * (trigonometric_slope + sign * hyperbolic_slope)
+
+    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray:
+        """Displacement at `x` per harmonic force at `x0`, by modal superposition.
+
+        Parameters
+        ----------
+        frequency : array_like
+            Hz; zero gives the static compliance. Time factor exp(+i omega t).
+        x, x0 : float
+            Positions of the response and of the force, m.
+
+        Returns
+        -------
+        ndarray of complex
+            m/N, of the shape of `frequency`.
+
+        Raises
+        ------
+        InputError
+            If a position is off the beam.
+        """
+        omega = 2.0 * np.pi * np.asarray(frequency, dtype=float)[..., None]
+        natural = 2.0 * np.pi * self.natural_frequencies
+        (response, force), _ = self.shapes([x, x0])
+        dynamic = natural**2 - omega**2 + 2j * self.damping_ratio * natural * omega
+        return np.sum(response * force / dynamic, axis=-1)
