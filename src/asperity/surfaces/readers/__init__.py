@@ -1,0 +1,218 @@
+"""Reading measured surfaces: the format is found from the first bytes, then from the extension."""
+
+from __future__ import annotations
+
+import warnings
+import zipfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from asperity.errors import InputError, MissingPointsWarning
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers import arrays, instruments, netcdf, sdf, text, x3p
+from asperity.surfaces.readers.guards import archive, readable_file
+from asperity.surfaces.readers.hints import Hints, Length, Surface, checked_hints
+
+__all__ = ["read_surface", "read_surfaces"]
+
+S = TypeVar("S", HeightMap, Profile, Surface)
+Reader = Callable[[Path, Hints], list[Surface]]
+
+TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
+OWN: dict[str, tuple[str, Reader]] = {
+    ".npy": ("npy", arrays.read_npy),
+    ".npz": ("npz", arrays.read_npz),
+    ".nc": ("netCDF-4", netcdf.read),
+    ".nc4": ("netCDF-4", netcdf.read),
+    ".sdf": ("SDF", sdf.read),
+    ".x3p": ("X3P", x3p.read),
+}
+
+
+def read_surface(
+    path: str | Path,
+    *,
+    array: str | None = None,
+    index: int | None = None,
+    height_unit: Length | None = None,
+    pixel: Length | Sequence[Length] | None = None,
+    pixel_unit: Length | None = None,
+    decimal: str | None = None,
+    transpose: bool = False,
+    fill: bool = False,
+) -> HeightMap | Profile:
+    """Read one measured surface or line.
+
+    The first axis of a map is x, the rolling direction. Formats that name their axes (SDF, X3P, netCDF with a
+    dimension ``x``, x-y-z text, instrument files) are turned so that the file's x is the first axis, and
+    ``spacing[0]`` is the file's increment along x. Formats that do not (npy, npz, text matrices) are taken as
+    they lie: their first axis, the rows of a text matrix, is x.
+
+    Parameters
+    ----------
+    path : str or Path
+        Text or CSV, ``.npy``, ``.npz``, netCDF-4, SDF (ISO 25178-71), X3P (ISO 25178-72); other instrument
+        formats with the extra ``asperity[readers]``.
+    array : str, optional
+        Name of the array (npz), variable (netCDF) or channel (instrument file), where there are several.
+    index : int, optional
+        Which sample, from zero, where the file holds an ensemble (a 3-D array).
+    height_unit : str or float, optional
+        Unit of the heights, as ``"um"``, or its length in m. Stronger than what the file states.
+    pixel : str, float or pair of these, optional
+        Distance of neighbouring points, as ``"1.5 um"``, or (dx, dy). Stronger than what the file states.
+    pixel_unit : str or float, optional
+        Unit of the coordinates in a text file, and of a `pixel` given without one; metres if left out.
+    decimal : {".", ","}, optional
+        Decimal mark of a text file, where it is ambiguous.
+    transpose : bool
+        Exchange x and y, so that the file's other direction is rolled along.
+    fill : bool
+        Interpolate missing points, see `HeightMap.filled`. They are reported in any case.
+
+    Returns
+    -------
+    HeightMap or Profile
+        Heights and spacing in m; NaN where a point is missing.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is damaged or hostile, or does not state a unit or pixel size that was not
+        given either.
+
+    Warns
+    -----
+    MissingPointsWarning
+        If points have no height.
+    """
+    surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
+    allowed = f"0 to {len(surfaces) - 1}"
+    if index is None and len(surfaces) > 1:
+        received = f"an ensemble of {len(surfaces)} samples"
+        raise InputError(str(path), received, "one sample", f"Choose one with index= ({allowed}).")
+    if index is not None and index not in range(len(surfaces)):
+        raise InputError(f"index of a sample in {path}", index, allowed, "Choose another sample.")
+    return _finished([surfaces[index or 0]], transpose, fill)[0]
+
+
+def read_surfaces(
+    path: str | Path,
+    *,
+    array: str | None = None,
+    height_unit: Length | None = None,
+    pixel: Length | Sequence[Length] | None = None,
+    pixel_unit: Length | None = None,
+    decimal: str | None = None,
+    transpose: bool = False,
+    fill: bool = False,
+) -> list[HeightMap]:
+    """Read all samples of an ensemble of maps; a file with one map gives a list of one.
+
+    Parameters
+    ----------
+    path, array, height_unit, pixel, pixel_unit, decimal, transpose, fill
+        See `read_surface`. In a 3-D array the sample is the first axis, then x, then y.
+
+    Returns
+    -------
+    list of HeightMap
+        One per sample.
+
+    Raises
+    ------
+    InputError
+        As `read_surface`, and if the file holds a line.
+
+    Warns
+    -----
+    MissingPointsWarning
+        If points have no height.
+    """
+    surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
+    maps = [surface for surface in surfaces if isinstance(surface, HeightMap)]
+    if len(maps) < len(surfaces):
+        raise InputError(str(path), "a line", "a height map", "Read it with read_surface, or give a map.")
+    return _finished(maps, transpose, fill)
+
+
+def _read(path: str | Path, hints: Hints) -> list[Surface]:
+    file = readable_file(path)
+    return _reader(file)(file, hints)
+
+
+def _reader(file: Path) -> Reader:
+    extension = file.suffix.lower()
+    with file.open("rb") as stream:
+        head = stream.read(16)
+    found = _by_content(file, head)
+    if extension in OWN:
+        kind, reader = OWN[extension]
+        if found is not reader:
+            received = f"a file that starts with {head[:8]!r}"
+            raise InputError(
+                file.name, received, f"a {kind} file", "Export it again, or correct the extension."
+            )
+        return reader
+    if found is not None:
+        return found
+    return text.read if extension in TEXT else instruments.read
+
+
+def _by_content(file: Path, head: bytes) -> Reader | None:
+    if head.startswith((b"aISO-1.0", b"bISO-1.0", b"aBCR-1.0", b"bBCR-1.0")):
+        return sdf.read
+    if head.startswith(b"a") and file.suffix.lower() == ".sdf":  # softgauges bear the name of their institute
+        return sdf.read
+    if head.startswith(b"\x93NUMPY"):
+        return arrays.read_npy
+    if head.startswith(b"\x89HDF") and file.suffix.lower() in ("", ".nc", ".nc4"):
+        return netcdf.read
+    if head.startswith(b"PK"):
+        return _by_members(file)
+    return None
+
+
+def _by_members(file: Path) -> Reader | None:
+    if not zipfile.is_zipfile(file):
+        remedy = "The file is truncated; copy or export it again."
+        raise InputError(file.name, "a zip archive without its directory", "an intact archive", remedy)
+    with archive(file) as opened:
+        names = opened.namelist()
+    if "main.xml" in names:
+        return x3p.read
+    if names and all(name.endswith(".npy") for name in names):
+        return arrays.read_npz
+    return None
+
+
+def _finished(surfaces: list[S], transpose: bool, fill: bool) -> list[S]:
+    _report_missing(surfaces, fill)
+    if transpose:
+        surfaces = [_transposed(surface) for surface in surfaces]
+    if fill:
+        surfaces = [surface.filled() if surface.missing_share else surface for surface in surfaces]
+    return surfaces
+
+
+def _transposed(surface: S) -> S:
+    if isinstance(surface, Profile):
+        raise InputError("transpose", f"a line, {surface.source}", "a height map", "Leave it out.")
+    return surface.transposed()
+
+
+def _report_missing(surfaces: Sequence[Surface], fill: bool) -> None:
+    missing = sum(int(np.isnan(surface.heights).sum()) for surface in surfaces)
+    if not missing:
+        return
+    share = missing / sum(surface.heights.size for surface in surfaces)
+    left = (
+        "interpolated from their neighbours" if fill else "left as NaN, which contact cannot be solved with"
+    )
+    remedy = "check the measurement" if fill else "fill=True interpolates them"
+    what = f"{surfaces[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
+    message = f"{what}; {left}; {remedy}"
+    warnings.warn(message, MissingPointsWarning, stacklevel=4)

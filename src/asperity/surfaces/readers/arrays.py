@@ -1,0 +1,121 @@
+"""Bare arrays: ``.npy`` and ``.npz``, never unpickled."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+from asperity.surfaces.readers.guards import archive, check_claim, hostile, member_bytes
+from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
+
+
+def read_npy(path: Path, hints: Hints) -> list[Surface]:
+    """Read a ``.npy`` array.
+
+    Parameters
+    ----------
+    path : Path
+        A 1-D array is a line, a 2-D array a map with x as its first axis, a 3-D array an ensemble of maps
+        (sample first).
+    hints : Hints
+        `height_unit` and `pixel` are required.
+
+    Returns
+    -------
+    list of HeightMap or Profile
+        One surface, or one per sample.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, holds Python objects, or unit or pixel size are not given.
+    """
+    with hostile(path.name, "npy"):
+        return _surfaces(_decoded(path.read_bytes(), path.name), hints, path.name)
+
+
+def read_npz(path: Path, hints: Hints) -> list[Surface]:
+    """Read one array of a ``.npz`` archive, see `read_npy`.
+
+    Parameters
+    ----------
+    path : Path
+        The archive.
+    hints : Hints
+        `array` names the array; it may be left out if there is only one that is no scalar.
+
+    Returns
+    -------
+    list of HeightMap or Profile
+        One surface, or one per sample.
+
+    Raises
+    ------
+    InputError
+        As `read_npy`, and if the array is not named where there are several, or is not in the archive.
+    """
+    with archive(path) as opened, hostile(path.name, "npz"):
+        names = [name.removesuffix(".npy") for name in opened.namelist() if name.endswith(".npy")]
+        members = {name: f"{name}.npy" for name in names}
+        chosen = hints.array
+        if chosen is None:  # scalars such as a pixel size do not count
+            arrays = {
+                name: _decoded(member_bytes(opened, members[name], path.name), path.name) for name in names
+            }
+            chosen = only_one([name for name, array in arrays.items() if array.ndim], path.name)
+        if chosen not in members:
+            allowed = f"one of: {', '.join(names)}"
+            raise InputError(f"array in {path.name}", repr(chosen), allowed, "Choose one.")
+        array = _decoded(member_bytes(opened, members[chosen], path.name), path.name)
+        return _surfaces(array, hints, f"{path.name}:{chosen}")
+
+
+def only_one(names: list[str], source: str) -> str:
+    """Return the only name, or raise an `InputError` that lists the choice.
+
+    Parameters
+    ----------
+    names : list of str
+        Arrays that could be meant.
+    source : str
+        Name of the file.
+
+    Returns
+    -------
+    str
+        The only one.
+
+    Raises
+    ------
+    InputError
+        If there are none or several.
+    """
+    if len(names) == 1:
+        return names[0]
+    listed = ", ".join(names) or "none"
+    raise InputError(f"arrays of heights in {source}", listed, "exactly one", "Choose one with array=.")
+
+
+def _decoded(data: bytes, source: str) -> NDArray[Any]:
+    stream = io.BytesIO(data)
+    version = np.lib.format.read_magic(stream)
+    readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+    if version not in readers:
+        raise InputError(source, f"npy version {version}", "version 1.0 or 2.0", "Save it with numpy.save.")
+    shape, fortran, kind = readers[version](stream)
+    if kind.hasobject or kind.itemsize == 0:
+        allowed = "numbers; Python objects are never unpickled"
+        raise InputError(source, f"an array of type {kind}", allowed, "Save the heights as a float array.")
+    points = check_claim(source, shape, kind.itemsize, len(data) - stream.tell()) if shape else 1
+    flat = np.frombuffer(data, kind, points, stream.tell())
+    return flat.reshape(shape, order="F" if fortran else "C")
+
+
+def _surfaces(array: NDArray[Any], hints: Hints, source: str) -> list[Surface]:
+    heights = scaled(array, hints.heights_in(source), source)
+    return surfaces_of(heights, hints.spacing_in(source), source)

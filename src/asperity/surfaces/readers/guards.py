@@ -1,0 +1,268 @@
+"""Guards at the door: every file is treated as hostile until its claims are checked against its bytes."""
+
+from __future__ import annotations
+
+import math
+import zipfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+from xml.etree import ElementTree
+
+from asperity.errors import InputError
+
+MAX_FILE_BYTES = 4 << 30  # largest file, and largest content of an archive
+MAX_XML_BYTES = 16 << 20
+MAX_POINTS = 1 << 28  # 2 GiB of float64 heights
+MAX_RATIO = 200  # uncompressed to compressed size of an archive ...
+RATIO_FREE_BYTES = 16 << 20  # ... which is checked above this size only
+MAX_MEMBERS = 10_000
+
+
+def readable_file(path: str | Path) -> Path:
+    """Check that a path is a readable, non-empty file of acceptable size.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Returns
+    -------
+    Path
+        The same path.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is a directory, cannot be opened, is empty or is larger than 4 GiB.
+    """
+    file = Path(path)
+    try:
+        if file.is_dir():
+            raise InputError("surface file", f"the directory {file}", "a file", "Name a file inside it.")
+        if not file.is_file():
+            raise InputError("surface file", f"{file}, which is not a file", "a file", "Check the path.")
+        with file.open("rb"):
+            size = file.stat().st_size
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        remedy = "Check its name and permissions."
+        raise InputError("surface file", f"{file} ({error})", "a readable file", remedy) from None
+    if size == 0:
+        raise InputError("surface file", f"{file}, which is empty", "a file with heights", "Export it again.")
+    if size > MAX_FILE_BYTES:
+        allowed = f"at most {MAX_FILE_BYTES} bytes"
+        raise InputError(f"size of {file.name}", f"{size} bytes", allowed, "Crop or split the measurement.")
+    return file
+
+
+@contextmanager
+def hostile(source: str, kind: str) -> Iterator[None]:
+    """Turn whatever goes wrong while decoding a file into an `InputError`.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file.
+    kind : str
+        Name of the format.
+
+    Raises
+    ------
+    InputError
+        In place of any other exception.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # malformed bytes surface as many kinds of exception
+        received = f"{type(error).__name__} while reading it ({error})"
+        remedy = "The file is damaged or not of this format; export it again."
+        raise InputError(source, received, f"an intact {kind} file", remedy) from error
+
+
+def check_claim(source: str, shape: Sequence[int], item_bytes: float, available: int) -> int:
+    """Compare the points that a header claims with the bytes that follow it, before anything is allocated.
+
+    Parameters
+    ----------
+    source : str
+        Name of the file.
+    shape : sequence of int
+        Claimed number of points along each axis.
+    item_bytes : float
+        Fewest bytes that one point takes.
+    available : int
+        Bytes at hand.
+
+    Returns
+    -------
+    int
+        Number of points.
+
+    Raises
+    ------
+    InputError
+        If an axis has no point, if there are more than 2**28 points, or more than the bytes can hold.
+    """
+    points = math.prod(shape)
+    received = f"{' x '.join(str(n) for n in shape)} points in {available} bytes"
+    if min(shape, default=0) < 1:
+        raise InputError(source, received, "at least one point along each axis", "Export the file again.")
+    if points > MAX_POINTS:
+        raise InputError(source, received, f"at most {MAX_POINTS} points", "Crop or split the measurement.")
+    if points * item_bytes > available:
+        allowed = f"at least {math.ceil(points * item_bytes)} bytes for so many points"
+        raise InputError(source, received, allowed, "The file is truncated; copy or export it again.")
+    return points
+
+
+def number(source: str, name: str, text: str | None) -> float:
+    """Parse one finite number of a header.
+
+    Parameters
+    ----------
+    source, name : str
+        The file and the field, for the message.
+    text : str or None
+        What stands in the field.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InputError
+        If the field is missing or is not a finite number.
+    """
+    try:
+        value = float(text if text is not None else "nan")
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        shown = "nothing" if text is None else repr(text[:40])
+        raise InputError(f"{name} in {source}", shown, "a finite number", "Export the file again.")
+    return value
+
+
+def count(source: str, name: str, text: str | None) -> int:
+    """Parse one number of points of a header, see `number`."""
+    value = number(source, name, text)
+    if value != int(value) or not 1 <= value <= 1e12:
+        raise InputError(f"{name} in {source}", value, "a whole number above zero", "Export the file again.")
+    return int(value)
+
+
+@contextmanager
+def archive(path: Path) -> Iterator[zipfile.ZipFile]:
+    """Open a zip archive whose members have safe names and bounded sizes.
+
+    Parameters
+    ----------
+    path : Path
+        The archive.
+
+    Yields
+    ------
+    zipfile.ZipFile
+        The opened archive; nothing has been unpacked.
+
+    Raises
+    ------
+    InputError
+        If it is damaged or encrypted, a name leaves the archive or stands twice, or it would unpack to more
+        than 4 GiB or to more than 200 times its size (zip bomb).
+    """
+    with hostile(path.name, "zip"), zipfile.ZipFile(path) as opened:
+        members = opened.infolist()
+        _check_names(path.name, members)
+        unpacked = sum(member.file_size for member in members)
+        packed = max(path.stat().st_size, 1)
+        if unpacked > MAX_FILE_BYTES or unpacked > max(RATIO_FREE_BYTES, MAX_RATIO * packed):
+            received = f"{packed} bytes that unpack to {unpacked}"
+            allowed = f"at most {MAX_RATIO} times the packed size and {MAX_FILE_BYTES} bytes"
+            raise InputError(path.name, received, allowed, "Store the data uncompressed if it is genuine.")
+        yield opened
+
+
+def _check_names(source: str, members: list[zipfile.ZipInfo]) -> None:
+    allowed = "unencrypted members with unique names inside the archive"
+    remedy = "Do not trust this file; export it again."
+    if len(members) > MAX_MEMBERS:
+        raise InputError(source, f"{len(members)} members", f"at most {MAX_MEMBERS}", remedy)
+    names = [member.filename for member in members]
+    for member, name in zip(members, names, strict=True):
+        path = PurePosixPath(name.replace("\\", "/"))
+        if path.is_absolute() or ".." in path.parts or ":" in name:
+            raise InputError(source, f"a member named {name[:80]!r}", allowed, remedy)
+        if member.flag_bits & 1:
+            raise InputError(source, f"the encrypted member {name[:80]!r}", allowed, remedy)
+    if len(set(names)) != len(names):
+        raise InputError(source, "two members of one name", allowed, remedy)
+
+
+def member_bytes(opened: zipfile.ZipFile, name: str, source: str, limit: int = MAX_FILE_BYTES) -> bytes:
+    """Unpack one member of an archive, never more than `limit` bytes.
+
+    Parameters
+    ----------
+    opened : zipfile.ZipFile
+        From `archive`.
+    name : str
+        Name of the member.
+    source : str
+        Name of the file, for the message.
+    limit : int
+        Largest size in bytes.
+
+    Returns
+    -------
+    bytes
+        The content.
+
+    Raises
+    ------
+    InputError
+        If there is no such member or it is too large.
+    """
+    if name not in opened.namelist():
+        present = ", ".join(opened.namelist()[:10])
+        raise InputError(source, f"no member {name[:80]!r}", f"one of: {present}", "Export the file again.")
+    with opened.open(name) as stream:
+        data = stream.read(limit + 1)
+    if len(data) > limit:
+        raise InputError(source, f"more than {limit} bytes in {name}", f"at most {limit}", "Do not trust it.")
+    return data
+
+
+def parse_xml(data: bytes, source: str) -> ElementTree.Element:
+    """Parse XML that declares no document type and no entity.
+
+    Parameters
+    ----------
+    data : bytes
+        The document, in UTF-8 or UTF-16.
+    source : str
+        Name of the file, for the message.
+
+    Returns
+    -------
+    xml.etree.ElementTree.Element
+        The root element.
+
+    Raises
+    ------
+    InputError
+        If the document has a DTD or entities, another encoding, or is not well formed.
+    """
+    utf16 = data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    with hostile(source, "XML"):
+        text = data.decode("utf-16" if utf16 else "utf-8-sig")
+        if "<!DOCTYPE" in text.upper() or "<!ENTITY" in text.upper():
+            allowed = "XML without document type and entities"
+            raise InputError(source, "an XML document type or entity", allowed, "Do not trust this file.")
+        # decoded text: the parser sees exactly what was checked, whatever encoding the document claims
+        return ElementTree.fromstring(text)  # noqa: S314

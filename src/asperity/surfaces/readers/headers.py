@@ -1,0 +1,126 @@
+"""Units and pixel sizes in the header lines of a text file."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from asperity.errors import InputError
+from asperity.units import factor, quantity
+
+_NUMBER = r"[-+]?\d+(?:[.,]\d*)?(?:[eE][-+]?\d+)?"
+_BRACKET = re.compile(r"[\[(]\s*([^\s\[\]()\d]{1,20})\s*[\])]")
+_UNIT_LINE = re.compile(r"^\s*(.*?)\bunits?\b\s*[:=]?\s*[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
+_PIXEL_LINE = re.compile(
+    rf"^\s*(pixel(?:[ _]size)?|spacing|sample spacing|dx|dy)\s*[:=]?\s*({_NUMBER})\s*([^\s\d;,]{{1,20}})\s*$",
+    re.IGNORECASE,
+)
+_LATERAL_WORDS = {"x", "y", "xy", "lateral", "length", "distance", "position", "pixel"}
+
+
+@dataclass(frozen=True)
+class Header:
+    """What the header lines of a text file state, in m; None where they are silent.
+
+    Parameters
+    ----------
+    height_unit, x_unit, y_unit : float, optional
+        Length in m of one unit of the column.
+    spacing : tuple of float, optional
+        Distances (dx, dy) in m.
+    """
+
+    height_unit: float | None = None
+    x_unit: float | None = None
+    y_unit: float | None = None
+    spacing: tuple[float, float] | None = None
+
+
+def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> Header:
+    """Find units and pixel sizes in the lines above the numbers.
+
+    Parameters
+    ----------
+    lines : list of str
+        The header lines. Understood are column titles with units (``x [mm]; z (µm)``, ``Height (nm)``), lines
+        such as ``# unit: um``, ``height unit = nm``, ``lateral unit: mm`` (a bare ``unit`` is that of the
+        heights), and ``# pixel: 1.5 um``, ``dx = 1 mm``.
+    delimiter : str or None
+        What separates the columns; None for white space.
+    columns : int
+        Number of columns of the numbers.
+
+    Returns
+    -------
+    Header
+        What was found.
+
+    Raises
+    ------
+    InputError
+        If a stated unit is no length.
+    """
+    cleaned = [line.strip().lstrip("#%/!").strip() for line in lines]
+    titles = _column_units(cleaned, delimiter, columns)
+    lateral, height = _unit_lines(cleaned)
+    return Header(
+        height_unit=titles.get("z", height),
+        x_unit=titles.get("x", lateral),
+        y_unit=titles.get("y", titles.get("x", lateral)),
+        spacing=_pixel_lines(cleaned),
+    )
+
+
+def _column_units(lines: list[str], delimiter: str | None, columns: int) -> dict[str, float]:
+    """Units of the column titles: of x, y, z for two or three columns, else of the heights alone."""
+    axes = {2: "xz", 3: "xyz"}.get(columns)
+    for line in reversed(lines):
+        found = _BRACKET.findall(line)
+        if axes is None:
+            if len(found) == 1 and not _is_lateral(line):
+                return {"z": _length(found[0])}
+            continue
+        titles = line.split(delimiter) if delimiter else []
+        if len(titles) != columns and len(found) == columns:
+            return {axis: _length(unit) for axis, unit in zip(axes, found, strict=True)}
+        if found and len(titles) == columns:
+            units = [_BRACKET.findall(title) for title in titles]
+            return {axis: _length(unit[-1]) for axis, unit in zip(axes, units, strict=True) if unit}
+    return {}
+
+
+def _unit_lines(lines: list[str]) -> tuple[float | None, float | None]:
+    lateral = height = None
+    for line in lines:
+        match = _UNIT_LINE.match(line)
+        if match and _is_lateral(match[1]):
+            lateral = _length(match[2])
+        elif match:
+            height = _length(match[2])
+    return lateral, height
+
+
+def _pixel_lines(lines: list[str]) -> tuple[float, float] | None:
+    found = {}
+    for line in lines:
+        match = _PIXEL_LINE.match(line)
+        if match:
+            found[match[1].lower()] = quantity(f"{match[2].replace(',', '.')} {match[3]}", "m")
+    both = [found[name] for name in found if name not in ("dx", "dy")]
+    dx = found.get("dx", both[0] if both else found.get("dy"))
+    return None if dx is None else (dx, found.get("dy", dx))
+
+
+def _is_lateral(words: str) -> bool:
+    return not _LATERAL_WORDS.isdisjoint(re.findall(r"[a-z]+", words.lower()))
+
+
+def _length(unit: str) -> float:
+    try:
+        return factor(unit, "m")
+    except InputError as error:
+        allowed, remedy = (
+            "a unit of length",
+            "Correct the header, or leave the bracket out and give height_unit=.",
+        )
+        raise InputError("unit in the header", repr(unit), allowed, remedy) from error

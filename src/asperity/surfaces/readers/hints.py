@@ -1,0 +1,197 @@
+"""What the user says about a file that does not say it itself; and building surfaces from bare arrays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.units import factor, quantity
+
+Surface = HeightMap | Profile
+Length = str | float
+
+
+@dataclass(frozen=True)
+class Hints:
+    """Checked hints in SI; None where nothing was said.
+
+    Parameters
+    ----------
+    array : str, optional
+        Name of the array, variable or channel to read.
+    height_factor : float, optional
+        Length in m of one unit of the heights.
+    spacing : tuple of float, optional
+        Distances (dx, dy) of the points in m.
+    lateral_factor : float, optional
+        Length in m of one unit of the coordinates.
+    decimal : str, optional
+        Decimal mark of a text file.
+    """
+
+    array: str | None = None
+    height_factor: float | None = None
+    spacing: tuple[float, float] | None = None
+    lateral_factor: float | None = None
+    decimal: str | None = None
+
+    def heights_in(self, source: str, stated: float | None = None) -> float:
+        """Return the factor of the heights: the hint, else what the file states, else an `InputError`."""
+        chosen = self.height_factor or stated
+        if chosen is None:
+            allowed = "a unit of the heights"
+            raise InputError(source, "heights without a unit", allowed, 'Give it, as in height_unit="um".')
+        return chosen
+
+    def spacing_in(self, source: str, stated: tuple[float, float] | None = None) -> tuple[float, float]:
+        """Return the spacing: the hint, else what the file states, else an `InputError`."""
+        chosen = self.spacing or stated
+        if chosen is None:
+            allowed = "the distance of neighbouring points"
+            raise InputError(
+                source, "heights without a pixel size", allowed, 'Give it, as in pixel="1.5 um".'
+            )
+        return chosen
+
+    def refuse(self, source: str, kind: str) -> None:
+        """Raise an `InputError` if anything was said about a format that states everything itself."""
+        said = [field.name for field in fields(self) if getattr(self, field.name) is not None]
+        if said:
+            allowed = f"no hints, because {kind} files state their lengths and have one array"
+            given = {"height_factor": "height_unit", "spacing": "pixel", "lateral_factor": "pixel_unit"}
+            names = ", ".join(given.get(name, name) for name in said)
+            raise InputError(f"hints for {source}", names, allowed, "Leave them out.")
+
+
+def checked_hints(
+    array: str | None = None,
+    height_unit: Length | None = None,
+    pixel: Length | Sequence[Length] | None = None,
+    pixel_unit: Length | None = None,
+    decimal: str | None = None,
+) -> Hints:
+    """Convert hints as a user writes them.
+
+    Parameters
+    ----------
+    array : str, optional
+        Name of the array, variable or channel.
+    height_unit : str or float, optional
+        Unit of the heights, or its length in m.
+    pixel : str, float or pair of these, optional
+        Distance of neighbouring points, as ``"1.5 um"``; a bare number is in `pixel_unit`, else in m.
+    pixel_unit : str or float, optional
+        Unit of coordinates and bare pixel sizes, or its length in m.
+    decimal : str, optional
+        ``"."`` or ``","``.
+
+    Returns
+    -------
+    Hints
+        The same in SI.
+
+    Raises
+    ------
+    InputError
+        If a unit is unknown, or a length is not positive and finite.
+    """
+    if decimal not in (None, ".", ","):
+        raise InputError("decimal", repr(decimal), '"." or ","', "Give one of these.")
+    if array is not None and not isinstance(array, str):
+        raise InputError("array", repr(array), "the name of an array", "Write it in quotes.")
+    lateral = _unit("pixel_unit", pixel_unit)
+    spacing = None if pixel is None else _pair(pixel, lateral or 1.0)
+    return Hints(array, _unit("height_unit", height_unit), spacing, lateral, decimal)
+
+
+def _unit(name: str, unit: Length | None) -> float | None:
+    if unit is None:
+        return None
+    return _positive(name, factor(unit, "m") if isinstance(unit, str) else unit)
+
+
+def _pair(pixel: Length | Sequence[Length], unit: float) -> tuple[float, float]:
+    sizes = [pixel] if isinstance(pixel, str) or not isinstance(pixel, Sequence) else list(pixel)
+    if len(sizes) not in (1, 2):
+        raise InputError("pixel", pixel, "one length, or two (dx, dy)", 'Write it as "1.5 um".')
+    metres = [_positive("pixel", quantity(s, "m") if isinstance(s, str) else s, unit) for s in sizes]
+    return metres[0], metres[-1]
+
+
+def _positive(name: str, value: Any, unit: float = 1.0) -> float:
+    try:
+        length = float(value) * unit
+    except (TypeError, ValueError):
+        length = math.nan
+    if not (math.isfinite(length) and length > 0):
+        raise InputError(name, value, "a finite length above zero", "Check the number and its unit.")
+    return length
+
+
+def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) -> list[Surface]:
+    """Wrap a bare array: one axis is a line, two are a map (x first), three an ensemble of maps.
+
+    Parameters
+    ----------
+    array : NDArray
+        Heights in m. A 2-D array with a single row or column is a line.
+    spacing : tuple of float
+        Distances (dx, dy) in m; a line along x has dx, one along y dy.
+    source : str
+        Where they came from.
+
+    Returns
+    -------
+    list of HeightMap or Profile
+        One surface, or one per sample of an ensemble.
+
+    Raises
+    ------
+    InputError
+        If the array has no or more than three axes, or its heights are not valid.
+    """
+    if array.ndim == 3 and len(array):
+        return [HeightMap(sample, spacing, f"{source}[{i}]") for i, sample in enumerate(array)]
+    if array.ndim == 2 and array.shape[0] == 1:
+        return [Profile(array[0], spacing[1], source)]
+    if array.ndim == 1 or (array.ndim == 2 and array.shape[1] == 1):
+        return [Profile(array.ravel(), spacing[0], source)]
+    if array.ndim != 2:
+        allowed = "1 (a line), 2 (a map) or 3 (an ensemble of maps) axes, none empty"
+        raise InputError(source, f"an array of shape {array.shape}", allowed, "Select one array=.")
+    return [HeightMap(array, spacing, source)]
+
+
+def scaled(array: NDArray[Any], unit: float, source: str) -> NDArray[np.float64]:
+    """Return real numbers times a unit as float64.
+
+    Parameters
+    ----------
+    array : NDArray
+        Integers or floats.
+    unit : float
+        Length in m of one unit.
+    source : str
+        Name for the message.
+
+    Returns
+    -------
+    NDArray
+        In m.
+
+    Raises
+    ------
+    InputError
+        If the array does not hold real numbers.
+    """
+    if array.dtype.kind not in "fiu":
+        raise InputError(source, f"data of type {array.dtype}", "real numbers", "Select another array=.")
+    with np.errstate(over="ignore", invalid="ignore"):  # infinite heights are refused by name afterwards
+        return np.asarray(array.astype(np.float64) * unit)

@@ -1,0 +1,87 @@
+"""Files of instrument makers, through the optional package SurfaceTopography."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.errors import InputError
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers.guards import MAX_POINTS, hostile
+from asperity.surfaces.readers.hints import Hints, Surface
+from asperity.units import factor
+
+
+def read(path: Path, hints: Hints) -> list[Surface]:
+    """Read one channel of an instrument's file.
+
+    Parameters
+    ----------
+    path : Path
+        The file. SurfaceTopography gives maps with the file's x as the first axis, which is kept.
+    hints : Hints
+        `array` names the channel (the reader's default one if left out); the other hints stand for a unit or
+        a size that the file does not state.
+
+    Returns
+    -------
+    list of HeightMap or Profile
+        One surface.
+
+    Raises
+    ------
+    InputError
+        If SurfaceTopography is not installed, does not know the format, or the channel is not uniform.
+    """
+    opener = _opener(path)
+    with hostile(path.name, "known instrument"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # remarks of the package about itself
+        with opener(path) as reader:
+            channel = _channel(reader, hints.array, path.name)
+            if np.prod(channel.nb_grid_pts, dtype=float) > MAX_POINTS:
+                received, allowed = f"{channel.nb_grid_pts} points", f"at most {MAX_POINTS} points"
+                raise InputError(path.name, received, allowed, "Crop or split the measurement.")
+            missing_size = hints.spacing is not None and channel.physical_sizes is None
+            sizes = {"physical_sizes": (1.0,) * len(channel.nb_grid_pts)} if missing_size else {}
+            return [_surface(channel.topography(**sizes), hints, f"{path.name}:{channel.name}")]
+
+
+def _opener(path: Path) -> Any:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            from SurfaceTopography import open_topography
+    except ImportError:
+        received = f"a {path.suffix or 'nameless'} file, which asperity does not read itself"
+        allowed = "text, CSV, npy, npz, netCDF, SDF, X3P; instrument files with SurfaceTopography"
+        remedy = 'Install it: pip install "asperity[readers]".'
+        raise InputError(path.name, received, allowed, remedy) from None
+    return open_topography
+
+
+def _channel(reader: Any, name: str | None, source: str) -> Any:
+    if name is None:
+        return reader.default_channel
+    named = {channel.name: channel for channel in reader.channels}
+    if name not in named:
+        raise InputError(f"array in {source}", repr(name), f"one of: {', '.join(named)}", "Choose a channel.")
+    return named[name]
+
+
+def _surface(measured: Any, hints: Hints, source: str) -> Surface:
+    if not measured.is_uniform:
+        remedy = "Resample it at a uniform spacing first."
+        raise InputError(source, "points at no uniform spacing", "a uniform line or map", remedy)
+    unit = None if measured.unit is None else factor(measured.unit, "m")
+    heights = np.ma.filled(np.ma.asarray(measured.heights(), dtype=np.float64), np.nan)
+    heights = heights * hints.heights_in(source, unit)
+    lateral = hints.lateral_factor or unit
+    pixel = np.broadcast_to(measured.pixel_size, 2)
+    stated = None if lateral is None else (float(pixel[0]) * lateral, float(pixel[1]) * lateral)
+    spacing = hints.spacing_in(source, stated)
+    if heights.ndim == 1:
+        return Profile(heights, spacing[0], source)
+    return HeightMap(heights, spacing, source)

@@ -1,0 +1,105 @@
+"""NetCDF-4 through h5netcdf."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+from asperity.surfaces.readers.arrays import only_one
+from asperity.surfaces.readers.grid import uniform_step
+from asperity.surfaces.readers.guards import check_claim, hostile
+from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
+from asperity.units import factor
+
+MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written
+
+
+def read(path: Path, hints: Hints) -> list[Surface]:
+    """Read one variable of a netCDF-4 file.
+
+    Parameters
+    ----------
+    path : Path
+        The file. The variable's dimension called ``x`` becomes the first axis of the map, whatever their
+        order in the file; without that name, dimensions are taken as (x, y), or (sample, x, y). Spacing is
+        taken from coordinate variables, units from the ``units`` attributes; falling coordinates are
+        reversed.
+    hints : Hints
+        `array` names the variable (``group/variable`` in a group); without it, ``heights`` or the only
+        variable with dimensions that is no coordinate. The other hints stand for what is not stated.
+
+    Returns
+    -------
+    list of HeightMap or Profile
+        One surface, or one per sample.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, the variable is not found, or unit or spacing are unknown.
+    """
+    import h5netcdf
+
+    with hostile(path.name, "netCDF-4"), h5netcdf.File(path, "r") as opened:
+        variable = _chosen(opened, hints.array, path.name)
+        source = f"{path.name}:{variable.name.lstrip('/')}"
+        stated = _unit(variable)
+        check_claim(source, variable.shape, variable.dtype.itemsize / MAX_COMPRESSION, path.stat().st_size)
+        heights = _decoded(variable, hints.heights_in(source, stated), source)
+        names = [name.rpartition("/")[2] for name in variable.dimensions]
+        group = variable.parent
+        steps = [_step(group, name, hints, source) for name in names[-2:]]
+        if len(names) > 1 and names[-1].lower() == "x":
+            heights, steps = np.swapaxes(heights, -1, -2), steps[::-1]
+        for axis, step in zip((-2, -1)[-len(steps) :], steps, strict=True):
+            if step is not None and step < 0:
+                heights = np.flip(heights, axis)
+        known = [abs(step) for step in steps if step is not None]
+        spacing = (known[0], known[-1]) if len(known) == len(steps) else None
+        return surfaces_of(heights, hints.spacing_in(source, spacing), source)
+
+
+def _chosen(opened: Any, name: str | None, source: str) -> Any:
+    variables = opened.variables
+    candidates = [n for n, v in variables.items() if v.ndim and n not in opened.dimensions]
+    if name is None:
+        name = "heights" if "heights" in candidates else only_one(candidates, source)
+    try:
+        variable = opened[name]
+    except KeyError:
+        variable = None
+    if variable is None or not hasattr(variable, "dimensions") or not hasattr(variable, "dtype"):
+        allowed = f"one of: {', '.join(candidates)}, or group/variable"
+        raise InputError(f"array in {source}", repr(name), allowed, "Choose one.")
+    return variable
+
+
+def _unit(variable: Any) -> float | None:
+    unit = variable.attrs.get("units")
+    return factor(unit, "m") if isinstance(unit, str) else None
+
+
+def _decoded(variable: Any, unit: float, source: str) -> NDArray[np.float64]:
+    """Apply the conventional attributes for missing values, scale and offset."""
+    raw, attributes = np.asarray(variable[...]), variable.attrs
+    heights = scaled(raw, 1.0, source)
+    for name in ("_FillValue", "missing_value"):
+        if name in attributes:
+            heights[np.isin(raw, attributes[name])] = np.nan
+    scale, offset = attributes.get("scale_factor", 1.0), attributes.get("add_offset", 0.0)
+    return (heights * float(np.ravel(scale)[0]) + float(np.ravel(offset)[0])) * unit
+
+
+def _step(group: Any, dimension: str, hints: Hints, source: str) -> float | None:
+    if hints.spacing is not None or dimension not in group.variables:
+        return None
+    coordinate = group.variables[dimension]
+    unit = hints.lateral_factor or _unit(coordinate)
+    if unit is None:
+        remedy = 'Give it, as in pixel_unit="um".'
+        raise InputError(f"{dimension} of {source}", "no unit", "a units attribute", remedy)
+    return uniform_step(np.asarray(coordinate[...], dtype=np.float64), source, dimension) * unit
