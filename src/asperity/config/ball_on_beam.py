@@ -32,6 +32,7 @@ from asperity.config.keys import (
     key,
 )
 from asperity.errors import InputError
+from asperity.reference.materials import MATERIALS
 
 LAWS = (
     "areal",
@@ -52,7 +53,7 @@ SAMPLING = 2.5  # points per period of the highest frequency, at least
 
 
 Law = Annotated[str, BeforeValidator(Choice(LAWS))]
-Material = Annotated[str, BeforeValidator(Choice(("steel",)))]
+Material = Annotated[str, BeforeValidator(Choice(tuple(MATERIALS)))]
 _Index = Annotated[int, BeforeValidator(Number(at_least=0, at_most=10**9, whole=True))]
 
 
@@ -199,7 +200,7 @@ class ContactCase(Section):
     sample_length: Length | None = key(
         None,
         "length of the strips from which filters are estimated",
-        otherwise="four windows, or the length of the map",
+        otherwise="eight windows, or the length of the map",
         example='"2 mm"',
     )
     approaches: tuple[Approach, ...] | None = key(
@@ -315,8 +316,8 @@ class BallOnBeamCase(Section):
         Returns
         -------
         list of dict
-            For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and ``note``
-            (what the key is).
+            For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
+            ``note`` (what the key is).
         """
         given = dict(self._given)
         given.setdefault("laws", list(self.laws))

@@ -77,8 +77,8 @@ def commented(model: type[BaseModel], written_out: Mapping[str, str]) -> str:
     Returns
     -------
     str
-        TOML: one line for each key with its value, its meaning, what is allowed and its default. Keys without a
-        fixed default are commented out.
+        TOML: one line for each key with its value, its meaning, what is allowed and its default. Keys
+        without a fixed default are commented out.
     """
     lines: list[str] = []
     title = ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, get_args
@@ -114,22 +114,19 @@ class Number:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of a few words; `words` is a tuple, or a callable that looks them up when they are needed."""
+    """One of a few words."""
 
-    words: tuple[str, ...] | Callable[[], tuple[str, ...]]
+    words: tuple[str, ...]
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
-        return ", ".join(f'"{word}"' for word in self._all())
-
-    def _all(self) -> tuple[str, ...]:
-        return self.words() if callable(self.words) else self.words
+        return ", ".join(f'"{word}"' for word in self.words)
 
     def __call__(self, value: object) -> str:
         """Return the word."""
-        if not isinstance(value, str) or value not in self._all():
-            raise InputError("choice", shown(value), self.allowed, nearest(value, self._all()))
+        if not isinstance(value, str) or value not in self.words:
+            raise InputError("choice", shown(value), self.allowed, nearest(value, self.words))
         return value
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import tomllib
 from pathlib import Path
-from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
@@ -156,11 +155,10 @@ def _unknown(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
 
 
 def _allowed(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
-    here: Any = model
-    allowed = ""
-    for part in location:
-        field = here.model_fields[part] if isinstance(here, type) and part in here.model_fields else None
-        if field is None:
-            break
-        allowed, here = allowed_in(field), field.annotation
-    return f"a section [{location[0]}]" if location[-1] in _sections(model) else allowed
+    here, names = model, [part for part in location if isinstance(part, str)]
+    sections = _sections(model)
+    if names[0] in sections:
+        if len(names) == 1:
+            return f"a section [{names[0]}]"
+        here = sections[names.pop(0)]
+    return allowed_in(here.model_fields[names[0]])
