@@ -310,10 +310,13 @@ def _hann(points: int) -> NDArray[np.float64]:
 
 
 def _embedded(correlation: NDArray[np.float64], grid: Sequence[int]) -> NDArray[np.float64]:
-    """Wrapped correlation with zeros put between its positive and negative lags."""
+    """Correlation at the lags of a periodic grid; lags that wrap onto each other add up.
+
+    Adding samples the same spectrum more coarsely, so it stays non-negative.
+    """
     embedded = np.zeros((grid[0], grid[1]))
     nx, ny = ((n + 1) // 2 for n in correlation.shape)
     for row, row_out in ((slice(0, nx), slice(0, nx)), (slice(nx, None), slice(grid[0] - nx + 1, None))):
-        embedded[row_out, :ny] = correlation[row, :ny]
-        embedded[row_out, grid[1] - ny + 1 :] = correlation[row, ny:]
+        embedded[row_out, :ny] += correlation[row, :ny]
+        embedded[row_out, grid[1] - ny + 1 :] += correlation[row, ny:]
     return embedded

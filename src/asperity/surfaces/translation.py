@@ -88,7 +88,7 @@ def gaussian_correlation(transform: HeightTransform, correlation: NDArray[np.flo
         previous, current = current, (u * current - np.sqrt(k) * previous) / np.sqrt(k + 1.0)
         coefficients.append(np.sum(weight * transform.heights * current))
     energies = np.square(coefficients)
-    table = np.linspace(-1.0, 1.0, 4001)
+    table = -np.cos(np.linspace(0.0, np.pi, 4001))
     mapped = np.polynomial.polynomial.polyval(table, np.concatenate([[0.0], energies / energies.sum()]))
     return np.interp(correlation, np.maximum.accumulate(mapped), table)
 
