@@ -20,10 +20,12 @@ class Prepared(NamedTuple):
     ----------
     form : int
         `SHIFTED`, `SECANT` or `TABLE`.
+    planes : ndarray (n,)
+        At every position the plane from which approaches count here, m, positive away from contact.
     states : ndarray (s,)
         Approaches of the states, m.
     values : ndarray (n, s)
-        At every position: the texture h, m, or for `TABLE` the root g of the force, N^(2/3).
+        At every position: the texture h over the plane, m, or for `TABLE` the root g of the force, N^(2/3).
     slopes : ndarray (n, s)
         For `TABLE` the slope of g, N^(2/3)/m; else an array without rows.
     knots, coefficients, exponent, bilateral
@@ -39,6 +41,7 @@ class Prepared(NamedTuple):
     """
 
     form: int
+    planes: NDArray
     states: NDArray
     values: NDArray
     slopes: NDArray
@@ -127,6 +130,7 @@ def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     force, slope : float
         N, N/m.
     """
+    approach -= law.planes[step]
     if law.form == TABLE:
         g, slope = table_root(law.states, law.values[step], law.slopes[step], approach)
         return power(g, slope, 1.5)
@@ -219,8 +223,8 @@ def count_beyond(law, approach):  # type: ignore[no-untyped-def]
     """
     count = 0
     for i in range(approach.size):
-        argument = approach[i]
+        argument = approach[i] - law.planes[i]
         if law.form == SHIFTED:
-            argument -= texture_at(law.states, law.values[i], approach[i])[0]
+            argument -= texture_at(law.states, law.values[i], argument)[0]
         count += argument > law.upper
     return count

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from asperity.pointforce.areal import Areal
 from asperity.pointforce.base import Law, Prepared, SteppedLaw, force
+from asperity.pointforce.direct import Direct
 from asperity.pointforce.hertz import Hertz
 from asperity.pointforce.linear import Linear
 from asperity.pointforce.printed import Printed
@@ -27,13 +28,10 @@ class Entry(NamedTuple):
 
 LAWS: dict[str, Entry] = {
     "printed": Entry(Printed, "The thesis as printed: secant stiffness times the filtered line texture."),
-    "shifted": Entry(
-        Shifted, "The same state functions, shifted by the texture; follows slow bumps fully."
-    ),
-    "areal": Entry(
-        Areal, "Force on the texture averaged over the contact by the flat-punch weight."
-    ),
+    "shifted": Entry(Shifted, "The same state functions, shifted by the texture; follows slow bumps fully."),
+    "areal": Entry(Areal, "Force on the texture averaged over the contact by the flat-punch weight."),
     "table": Entry(Table, "The scanned three-dimensional contact force, looked up."),
+    "direct": Entry(Direct, "The three-dimensional contact, solved in every time step: the reference."),
     "hertz": Entry(Hertz, "Smooth bodies: Hertzian contact."),
     "linear": Entry(Linear, "The contact linearised at its working point; it never lets go."),
 }
@@ -41,6 +39,7 @@ LAWS: dict[str, Entry] = {
 __all__ = [
     "LAWS",
     "Areal",
+    "Direct",
     "Entry",
     "Hertz",
     "Law",

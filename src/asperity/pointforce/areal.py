@@ -27,6 +27,9 @@ class Areal:
         Areal texture h_a, m, positive away from contact.
     damping : float
         c, N s/m.
+    plane : StateTexture, optional
+        Plane that the patch feels under the working load, m: states count from it, so that waves longer
+        than the patch do not change its size.
 
     Raises
     ------
@@ -37,6 +40,7 @@ class Areal:
     curve: ForceCurve
     texture: StateTexture
     damping: float = 0.0
+    plane: StateTexture | None = None
     name: str = "areal"
 
     def __post_init__(self) -> None:
@@ -44,4 +48,4 @@ class Areal:
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
-        return on_curve(self.curve, self.texture, positions, damping=self.damping)
+        return on_curve(self.curve, self.texture, positions, damping=self.damping, plane=self.plane)

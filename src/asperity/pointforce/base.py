@@ -80,6 +80,7 @@ def on_curve(
     datum: float = 0.0,
     damping: float = 0.0,
     damped_in_flight: bool = False,
+    plane: StateTexture | None = None,
 ) -> Prepared:
     """Lay out a law that is a force curve following a line texture.
 
@@ -95,6 +96,8 @@ def on_curve(
         `SHIFTED` or `SECANT` of `asperity.kernels.pointforce`.
     datum, damping, damped_in_flight
         As in `asperity.kernels.pointforce.Prepared`.
+    plane : StateTexture, optional
+        Plane from which the states of the texture count, m; the mean plane by default.
 
     Returns
     -------
@@ -104,10 +107,12 @@ def on_curve(
     at = np.atleast_1d(np.asarray(positions, dtype=float))
     states = np.zeros(1) if texture is None else texture.approaches
     values = np.zeros((at.size, 1)) if texture is None else texture.at(at)
+    planes = plane_at(plane, at)
     return Prepared(
         form,
+        planes,
         np.ascontiguousarray(states, dtype=float),
-        np.ascontiguousarray(values, dtype=float),
+        np.ascontiguousarray(values - planes[:, None], dtype=float),
         np.zeros((0, len(states))),
         np.ascontiguousarray(curve.knots, dtype=float),
         np.ascontiguousarray(curve.coefficients, dtype=float),
@@ -120,7 +125,27 @@ def on_curve(
     )
 
 
-def on_table(table: ForceTable, positions: ArrayLike, *, damping: float = 0.0) -> Prepared:
+def plane_at(plane: StateTexture | None, positions: NDArray) -> NDArray:
+    """Plane from which states count at positions of the path.
+
+    Parameters
+    ----------
+    plane : StateTexture or None
+        One state, m, positive away from contact; None for the mean plane.
+    positions : ndarray (n,)
+        Positions, m.
+
+    Returns
+    -------
+    ndarray (n,)
+        Planes, m.
+    """
+    return np.zeros(positions.size) if plane is None else np.ascontiguousarray(plane.at(positions)[:, 0])
+
+
+def on_table(
+    table: ForceTable, positions: ArrayLike, *, damping: float = 0.0, plane: StateTexture | None = None
+) -> Prepared:
     """Lay out a law that looks the force up in a table.
 
     Parameters
@@ -131,15 +156,19 @@ def on_table(table: ForceTable, positions: ArrayLike, *, damping: float = 0.0) -
         Positions of the contact, m.
     damping : float
         Contact damping, N s/m.
+    plane : StateTexture, optional
+        Plane from which the table's approaches count, m; the mean plane by default.
 
     Returns
     -------
     Prepared
         Arrays for the kernel: g = F^(2/3) and its monotone slopes at every position.
     """
-    root = np.cbrt(table.at(positions)) ** 2
+    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    root = np.cbrt(table.at(at)) ** 2
     return Prepared(
         TABLE,
+        plane_at(plane, at),
         np.ascontiguousarray(table.approaches, dtype=float),
         np.ascontiguousarray(root),
         monotone_slopes(table.approaches, root),

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from asperity.kernels.pointforce import Prepared
 from asperity.pointforce.base import check_damping, on_table
 from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +25,8 @@ class Table:
         Scanned forces of the path.
     damping : float
         c, N s/m.
+    plane : StateTexture, optional
+        Plane from which the table's approaches count, m; the mean plane by default.
 
     Raises
     ------
@@ -33,6 +36,7 @@ class Table:
 
     table: ForceTable
     damping: float = 0.0
+    plane: StateTexture | None = None
     name: str = "table"
 
     def __post_init__(self) -> None:
@@ -40,4 +44,4 @@ class Table:
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
-        return on_table(self.table, positions, damping=self.damping)
+        return on_table(self.table, positions, damping=self.damping, plane=self.plane)
