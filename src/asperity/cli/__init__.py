@@ -1,0 +1,136 @@
+"""The command line. Its help imports nothing heavy: every command imports what it needs when it runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from asperity import __version__
+from asperity.cli.door import Door
+
+_case = click.argument("case", type=click.Path(path_type=Path))
+_overwrite = click.option("--overwrite", is_flag=True, help="Replace the run of another case in the folder.")
+_report = click.option(
+    "--report/--no-report", default=True, show_default=True, help="Write the HTML page and CSVs."
+)
+
+
+@click.group(cls=Door, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="asperity")
+@click.option("--debug", is_flag=True, help="Show where in the program an error arose.")
+def main(debug: bool) -> None:
+    """Roll a ball over a rough surface: 3-D contact, reduced to a point force, and the vibration it causes.
+
+    Start with 'asperity demo', then 'asperity new ball-on-beam > case.toml' and 'asperity run case.toml'.
+    Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
+    """
+
+
+@main.command()
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    default=Path("asperity-demo"),
+    show_default=True,
+    type=click.Path(path_type=Path),
+)
+@_overwrite
+def demo(directory: Path, overwrite: bool) -> None:
+    """Run a small example that needs no input, and say where its report lies."""
+    from asperity.cli.running import run_into
+    from asperity.config import demo_case
+
+    run_into(demo_case(), directory, overwrite=overwrite)
+
+
+@main.command()
+@click.argument("kind", metavar="ball-on-beam|wheel-on-rail")
+def new(kind: str) -> None:
+    """Write a commented case to standard output."""
+    from asperity.config import template
+
+    click.echo(template(kind), nl=False)
+
+
+@main.command()
+@_case
+def check(case: Path) -> None:
+    """Check a case: show its values, what will be computed, and how much work that is."""
+    from asperity.cli.planning import show_plan
+    from asperity.config import load_case
+
+    show_plan(load_case(case), str(case))
+
+
+@main.command()
+@_case
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    type=click.Path(path_type=Path),
+    help="Folder of the results. [default: runs/NAME]",
+)
+@_report
+@_overwrite
+def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> None:
+    """Compute a case: writes run.nc, report.html and the CSV of every figure."""
+    from asperity.cli.running import run_into
+    from asperity.config import load_case
+
+    run_into(load_case(case), directory or Path("runs") / case.stem, report=report, overwrite=overwrite)
+
+
+@main.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--array", help="Name of the array, where the file holds several.")
+@click.option(
+    "--index", type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
+)
+@click.option("--height-unit", help="Unit of heights that carry none, as 'um'.")
+@click.option("--pixel", help="Distance of points that carry none, as '1.5625 um'.")
+@click.option("--fill", is_flag=True, help="Fill points without a height.")
+@click.option(
+    "-o",
+    "--output",
+    "picture",
+    type=click.Path(path_type=Path),
+    help="The picture. [default: NAME-surface.png here]",
+)
+def surface(
+    file: Path,
+    array: str | None,
+    index: int | None,
+    height_unit: str | None,
+    pixel: str | None,
+    fill: bool,
+    picture: Path | None,
+) -> None:
+    """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture."""
+    from asperity.cli.inspecting import inspect
+
+    inspect(
+        file,
+        picture or Path(f"{file.stem}-surface.png"),
+        index=index,
+        fill=fill,
+        array=array,
+        height_unit=height_unit,
+        pixel=pixel,
+    )
+
+
+@main.command()
+@click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
+def cache(clear: bool) -> None:
+    """Show where finished pieces of work are kept, and how large they are."""
+    from asperity.store import Store
+
+    store = Store()
+    count, size = len(store.files()), store.size()
+    if clear:
+        click.echo(f"{store.root}: {store.clear()} results deleted, {size / 2**20:.1f} MiB")
+    else:
+        click.echo(f"{store.root}: {count} results, {size / 2**20:.1f} MiB")

@@ -1,0 +1,174 @@
+"""What is in a measured file: size, spacing, missing points, statistics with bandwidth, and a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from asperity.errors import InputError
+from asperity.store import atomic_write
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from asperity.surfaces.heightmap import HeightMap, Profile
+    from asperity.surfaces.statistics import Statistic
+
+
+def inspect(file: Path, picture: Path, *, index: int | None = None, fill: bool = False, **hints: Any) -> None:
+    """Print what is in a measured file, and draw it.
+
+    Parameters
+    ----------
+    file : Path
+        The measured file.
+    picture : Path
+        Where the picture goes; the ending names its format.
+    index : int, optional
+        Which map of an ensemble.
+    fill : bool
+        Whether points without a height are filled.
+    **hints
+        What the file does not say itself, as `read_surface` takes it; None where nothing was said.
+    """
+    formats = (".png", ".pdf", ".svg")
+    if picture.suffix.lower() not in formats:
+        raise InputError("picture", f"'{picture}'", f"a name that ends in {', '.join(formats)}")
+    if picture.resolve() == file.resolve():
+        raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
+    surfaces = read(file, index, fill=fill, **hints)
+    click.echo(f"{file}: {described(surfaces)}")
+    first = surfaces[0].levelled()
+    if len(surfaces) > 1:
+        click.echo(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
+    for line in statistics_lines(first):
+        click.echo(line)
+    click.echo(f"Picture: {draw(first, picture).resolve()}")
+
+
+def read(
+    file: Path, index: int | None = None, *, fill: bool = False, **hints: Any
+) -> list[HeightMap | Profile]:
+    """Read the map, the line, or all maps of an ensemble.
+
+    Parameters
+    ----------
+    file : Path
+        The measured file.
+    index : int, optional
+        Which map of an ensemble; all of them by default.
+    fill : bool
+        Whether points without a height are filled.
+    **hints
+        As `read_surface` takes them; None where nothing was said.
+
+    Returns
+    -------
+    list of HeightMap or Profile
+    """
+    from asperity.surfaces.readers import read_surface, read_surfaces
+
+    said = {name: value for name, value in hints.items() if value is not None}
+    if index is not None:
+        return [read_surface(file, index=index, fill=fill, **said)]
+    try:
+        return [read_surface(file, fill=fill, **said)]
+    except InputError as error:
+        if error.allowed != "one sample":
+            raise
+    return list(read_surfaces(file, fill=fill, **said))
+
+
+def described(surfaces: list[HeightMap | Profile]) -> str:
+    """Say in one line what was read."""
+    import numpy as np
+
+    first = surfaces[0]
+    sizes, spacings = np.atleast_1d(first.size), np.atleast_1d(first.spacing)
+    kind = "map" if len(sizes) == 2 else "line"
+    many = f"{len(surfaces)} {kind}s, each" if len(surfaces) > 1 else f"a {kind} of"
+    points = " × ".join(map(str, first.shape))
+    area = " × ".join(f"{size * 1e3:.4g}" for size in sizes)
+    apart = " × ".join(f"{spacing * 1e6:.4g}" for spacing in spacings)
+    missing = max(surface.missing_share for surface in surfaces)
+    return f"{many} {points} points, {area} mm, {apart} µm apart, {missing:.2%} without a height"
+
+
+def statistics_lines(surface: HeightMap | Profile) -> list[str]:
+    """Lines of a table of the roughness parameters of a levelled surface."""
+    from asperity.surfaces.heightmap import HeightMap
+    from asperity.surfaces.statistics import areal_statistics, profile_statistics
+
+    found: list[Statistic]
+    if isinstance(surface, HeightMap):
+        found = areal_statistics(surface)
+    else:
+        found = profile_statistics(surface)
+    shortest, longest = found[0].bandwidth
+    head = f"Levelled; wavelengths {shortest * 1e6:.3g} µm to {longest * 1e3:.3g} mm:"
+    return [head, *(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}" for item in found)]
+
+
+def _scaled(item: Statistic) -> str:
+    return f"{item.value * 1e6:.4g} µm" if item.unit == "m" else f"{item.value:.4g}"
+
+
+def draw(surface: HeightMap | Profile, picture: Path) -> Path:
+    """Draw heights and spectra of a levelled surface.
+
+    Parameters
+    ----------
+    surface : HeightMap or Profile
+        Levelled heights.
+    picture : Path
+        The file, PNG, PDF or SVG.
+
+    Returns
+    -------
+    Path
+        The file written.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10, 4.2), layout="constrained", dpi=150)
+    left, right = figure.subplots(1, 2)
+    _draw_heights(left, surface)
+    _draw_spectra(right, surface)
+    kind = picture.suffix[1:].lower()
+    return atomic_write(picture, lambda file: figure.savefig(file, format=kind))
+
+
+def _draw_heights(axes: Axes, surface: HeightMap | Profile) -> None:
+    import numpy as np
+
+    heights = surface.heights * 1e6
+    if heights.ndim == 1:
+        axes.plot(surface.x * 1e3, heights, linewidth=0.7)
+        axes.set(xlabel="x / mm", ylabel="height / µm")
+        return
+    size_x, size_y = np.asarray(surface.size) * 1e3
+    limits = np.nanpercentile(heights, [1, 99])
+    image = axes.imshow(
+        heights.T,
+        origin="lower",
+        extent=(0, size_x, 0, size_y),
+        cmap="viridis",
+        vmin=limits[0],
+        vmax=limits[1],
+    )
+    axes.set(xlabel="x / mm (rolling direction)", ylabel="y / mm")
+    axes.figure.colorbar(image, ax=axes, label="height / µm (1 to 99 % of the points)")
+
+
+def _draw_spectra(axes: Axes, surface: HeightMap | Profile) -> None:
+    from asperity.surfaces.statistics import psd_1d
+
+    complete = surface.filled() if surface.missing_share else surface
+    for axis, name in enumerate("xy"[: surface.heights.ndim]):
+        wavenumber, density = psd_1d(complete, axis)
+        axes.loglog(wavenumber[1:] / 1e3, density[1:], linewidth=0.9, label=f"along {name}")
+    axes.set(xlabel="wavenumber / (1/mm)", ylabel="one-sided PSD / m³", title="Spectrum of the heights")
+    axes.grid(which="both", alpha=0.3)
+    axes.legend()

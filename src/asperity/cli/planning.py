@@ -1,0 +1,108 @@
+"""What a case will compute, before it is computed."""
+
+from __future__ import annotations
+
+import sys
+
+from asperity.config import BallOnBeamCase
+from asperity.errors import InputError
+from asperity.progress import duration
+
+STATES = 14  # approaches, where the case names none
+SOLVE_TIME = 1e-6  # s per grid cell of one contact solution on one core, in order of magnitude
+STEP_TIME = 1e-5  # s per time step of one compiled law, in order of magnitude
+
+
+def show_plan(case: BallOnBeamCase, source: str) -> None:
+    """Print the values of a case, and what will be computed from it.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase
+        The case.
+    source : str
+        Its file.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    measured = _measured(case)
+    console = Console(file=sys.stdout)
+    if not console.is_terminal:
+        console.width = 120
+    values = Table(title=f"{source}: a valid case", title_justify="left")
+    for heading in ("key", "value", "default", "what it is"):
+        values.add_column(heading)
+    for item in case.parameters():
+        default = "" if item["is_default"] else item["default"] or "none"
+        style = None if item["is_default"] else "bold"
+        values.add_row(item["key"], item["value"], default, item["note"], style=style)
+    console.print(values)
+    work = Table(title="What will be computed", title_justify="left", show_header=False)
+    for name, value in [*measured, *plan(case)]:
+        work.add_row(name, value)
+    console.print(work)
+
+
+def plan(case: BallOnBeamCase) -> list[tuple[str, str]]:
+    """List what will be computed and how much work it is.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase
+        The case.
+
+    Returns
+    -------
+    list of (str, str)
+        Name and value, with units.
+    """
+    contact = case.contact
+    states = STATES if contact.approaches is None else len(contact.approaches)
+    positions = round(case.rolled_time * case.speed / contact.spacing) + 1
+    steps = round(case.rolled_time / case.time_step)
+    where = f"{case.rolled_time * case.speed:g} m from {case.start:g} m"
+    solves = _solves(case, states, positions, steps)
+    seconds = sum(solves.values()) * contact.cells**2 * SOLVE_TIME + steps * len(case.laws) * STEP_TIME
+    return [
+        ("path", f"{where}, {positions} positions {contact.spacing * 1e6:g} µm apart"),
+        ("time", f"{case.rolled_time:g} s, {steps} steps of {case.time_step * 1e6:.4g} µs"),
+        ("laws", ", ".join(case.laws)),
+        (
+            "contact",
+            f"{contact.cells} × {contact.cells} cells, {contact.samples} samples, {states} approaches",
+        ),
+        *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items() if count),
+        ("work", f"in the order of {duration(seconds)} on one core, less what the cache holds"),
+    ]
+
+
+def _solves(case: BallOnBeamCase, states: int, positions: int, steps: int) -> dict[str, int]:
+    """Contact solutions by what they are for."""
+    contact = case.contact
+    strip = 8 * contact.window if contact.sample_length is None else contact.sample_length
+    scanned = max(1, round((strip - contact.window) / contact.spacing))
+    return {
+        "stiffness and filters": contact.samples * states * scanned if case.surface.has_samples else 0,
+        "table": states * positions if "table" in case.laws else 0,
+        "direct": 3 * steps if "direct" in case.laws else 0,  # two or three iterations in each time step
+    }
+
+
+def _measured(case: BallOnBeamCase) -> list[tuple[str, str]]:
+    """Read the measured samples, so that their errors come before the work."""
+    surface = case.surface
+    if surface.file is None:
+        return []
+    from asperity.cli.inspecting import described, read
+
+    maps = read(
+        surface.file, surface.index, array=surface.array, height_unit=surface.height_unit, pixel=surface.pixel
+    )
+    smallest = min(min(found.size) if isinstance(found.size, tuple) else found.size for found in maps)
+    if smallest < case.contact.window:
+        allowed = f"at most the measured map, {smallest * 1e6:.4g} um"
+        raise InputError(
+            "contact.window", f"{case.contact.window * 1e6:g} um", allowed, "Choose a smaller window."
+        )
+    return [("samples", described(maps))]

@@ -1,0 +1,71 @@
+"""Compute a case into a folder, and never over the run of another case."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from asperity.config import BallOnBeamCase
+from asperity.errors import InputError
+from asperity.progress import progress_bar
+
+
+def run_into(case: BallOnBeamCase, directory: Path, *, report: bool = True, overwrite: bool = False) -> None:
+    """Compute a case and write its results.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase
+        The case.
+    directory : Path
+        Where ``run.nc``, ``report.html`` and the CSVs go.
+    report : bool
+        Whether to write the page and the CSVs.
+    overwrite : bool
+        Whether the run of another case in `directory` may be replaced.
+
+    Raises
+    ------
+    InputError
+        If `directory` holds the run of another case.
+    """
+    if not overwrite:
+        _refuse_to_overwrite(case, directory)
+    from asperity.results import save
+    from asperity.scenarios import run
+
+    with progress_bar() as progress:
+        tree = run(case, progress=progress)
+    for warning in json.loads(tree.attrs.get("warnings", "[]")):
+        times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
+        click.echo(f"Warning: {warning['message']}{times}", err=True)
+    written = save(tree, directory / "run.nc")
+    if verdict := tree.attrs.get("verdict"):
+        click.echo(verdict)
+    click.echo(f"Results: {written.resolve()}")
+    if report:
+        from asperity.report import write_report
+
+        write_report(tree, directory)
+        click.echo(f"Report:  {(directory / 'report.html').resolve()}")
+
+
+def _refuse_to_overwrite(case: BallOnBeamCase, directory: Path) -> None:
+    """Let a case replace its own run; anything else of that name in the folder stays."""
+    allowed = "a new folder, or the folder of an earlier run of the same case"
+    remedy = "Choose another folder with -o, or replace it with --overwrite."
+    if directory.exists() and not directory.is_dir():
+        raise InputError(str(directory), "a file", allowed, "Choose another folder with -o.")
+    if (directory / "run.nc").exists():
+        from asperity.results import load
+
+        try:
+            earlier = str(load(directory / "run.nc").attrs.get("case", ""))
+        except InputError:
+            raise InputError(str(directory), "a run.nc that cannot be read", allowed, remedy) from None
+        if earlier.split() != case.text.split():
+            raise InputError(str(directory), "the run of another case", allowed, remedy)
+    elif (directory / "report.html").exists():
+        raise InputError(str(directory), "a report.html without its run.nc", allowed, remedy)
