@@ -30,20 +30,26 @@ class Door(click.Group):
                 return super().invoke(ctx)
             except (click.ClickException, click.exceptions.Exit, BrokenPipeError):
                 raise
-            except AsperityError as error:
-                message, code = str(error), error.exit_code
             except (KeyboardInterrupt, click.Abort):
-                message, code = "interrupted; run the same command again to continue", INTERRUPTED
-            except MemoryError:
-                remedy = "Try: a smaller window, a shorter duration or a coarser spacing"
-                message, code = f"the memory of this machine is too small. {remedy}.", FAILED
+                click.echo("interrupted; run the same command again to continue", err=True)
+                ctx.exit(INTERRUPTED)
             except Exception as error:
-                what = f"the program failed with {type(error).__name__}: {error}"
-                message, code = f"{what}. Try: asperity --debug …, which shows where.", FAILED
-            if ctx.params.get("debug") and code != INTERRUPTED:
-                click.echo(traceback.format_exc(), err=True)
-        click.echo(message if code == INTERRUPTED else f"Error: {message}", err=True)
-        ctx.exit(code)
+                message, code = _outcome(error)
+                if ctx.params.get("debug"):
+                    click.echo(traceback.format_exc(), err=True)
+                click.echo(f"Error: {message}", err=True)
+                ctx.exit(code)
+
+
+def _outcome(error: Exception) -> tuple[str, int]:
+    """Message and exit code of an error."""
+    if isinstance(error, AsperityError):
+        return str(error), error.exit_code
+    if isinstance(error, MemoryError):
+        remedy = "a smaller window, a shorter duration or a coarser spacing"
+        return f"the memory of this machine is too small. Try: {remedy}.", FAILED
+    what = f"the program failed with {type(error).__name__}: {error}"
+    return f"{what}. Try: asperity --debug …, which shows where.", FAILED
 
 
 class _WarningLines:

@@ -1,0 +1,338 @@
+"""The command line: what it prints, what it writes, and its exit codes."""
+
+import importlib
+import json
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+
+from asperity.cli import main
+from asperity.config import load_case, parse_case
+from asperity.errors import CoarseSamplingWarning, ComputationError, InputError
+from asperity.results import GROUPS, load
+from asperity.store import Store
+
+CASE = 'kind = "ball-on-beam"\nduration = "0.01 s"\n[surface]\nrms = "0.5 um"\n'
+
+
+@pytest.fixture(autouse=True)
+def own_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
+    Path("case.toml").write_text(CASE)
+    return tmp_path
+
+
+@pytest.fixture
+def computed(monkeypatch):
+    """Replace the computation and the report; returns the cases that were run."""
+    cases = []
+
+    def run(case, progress=None):
+        cases.append(case)
+        progress(1, 2, "scan")
+        groups = {f"/{name}": xr.Dataset() for name in GROUPS}
+        warning = {"category": "CoarseSamplingWarning", "message": "spacing is coarse", "count": 3}
+        attrs = {"asperity_version": "0.1.0", "case": case.text, "verdict": "The ball stays in contact."}
+        groups["/"] = xr.Dataset(attrs={**attrs, "warnings": json.dumps([warning])})
+        return xr.DataTree.from_dict(groups)
+
+    def write_report(tree, directory):
+        (Path(directory) / "report.html").write_text("<html>")
+
+    monkeypatch.setattr(importlib.import_module("asperity.scenarios"), "run", run, raising=False)
+    monkeypatch.setattr(
+        importlib.import_module("asperity.report"), "write_report", write_report, raising=False
+    )
+    return cases
+
+
+def failing_with(monkeypatch, error):
+    def run(case, progress=None):
+        raise error
+
+    monkeypatch.setattr(importlib.import_module("asperity.scenarios"), "run", run, raising=False)
+
+
+def call(*arguments, code=0):
+    outcome = CliRunner().invoke(main, list(arguments))
+    assert outcome.exit_code == code, outcome.output
+    return outcome
+
+
+# --- run and demo
+
+
+def test_run_writes_results_and_report(computed):
+    outcome = call("run", "case.toml", "-o", "out")
+    assert load("out").attrs["case"] == CASE
+    assert Path("out/report.html").exists()
+    assert "The ball stays in contact." in outcome.stdout
+    assert str(Path("out/report.html").resolve()) in outcome.stdout
+    assert "Warning: spacing is coarse (3 times)" in outcome.stderr
+    assert "scan" in outcome.stderr
+
+
+def test_run_without_report(computed):
+    call("run", "case.toml", "-o", "out", "--no-report")
+    assert [path.name for path in Path("out").iterdir()] == ["run.nc"]
+
+
+def test_a_run_has_a_folder_of_its_own(computed):
+    call("run", "case.toml")
+    assert Path("runs/case/run.nc").exists()
+
+
+def test_the_same_case_replaces_its_own_run(computed):
+    call("run", "case.toml", "-o", "out")
+    call("run", "case.toml", "-o", "out")
+    assert len(computed) == 2
+
+
+def test_another_case_is_never_overwritten(computed):
+    call("run", "case.toml", "-o", "out")
+    Path("other.toml").write_text(CASE + "hurst = 0.7\n")
+    outcome = call("run", "other.toml", "-o", "out", code=2)
+    assert "out: received the run of another case" in outcome.stderr
+    assert "--overwrite" in outcome.stderr
+    assert load("out").attrs["case"] == CASE
+    assert len(computed) == 1
+    call("run", "other.toml", "-o", "out", "--overwrite")
+    assert "hurst" in load("out").attrs["case"]
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("run.nc", "a run.nc that cannot be read"), ("report.html", "a report.html without its run.nc")],
+)
+def test_files_of_others_are_never_overwritten(computed, name, message):
+    Path("out").mkdir()
+    Path("out", name).write_text("precious")
+    assert message in call("run", "case.toml", "-o", "out", code=2).stderr
+    assert Path("out", name).read_text() == "precious"
+    assert computed == []
+
+
+def test_a_file_is_no_folder_for_results(computed):
+    assert "case.toml: received a file" in call("run", "case.toml", "-o", "case.toml", code=2).stderr
+    assert Path("case.toml").read_text() == CASE
+
+
+def test_the_demonstration_says_where_its_report_lies(computed):
+    outcome = call("demo")
+    assert str(Path("asperity-demo/report.html").resolve()) in outcome.stdout
+    assert computed[0].surface.rms is not None
+
+
+# --- exit codes and messages
+
+
+def test_wrong_input_is_2_with_one_message_per_error(computed):
+    Path("bad.toml").write_text(CASE + 'hurts = 0.7\n[ball]\nradius = "-1 mm"\n')
+    outcome = call("run", "bad.toml", "-o", "out", code=2)
+    assert "bad.toml: 2 errors" in outcome.stderr
+    assert 'Did you mean "hurst"?' in outcome.stderr
+    assert "Traceback" not in outcome.output
+    assert not Path("out").exists()
+
+
+def test_a_missing_case_is_2():
+    assert "absent.toml: received no such file" in call("run", "absent.toml", code=2).stderr
+    assert "absent.toml: received no such file" in call("check", "absent.toml", code=2).stderr
+
+
+def test_wrong_use_is_2():
+    assert "No such command 'rn'" in call("rn", code=2).stderr
+    assert "No such option" in call("run", "case.toml", "--outptu", "x", code=2).stderr
+    assert "Missing argument" in call("run", code=2).stderr
+
+
+def test_input_that_proves_wrong_while_computing_is_2(monkeypatch):
+    failing_with(monkeypatch, InputError("contact.window", "0.5 mm", "at least 1 mm", "Enlarge it."))
+    assert (
+        "Error: contact.window: received 0.5 mm; allowed: at least 1 mm."
+        in call("run", "case.toml", code=2).stderr
+    )
+
+
+def test_a_failed_computation_is_3(monkeypatch):
+    failing_with(monkeypatch, ComputationError("the contact at position 3 did not converge", "a larger rtol"))
+    outcome = call("run", "case.toml", code=3)
+    assert outcome.stderr.strip().endswith(
+        "Error: the contact at position 3 did not converge. Try: a larger rtol."
+    )
+    assert "Traceback" not in outcome.output
+
+
+def test_a_fault_of_the_program_is_3_and_says_how_to_see_more(monkeypatch):
+    failing_with(monkeypatch, ZeroDivisionError("division by zero"))
+    outcome = call("run", "case.toml", code=3)
+    assert "ZeroDivisionError: division by zero. Try: asperity --debug" in outcome.stderr
+    assert "Traceback" not in outcome.output
+    assert "Traceback" in call("--debug", "run", "case.toml", code=3).stderr
+
+
+def test_too_little_memory_is_3(monkeypatch):
+    failing_with(monkeypatch, MemoryError())
+    assert "memory of this machine is too small. Try:" in call("run", "case.toml", code=3).stderr
+
+
+def test_an_interruption_is_130(monkeypatch):
+    failing_with(monkeypatch, KeyboardInterrupt())
+    outcome = call("--debug", "run", "case.toml", code=130)
+    assert outcome.stderr.strip() == "interrupted; run the same command again to continue"
+
+
+def test_a_folder_that_cannot_be_written_is_3(computed):
+    Path("file").write_text("in the way")
+    assert "could not be written" in call("run", "case.toml", "-o", "file/out", code=3).stderr
+
+
+def test_warnings_are_printed_once_on_one_line(monkeypatch):
+    def run(case, progress=None):
+        for _ in range(3):
+            warnings.warn("the grid is coarse", CoarseSamplingWarning, stacklevel=2)
+        raise ComputationError("it failed", "something else")
+
+    monkeypatch.setattr(importlib.import_module("asperity.scenarios"), "run", run, raising=False)
+    outcome = call("run", "case.toml", code=3)
+    assert outcome.stderr.splitlines()[0] == "Warning: the grid is coarse"
+    assert outcome.stderr.count("coarse") == 1
+
+
+def test_exit_codes_of_the_program_itself():
+    program = [sys.executable, "-c", "from asperity.cli import main; main(prog_name='asperity')"]
+    done = subprocess.run([*program, "new", "ball-on-beam"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert done.stdout.startswith("# A ball rolls over a rough beam")
+    wrong = subprocess.run([*program, "new", "wheel-on-rail"], capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert wrong.stderr.startswith("Error: kind: received 'wheel-on-rail'; allowed: \"ball-on-beam\".")
+    assert len(wrong.stderr.splitlines()) == 1
+
+
+def test_help_imports_nothing_heavy():
+    script = (
+        "import sys\nfrom asperity.cli import main\n"
+        "try: main(['--help'])\nexcept SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'xarray', 'pydantic', 'pint', 'matplotlib', 'rich'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert "Roll a ball" in done.stdout
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+# --- new and check
+
+
+def test_a_new_case_is_valid(own_folder):
+    Path("new.toml").write_text(call("new", "ball-on-beam").stdout)
+    assert load_case("new.toml").speed == 1.0
+
+
+def test_check_shows_values_and_work():
+    outcome = call("check", "case.toml")
+    for text in (
+        "a valid case",
+        "ball.radius",
+        "25 mm",
+        "1251 positions 8 µm apart",
+        "1250 steps of 8 µs",
+        "on one core",
+    ):
+        assert text in outcome.stdout
+
+
+def test_check_reads_the_measured_map():
+    np.save("map.npy", np.random.default_rng(0).normal(size=(64, 64)))
+    keys = 'file = "map.npy"\nheight_unit = "um"\npixel = "8 um"\n'
+    case = CASE.replace('rms = "0.5 um"\n', keys)
+    Path("measured.toml").write_text(case)
+    assert "64 × 64 points, 0.512 × 0.512 mm" in call("check", "measured.toml").stdout
+    Path("measured.toml").write_text(case + '[contact]\nwindow = "0.6 mm"\n')
+    assert (
+        "contact.window: received 600 um; allowed: at most the measured map, 512 um"
+        in call("check", "measured.toml", code=2).stderr
+    )
+    Path("measured.toml").write_text(case.replace('pixel = "8 um"\n', ""))
+    assert "pixel" in call("check", "measured.toml", code=2).stderr
+
+
+def test_the_plan_counts_contact_solutions():
+    from asperity.cli.planning import plan
+
+    laws = 'laws = ["table", "direct"]\n'
+    contact = '[contact]\napproaches = ["0 um", "1 um"]\nsamples = 2\nsample_length = "1.5 mm"\n'
+    rows = dict(plan(parse_case(laws + CASE + contact)))
+    assert rows["contact solutions, stiffness and filters"] == f"at most {2 * 2 * 125}"
+    assert rows["contact solutions, table"] == f"at most {2 * 1251}"
+    assert rows["contact solutions, direct"] == f"at most {3 * 1250}"
+    smooth = CASE.replace('rms = "0.5 um"', 'spectrum = "iso3095"')
+    assert not any(name.startswith("contact solutions") for name in dict(plan(parse_case(smooth))))
+
+
+# --- surface and cache
+
+
+@pytest.fixture
+def ensemble():
+    rng = np.random.default_rng(0)
+    np.savez("maps.npz", polished=rng.normal(size=(3, 40, 32)), line=rng.normal(size=200))
+    return ["surface", "maps.npz", "--height-unit", "um", "--pixel", "2 um"]
+
+
+def test_surface_says_what_is_in_a_file(ensemble):
+    outcome = call(*ensemble, "--array", "polished")
+    assert (
+        "3 maps, each 40 × 32 points, 0.08 × 0.064 mm, 2 × 2 µm apart, 0.00% without a height"
+        in outcome.stdout
+    )
+    assert "Sq" in outcome.stdout
+    assert "wavelengths 4 µm to 0.08 mm" in outcome.stdout
+    assert Path("maps-surface.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_surface_takes_one_of_an_ensemble(ensemble):
+    outcome = call(*ensemble, "--array", "polished", "--index", "2", "-o", "picture.svg")
+    assert "a map of 40 × 32 points" in outcome.stdout
+    assert "<svg" in Path("picture.svg").read_text()
+    assert "3" in call(*ensemble, "--array", "polished", "--index", "3", code=2).stderr
+
+
+def test_surface_reads_lines_and_missing_points():
+    heights = np.random.default_rng(0).normal(size=300)
+    heights[5] = np.nan
+    np.save("line.npy", heights)
+    outcome = call("surface", "line.npy", "--height-unit", "um", "--pixel", "2 um")
+    assert "a line of 300 points, 0.6 mm, 2 µm apart, 0.33% without a height" in outcome.stdout
+    assert "Rq" in outcome.stdout
+    outcome = call("surface", "line.npy", "--height-unit", "um", "--pixel", "2 um", "--fill")
+    assert "0.00% without a height" in outcome.stdout
+
+
+def test_surface_asks_for_what_the_file_does_not_say(ensemble):
+    assert "polished" in call(*ensemble, code=2).stderr
+    assert "unit" in call("surface", "maps.npz", "--array", "line", "--pixel", "1 um", code=2).stderr
+    assert "absent.x3p" in call("surface", "absent.x3p", code=2).stderr
+
+
+def test_surface_writes_pictures_only(ensemble):
+    message = "allowed: a name that ends in .png, .pdf, .svg"
+    assert message in call(*ensemble, "--array", "polished", "-o", "picture.doc", code=2).stderr
+    Path("map.png").write_bytes(b"heights in a picture")
+    assert "another name" in call("surface", "map.png", "-o", "map.png", code=2).stderr
+    assert Path("map.png").read_bytes() == b"heights in a picture"
+
+
+def test_cache_is_shown_and_cleared(own_folder):
+    Store().put("scan-1", {"force": np.zeros(2**17)})
+    assert call("cache").stdout == f"{own_folder / 'cache'}: 1 results, 1.0 MiB\n"
+    assert "1 results deleted, 1.0 MiB" in call("cache", "--clear").stdout
+    assert Store().files() == []
