@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import os
 import subprocess
 import sys
 import warnings
@@ -215,6 +216,19 @@ def test_exit_codes_of_the_program_itself():
     assert wrong.returncode == 2
     assert wrong.stderr.startswith("Error: kind: received 'wheel-on-rail'; allowed: \"ball-on-beam\".")
     assert len(wrong.stderr.splitlines()) == 1
+
+
+def test_a_terminal_without_greek_letters_is_enough():
+    program = [
+        sys.executable,
+        "-c",
+        "from asperity.cli import main; main(prog_name='asperity')",
+        "check",
+        "case.toml",
+    ]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(program, capture_output=True, text=True, env=environment, check=True)
+    assert "1251 positions 8 ?m apart" in done.stdout
 
 
 def test_help_imports_nothing_heavy():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 import warnings
+from io import TextIOWrapper
 from typing import Any
 
 import click
@@ -23,6 +24,9 @@ class Door(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, TextIOWrapper):
+                stream.reconfigure(errors="replace")  # a terminal without µ shows ? and goes on
         with warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.showwarning = _WarningLines()
