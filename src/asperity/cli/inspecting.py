@@ -11,8 +11,6 @@ from asperity.errors import InputError
 from asperity.store import atomic_write
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from asperity.surfaces.heightmap import HeightMap, Profile
     from asperity.surfaces.statistics import Statistic
 
@@ -45,7 +43,7 @@ def inspect(file: Path, picture: Path, *, index: int | None = None, fill: bool =
         click.echo(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
     for line in statistics_lines(first):
         click.echo(line)
-    click.echo(f"Picture: {draw(first, picture).resolve()}")
+    click.echo(f"Picture: {draw(first, file.name, picture).resolve()}")
 
 
 def read(
@@ -115,13 +113,15 @@ def _scaled(item: Statistic) -> str:
     return f"{item.value * 1e6:.4g} µm" if item.unit == "m" else f"{item.value:.4g}"
 
 
-def draw(surface: HeightMap | Profile, picture: Path) -> Path:
-    """Draw heights and spectra of a levelled surface.
+def draw(surface: HeightMap | Profile, title: str, picture: Path) -> Path:
+    """Draw a levelled surface.
 
     Parameters
     ----------
     surface : HeightMap or Profile
         Levelled heights.
+    title : str
+        Heading.
     picture : Path
         The file, PNG, PDF or SVG.
 
@@ -130,45 +130,11 @@ def draw(surface: HeightMap | Profile, picture: Path) -> Path:
     Path
         The file written.
     """
-    from matplotlib.figure import Figure
+    from asperity.report import surface_picture
+    from asperity.surfaces.heightmap import HeightMap
 
-    figure = Figure(figsize=(10, 4.2), layout="constrained", dpi=150)
-    left, right = figure.subplots(1, 2)
-    _draw_heights(left, surface)
-    _draw_spectra(right, surface)
-    kind = picture.suffix[1:].lower()
-    return atomic_write(picture, lambda file: figure.savefig(file, format=kind))
-
-
-def _draw_heights(axes: Axes, surface: HeightMap | Profile) -> None:
-    import numpy as np
-
-    heights = surface.heights * 1e6
-    if heights.ndim == 1:
-        axes.plot(surface.x * 1e3, heights, linewidth=0.7)
-        axes.set(xlabel="x / mm", ylabel="height / µm")
-        return
-    size_x, size_y = np.asarray(surface.size) * 1e3
-    limits = np.nanpercentile(heights, [1, 99])
-    image = axes.imshow(
-        heights.T,
-        origin="lower",
-        extent=(0, size_x, 0, size_y),
-        cmap="viridis",
-        vmin=limits[0],
-        vmax=limits[1],
+    spacing = surface.spacing if isinstance(surface, HeightMap) else (surface.spacing, surface.spacing)
+    figure = surface_picture(surface.heights, spacing, title)
+    return atomic_write(
+        picture, lambda file: figure.savefig(file, format=picture.suffix[1:].lower(), dpi=150)
     )
-    axes.set(xlabel="x / mm (rolling direction)", ylabel="y / mm")
-    axes.figure.colorbar(image, ax=axes, label="height / µm (1 to 99 % of the points)")
-
-
-def _draw_spectra(axes: Axes, surface: HeightMap | Profile) -> None:
-    from asperity.surfaces.statistics import psd_1d
-
-    complete = surface.filled() if surface.missing_share else surface
-    for axis, name in enumerate("xy"[: surface.heights.ndim]):
-        wavenumber, density = psd_1d(complete, axis)
-        axes.loglog(wavenumber[1:] / 1e3, density[1:], linewidth=0.9, label=f"along {name}")
-    axes.set(xlabel="wavenumber / (1/mm)", ylabel="one-sided PSD / m³", title="Spectrum of the heights")
-    axes.grid(which="both", alpha=0.3)
-    axes.legend()
