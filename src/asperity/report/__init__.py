@@ -1,0 +1,74 @@
+"""One self-contained page per run, and the numbers of its figures: sees results only.
+
+| name | what |
+|---|---|
+| `write_report` | ``report.html`` and one CSV file per figure |
+| `surface_picture` | picture of a measured surface |
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import os
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+    from xarray import DataTree
+
+__all__ = ["surface_picture", "write_report"]
+
+
+def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
+    """Write the report of a run: one page, and one CSV file per figure.
+
+    Parameters
+    ----------
+    tree : xarray.DataTree
+        The result of a run. Whatever it lacks is left out of the report.
+    directory : path
+        Folder that receives ``report.html`` and the CSV files; made if missing.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    ComputationError
+        If a file cannot be written.
+    """
+    from asperity.report.csv_files import write_csv
+    from asperity.report.page import drawable_parts, page
+    from asperity.store import atomic_write
+
+    directory = Path(directory)
+    text = page(tree)
+    for part in drawable_parts(tree):
+        write_csv(part.columns(tree), directory / f"{part.name}.csv")
+    return atomic_write(directory / "report.html", lambda file: file.write(text.encode("utf-8")))
+
+
+def surface_picture(heights: NDArray[Any], spacing: tuple[float, float], title: str) -> Figure:
+    """Draw what a surface file holds: its map and the distribution of its heights.
+
+    Parameters
+    ----------
+    heights : (nx, ny) array, or (n,) array for a line
+        Heights in m, positive out of the material; NaN where missing.
+    spacing : (float, float)
+        Distance of neighbouring points along x and y in m.
+    title : str
+        Heading, as the name of the file.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Save it with ``savefig``.
+    """
+    from asperity.report.texture import surface_picture as draw
+
+    return draw(heights, spacing, title)

@@ -1,0 +1,316 @@
+"""Figures of the contact: pressure at the working load, force and stiffness, the contact filter."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.report.data import engineering, number, present, values
+from asperity.report.part import Columns, Part
+from asperity.report.style import (
+    INK,
+    LAW_STYLES,
+    MUTED,
+    new_figure,
+    sequence,
+    styled,
+    wavenumber_axis,
+)
+from asperity.report.texture import draw_map, length_unit
+
+_BLUE, _ORANGE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "shifted", "table"))
+FLOOR = -40.0  # dB, lowest level of a drawn filter
+MOST_FILTERS = 6
+
+
+def _centre(axis: NDArray[np.float64]) -> float:
+    return 0.0 if axis[0] <= 0 <= axis[-1] else float(axis[0] + axis[-1]) / 2
+
+
+@styled()
+def pressure_figure(tree: DataTree) -> Figure:
+    """Pressure and, if known, gap at the working load, with the circle of Hertz's contact."""
+    with_gap = present(tree, "contact/gap")
+    figure = new_figure(4.1)
+    panels = figure.subplots(1, 2)
+    x, y = values(tree, "contact/px"), values(tree, "contact/py")
+    pressure = values(tree, "contact/pressure", "px", "py")
+    unit = length_unit(np.ptp(x))
+    symbol, size = ("GPa", 1e9) if pressure.max() >= 2e9 else ("MPa", 1e6)
+    loaded = np.where(pressure > 0, pressure, np.nan) / size
+    image = draw_map(panels[0], x, y, loaded, unit, cmap="inferno_r", vmin=0)
+    figure.colorbar(image, ax=panels[0], label=f"pressure / {symbol}", shrink=0.9)
+    panels[0].set_title("pressure")
+    radius = number(tree, "contact", "hertz_radius")
+    if with_gap:
+        gap = values(tree, "contact/gap", "px", "py")
+        height, height_symbol = length_unit(float(np.nanmax(gap)) or 1e-6)
+        image = draw_map(panels[1], x, y, gap / height, unit, cmap="cividis", vmin=0)
+        figure.colorbar(image, ax=panels[1], label=f"gap / {height_symbol}", shrink=0.9)
+        panels[1].set_title("gap")
+    else:
+        _pressure_section(panels[1], x, y, pressure / size, unit, symbol)
+    for axes in panels[: 2 if with_gap else 1]:
+        _circle(axes, x, y, radius, unit)
+    return figure
+
+
+def _circle(
+    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], radius: float | None, unit: tuple[float, str]
+) -> None:
+    if not radius:
+        return
+    centre = (_centre(x) / unit[0], _centre(y) / unit[0])
+    for colour, width, dashes in (("white", 2.6, "-"), ("black", 1.1, (0, (4, 2)))):
+        axes.add_patch(
+            Circle(centre, radius / unit[0], fill=False, edgecolor=colour, linewidth=width, linestyle=dashes)
+        )
+
+
+def _pressure_section(
+    axes: Axes,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    pressure: NDArray[np.float64],
+    unit: tuple[float, str],
+    symbol: str,
+) -> None:
+    middle = int(np.argmin(np.abs(y - _centre(y))))
+    axes.fill_between(x / unit[0], pressure[:, middle], color=_BLUE, linewidth=0.5, step="mid")
+    axes.set_xlim(x[0] / unit[0], x[-1] / unit[0])
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel(f"x / {unit[1]} (rolling direction →)")
+    axes.set_ylabel(f"pressure / {symbol}")
+    axes.set_title("along the middle")
+
+
+def pressure_columns(tree: DataTree) -> Columns:
+    """Pressure: one row per x, one column per y."""
+    pressure = values(tree, "contact/pressure", "px", "py")
+    columns: Columns = {"x [m]": values(tree, "contact/px")}
+    for index, position in enumerate(values(tree, "contact/py")):
+        columns[f"p(y={position:.9g} m) [Pa]"] = pressure[:, index]
+    return columns
+
+
+def _pressure_caption(tree: DataTree) -> str:
+    parts = []
+    for name, label, unit in (
+        ("working_load", "working load", "N"),
+        ("working_approach", "approach of the mean surfaces", "m"),
+        ("hertz_radius", "radius of Hertz's contact (dashed circle)", "m"),
+        ("contact_area", "area in contact", "m²"),
+    ):
+        found = number(tree, "contact", name)
+        if found is not None:
+            parts.append(f"{label} {engineering(found, unit)}")
+    peak = engineering(float(np.nanmax(values(tree, "contact/pressure"))), "Pa")
+    area, radius = number(tree, "contact", "contact_area"), number(tree, "contact", "hertz_radius")
+    if area and radius:
+        parts[-1] += f" ({100 * area / (np.pi * radius**2):.0f} % of Hertz's)"
+    return f"First sample at the working load: {'; '.join([*parts, f'highest pressure {peak}'])}."
+
+
+@styled()
+def force_figure(tree: DataTree) -> Figure:
+    """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
+    figure = new_figure(4.2)
+    panels = figure.subplots(1, 2)
+    approach = values(tree, "contact/approach")
+    draw = (
+        ("force", "rough, mean ± standard deviation", _BLUE, "-", "o", 1.0),
+        ("hertz_force", "Hertz", INK, (0, (4, 2)), "", 1.0),
+    )
+    _curves(panels[0], tree, approach, draw)
+    panels[0].set_ylabel("contact force F / N")
+    draw = (
+        ("stiffness", "k_c = F/r, mean ± standard deviation", _BLUE, "-", "o", 1e6),
+        ("tangent_stiffness", "tangent dF/dδ", _GREEN, (0, (1.5, 1.5)), "", 1e6),
+        ("hertz_stiffness", "Hertz, F/δ", INK, (0, (4, 2)), "", 1e6),
+    )
+    _curves(panels[1], tree, approach, draw)
+    panels[1].set_ylabel("stiffness / (MN/m)")
+    for axes in panels:
+        _approach_axis(axes, tree, approach)
+        axes.set_ylim(bottom=0)
+        axes.legend(loc="upper left")
+    return figure
+
+
+def _curves(axes: Axes, tree: DataTree, approach: NDArray[np.float64], draw: tuple) -> None:
+    for name, label, colour, dashes, marker, size in draw:
+        if not present(tree, f"contact/{name}"):
+            continue
+        mean = values(tree, f"contact/{name}", "approach") / size
+        marker = marker if len(approach) <= 40 else ""
+        axes.plot(approach * 1e6, mean, color=colour, linestyle=dashes, marker=marker, label=label, zorder=3)
+        if present(tree, f"contact/{name}_std"):
+            spread = values(tree, f"contact/{name}_std", "approach") / size
+            axes.fill_between(
+                approach * 1e6, mean - spread, mean + spread, color=colour, alpha=0.25, linewidth=0
+            )
+
+
+def _approach_axis(axes: Axes, tree: DataTree, approach: NDArray[np.float64]) -> None:
+    low, high = 1e6 * approach.min(), 1e6 * approach.max()
+    margin = 0.02 * (high - low or 1.0)
+    axes.set_xlim(low - margin, high + margin)
+    axes.set_xlabel("approach δ / µm (closing →)")
+    datum = number(tree, "contact", "datum")
+    if datum is not None:
+        top = axes.twiny()
+        top.set_xlim(*(edge + 1e6 * datum for edge in axes.get_xlim()))
+        top.grid(visible=False)
+        top.set_xlabel("state r = δ + d₀ / µm")
+    working = number(tree, "contact", "working_approach")
+    if working is not None and low <= 1e6 * working <= high:
+        axes.axvline(1e6 * working, color=MUTED, linewidth=0.9, linestyle=":")
+        axes.text(
+            1e6 * working,
+            0.02,
+            " working load",
+            transform=axes.get_xaxis_transform(),
+            fontsize=8,
+            color=MUTED,
+        )
+
+
+_FORCE_UNITS = {
+    "force": "N", "force_std": "N", "hertz_force": "N", "stiffness": "N/m", "stiffness_std": "N/m",
+    "tangent_stiffness": "N/m", "hertz_stiffness": "N/m", "contact_radius": "m",
+}  # fmt: skip
+
+
+def force_columns(tree: DataTree) -> Columns:
+    """Force and stiffness against approach and state."""
+    approach = values(tree, "contact/approach")
+    columns: Columns = {"approach [m]": approach}
+    datum = number(tree, "contact", "datum")
+    if datum is not None:
+        columns["state r [m]"] = approach + datum
+    for name, unit in _FORCE_UNITS.items():
+        if present(tree, f"contact/{name}"):
+            columns[f"{name} [{unit}]"] = values(tree, f"contact/{name}", "approach")
+    return columns
+
+
+def _force_caption(tree: DataTree) -> str:
+    datum = number(tree, "contact", "datum")
+    common = (
+        f"one common datum d₀ = {engineering(datum, 'm')}" if datum is not None else "no common datum stated"
+    )
+    return (
+        "Approach of the mean surfaces, positive closing; rough contact starts below zero. The state r counts from "
+        f"{common}; Hertz's smooth contact is drawn at r − d₀. k_c is the secant F/r (Eq. 2.3), the tangent is what small "
+        "vibration feels."
+    )
+
+
+def _drawn_filters(tree: DataTree, path: str) -> list[int]:
+    rows = values(tree, path, "approach", "wavenumber")
+    filled = np.flatnonzero(np.isfinite(rows).any(axis=1))
+    picks = np.linspace(0, len(filled) - 1, min(MOST_FILTERS, len(filled))).round().astype(int)
+    return filled[picks].tolist()
+
+
+@styled()
+def filter_figure(tree: DataTree) -> Figure:
+    """Contact filters of several approaches: magnitude, and below it the signed estimate."""
+    signed = present(tree, "contact/filter_signed")
+    figure = new_figure(6.6 if signed else 4.0)
+    panels = figure.subplots(2 if signed else 1, 1, squeeze=False)[:, 0]
+    wavenumber = values(tree, "contact/wavenumber")
+    rows = _drawn_filters(tree, "contact/filter")
+    _magnitudes(panels[0], tree, wavenumber, rows)
+    if signed:
+        _signed(panels[1], tree, wavenumber, rows)
+    positive = wavenumber[wavenumber > 0]
+    for axes in panels:
+        wavenumber_axis(axes, positive[0], positive[-1])
+    if signed:  # the panels share their axes: name each quantity once
+        panels[0].set_xlabel("")
+        figure.axes[-1].set_xlabel("")
+    return figure
+
+
+def _magnitudes(axes: Axes, tree: DataTree, wavenumber: NDArray[np.float64], rows: list[int]) -> None:
+    magnitude = values(tree, "contact/filter", "approach", "wavenumber")
+    spread = (
+        values(tree, "contact/filter_std", "approach", "wavenumber")
+        if present(tree, "contact/filter_std")
+        else None
+    )
+    theory = _theory(tree)
+    approach = values(tree, "contact/approach")
+    for row, colour in zip(rows, sequence(len(rows)), strict=True):
+        label = f"δ = {approach[row] * 1e6:.3g} µm"
+        axes.plot(wavenumber, _level(magnitude[row]), color=colour, label=label, linewidth=1.7)
+        if spread is not None:
+            band = (_level(magnitude[row] - spread[row]), _level(magnitude[row] + spread[row]))
+            axes.fill_between(wavenumber, *band, color=colour, alpha=0.12, linewidth=0)
+        if theory is not None:
+            axes.plot(
+                wavenumber, _level(np.abs(theory[row])), color=colour, linewidth=0.7, linestyle=(0, (4, 2))
+            )
+    axes.set_ylim(FLOOR, 5)
+    axes.set_ylabel("|H| / dB")
+    axes.legend(loc="lower left", ncols=2)
+    axes.set_title("magnitude" + ("; dashed: |sin q / q|" if theory is not None else ""))
+
+
+def _signed(axes: Axes, tree: DataTree, wavenumber: NDArray[np.float64], rows: list[int]) -> None:
+    estimate = values(tree, "contact/filter_signed", "approach", "wavenumber")
+    theory = _theory(tree)
+    for row, colour in zip(rows, sequence(len(rows)), strict=True):
+        axes.plot(wavenumber, estimate[row], color=colour, linewidth=1.7)
+        if theory is not None:
+            axes.plot(wavenumber, theory[row], color=colour, linewidth=0.7, linestyle=(0, (4, 2)))
+    axes.axhline(0, color=MUTED, linewidth=0.8)
+    axes.set_ylim(-0.5, 1.15)
+    axes.set_ylabel("H (signed)")
+    axes.set_title("signed estimate" + ("; dashed: sin q / q" if theory is not None else ""))
+
+
+def _theory(tree: DataTree) -> NDArray[np.float64] | None:
+    path = "contact/filter_theory"
+    return values(tree, path, "approach", "wavenumber") if present(tree, path) else None
+
+
+def _level(ratio: NDArray[np.float64]) -> NDArray[np.float64]:
+    return 20 * np.log10(np.maximum(ratio, 10 ** (FLOOR / 20 - 1)))
+
+
+def filter_columns(tree: DataTree) -> Columns:
+    """Filters against wavenumber, one group of columns per approach."""
+    columns: Columns = {"wavenumber [1/m]": values(tree, "contact/wavenumber")}
+    approach = values(tree, "contact/approach")
+    for name in ("filter", "filter_std", "filter_signed", "filter_theory"):
+        if not present(tree, f"contact/{name}"):
+            continue
+        rows = values(tree, f"contact/{name}", "approach", "wavenumber")
+        for row in np.flatnonzero(np.isfinite(rows).any(axis=1)):
+            columns[f"{name}(approach={approach[row]:.9g} m) [1]"] = rows[row]
+    return columns
+
+
+def _filter_caption(tree: DataTree) -> str:
+    dashed = (
+        " Dashed: sin q / q, q = ka, the closed form of small roughness on Hertz's contact of radius a; it is negative "
+        "beyond q = π, which a magnitude cannot show."
+    )
+    return (
+        "Contact filter per approach against the wavenumber in rolling direction (cycles per metre), wavelength along the top; "
+        f"shaded: standard deviation of the samples; cut off at {FLOOR:.0f} dB."
+        + (dashed if _theory(tree) is not None else "")
+    )
+
+
+CONTACT = (
+    Part("contact_pressure", "Pressure at the working load", ("contact/pressure", "contact/px", "contact/py"), pressure_figure, pressure_columns, _pressure_caption),
+    Part("contact_force", "Contact force and stiffness", ("contact/force", "contact/approach"), force_figure, force_columns, _force_caption),
+    Part("contact_filter", "Contact filter", ("contact/filter", "contact/wavenumber", "contact/approach"), filter_figure, filter_columns, _filter_caption),
+)  # fmt: skip

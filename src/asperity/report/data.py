@@ -1,0 +1,123 @@
+"""Looking into a result tree: what is there, or nothing."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import DataArray, DataTree
+
+_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def variable(tree: DataTree, path: str) -> DataArray | None:
+    """Variable at `path`, as ``"contact/force"``, or None if it is missing or holds no finite number."""
+    group, _, name = path.partition("/")
+    if group not in tree.children or name not in tree[group].variables:
+        return None
+    values: DataArray = tree[group].to_dataset()[name]
+    if values.dtype.kind in "fiu" and not np.isfinite(values.values).any():
+        return None
+    return values
+
+
+def values(tree: DataTree, path: str, *dims: str) -> NDArray[np.float64]:
+    """Numbers at `path`, which must exist, with the dimensions in the order of `dims`.
+
+    A dimension of the variable that is not in `dims` is a fault of the caller.
+    """
+    found = variable(tree, path)
+    if found is None:
+        raise KeyError(path)
+    return np.asarray((found.transpose(*dims) if dims else found).values, dtype=float)
+
+
+def present(tree: DataTree, *paths: str) -> bool:
+    """Whether every one of `paths` is a variable with at least one finite number."""
+    return all(variable(tree, path) is not None for path in paths)
+
+
+def number(tree: DataTree, group: str, name: str) -> float | None:
+    """Finite number in an attribute of a group, or None."""
+    found = tree[group].attrs.get(name) if group in tree.children else None
+    try:
+        result = float(found)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return None
+    return result if math.isfinite(result) else None
+
+
+def entries(attrs: dict[str, Any], name: str, empty: Any) -> Any:
+    """JSON text in an attribute, decoded; `empty` if it is missing, damaged or of another kind."""
+    try:
+        found = json.loads(attrs.get(name, "null"))
+    except (TypeError, ValueError):
+        return empty
+    return found if isinstance(found, type(empty)) else empty
+
+
+def group_attrs(tree: DataTree, group: str) -> dict[str, Any]:
+    """Attributes of a group; none if the group is missing."""
+    return dict(tree[group].attrs) if group in tree.children else {}
+
+
+def laws(tree: DataTree, path: str) -> list[str]:
+    """Laws that the variable at `path` has finite numbers for, in the order of the case."""
+    found = variable(tree, path)
+    if found is None:
+        return []
+    rest = [dim for dim in found.dims if dim != "law"]
+    kept = np.isfinite(found).any(rest).values
+    return [str(law) for law, keep in zip(found["law"].values, kept, strict=True) if keep]
+
+
+def of_law(tree: DataTree, path: str, law: str, *dims: str) -> NDArray[np.float64]:
+    """Numbers of one law at `path`, with the remaining dimensions in the order of `dims`."""
+    found = variable(tree, path)
+    if found is None:
+        raise KeyError(path)
+    row = [str(name) for name in found["law"].values].index(law)
+    return np.asarray(found.isel(law=row).transpose(*dims).values, dtype=float)
+
+
+def sensor_labels(tree: DataTree, path: str) -> list[str]:
+    """Labels of the sensors of the variable at `path`: their names if they have any, else their positions."""
+    found = variable(tree, path)
+    if found is None:
+        return []
+    for name in ("sensor_label", "label"):
+        if name in found.coords:
+            return [str(label) for label in found[name].values]
+    positions = found["sensor"].values
+    return [f"x = {p:g} m" if isinstance(p, float) else str(p) for p in positions.tolist()]
+
+
+def engineering(value: float, unit: str, digits: int = 3) -> str:
+    """Write `value`, in the SI `unit`, with a prefix: ``engineering(3.1e-7, "m")`` is ``"310 nm"``."""
+    if not math.isfinite(value):
+        return "–"
+    if unit in ("", "1"):
+        return f"{value:.{digits}g}"
+    power = 2 if unit == "m²" else 1  # a prefix on a squared unit is squared with it
+    exponent = 0 if value == 0 else 3 * math.floor(math.floor(math.log10(abs(value))) / (3 * power))
+    exponent = min(max(exponent, -12 if power == 1 else -9), 0 if power == 2 else 12)
+    scaled = value / 10.0 ** (exponent * power)
+    places = 0 if scaled == 0 else max(0, digits - 1 - math.floor(math.log10(abs(scaled))))
+    return f"{scaled:.{places}f} {_PREFIXES[exponent]}{unit}"
+
+
+def power_of_ten(value: float) -> str:
+    """Write a power of ten with superscripts: ``"10⁻¹⁶"``."""
+    return "10" + str(round(math.log10(value))).translate(_SUPERSCRIPT)
+
+
+def nominal_band(centre: float) -> str:
+    """Nominal name of the one-third octave with the exact base-10 `centre` in Hz (IEC 61260-1): ``"31.5"``, ``"1k"``."""
+    index = round(10 * math.log10(centre))
+    mantissa = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)[index % 10]
+    nominal = mantissa * 10.0 ** (index // 10)
+    return f"{nominal / 1000:.4g}k" if nominal >= 1000 else f"{nominal:.4g}"

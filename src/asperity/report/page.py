@@ -1,0 +1,140 @@
+"""The page: everything that the template shows, collected from a result tree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
+from xarray import DataTree
+
+from asperity.report.contact_figures import CONTACT
+from asperity.report.data import entries, group_attrs
+from asperity.report.part import Part
+from asperity.report.spectrum_figures import SPECTRUM
+from asperity.report.style import colour_variables, law_style, svg
+from asperity.report.tables import Table, energy_table, loss_table, reference_table, statistics_table
+from asperity.report.texture import TEXTURE
+from asperity.report.time_figures import TIME
+
+PARTS: tuple[Part, ...] = (*TEXTURE, *CONTACT, *TIME, *SPECTRUM)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure ready for the page: its SVG element, heading and caption."""
+
+    name: str
+    title: str
+    caption: str
+    svg: Markup
+
+
+@dataclass(frozen=True)
+class Section:
+    """A chapter of the page with its figures and tables, in the order they are shown."""
+
+    name: str
+    title: str
+    blocks: list[Picture | Table]
+
+
+def drawable_parts(tree: DataTree) -> list[Part]:
+    """Figures that `tree` holds the data of, in the order of the page."""
+    return [part for part in PARTS if part.drawable(tree)]
+
+
+def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
+    return [
+        Picture(part.name, part.title, part.caption(tree), Markup(svg(part.draw(tree), part.name, part.title)))
+        for part in parts
+        if part.drawable(tree)
+    ]
+
+
+def sections(tree: DataTree) -> list[Section]:
+    """Chapters of the page; a chapter without any data is left out."""
+    force, acceleration = SPECTRUM[:2], SPECTRUM[2:]
+    chapters = [
+        Section("texture", "Texture", [*_pictures(tree, TEXTURE), *_tables(statistics_table(tree))]),
+        Section("contact", "Contact", _pictures(tree, CONTACT)),
+        Section(
+            "force",
+            "Contact force",
+            [*_pictures(tree, (*TIME, *force)), *_tables(reference_table(tree), loss_table(tree))],
+        ),
+        Section("acceleration", "Acceleration", _pictures(tree, acceleration)),
+        Section("energy", "Energy", [*_tables(energy_table(tree))]),
+    ]
+    return [chapter for chapter in chapters if chapter.blocks]
+
+
+def _tables(*tables: Table | None) -> list[Picture | Table]:
+    return [table for table in tables if table is not None]
+
+
+def _records(attrs: dict[str, Any], name: str) -> list[dict[str, Any]]:
+    return [entry for entry in entries(attrs, name, []) if isinstance(entry, dict)]
+
+
+def _law_key(tree: DataTree) -> list[dict[str, str]]:
+    meanings = entries(group_attrs(tree, "scenario"), "laws", {})
+    return [{"name": str(law), "meaning": str(text), "colour": law_style(law, "")["color"]} for law, text in meanings.items()]
+
+
+def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
+    """Parameters by the table of the case file they stand in, in their order."""
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for parameter in parameters:
+        table, dot, key = str(parameter.get("key", "")).rpartition(".")
+        groups.setdefault(table if dot else "", []).append(parameter | {"short": key})
+    return list(groups.items())
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        loader=PackageLoader("asperity.report", ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("report.html.jinja")
+
+
+def page(tree: DataTree) -> str:
+    """The whole page as HTML text.
+
+    Parameters
+    ----------
+    tree : xarray.DataTree
+        A result of a run.
+
+    Returns
+    -------
+    str
+        One self-contained document: styles and figures inside, nothing loaded from elsewhere.
+    """
+    root, scenario = dict(tree.attrs), group_attrs(tree, "scenario")
+    parameters = _records(scenario, "parameters")
+    return _template().render(
+        title=root.get("title") or scenario.get("kind") or "Rolling contact",
+        verdict=root.get("verdict", ""),
+        version=root.get("asperity_version", "unknown"),
+        created=root.get("created", ""),
+        seed=root.get("seed", ""),
+        case=root.get("case", ""),
+        kind=scenario.get("kind", ""),
+        citations=[str(text) for text in entries(root, "citations", [])],
+        warnings=_records(root, "warnings"),
+        case_groups=_case_groups(parameters),
+        changed=sum(not parameter.get("is_default", True) for parameter in parameters),
+        numerics=_records(scenario, "numerics"),
+        laws=_law_key(tree),
+        sections=sections(tree),
+        light=Markup(colour_variables(dark=False)),
+        dark=Markup(colour_variables(dark=True)),
+    )

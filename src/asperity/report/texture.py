@@ -1,0 +1,281 @@
+"""Figures of the texture: map of a sample, strip of the path, spectra against wavenumber."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.report.data import engineering, number, present, values
+from asperity.report.part import Columns, Part
+from asperity.report.style import (
+    INK,
+    LAW_STYLES,
+    MUTED,
+    envelope,
+    new_figure,
+    power_axis,
+    smooth_on_log_axis,
+    styled,
+    wavenumber_axis,
+)
+
+PIXELS = 320  # along each side of a drawn map; denser maps show every n-th point
+_BLUE, _ORANGE = LAW_STYLES["areal"].colour, LAW_STYLES["shifted"].colour
+
+
+def length_unit(extent: float) -> tuple[float, str]:
+    """Unit in which a length of `extent` m reads well: its size in m and its symbol."""
+    for size, symbol in ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm")):
+        if extent >= 0.5 * size:
+            return size, symbol
+    return 1e-9, "nm"
+
+
+def draw_map(
+    axes: Axes,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    field: NDArray[np.float64],
+    unit: tuple[float, str],
+    equal: bool = True,
+    **options: Any,
+) -> ScalarMappable:
+    """Draw a field (nx, ny) with x to the right and y up, both in `unit`, thinned to what can be seen."""
+    skip_x, skip_y = (
+        max(1, -(-n // limit)) for n, limit in zip(field.shape, (3 * PIXELS, PIXELS), strict=True)
+    )
+    if equal:
+        skip_x = max(skip_x, -(-field.shape[0] // PIXELS))
+    half = [(c[1] - c[0]) / 2 if len(c) > 1 else 0.5 for c in (x, y)]
+    extent = [x[0] - half[0], x[-1] + half[0], y[0] - half[1], y[-1] + half[1]]
+    image = axes.imshow(
+        field[::skip_x, ::skip_y].T,
+        origin="lower",
+        extent=[edge / unit[0] for edge in extent],
+        aspect="equal" if equal else "auto",
+        **options,
+    )
+    axes.grid(visible=False)
+    axes.set_xlabel(f"x / {unit[1]} (rolling direction →)")
+    axes.set_ylabel(f"y / {unit[1]}")
+    return image
+
+
+def height_scale(heights: NDArray[np.float64]) -> tuple[float, str, dict[str, Any]]:
+    """Unit of heights, its symbol, and colour limits symmetric to the mean that leave out 0.1 % at either end."""
+    finite = heights[np.isfinite(heights)]
+    middle = finite.mean()
+    reach = np.abs(np.percentile(finite, [0.1, 99.9]) - middle).max() or 1e-9
+    size, symbol = length_unit(reach)
+    return size, symbol, {"vmin": (middle - reach) / size, "vmax": (middle + reach) / size, "cmap": "cividis"}
+
+
+def height_histogram(axes: Axes, named: dict[str, NDArray[np.float64]], unit: tuple[float, str]) -> None:
+    """Draw how often each height occurs, per series in `named`, with the normal distribution of the first."""
+    colours = [_BLUE, _ORANGE]
+    for (name, heights), colour in zip(named.items(), colours, strict=False):
+        finite = heights[np.isfinite(heights)] / unit[0]
+        density, edges = np.histogram(finite, bins=80, density=True)
+        axes.stairs(density, edges, color=colour, label=name, linewidth=1.4)
+    first = next(iter(named.values()))
+    finite = first[np.isfinite(first)] / unit[0]
+    z = np.linspace(finite.min(), finite.max(), 200)
+    spread = finite.std() or 1.0
+    normal = np.exp(-((z - finite.mean()) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi))
+    axes.plot(z, normal, color=MUTED, linewidth=0.9, linestyle="--", label="normal")
+    axes.set_yscale("log")
+    axes.set_ylim(normal.max() * 1e-4, normal.max() * 4)
+    power_axis(axes.yaxis)
+    axes.set_xlabel(f"height / {unit[1]} (out of the material →)")
+    axes.set_ylabel(f"probability density / (1/{unit[1]})")
+    axes.legend(loc="lower center")
+
+
+@styled()
+def sample_figure(tree: DataTree) -> Figure:
+    """Map of the first sample, and how its heights are distributed."""
+    heights = values(tree, "surface/sample_heights", "x", "y")
+    x, y = values(tree, "surface/x"), values(tree, "surface/y")
+    size, symbol, colours = height_scale(heights)
+    figure = new_figure(4.1)
+    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
+    image = draw_map(left, x, y, heights / size, length_unit(np.ptp(x)), **colours)
+    left.set_title("first sample")
+    figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9)
+    named = {"sample": heights}
+    if present(tree, "surface/path_heights"):
+        named["path"] = values(tree, "surface/path_heights", "path_x", "path_y")
+    height_histogram(right, named, (size, symbol))
+    right.set_title("heights")
+    return figure
+
+
+def sample_columns(tree: DataTree) -> Columns:
+    """Heights of the first sample: one row per x, one column per y."""
+    return _matrix(tree, "surface/sample_heights", "x", "y", "z", "m")
+
+
+def _matrix(tree: DataTree, path: str, x: str, y: str, symbol: str, unit: str) -> Columns:
+    group = path.partition("/")[0]
+    field = values(tree, path, x, y)
+    columns: Columns = {"x [m]": values(tree, f"{group}/{x}")}
+    for index, position in enumerate(values(tree, f"{group}/{y}")):
+        columns[f"{symbol}(y={position:.9g} m) [{unit}]"] = field[:, index]
+    return columns
+
+
+@styled()
+def path_figure(tree: DataTree) -> Figure:
+    """Strip of the path, and its centre line."""
+    with_line = present(tree, "surface/line")
+    figure = new_figure(3.9 if with_line else 2.0)
+    panels = figure.subplots(2 if with_line else 1, 1, squeeze=False)[:, 0]
+    heights = values(tree, "surface/path_heights", "path_x", "path_y")
+    x, y = values(tree, "surface/path_x"), values(tree, "surface/path_y")
+    size, symbol, colours = height_scale(heights)
+    image = draw_map(panels[0], x, y, heights / size, length_unit(np.ptp(x)), equal=False, **colours)
+    panels[0].set_title("a piece of the path, seen from above (y stretched)")
+    figure.colorbar(image, ax=panels[0], label=f"height / {symbol}", extend="both", pad=0.01)
+    if with_line:
+        _draw_line(panels[1], tree)
+    return figure
+
+
+def _draw_line(axes: Axes, tree: DataTree) -> None:
+    distance, line = values(tree, "surface/distance"), values(tree, "surface/line")
+    along, along_symbol = length_unit(np.ptp(distance))
+    size, symbol = length_unit(np.nanmax(np.abs(line)) or 1e-9)
+    starts, low, high = envelope(line / size, 1200)
+    axes.fill_between(distance[starts] / along, low, high, color=_BLUE, linewidth=0.4)
+    axes.set_xlim(distance[0] / along, distance[-1] / along)
+    axes.set_xlabel(f"distance / {along_symbol}")
+    axes.set_ylabel(f"height / {symbol}")
+    axes.set_title("centre line of the path (envelope)")
+
+
+def path_columns(tree: DataTree) -> Columns:
+    """Heights of the piece of the path: one row per x, one column per y."""
+    return _matrix(tree, "surface/path_heights", "path_x", "path_y", "z", "m")
+
+
+_SPECTRA = {
+    "psd_sample": ("samples, mean", _BLUE, "-"),
+    "psd_path": ("path", _ORANGE, (0, (5, 1.5))),
+}
+
+
+@styled()
+def psd_figure(tree: DataTree) -> Figure:
+    """Power spectral densities of samples and path in the rolling direction."""
+    figure = new_figure(3.9)
+    axes = figure.subplots()
+    wavenumber = values(tree, "surface/surface_wavenumber")
+    drawn = []
+    for name, (label, colour, dashes) in _SPECTRA.items():
+        if not present(tree, f"surface/{name}"):
+            continue
+        psd = values(tree, f"surface/{name}")
+        kept = (wavenumber > 0) & (psd > 0) & np.isfinite(psd)
+        if not kept.any():
+            continue
+        k, level = smooth_on_log_axis(wavenumber[kept], psd[kept])
+        axes.loglog(k, level, color=colour, linestyle=dashes, label=label, linewidth=1.5)
+        drawn.append((k, level))
+    _mark_contact(axes, tree)
+    if drawn:
+        levels = np.concatenate([level for _, level in drawn])
+        axes.set_ylim(max(levels.min(), levels.max() * 1e-12) / 2, levels.max() * 4)
+        wavenumber_axis(axes, min(k[0] for k, _ in drawn), max(k[-1] for k, _ in drawn))
+    power_axis(axes.yaxis)
+    axes.set_ylabel("one-sided PSD / m³")
+    axes.legend(loc="lower left")
+    return figure
+
+
+def _mark_contact(axes: Axes, tree: DataTree) -> None:
+    radius = number(tree, "contact", "hertz_radius")
+    if radius is None or radius <= 0:
+        return
+    axes.axvline(1 / (2 * radius), color=INK, linewidth=0.9, linestyle=":")
+    axes.text(
+        1 / (2 * radius), 0.97, f" length of the contact, 2a = {engineering(2 * radius, 'm')}",
+        transform=axes.get_xaxis_transform(), va="top", fontsize=8.5, clip_on=True,
+    )  # fmt: skip
+
+
+def psd_columns(tree: DataTree) -> Columns:
+    """Spectra against wavenumber, all lines."""
+    columns: Columns = {"wavenumber [1/m]": values(tree, "surface/surface_wavenumber")}
+    for name, (label, _, _) in _SPECTRA.items():
+        if present(tree, f"surface/{name}"):
+            columns[f"PSD of {label} [m^3]"] = values(tree, f"surface/{name}")
+    return columns
+
+
+def _sample_caption(tree: DataTree) -> str:
+    missing = number(tree, "surface", "missing_share") or 0.0
+    source = tree["surface"].attrs.get("source") or "not stated"
+    return (
+        f"Source: {source}; {100 * missing:.3g} % of its points had no height. Heights are positive out of the "
+        "material; the colours leave out 0.1 % of the points at either end."
+    )
+
+
+TEXTURE = (
+    Part("texture_sample", "Texture of the samples", ("surface/sample_heights",), sample_figure, sample_columns, _sample_caption),
+    Part(
+        "texture_path", "Texture of the path", ("surface/path_heights",), path_figure, path_columns,
+        lambda _: "Heights of the path, positive out of the material. The CSV file holds the piece seen from above.",
+    ),
+    Part(
+        "texture_psd", "Texture against wavenumber", ("surface/surface_wavenumber",), psd_figure, psd_columns,
+        lambda _: "Power spectral density of the lines in rolling direction, mean over the lines, one-sided per "
+        "cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that.",
+    ),
+)  # fmt: skip
+
+
+@styled()
+def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], title: str) -> Figure:
+    """Draw what a surface file holds: its map and the distribution of its heights.
+
+    Parameters
+    ----------
+    heights : (nx, ny) array, or (n,) array for a line
+        Heights in m, positive out of the material; NaN where missing.
+    spacing : (float, float)
+        Distance of neighbouring points along x and y in m.
+    title : str
+        Heading, as the name of the file.
+
+    Returns
+    -------
+    Figure
+    """
+    heights = np.asarray(heights, dtype=float)
+    size, symbol, colours = height_scale(heights)
+    figure = new_figure(4.3)
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
+    x = spacing[0] * np.arange(heights.shape[0])
+    unit = length_unit(np.ptp(x))
+    if heights.ndim == 1:
+        starts, low, high = envelope(heights / size, 1200)
+        left.fill_between(x[starts] / unit[0], low, high, color=_BLUE, linewidth=0.6)
+        left.set_xlabel(f"x / {unit[1]}")
+        left.set_ylabel(f"height / {symbol}")
+    else:
+        y = spacing[1] * np.arange(heights.shape[1])
+        slender = max(np.ptp(x), np.ptp(y)) > 6 * min(np.ptp(x), np.ptp(y))
+        image = draw_map(left, x, y, heights / size, unit, equal=not slender, **colours)
+        figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9)
+    left.xaxis.set_major_locator(MaxNLocator(6))
+    height_histogram(right, {"heights": heights}, (size, symbol))
+    return figure

@@ -1,0 +1,145 @@
+"""Figures of the contact force in time: the whole run as envelopes, a short piece in full."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.report.data import laws, of_law, values
+from asperity.report.part import Columns, Part
+from asperity.report.style import MUTED, envelope, law_style, legend_above, new_figure, styled
+
+FORCE = "rolling/contact_force"
+COLUMNS = 700  # stretches of an envelope
+PIECE = 2000  # time steps of the short piece, at most
+
+
+def lost(tree: DataTree, law: str) -> NDArray[np.bool_]:
+    """Time steps at which `law` has lost contact; none for a law whose contact pulls as well (linear)."""
+    force = of_law(tree, FORCE, law, "time")
+    share = "rolling/contact_loss_share"
+    if law == "linear" or (law in laws(tree, share) and of_law(tree, share, law) == 0):
+        return np.zeros(len(force), dtype=bool)
+    return force <= 0
+
+
+def piece(tree: DataTree) -> slice:
+    """Short piece of the run: around the main law's longest loss of contact, else in the middle of the run."""
+    flight = lost(tree, laws(tree, FORCE)[0])
+    count = len(flight)
+    middle = count // 2
+    if flight.any():
+        edges = np.flatnonzero(np.diff(np.concatenate(([0], flight.astype(np.int8), [0]))))
+        starts, ends = edges[::2], edges[1::2]
+        longest = int(np.argmax(ends - starts))
+        middle = int(starts[longest] + ends[longest]) // 2
+    length = min(PIECE, max(count // 5, min(count, 200)))
+    start = min(max(middle - length // 2, 0), count - length)
+    return slice(start, start + length)
+
+
+def _time_unit(duration: float) -> tuple[float, str]:
+    return (1.0, "s") if duration >= 0.5 else (1e-3, "ms")
+
+
+@styled()
+def envelope_figure(tree: DataTree) -> Figure:
+    """Contact force of the whole run, one row per law, as the envelope of its extremes."""
+    names = laws(tree, FORCE)
+    time = values(tree, "rolling/time")
+    figure = new_figure(0.75 + 0.95 * len(names))
+    panels = figure.subplots(len(names), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    unit, symbol = _time_unit(time[-1] - time[0])
+    for axes, law in zip(panels, names, strict=True):
+        colour = law_style(law, names[0])["color"]
+        starts, low, high = envelope(of_law(tree, FORCE, law, "time"), COLUMNS)
+        axes.fill_between(time[starts] / unit, low, high, color=colour, linewidth=0.5)
+        axes.axhline(0, color=MUTED, linewidth=0.8)
+        flights = np.logical_or.reduceat(lost(tree, law), starts)
+        _flight_marks(axes, time[starts[flights]] / unit)
+        axes.set_title(law + (" (main law)" if law == names[0] and len(names) > 1 else ""))
+        axes.margins(x=0)
+    panels[-1].set_xlabel(f"time / {symbol}")
+    figure.supylabel("contact force / N (compression positive)", fontsize=9)
+    return figure
+
+
+def _flight_marks(axes: Axes, instants: NDArray[np.float64]) -> None:
+    axes.plot(
+        instants, np.full(len(instants), 0.03), "|", transform=axes.get_xaxis_transform(), color="#c8500a",
+        markersize=7, markeredgewidth=0.8, clip_on=False, zorder=5,
+    )  # fmt: skip
+
+
+def envelope_columns(tree: DataTree) -> Columns:
+    """Envelope of the contact force per law."""
+    time = values(tree, "rolling/time")
+    columns: Columns = {"time [s]": time[envelope(time, COLUMNS)[0]]}
+    for law in laws(tree, FORCE):
+        _, low, high = envelope(of_law(tree, FORCE, law, "time"), COLUMNS)
+        columns[f"{law} lowest [N]"], columns[f"{law} highest [N]"] = low, high
+    return columns
+
+
+@styled()
+def piece_figure(tree: DataTree) -> Figure:
+    """Contact force of all laws over a short piece of the run, and below it where each has lost contact."""
+    names = laws(tree, FORCE)
+    part = piece(tree)
+    time = values(tree, "rolling/time")[part]
+    unit, symbol = _time_unit(time[-1])
+    figure = new_figure(3.9 + 0.16 * len(names))
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1, 0.06 * len(names) + 0.04])
+    for law in names:
+        upper.plot(time / unit, of_law(tree, FORCE, law, "time")[part], label=law, **law_style(law, names[0]))
+    upper.axhline(0, color=MUTED, linewidth=0.8)
+    upper.set_ylabel("contact force / N")
+    upper.margins(x=0)
+    legend_above(upper)
+    for row, law in enumerate(names):
+        flight = lost(tree, law)[part]
+        lower.fill_between(
+            time / unit, row - 0.35, row + 0.35, where=flight, color=law_style(law, "")["color"], step="mid", linewidth=0.8
+        )
+    lower.set_ylim(len(names) - 0.4, -0.6)
+    lower.set_yticks(range(len(names)), names)
+    lower.grid(visible=False, axis="y")
+    lower.set_xlabel(f"time / {symbol}")
+    lower.set_ylabel("no contact", fontsize=8.5)
+    return figure
+
+
+def piece_columns(tree: DataTree) -> Columns:
+    """Contact force per law over the short piece, every time step."""
+    part = piece(tree)
+    columns: Columns = {"time [s]": values(tree, "rolling/time")[part]}
+    for law in laws(tree, FORCE):
+        columns[f"{law} [N]"] = of_law(tree, FORCE, law, "time")[part]
+    return columns
+
+
+def _piece_caption(tree: DataTree) -> str:
+    where = "around the main law's longest loss of contact"
+    if not lost(tree, laws(tree, FORCE)[0]).any():
+        where = "in the middle of the run"
+    return f"A short piece {where}, every time step. Bars below: no contact (F ≤ 0); the linear law cannot lose it."
+
+
+def _envelope_caption(tree: DataTree) -> str:
+    count = len(values(tree, "rolling/time"))
+    stretches = min(COLUMNS, count)
+    return (
+        f"Lowest and highest force in each of {stretches} stretches of the run, compression positive. "
+        "Marks along the bottom: stretches with loss of contact. The full series is in run.nc."
+    )
+
+
+
+
+TIME = (
+    Part("force_piece", "Contact force, a short piece", (FORCE, "rolling/time"), piece_figure, piece_columns, _piece_caption),
+    Part("force_envelope", "Contact force, the whole run", (FORCE, "rolling/time"), envelope_figure, envelope_columns, _envelope_caption),
+)  # fmt: skip
