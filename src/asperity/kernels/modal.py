@@ -1,0 +1,367 @@
+"""Rolling, compiled: exact modal stepping of a beam, a rigid ball, and the contact between them.
+
+The force varies linearly over a step; for that the motion of every mode and of the ball is exact.
+Displacement and approach are then affine in the force at the end of the step, and one scalar
+equation remains.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from asperity.kernels.pointforce import evaluate, with_damping
+
+FORCE_TOLERANCE = 1e-10  # of the force plus the load, at the end of each step
+ITERATIONS = 100
+
+BEAM_WORK, BEAM_DAMPING, CONTACT_WORK, SLOPE_WORK, THROUGHPUT = range(5)
+
+
+class System(NamedTuple):
+    """What does not change while rolling.
+
+    Attributes
+    ----------
+    coefficients : ndarray (modes, 2, 4)
+        From `modal_coefficients`.
+    stiffness, damping : ndarray (modes,)
+        omega^2 and 2 zeta omega of mass-normalised modes.
+    sensors : ndarray (sensors, modes)
+        Mode shapes at the sensors, kg^-1/2.
+    mass, load : float
+        Of the ball, kg and N.
+    time_step, speed : float
+        s, m/s.
+    """
+
+    coefficients: NDArray
+    stiffness: NDArray
+    damping: NDArray
+    sensors: NDArray
+    mass: float
+    load: float
+    time_step: float
+    speed: float
+
+
+class Motion(NamedTuple):
+    """What changes from step to step; the arrays are written in place.
+
+    Attributes
+    ----------
+    displacement, velocity : ndarray (modes,)
+        Modal coordinates.
+    free_displacement, free_velocity : ndarray (modes,)
+        The same at the end of the step without its last force.
+    ball : ndarray (2,)
+        Displacement, m, and velocity, m/s, of the ball.
+    force : ndarray (2,)
+        Contact force now and one step ago, N.
+    power : ndarray (5,)
+        Powers now, W, in the order of `ledger`.
+    ledger : ndarray (5,)
+        Time integrals: work on the beam, beam damping, work on the contact, work against the slope
+        of the beam, and throughput, J.
+    counts : ndarray (3,) of int
+        Steps done, steps not converged, evaluations of the law.
+    """
+
+    displacement: NDArray
+    velocity: NDArray
+    free_displacement: NDArray
+    free_velocity: NDArray
+    ball: NDArray
+    force: NDArray
+    power: NDArray
+    ledger: NDArray
+    counts: NDArray
+
+
+class Record(NamedTuple):
+    """Time histories, written in place.
+
+    Attributes
+    ----------
+    force, approach, ball, beam : ndarray (n,)
+        Contact force, N; approach, displacement of the ball and of the beam under it, m.
+    acceleration : ndarray (sensors, n)
+        Of the beam at the sensors, m/s^2.
+    """
+
+    force: NDArray
+    approach: NDArray
+    ball: NDArray
+    beam: NDArray
+    acceleration: NDArray
+
+
+def modal_coefficients(natural: NDArray, damping_ratio: NDArray, time_step: float) -> NDArray:
+    """Exact step of ``q'' + 2 zeta omega q' + omega^2 q = p`` for a force p linear over the step.
+
+    Parameters
+    ----------
+    natural : ndarray (modes,)
+        omega, rad/s; zero for a free mode.
+    damping_ratio : ndarray (modes,)
+        zeta; one or more for overdamped modes.
+    time_step : float
+        s.
+
+    Returns
+    -------
+    ndarray (modes, 2, 4)
+        Rows: q and q' at the end of the step; columns: factors of q, q', p at the start and p at
+        the end.
+
+    Notes
+    -----
+    The matrix exponential of the oscillator extended by its force, in time units of the step
+    (Van Loan, IEEE Trans. Autom. Control 23 (1978) 395-404): one form for all kinds of modes, without
+    division by omega.
+    """
+    phase = np.asarray(natural, dtype=float) * time_step
+    generator = np.zeros((phase.size, 4, 4))
+    generator[:, 0, 1] = generator[:, 1, 2] = generator[:, 2, 3] = 1.0
+    generator[:, 1, 0] = -(phase**2)
+    generator[:, 1, 1] = -2.0 * np.asarray(damping_ratio) * phase
+    # rows and columns in q, h q', h^2 p_start, h^2 (p_end - p_start)
+    step = expm(generator)[:, :2]
+    step[..., 2] -= step[..., 3]
+    step *= np.array([1.0, time_step, time_step**2, time_step**2])
+    step[:, 1] /= time_step
+    return step
+
+
+@njit(cache=True)
+def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no-untyped-def]
+    """Advance all but the last force of a step.
+
+    Parameters
+    ----------
+    system : System
+        Constants.
+    motion : Motion
+        State at the start; its free coordinates are written.
+    shape, next_shape, next_slope : ndarray (modes,)
+        Mode shapes under the contact at the start and the end, and their slopes at the end.
+
+    Returns
+    -------
+    approach, rate : float
+        Approach, m, and its total time derivative, m/s, at the end, for zero force there.
+    compliance, rate_compliance : float
+        How much they fall per force at the end, m/N and m/(s N).
+    """
+    h, force = system.time_step, motion.force[0]
+    beam, beam_rate, compliance, rate_compliance = 0.0, 0.0, 0.0, 0.0
+    for j in range(shape.shape[0]):
+        a = system.coefficients[j]
+        q, v, p = motion.displacement[j], motion.velocity[j], shape[j] * force
+        free = a[0, 0] * q + a[0, 1] * v + a[0, 2] * p
+        free_rate = a[1, 0] * q + a[1, 1] * v + a[1, 2] * p
+        motion.free_displacement[j], motion.free_velocity[j] = free, free_rate
+        # the contact moves along the beam: total derivative
+        convected = system.speed * next_slope[j]
+        beam += next_shape[j] * free
+        beam_rate += next_shape[j] * free_rate + convected * free
+        compliance += next_shape[j] ** 2 * a[0, 3]
+        rate_compliance += next_shape[j] * (next_shape[j] * a[1, 3] + convected * a[0, 3])
+    ball = motion.ball[0] + h * motion.ball[1] + h * h / system.mass * (0.5 * system.load - force / 3.0)
+    ball_rate = motion.ball[1] + h / system.mass * (system.load - 0.5 * force)
+    return (
+        ball - beam,
+        ball_rate - beam_rate,
+        compliance + h * h / (6.0 * system.mass),
+        rate_compliance + 0.5 * h / system.mass,
+    )
+
+
+@njit(cache=True)
+def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-untyped-def]
+    """Newton step inside a bracket that it narrows; bisection where Newton fails or dawdles.
+
+    Parameters
+    ----------
+    low, high : float
+        Bracket of the root; infinite where still open.
+    approach, residual, slope : float
+        Trial value, and the rising function and its derivative there.
+    iteration : int
+        Number of this iteration, from zero.
+
+    Returns
+    -------
+    low, high, approach : float
+        Narrowed bracket and next trial value.
+    """
+    if residual < 0.0:
+        low = max(low, approach)
+    else:
+        high = min(high, approach)
+    # without contact the residual's slope is one; a smaller one is a texture that outruns the approach
+    trial = approach - residual / max(slope, 1.0)
+    closed = low > -np.inf and high < np.inf
+    if closed and (not (low < trial < high) or (iteration > 8 and iteration % 2 == 0)):
+        trial = 0.5 * (low + high)
+    return low, high, trial
+
+
+@njit(cache=True)
+def tolerance(approach, compliance, force, load, relative):  # type: ignore[no-untyped-def]
+    """Largest residual of the approach that counts as solved, m."""
+    return relative * compliance * (abs(force) + load) + 1e-15 * abs(approach)
+
+
+@njit(cache=True)
+def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
+    """Contact force at the end of a step.
+
+    Parameters
+    ----------
+    law : Prepared
+        The law on the path.
+    step : int
+        Index of the step's end on the path.
+    free : tuple of float
+        From `free_step`.
+    load : float
+        Scale of the force, N.
+    guess : float
+        Expected force, N.
+
+    Returns
+    -------
+    force : float
+        N.
+    evaluations : int
+        Number of evaluations of the law.
+    converged : bool
+        Whether the tolerance was met.
+    """
+    free_approach, rate, compliance, rate_compliance = free
+    low, high, approach = -np.inf, np.inf, free_approach - compliance * guess
+    for iteration in range(ITERATIONS):
+        elastic, stiffness = evaluate(law, step, approach)
+        force, stiffness = with_damping(
+            elastic, stiffness, rate, rate_compliance, law.damping, law.damped_in_flight
+        )
+        residual = approach - free_approach + compliance * force
+        limit = tolerance(free_approach, compliance, force, load, FORCE_TOLERANCE)
+        if abs(residual) <= limit:
+            return force, iteration + 1, True
+        low, high, approach = refine(low, high, approach, residual, 1.0 + compliance * stiffness, iteration)
+        if high - low <= limit:
+            # a damper engages with a jump: the force lies inside it
+            return (free_approach - approach) / compliance, iteration + 1, True
+    return (free_approach - approach) / compliance, ITERATIONS, False
+
+
+@njit(cache=True)
+def observe(system, motion, record, step, shape, slope):  # type: ignore[no-untyped-def]
+    """Write the records of a step and the powers of its energy ledger.
+
+    Parameters
+    ----------
+    system, motion, record
+        Constants, state at the step, histories.
+    step : int
+        Index of the step.
+    shape, slope : ndarray (modes,)
+        Mode shapes and slopes under the contact.
+    """
+    force = motion.force[0]
+    beam, beam_rate, beam_slope, dissipated = 0.0, 0.0, 0.0, 0.0
+    for s in range(system.sensors.shape[0]):
+        record.acceleration[s, step] = 0.0
+    for j in range(shape.shape[0]):
+        q, v = motion.displacement[j], motion.velocity[j]
+        beam += shape[j] * q
+        beam_rate += shape[j] * v
+        beam_slope += slope[j] * q
+        dissipated += system.damping[j] * v * v
+        acceleration = shape[j] * force - system.damping[j] * v - system.stiffness[j] * q
+        for s in range(system.sensors.shape[0]):
+            record.acceleration[s, step] += system.sensors[s, j] * acceleration
+    climb = system.speed * beam_slope
+    record.force[step] = force
+    record.ball[step], record.beam[step] = motion.ball[0], beam
+    record.approach[step] = motion.ball[0] - beam
+    motion.power[BEAM_WORK] = force * beam_rate
+    motion.power[BEAM_DAMPING] = dissipated
+    motion.power[CONTACT_WORK] = force * (motion.ball[1] - beam_rate - climb)
+    motion.power[SLOPE_WORK] = force * climb
+    motion.power[THROUGHPUT] = abs(force * beam_rate) + abs(force * motion.ball[1])
+
+
+@njit(cache=True)
+def complete_step(system, motion, record, step, shape, slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
+    """Apply the force at the end of a step, advance the state and keep the books.
+
+    Parameters
+    ----------
+    system, motion, record
+        Constants, state with its free step done, histories.
+    step : int
+        Index of the step's end.
+    shape, slope : ndarray (modes,)
+        Mode shapes and slopes under the contact at the end.
+    force : float
+        Contact force at the end, N.
+    evaluations : int
+        Evaluations of the law that it took.
+    converged : bool
+        Whether it converged.
+    """
+    h, mass = system.time_step, system.mass
+    for j in range(shape.shape[0]):
+        p = shape[j] * force
+        motion.displacement[j] = motion.free_displacement[j] + system.coefficients[j, 0, 3] * p
+        motion.velocity[j] = motion.free_velocity[j] + system.coefficients[j, 1, 3] * p
+    before = motion.force[0]
+    motion.ball[0] += h * motion.ball[1] + h * h / mass * (0.5 * system.load - before / 3.0 - force / 6.0)
+    motion.ball[1] += h / mass * (system.load - 0.5 * (before + force))
+    motion.force[1], motion.force[0] = before, force
+    for k in range(motion.ledger.shape[0]):
+        motion.ledger[k] += 0.5 * h * motion.power[k]
+    observe(system, motion, record, step, shape, slope)
+    for k in range(motion.ledger.shape[0]):
+        motion.ledger[k] += 0.5 * h * motion.power[k]
+    motion.counts[0] = step
+    motion.counts[1] += 0 if converged else 1
+    motion.counts[2] += evaluations
+
+
+@njit(cache=True)
+def roll_steps(system, motion, record, law, shapes, slopes, offset, stop):  # type: ignore[no-untyped-def]
+    """Roll a compiled law from the state's step to another.
+
+    Parameters
+    ----------
+    system, motion, record
+        Constants, state, histories.
+    law : Prepared
+        The law on the whole path.
+    shapes, slopes : ndarray (k, modes)
+        Mode shapes and slopes under the contact, row 0 belonging to step `offset`.
+    offset, stop : int
+        First step of the shapes, and the step at which to stop.
+
+    Returns
+    -------
+    bool
+        False if the force is no longer finite; the state then stands at that step.
+    """
+    for step in range(motion.counts[0] + 1, stop + 1):
+        row = step - offset
+        free = free_step(system, motion, shapes[row - 1], shapes[row], slopes[row])
+        guess = 2.0 * motion.force[0] - motion.force[1]
+        force, evaluations, converged = solve_contact(law, step, free, system.load, guess)
+        complete_step(system, motion, record, step, shapes[row], slopes[row], force, evaluations, converged)
+        if not np.isfinite(force):
+            return False
+    return True

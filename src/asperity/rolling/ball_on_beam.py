@@ -1,0 +1,309 @@
+"""A ball rolls over a beam: the moving contact force couples them, step by step."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import (
+    CoarseSamplingWarning,
+    ExtrapolationWarning,
+    InputError,
+    Outcome,
+    UnconvergedWarning,
+)
+from asperity.kernels.modal import (
+    Motion,
+    Record,
+    System,
+    modal_coefficients,
+    observe,
+)
+from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all
+from asperity.pointforce.base import Law, SteppedLaw
+from asperity.rolling.energy import EnergyBalance, balance, beam_energy
+from asperity.rolling.equilibrium import static_approach
+from asperity.rolling.events import ContactLoss, contact_losses
+from asperity.rolling.stepping import Checkpoint, Progress, restore, run
+from asperity.structures.ball import Ball
+from asperity.structures.beam import Beam
+
+
+@dataclass(frozen=True, eq=False)
+class Rolling:
+    """A ball has rolled over a beam.
+
+    Parameters
+    ----------
+    time : ndarray (n,)
+        s, uniform from zero.
+    position : ndarray (n,)
+        Of the contact on the beam, m.
+    contact_force : ndarray (n,)
+        N, compression positive.
+    relative_displacement : ndarray (n,)
+        Approach of the mean surfaces, m, positive closing.
+    ball_displacement, beam_displacement : ndarray (n,)
+        Of the ball, and of the beam under it, m, positive downwards.
+    acceleration : ndarray (sensors, n)
+        Of the beam at the sensors, m/s^2, positive downwards.
+    in_contact : ndarray (n,) of bool
+        Whether the bodies touch.
+    contact_loss : list of ContactLoss
+        Flights.
+    energy : EnergyBalance
+        Where the work of the load went.
+    evaluations : int
+        Evaluations of the law.
+    unconverged_steps : int
+        Time steps whose contact force missed the tolerance.
+    outcome : Outcome
+        Whether all steps converged.
+    """
+
+    time: NDArray
+    position: NDArray
+    contact_force: NDArray
+    relative_displacement: NDArray
+    ball_displacement: NDArray
+    beam_displacement: NDArray
+    acceleration: NDArray
+    in_contact: NDArray
+    contact_loss: list[ContactLoss]
+    energy: EnergyBalance
+    evaluations: int
+    unconverged_steps: int
+    outcome: Outcome
+
+    @property
+    def contact_loss_share(self) -> float:
+        """Share of the time out of contact."""
+        return 1.0 - float(np.mean(self.in_contact))
+
+    @property
+    def longest_loss(self) -> float:
+        """Duration of the longest flight, s."""
+        return max((event.duration for event in self.contact_loss), default=0.0)
+
+
+def roll(
+    beam: Beam,
+    ball: Ball,
+    law: Law,
+    *,
+    speed: float,
+    start: float,
+    duration: float,
+    time_step: float,
+    sensors: ArrayLike,
+    highest_frequency: float | None = None,
+    progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
+) -> Rolling:
+    """Roll a ball over a beam at constant speed, from static equilibrium.
+
+    The beam is advanced exactly mode by mode and the ball exactly, for a contact force that varies
+    linearly over a step; the force at the end of each step solves the contact law implicitly. The
+    step is therefore bound by accuracy only, which is of second order.
+
+    Parameters
+    ----------
+    beam, ball, law
+        The structures and the contact law between them.
+    speed : float
+        m/s.
+    start : float
+        Position of the contact on the beam at time zero, m. The law reads its texture at the same
+        coordinate.
+    duration : float
+        s.
+    time_step : float
+        s.
+    sensors : array_like (k,)
+        Positions of the accelerometers on the beam, m.
+    highest_frequency : float, optional
+        Highest frequency of interest, Hz, checked against the time step.
+    progress : callable, optional
+        Called with steps done, steps in all, and a message.
+    checkpoint : Checkpoint, optional
+        Where to keep the state about every 10 s, at the end and when interrupted, and to go on from.
+
+    Returns
+    -------
+    Rolling
+        Time histories, events and energy balance.
+
+    Raises
+    ------
+    InputError
+        If a number is not positive, the path leaves the beam, or the checkpoint is of another run.
+    ComputationError
+        If the load cannot be carried, or the motion is no longer finite.
+
+    Warns
+    -----
+    CoarseSamplingWarning
+        If the time step is coarse for the contact, the modes or the highest frequency.
+    ExtrapolationWarning
+        If the law was continued beyond its data.
+    UnconvergedWarning
+        If contact forces missed the tolerance.
+    """
+    positions, at = _path(beam, speed, start, duration, time_step), np.atleast_1d(np.asarray(sensors, float))
+    prepared = law.prepare(positions)
+    system = _system(beam, ball, at, speed, time_step)
+    approach, stiffness = static_approach(_evaluation(prepared, 0), ball.static_load)
+    _warn_if_coarse(time_step, stiffness, ball.mass, beam, highest_frequency)
+    motion, record = _at_rest(system, beam, start, approach, len(positions))
+    beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])
+    restore(checkpoint, motion, record, prepared)
+    run(system, motion, record, prepared, law.damping, beam, positions, progress, checkpoint)
+    flying = _flying(prepared, record)
+    _warn_after(motion, prepared, record)
+    return Rolling(
+        time=time_step * np.arange(len(positions)),
+        position=positions,
+        contact_force=record.force,
+        relative_displacement=record.approach,
+        ball_displacement=record.ball,
+        beam_displacement=record.beam,
+        acceleration=record.acceleration,
+        in_contact=~flying,
+        contact_loss=contact_losses(flying, time_step),
+        energy=balance(
+            system,
+            motion,
+            ball_start=ball_start,
+            ball_end=float(motion.ball[0]),
+            beam_start=beam_start,
+        ),
+        evaluations=int(motion.counts[2]),
+        unconverged_steps=int(motion.counts[1]),
+        outcome=Outcome.STEPS_UNCONVERGED if motion.counts[1] else Outcome.CONVERGED,
+    )
+
+
+def _path(beam: Beam, speed: float, start: float, duration: float, time_step: float) -> NDArray:
+    """Positions of the contact at every time step, checked."""
+    for what, value in (
+        ("speed (m/s)", speed),
+        ("duration (s)", duration),
+        ("time step (s)", time_step),
+    ):
+        if not (np.isfinite(value) and value > 0.0):
+            raise InputError(what, value, "a finite positive number")
+    steps = int(np.floor(duration / time_step * (1.0 + 1e-12)))
+    if steps < 1:
+        raise InputError("duration (s)", duration, f"at least one time step of {time_step:.6g} s")
+    end = start + speed * steps * time_step
+    if not (start >= 0.0 and end <= beam.length * (1.0 + 1e-9)):
+        longest = (beam.length - start) / speed
+        remedy = f"From there the beam ends after {longest:.6g} s." if start >= 0.0 else "Start on the beam."
+        raise InputError(
+            "path (m)", f"{start:.6g} to {end:.6g}", f"0 to {beam.length:.6g}, on the beam", remedy
+        )
+    return start + speed * time_step * np.arange(steps + 1)
+
+
+def _system(beam: Beam, ball: Ball, sensors: NDArray, speed: float, time_step: float) -> System:
+    natural = 2.0 * np.pi * beam.natural_frequencies
+    ratio = np.full(natural.shape, beam.damping_ratio)
+    return System(
+        modal_coefficients(natural, ratio, time_step),
+        natural**2,
+        2.0 * ratio * natural,
+        beam.shapes(sensors)[0] if sensors.size else np.zeros((0, natural.size)),
+        float(ball.mass),
+        float(ball.static_load),
+        float(time_step),
+        float(speed),
+    )
+
+
+def _at_rest(
+    system: System, beam: Beam, start: float, approach: float, samples: int
+) -> tuple[Motion, Record]:
+    """State and records with the load carried statically at the start of the path."""
+    shape, slope = (row[0] for row in beam.shapes(start))
+    displacement = shape * system.load / system.stiffness
+    modes = displacement.size
+    motion = Motion(
+        displacement,
+        np.zeros(modes),
+        np.zeros(modes),
+        np.zeros(modes),
+        np.array([approach + float(shape @ displacement), 0.0]),
+        np.full(2, system.load),
+        np.zeros(5),
+        np.zeros(5),
+        np.zeros(3, dtype=np.int64),
+    )
+    record = Record(
+        np.zeros(samples),
+        np.zeros(samples),
+        np.zeros(samples),
+        np.zeros(samples),
+        np.zeros((len(system.sensors), samples)),
+    )
+    observe(system, motion, record, 0, shape, slope)
+    return motion, record
+
+
+def _evaluation(prepared: Prepared | SteppedLaw, step: int) -> Callable[[float], tuple[float, float]]:
+    if isinstance(prepared, Prepared):
+        return lambda approach: evaluate(prepared, step, float(approach))
+    return lambda approach: prepared.evaluate(step, float(approach))
+
+
+def _flying(prepared: Prepared | SteppedLaw, record: Record) -> NDArray:
+    """Whether the bodies are apart at each step; never for a contact that can pull."""
+    if not isinstance(prepared, Prepared):
+        return record.force <= 0.0
+    if prepared.bilateral:
+        return np.zeros(record.force.shape, dtype=bool)
+    if prepared.damped_in_flight:
+        return evaluate_all(prepared, record.approach)[0] <= 0.0
+    return record.force <= 0.0
+
+
+def _warn_if_coarse(
+    time_step: float, stiffness: float, mass: float, beam: Beam, highest_frequency: float | None
+) -> None:
+    """Compare the time step with the periods that it must resolve."""
+    limits = [
+        ("the contact resonance sqrt(k/m)", np.sqrt(max(stiffness, 0.0) / mass) / (2.0 * np.pi), 10.0),
+        ("the highest mode of the beam", beam.natural_frequencies.max(), 4.0),
+        ("the highest frequency asked for", highest_frequency or 0.0, 10.0),
+    ]
+    for what, frequency, least in limits:
+        if frequency * time_step * least > 1.0:
+            warnings.warn(
+                f"{what}, {frequency:.4g} Hz, has {1.0 / (frequency * time_step):.3g} time steps in a "
+                f"period, fewer than {least:.0f}: its response is distorted; "
+                f"take a time step of at most {1.0 / (least * frequency):.2g} s",
+                CoarseSamplingWarning,
+                stacklevel=3,
+            )
+
+
+def _warn_after(motion: Motion, prepared: Prepared | SteppedLaw, record: Record) -> None:
+    steps = max(int(motion.counts[0]), 1)
+    if motion.counts[1]:
+        warnings.warn(
+            f"{motion.counts[1]} of {steps} time steps missed the tolerance on the contact force: "
+            "their force is uncertain; take a smaller time step",
+            UnconvergedWarning,
+            stacklevel=3,
+        )
+    beyond = count_beyond(prepared, record.approach) if isinstance(prepared, Prepared) else 0
+    if beyond:
+        warnings.warn(
+            f"the contact was closer than its largest computed state in {beyond} of {steps} time steps: "
+            "the force there is a continuation; compute larger approaches",
+            ExtrapolationWarning,
+            stacklevel=3,
+        )

@@ -1,0 +1,122 @@
+"""The energy balance of a run: where the work of the load went."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from asperity.kernels.modal import (
+    BEAM_DAMPING,
+    CONTACT_WORK,
+    SLOPE_WORK,
+    THROUGHPUT,
+    Motion,
+    System,
+)
+
+
+@dataclass(frozen=True)
+class EnergyBalance:
+    """Energies gained and work done since the start, J.
+
+    The work of the load equals the sum of the others, up to what the time step leaves open: the
+    integrals are taken by the trapezoidal rule from the recorded motion, the energies from the
+    state at the end.
+
+    Parameters
+    ----------
+    load : float
+        Work of the load on the ball.
+    ball : float
+        Kinetic energy gained by the ball.
+    beam : float
+        Kinetic and bending energy gained by the beam.
+    beam_damping : float
+        Dissipated in the beam.
+    contact : float
+        Work on the contact: stored, damped, less what the texture feeds in.
+    slope : float
+        Work against the slope of the deflected beam, given up to the drive that keeps the speed.
+    throughput : float
+        Time integral of the moduli of the powers at ball and beam.
+    """
+
+    load: float
+    ball: float
+    beam: float
+    beam_damping: float
+    contact: float
+    slope: float
+    throughput: float
+
+    @property
+    def residual(self) -> float:
+        """What the balance leaves open, relative to the throughput."""
+        left = self.load - self.ball - self.beam - self.beam_damping - self.contact - self.slope
+        return abs(left) / self.throughput if self.throughput > 0.0 else 0.0
+
+    def terms(self) -> dict[str, float]:
+        """The terms by their names in results, J.
+
+        Returns
+        -------
+        dict of str to float
+            The first equals the sum of the others within the residual.
+        """
+        return {
+            "work of the load": self.load,
+            "ball kinetic": self.ball,
+            "beam": self.beam,
+            "beam damping": self.beam_damping,
+            "contact": self.contact,
+            "beam slope": self.slope,
+        }
+
+
+def beam_energy(system: System, motion: Motion) -> float:
+    """Kinetic and bending energy of the beam.
+
+    Parameters
+    ----------
+    system : System
+        Constants.
+    motion : Motion
+        State.
+
+    Returns
+    -------
+    float
+        J.
+    """
+    return 0.5 * float(np.sum(motion.velocity**2 + system.stiffness * motion.displacement**2))
+
+
+def balance(
+    system: System, motion: Motion, *, ball_start: float, ball_end: float, beam_start: float
+) -> EnergyBalance:
+    """Balance of a run that started with the ball at rest.
+
+    Parameters
+    ----------
+    system, motion
+        Constants, and the state at the end.
+    ball_start, ball_end : float
+        Displacement of the ball at both ends, m.
+    beam_start : float
+        Energy of the beam at the start, J.
+
+    Returns
+    -------
+    EnergyBalance
+        The terms.
+    """
+    return EnergyBalance(
+        load=system.load * (ball_end - ball_start),
+        ball=0.5 * system.mass * float(motion.ball[1]) ** 2,
+        beam=beam_energy(system, motion) - beam_start,
+        beam_damping=float(motion.ledger[BEAM_DAMPING]),
+        contact=float(motion.ledger[CONTACT_WORK]),
+        slope=float(motion.ledger[SLOPE_WORK]),
+        throughput=float(motion.ledger[THROUGHPUT]),
+    )
