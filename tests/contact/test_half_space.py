@@ -261,8 +261,9 @@ class TestNonConvergence:
     def test_contact_at_the_edge_is_seen(self):
         gap, h = paraboloid(16, 1.0, 10.0, 10.0)
         half_space = HalfSpace((16, 16), (h, h), 1.0)
-        assert half_space.solve(gap, approach=0.2).reaches_edge
-        assert not half_space.solve(gap, approach=0.01).reaches_edge
+        assert half_space.solve(gap, approach=0.2).edge_share > 0.1
+        assert half_space.solve(gap, approach=0.01).edge_share == 0.0
+        assert half_space.solve(gap, approach=-1.0).edge_share == 0.0
 
 
 class TestBadInput:

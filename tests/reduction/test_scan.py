@@ -137,7 +137,7 @@ def test_contact_at_the_edge_warns():
 
 def test_unconverged_solutions_warn(monkeypatch):
     monkeypatch.setattr("asperity.contact.halfspace.MAX_ITERATIONS", 1)
-    with pytest.warns(UnconvergedWarning, match="4 of 4 contact solutions"):
+    with pytest.warns(UnconvergedWarning, match="4 of 4 contact solutions of the scan"):
         forces = asperity.scan(rough(44, 41), (DX, DX), ball(41), MODULUS, [0.2e-6])
     assert forces.attrs["unconverged"] == 4
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError, Outcome, UnconvergedWarning
-from asperity.kernels.convolution import convolve, even_spectrum
+from asperity.kernels.convolution import convolve, even_spectrum, padded_length
 from asperity.kernels.love import influence_table
 from asperity.kernels.projected_cg import inverse_stencil, solve, unit_indentation
 
@@ -68,10 +68,12 @@ class Contact:
         return self.half_space.tangent_stiffness(self.pressure)
 
     @property
-    def reaches_edge(self) -> bool:
-        """Whether cells on the window's edge carry pressure: the contact may be cut off there."""
+    def edge_share(self) -> float:
+        """Share of the force that acts on the window's outermost cells: above zero, some may be cut off."""
         p = self.pressure
-        return bool(p[0].any() or p[-1].any() or p[:, 0].any() or p[:, -1].any())
+        inner = float(p[1:-1, 1:-1].sum())
+        total = float(p.sum())
+        return (total - inner) / total if total > 0.0 else 0.0
 
 
 class HalfSpace:
@@ -138,7 +140,7 @@ class HalfSpace:
             Displacement, m.
         """
         p = self._field("pressure", pressure)
-        return convolve(p, self._spectrum(*self.shape))
+        return convolve(p, self._spectrum(*self.shape), padded_length(self.shape[1]))
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
@@ -160,8 +162,9 @@ class HalfSpace:
         if not free.any():
             return 0.0
         box = _bounding_box(free)
-        spectrum = self._spectrum(*free[box].shape)
-        unit, converged = unit_indentation(free[box], spectrum, self._taps, rtol, MAX_ITERATIONS)
+        inside = np.ascontiguousarray(free[box])
+        spectrum, my = self._spectrum(*inside.shape), padded_length(inside.shape[1])
+        unit, converged = unit_indentation(inside, spectrum, my, self._taps, rtol, MAX_ITERATIONS)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         return float(unit.sum()) * self.cell_area
@@ -287,7 +290,8 @@ class HalfSpace:
         if not p.any():
             p = self._first_guess(inside, spectrum)
         tolerance = rtol * largest
-        iterations, worst = solve(inside, spectrum, self._taps, p, self._cap, tolerance, MAX_ITERATIONS)
+        my = padded_length(inside.shape[1])
+        iterations, worst = solve(inside, spectrum, my, self._taps, p, self._cap, tolerance, MAX_ITERATIONS)
         if worst <= tolerance:
             outcome = Outcome.CONVERGED
         else:
@@ -302,7 +306,9 @@ class HalfSpace:
     ) -> NDArray[np.float64]:
         """Pressure of Hertzian form over the deeper half of the overlap, scaled to least energy."""
         p = np.sqrt(np.maximum(overlap - 0.5 * overlap.max(), 0.0))
-        scale = float(np.vdot(p, overlap)) / float(np.vdot(p, convolve(p, spectrum)))
+        scale = float(np.vdot(p, overlap)) / float(
+            np.vdot(p, convolve(p, spectrum, padded_length(p.shape[1])))
+        )
         return np.minimum(p * scale, self._cap)
 
     def _at_load(

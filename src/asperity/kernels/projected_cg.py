@@ -163,9 +163,11 @@ def _add_scaled(a: NDArray[np.float64], factor: float, b: NDArray[np.float64]) -
             a[i, j] += factor * b[i, j]
 
 
+@njit(cache=True, nogil=True)
 def solve(
     overlap: NDArray[np.float64],
     spectrum: NDArray[np.float64],
+    my: int,
     taps: NDArray[np.float64],
     pressure: NDArray[np.float64],
     hardness: float,
@@ -180,6 +182,8 @@ def solve(
         Overlap of the undeformed bodies, m.
     spectrum : ndarray
         Kernel on the box, from `even_spectrum`, m/Pa.
+    my : int
+        ``padded_length(ny)``.
     taps : ndarray, shape (6,)
         From `inverse_stencil`, Pa/m.
     pressure : ndarray, shape (nx, ny)
@@ -201,7 +205,7 @@ def solve(
     nx, ny = overlap.shape
     masked = np.zeros((nx + 2 * REACH, ny + 2 * REACH))
     z, direction, previous = np.empty((nx, ny)), np.zeros((nx, ny)), np.zeros((nx, ny))
-    residual = convolve(pressure, spectrum) - overlap
+    residual = convolve(pressure, spectrum, my) - overlap
     worst, rho, drifted = _complementarity(pressure, residual, hardness), 0.0, False
     iteration = 0
     while iteration < max_iterations:
@@ -209,23 +213,23 @@ def solve(
             if not drifted:
                 break
             # the recurrence says converged: let the true residual confirm it
-            residual = convolve(pressure, spectrum) - overlap
+            residual = convolve(pressure, spectrum, my) - overlap
             worst, drifted = _complementarity(pressure, residual, hardness), False
             continue
         iteration += 1
         _precondition(pressure, residual, hardness, taps, masked, z)
         rho, slope = _direction(residual, previous, z, direction, rho)
         if slope >= 0.0:  # not a descent direction any more: restart from the preconditioned gradient
-            np.negative(z, out=direction)
+            direction[:] = -z
             slope = -rho
-        response = convolve(direction, spectrum)
+        response = convolve(direction, spectrum, my)
         curvature = _dot(direction, response)
         if not curvature > 0.0:
             break
         step = -slope / curvature
         previous[:] = residual
         if _advance(pressure, direction, step, hardness):
-            residual = convolve(pressure, spectrum) - overlap
+            residual = convolve(pressure, spectrum, my) - overlap
             drifted = False
         else:
             _add_scaled(residual, step, response)
@@ -234,9 +238,11 @@ def solve(
     return iteration, worst
 
 
+@njit(cache=True, nogil=True)
 def unit_indentation(
     free: NDArray[np.bool_],
     spectrum: NDArray[np.float64],
+    my: int,
     taps: NDArray[np.float64],
     rtol: float,
     max_iterations: int,
@@ -247,7 +253,7 @@ def unit_indentation(
     ----------
     free : ndarray of bool, shape (nx, ny)
         The set.
-    spectrum, taps
+    spectrum, my, taps
         As in `solve`.
     rtol : float
         Largest residual, relative to one.
@@ -261,17 +267,17 @@ def unit_indentation(
     converged : bool
         Whether the residual fell below `rtol`.
     """
-    box, unbounded = free.astype(np.float64), np.inf
+    box = free.astype(np.float64)
     masked = np.zeros((free.shape[0] + 2 * REACH, free.shape[1] + 2 * REACH))
     pressure, z, direction = np.zeros_like(box), np.empty_like(box), np.zeros_like(box)
     previous, residual, rho = np.zeros_like(box), -box, 0.0
     for _ in range(max_iterations):
-        if float(np.max(np.abs(residual))) <= rtol:
+        if np.max(np.abs(residual)) <= rtol:
             return pressure, True
         # a positive "pressure" on the set marks it as free for the preconditioner
-        _precondition(box, residual, unbounded, taps, masked, z)
+        _precondition(box, residual, np.inf, taps, masked, z)
         rho, slope = _direction(residual, previous, z, direction, rho)
-        response = convolve(direction, spectrum) * box
+        response = convolve(direction, spectrum, my) * box
         step = -slope / _dot(direction, response)
         previous[:] = residual
         _add_scaled(pressure, step, direction)

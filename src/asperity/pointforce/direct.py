@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import InputError
 from asperity.pointforce.base import check_damping
+from asperity.reduction.scan import TRUNCATED
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +125,7 @@ class DirectOnPath:
         if self._trial is not None:
             self._pressure = self._trial.pressure
             self._row = round(self.offsets[step])
-            self.truncated += self._trial.reaches_edge
+            self.truncated += self._trial.edge_share > TRUNCATED
         self._trial = None
 
     def state(self) -> dict[str, NDArray]:

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import InputError
-from asperity.reduction.areal import punch_weights
-from asperity.reduction.scan import Cache, scan_forces
+from asperity.reduction.scan import scan_forces, warn_of_flaws
 from asperity.reduction.stiffness import ForceCurve
 
 
@@ -143,7 +142,6 @@ def stiffness_ensemble(
     hardness: float | None = None,
     *,
     rtol: float = 1e-6,
-    cache: Cache | None = None,
     progress: Callable[[int, int, str], None] | None = None,
 ) -> StiffnessEnsemble:
     """Press the body on each sample, stepping the approach up.
@@ -152,7 +150,7 @@ def stiffness_ensemble(
     ----------
     samples : sequence of ndarray, shape (nx, ny)
         Heights, m, from `patches`.
-    spacing, body, modulus, hardness, rtol, cache, progress
+    spacing, body, modulus, hardness, rtol, progress
         As in `asperity.reduction.scan.scan`.
     approaches : ndarray, shape (k,)
         Approaches, m, increasing.
@@ -165,15 +163,11 @@ def stiffness_ensemble(
         One loading curve a sample.
     """
     report = progress or (lambda done, total, message: None)
-    forces = []
+    scans = []
     for i, sample in enumerate(samples):
         report(i, len(samples), "loading the samples")
-        scanned = scan_forces(
-            sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1, cache=cache
-        )
-        forces.append(scanned.forces[:, 0])
+        scans.append(scan_forces(sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1))
     report(len(samples), len(samples), "loading the samples")
-    return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), np.array(forces), datum)
-
-
-__all__ = ["StiffnessEnsemble", "patches", "punch_weights", "stiffness_ensemble", "weighted_mean"]
+    warn_of_flaws(scans, "the loading curves")
+    forces = np.array([scanned.forces[:, 0] for scanned in scans])
+    return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), forces, datum)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 
 BLOCK = 256
 """Positions solved in one go, from a cold start: the unit of parallel work and of what is kept on disk."""
+
+
+TRUNCATED = 0.01
+"""Share of the force on the window's edge from which a contact counts as cut off."""
 
 
 class Cache(Protocol):
@@ -46,7 +50,7 @@ class ScannedForces:
     unconverged : int
         Solutions that missed the tolerance.
     truncated : int
-        Solutions with pressure on the window's edge.
+        Solutions with a noticeable share of the force on the window's edge.
     """
 
     forces: NDArray[np.float64]
@@ -118,6 +122,7 @@ def scan(
         z - z.mean(), spacing, body, modulus, delta, hardness,
         stride=stride, rtol=rtol, workers=workers, cache=cache, progress=progress,
     )  # fmt: skip
+    warn_of_flaws([result], "the scan")
     position = np.arange(result.forces.shape[1]) * stride * spacing[0]
     return xarray.DataArray(
         result.forces,
@@ -167,7 +172,7 @@ def scan_forces(
     Returns
     -------
     ScannedForces
-        Forces and counts; unconverged or truncated solutions have also been warned about.
+        Forces and counts; `warn_of_flaws` tells of what went wrong.
 
     Raises
     ------
@@ -199,11 +204,9 @@ def scan_forces(
     blocks = _in_threads(solve_block, firsts, len(positions), workers, progress, message)
     stacked = np.concatenate(blocks, axis=2)
     forces, iterations, unconverged, truncated = stacked
-    result = ScannedForces(
+    return ScannedForces(
         np.ascontiguousarray(forces), int(iterations.sum()), int(unconverged.sum()), int(truncated.sum())
     )
-    _warn(result)
-    return result
 
 
 def _check(heights: NDArray, body: NDArray, approaches: NDArray, stride: int) -> None:
@@ -258,7 +261,7 @@ def _solve_block(
                 contact.force,
                 contact.iterations,
                 not contact.converged,
-                contact.reaches_edge,
+                contact.edge_share > TRUNCATED,
             )
     return result
 
@@ -289,20 +292,30 @@ def _in_threads(
         executor.shutdown(wait=True, cancel_futures=True)
 
 
-def _warn(result: ScannedForces) -> None:
-    solved = int(np.count_nonzero(result.forces))
-    if result.unconverged:
+def warn_of_flaws(scans: Sequence[ScannedForces], what: str) -> None:
+    """Warn, once for all of them, of solutions that did not converge or were cut off.
+
+    Parameters
+    ----------
+    scans : sequence of ScannedForces
+        Scans.
+    what : str
+        What they were made for, as ``"the scan"``.
+    """
+    solved = sum(int(np.count_nonzero(s.forces)) for s in scans)
+    unconverged, truncated = sum(s.unconverged for s in scans), sum(s.truncated for s in scans)
+    if unconverged:
         warnings.warn(
-            f"{result.unconverged} of {solved} contact solutions of the scan missed their tolerance; their "
+            f"{unconverged} of {solved} contact solutions of {what} missed their tolerance; their "
             "forces are approximate. Try a larger `rtol`, and check the surface for outliers.",
             UnconvergedWarning,
             stacklevel=3,
         )
-    if result.truncated:
-        share = 100.0 * result.truncated / max(solved, 1)
+    if truncated:
         warnings.warn(
-            f"in {result.truncated} solutions of the scan ({share:.2g} % of those in contact) pressure acts "
-            "on the window's edge: the contact is cut off and its force too small. Enlarge the window.",
+            f"in {truncated} of {solved} contact solutions of {what} more than {100 * TRUNCATED:.0f} % of "
+            "the force acts on the window's edge: the contact is cut off and its force too small. Enlarge "
+            "the window.",
             TruncatedContactWarning,
             stacklevel=3,
         )

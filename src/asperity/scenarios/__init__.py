@@ -1,0 +1,41 @@
+"""From a case to its result: one file per kind of case."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import xarray
+
+    from asperity.config import BallOnBeamCase
+    from asperity.progress import Progress
+
+
+def run(case: str | os.PathLike[str] | BallOnBeamCase, progress: Progress | None = None) -> xarray.DataTree:
+    """Compute a case.
+
+    Parameters
+    ----------
+    case : path or case object
+        A TOML case file, or what `asperity.config.load_case` made of one.
+    progress : callable, optional
+        ``progress(done, total, message)``, called during long work.
+
+    Returns
+    -------
+    xarray.DataTree
+        Groups scenario, surface, contact, rolling and spectra; see `asperity.results`.
+
+    Raises
+    ------
+    InputError
+        If the case, or a file it names, is wrong.
+    ComputationError
+        If a computation fails.
+    """
+    from asperity.config import load_case
+    from asperity.scenarios import ball_on_beam
+
+    loaded = load_case(case) if isinstance(case, str | os.PathLike) else case
+    return ball_on_beam.run(loaded, progress or (lambda done, total, message: None))

@@ -24,26 +24,33 @@ class Ball:
         Gives the mass.
     load : float, optional
         Constant force that presses the ball down, N; its weight if not given.
+    given_mass : float, optional
+        Mass, kg, instead of that of a solid ball.
 
     Raises
     ------
     InputError
-        If radius or load is not a finite positive number.
+        If radius, load or mass is not a finite positive number.
     """
 
     radius: float
     material: Material
     load: float | None = None
+    given_mass: float | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.radius) and self.radius > 0.0):
             raise InputError("ball radius (m)", self.radius, "a finite positive number")
         if self.load is not None and not (np.isfinite(self.load) and self.load > 0.0):
             raise InputError("ball load (N)", self.load, "a finite positive number")
+        if self.given_mass is not None and not (np.isfinite(self.given_mass) and self.given_mass > 0.0):
+            raise InputError("ball mass (kg)", self.given_mass, "a finite positive number")
 
     @property
     def mass(self) -> float:
         """Mass, kg."""
+        if self.given_mass is not None:
+            return self.given_mass
         return 4.0 / 3.0 * np.pi * self.radius**3 * self.material.density
 
     @property

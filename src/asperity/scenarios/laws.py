@@ -1,0 +1,183 @@
+"""The laws of a case, built from its textures and state functions."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config import BallOnBeamCase
+from asperity.contact import Hertz as HertzContact
+from asperity.pointforce import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
+from asperity.progress import Progress
+from asperity.reduction.areal import areal_texture
+from asperity.reduction.filter import filtered_texture
+from asperity.reduction.scan import Cache, ScannedForces, scan_forces, warn_of_flaws
+from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import StateTexture
+from asperity.scenarios.reducing import Geometry, Reduction
+from asperity.scenarios.textures import Textures
+
+
+@dataclass(frozen=True, eq=False)
+class Workshop:
+    """What the laws of one case are made of.
+
+    Attributes
+    ----------
+    case, textures, shape
+        The case, its textures and its geometry.
+    reduction : Reduction or None
+        State functions; None where the case has no samples.
+    planes : ndarray, shape (rows,), or None
+        Height of the plane that the nominal patch feels along the path, m, peaks positive.
+    cache, progress
+        For the scan of the path.
+    """
+
+    case: BallOnBeamCase
+    textures: Textures
+    shape: Geometry
+    reduction: Reduction | None
+    planes: NDArray[np.float64] | None
+    cache: Cache | None
+    progress: Progress
+
+    @property
+    def _start(self) -> float:
+        """Position of the first row of the path on the beam, m."""
+        return self.case.start - self.textures.margin * self.shape.spacing[0]
+
+    def build(self, name: str) -> tuple[Law, ScannedForces | None]:
+        """Build one law, and return the scan that it needed, if any.
+
+        Parameters
+        ----------
+        name : str
+            Name of the law in the case.
+
+        Returns
+        -------
+        law : Law
+            The law, on positions along the beam, m.
+        scanned : ScannedForces or None
+            The scan of the path, for ``table``.
+        """
+        damping = self.case.contact.damping
+        base, _, filtered = name.partition("-")
+        if base == "table":
+            return self._table(damping)
+        if base == "direct":
+            return self._direct(damping), None
+        if base in ("hertz", "linear"):
+            texture = self._filtered_line() if filtered else self._line()
+            return (self._hertz if base == "hertz" else self._linear)(texture, damping, name), None
+        assert self.reduction is not None
+        curve = self.reduction.ensemble.curve
+        if base == "areal":
+            return Areal(curve, self._areal(), damping, plane=self._plane()), None
+        if base == "printed":
+            return Printed(curve, self._filtered_line(), self.reduction.ensemble.datum, damping), None
+        return Shifted(curve, self._filtered_line(), damping), None
+
+    def _hertz(self, texture: StateTexture, damping: float, name: str) -> Law:
+        return Hertz(self.shape.hertz.stiffness_constant, texture, damping, name)
+
+    def _linear(self, texture: StateTexture, damping: float, name: str) -> Law:
+        load = self.shape.load
+        if self.case.contact.linearise == "rough" and self.reduction is not None:
+            curve = self.reduction.ensemble.curve
+            approach = float(curve.inverse(load))
+            return Linear(load, float(curve.stiffness(approach)), approach, texture, damping, name)
+        approach = self.shape.hertz.approach(load)
+        return Linear(load, self.shape.hertz.tangent_stiffness(approach), approach, texture, damping, name)
+
+    def _line(self) -> StateTexture:
+        return StateTexture.unfiltered(-self.textures.line, self.shape.spacing[0], self._start)
+
+    def _filtered_line(self) -> StateTexture:
+        dx = self.shape.spacing[0]
+        if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
+            taps = punch_taps(self.shape.hertz, self.shape.load, dx)
+            return filtered_texture(self.textures.line, dx, taps[None], [0.0], self._start)
+        states = self.reduction.contact_filter.approaches
+        return filtered_texture(self.textures.line, dx, self.reduction.taps, states, self._start)
+
+    def _plane(self) -> StateTexture | None:
+        if self.planes is None:
+            return None
+        return StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self._start)
+
+    def _areal(self) -> StateTexture:
+        assert self.reduction is not None
+        assert self.textures.path is not None
+        loaded = self.reduction.semi_axes[:, 0] > 0.0
+        return areal_texture(
+            self.textures.path.heights,
+            self.shape.spacing,
+            self.reduction.approaches[loaded],
+            np.minimum(self.reduction.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
+            self._start,
+        )
+
+    def _table(self, damping: float) -> tuple[Law, ScannedForces]:
+        assert self.reduction is not None
+        assert self.textures.path is not None
+        assert self.planes is not None
+        dx, half = self.shape.spacing[0], self.shape.body.shape[0] // 2
+        stride = max(1, math.floor(self.shape.semi_axes[0] / 8 / dx))
+        scanned = scan_forces(
+            self.textures.path.heights,
+            self.shape.spacing,
+            self.shape.body,
+            self.shape.modulus,
+            self.reduction.approaches,
+            self.case.contact.hardness,
+            stride=stride,
+            rtol=self.case.numerics.rtol,
+            planes=self.planes[half : len(self.planes) - half : stride],
+            cache=self.cache,
+            progress=self.progress,
+            message="scanning the path",
+        )
+        warn_of_flaws([scanned], "the path")
+        table = ForceTable(scanned.forces, self.reduction.approaches, self._start + half * dx, stride * dx)
+        return Table(table, damping, plane=self._plane()), scanned
+
+    def _direct(self, damping: float) -> Law:
+        assert self.textures.path is not None
+        return Direct(
+            self.textures.path.heights,
+            self.shape.body,
+            self.shape.spacing,
+            self.shape.modulus,
+            self._start,
+            self.case.contact.hardness,
+            self.case.numerics.rtol,
+            damping,
+        )
+
+
+def punch_taps(hertz: HertzContact, load: float, spacing: float) -> NDArray[np.float64]:
+    """Taps of the closed-form filter sin q/q of a smooth contact: the mean over its length.
+
+    Parameters
+    ----------
+    hertz : HertzContact
+        Smooth contact.
+    load : float
+        Working load, N.
+    spacing : float
+        Sampling of the line texture, m.
+
+    Returns
+    -------
+    ndarray, shape (odd,)
+        Share of each point under the patch; they sum to one.
+    """
+    a = hertz.semi_axes(hertz.approach(load))[0]
+    half = max(0, math.ceil(a / spacing - 0.5))
+    edges = (np.arange(-half, half + 2) - 0.5) * spacing
+    return np.diff(np.clip(edges, -a, a)) / (2 * a)

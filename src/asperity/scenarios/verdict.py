@@ -1,0 +1,59 @@
+"""The sentence at the top of a report: what the run says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray
+
+from asperity.rolling.ball_on_beam import Rolling
+
+COMPARED = (100.0, 5000.0)
+"""Band centres between which laws are compared, Hz."""
+
+
+def verdict(runs: Mapping[str, Rolling], spectra: xarray.Dataset) -> str:
+    """Say in a few words how the main law's contact went, and how far it is from the others.
+
+    Parameters
+    ----------
+    runs : mapping of str to Rolling
+        Runs by law; the first is the main one.
+    spectra : Dataset
+        The spectra group of the result.
+
+    Returns
+    -------
+    str
+        One or two sentences.
+    """
+    main, run = next(iter(runs.items()))
+    dynamic = float(np.std(run.contact_force))
+    parts = [f"{_contact(run)} ({main}); the contact force varies by {dynamic:.3g} N rms"]
+    bands = (spectra["band"] >= COMPARED[0] * 0.9) & (spectra["band"] <= COMPARED[1] * 1.1)
+    if "force_level_difference" in spectra and main != "linear" and bool(bands.any()):
+        difference = spectra["force_level_difference"].sel(law=main).where(bands, drop=True)
+        parts.append(f"against the linear contact it is {_range(difference)} per one-third octave")
+    if "force_level_difference_to_reference" in spectra and bool(bands.any()):
+        difference = spectra["force_level_difference_to_reference"]
+        reference = difference.attrs["reference"]
+        if reference != main:
+            distance = float(abs(difference.sel(law=main).where(bands, drop=True)).max())
+            parts.append(f"and at most {distance:.1f} dB from {reference}")
+    return ", ".join(parts) + "."
+
+
+def _contact(run: Rolling) -> str:
+    if not run.contact_loss:
+        return "The ball never loses contact"
+    share, count = 100.0 * run.contact_loss_share, len(run.contact_loss)
+    return f"The ball loses contact {count} time{'s' if count > 1 else ''}, {share:.2g} % of the time"
+
+
+def _range(difference: xarray.DataArray) -> str:
+    low, high = float(difference.min()), float(difference.max())
+    low_at, high_at = (
+        float(difference.band[int(i)]) for i in (difference.values.argmin(), difference.values.argmax())
+    )
+    return f"{low:+.1f} dB ({low_at:.0f} Hz) to {high:+.1f} dB ({high_at:.0f} Hz)"
