@@ -1,0 +1,206 @@
+"""The contact laws: closed forms, slopes, damping, slow bumps, the static state."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from scipy.optimize import brentq
+
+from asperity.errors import ComputationError, InputError
+from asperity.kernels.pointforce import count_beyond, evaluate, evaluate_all, with_damping
+from asperity.pointforce import LAWS, Areal, Hertz, Linear, Printed, Shifted, Table, force
+from asperity.pointforce.base import Prepared, on_curve
+from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import StateTexture
+from asperity.rolling.equilibrium import static_approach
+
+K = 2.4e10  # N/m^1.5, a steel ball of 25 mm on steel
+LOAD = 5.0
+SPACING = 1e-5
+HERTZ = ForceCurve.hertz(K)
+WORKING = float(HERTZ.inverse(LOAD))
+
+
+def waves(states=3, points=400, seed=0):
+    """A texture that differs from state to state, slowly enough not to outrun the approach."""
+    x = SPACING * np.arange(points)
+    rng = np.random.default_rng(seed)
+    rows = [0.1e-6 * np.sin(2 * np.pi * x / 3e-4 + p) for p in 0.5 * rng.standard_normal(states)]
+    return StateTexture(np.array(rows), np.linspace(-0.5e-6, 1.5e-6, states), 0.0, SPACING)
+
+
+def shifted_table(height, states=40):
+    """Table of a contact whose force is Hertz's of the approach less the texture."""
+    approaches = np.linspace(-2e-6, 3e-6, states)
+    return ForceTable(HERTZ.force(approaches[:, None] - height), approaches, 0.0, SPACING)
+
+
+def every_law():
+    texture = waves()
+    return [
+        Printed(HERTZ, texture, datum=0.4e-6),
+        Shifted(HERTZ, texture),
+        Areal(HERTZ, texture),
+        Table(shifted_table(texture.heights[1])),
+        Hertz(K, texture),
+        Linear(LOAD, 3e7, WORKING, texture),
+    ]
+
+
+def test_registry_knows_every_law_by_its_name():
+    for law in every_law():
+        assert LAWS[law.name].law is type(law)
+        assert LAWS[law.name].meaning.endswith(".")
+
+
+@pytest.mark.parametrize("law", every_law(), ids=lambda law: law.name)
+def test_slope_is_the_derivative_of_the_force(law):
+    positions = np.linspace(1e-4, 3.5e-3, 60)
+    prepared = law.prepare(positions)
+    approach = np.linspace(0.2e-6, 1.3e-6, 60) + 1.234e-9
+    step = 1e-13
+    above, below = (evaluate_all(prepared, approach + s)[0] for s in (step, -step))
+    value, slope = evaluate_all(prepared, approach)
+    assert np.all(value != 0.0)
+    assert_allclose(slope, (above - below) / (2 * step), rtol=1e-4)
+
+
+@given(st.floats(-1e-6, 2.5e-6), st.floats(1e-9, 1e-6), st.integers(0, 59))
+@settings(max_examples=200, deadline=None)
+def test_force_never_falls_with_the_approach(approach, more, step):
+    for prepared in PREPARED:
+        low, high = evaluate(prepared, step, approach)[0], evaluate(prepared, step, approach + more)[0]
+        assert high >= low * (1.0 - 1e-12)
+        assert low >= 0.0 or prepared.bilateral
+
+
+PREPARED = [law.prepare(np.linspace(1e-4, 3.5e-3, 60)) for law in every_law()]
+
+
+def test_printed_is_equation_2_1():
+    texture, datum = waves(), 0.4e-6
+    positions = np.array([0.7e-3, 1.1e-3])
+    approach = 0.25e-6  # between the first two states, at -0.5 and 0.5 um
+    height = 0.25 * texture.at(positions)[:, 0] + 0.75 * texture.at(positions)[:, 1]
+    r = approach + datum
+    expected = K * approach**1.5 / r * (r - height)
+    assert_allclose(force(Printed(HERTZ, texture, datum), positions, approach), expected, rtol=1e-12)
+
+
+def test_shifted_areal_and_hertz_follow_the_texture():
+    texture = waves(states=1)
+    positions = np.linspace(1e-4, 3e-3, 50)
+    expected = K * np.maximum(WORKING - texture.at(positions)[:, 0], 0.0) ** 1.5
+    for law in (Shifted(HERTZ, texture), Areal(HERTZ, texture), Hertz(K, texture)):
+        assert_allclose(force(law, positions, WORKING), expected, rtol=1e-12)
+    assert_allclose(force(Hertz(K), positions, WORKING), LOAD, rtol=1e-12)
+
+
+def test_table_reproduces_a_hertzian_table_between_its_nodes():
+    texture = waves(states=1)
+    positions = np.linspace(1e-4, 3e-3, 333)
+    law = Table(shifted_table(texture.heights[0]))
+    expected = K * (WORKING - texture.at(positions)[:, 0]) ** 1.5
+    assert_allclose(force(law, positions, WORKING), expected, rtol=1e-4)
+
+
+def test_linear_is_linear_and_pulls():
+    law = Linear(LOAD, 3e7, WORKING)
+    approach = WORKING + np.array([-1e-6, 0.0, 1e-6])
+    assert_allclose(force(law, np.zeros(3), approach), LOAD + 3e7 * (approach - WORKING), rtol=1e-12)
+    assert force(law, 0.0, WORKING - 1e-6) < 0.0
+
+
+def test_texture_is_held_outside_its_states():
+    texture = waves()
+    positions = np.array([1e-3])
+    law = Shifted(ForceCurve.hertz(K), texture)
+    expected = K * (5e-6 - texture.at(positions)[:, -1]) ** 1.5
+    assert_allclose(force(law, positions, 5e-6), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["shifted", "areal", "table"])
+def test_slow_bump_lifts_the_body_by_its_height(name):
+    bump = 0.02e-6
+    height = np.full(50, -bump)  # a peak: negative away from contact
+    texture = StateTexture.unfiltered(height, SPACING)
+    law = Table(shifted_table(height)) if name == "table" else LAWS[name].law(HERTZ, texture)
+    approach, _ = static_approach(lambda s: evaluate(law.prepare(2e-4), 0, s), LOAD)
+    assert_allclose((WORKING - approach) / bump, 1.0, rtol=0.01)
+
+
+def test_printed_follows_two_thirds_of_a_slow_bump():
+    bump = 1e-4 * WORKING
+    law = Printed(HERTZ, StateTexture.unfiltered(np.full(50, -bump), SPACING), datum=0.0)
+    approach, _ = static_approach(lambda s: evaluate(law.prepare(2e-4), 0, s), LOAD, 1e-13)
+    assert_allclose((WORKING - approach) / bump, 2.0 / 3.0, rtol=1e-3)
+
+
+def test_damping_acts_in_contact_only_and_never_pulls():
+    # in contact: c times the rate that is left after the force has slowed it
+    value, slope = with_damping(5.0, 1e7, 0.02, 1e-3, 100.0, False)
+    assert_allclose(value, 5.0 + 100.0 * (0.02 - 1e-3 * value), rtol=1e-14)
+    assert_allclose(slope, 1e7 / 1.1, rtol=1e-14)
+    assert with_damping(0.0, 0.0, 0.02, 1e-3, 100.0, False) == (0.0, 0.0)
+    assert with_damping(5.0, 1e7, -1.0, 0.0, 100.0, False) == (0.0, 0.0)
+
+
+def test_printed_and_linear_damp_in_flight():
+    assert with_damping(0.0, 0.0, -0.02, 0.0, 100.0, True) == (-2.0, 0.0)
+    in_flight = {law.name: law.prepare(np.array([1e-3])).damped_in_flight for law in every_law()}
+    assert {name for name, acts in in_flight.items() if acts} == {"printed", "linear"}
+
+
+def test_arguments_beyond_the_data_are_counted():
+    s = np.linspace(0.0, 1e-6, 6)
+    curve = ForceCurve.from_samples(s, HERTZ.force(s))
+    texture = StateTexture.unfiltered(np.array([0.0, 0.0, 0.5e-6, 0.5e-6, 0.5e-6]), SPACING)
+    prepared = Shifted(curve, texture).prepare(SPACING * np.arange(4))
+    assert isinstance(prepared, Prepared)
+    assert count_beyond(prepared, np.full(4, 1.2e-6)) == 2
+    assert count_beyond(on_curve(curve, None, np.zeros(3)), np.array([0.9e-6, 1.0e-6, 1.1e-6])) == 1
+    assert count_beyond(Hertz(K).prepare(np.zeros(1)), np.array([1.0])) == 0
+
+
+@given(st.floats(1e-3, 1e4))
+@settings(max_examples=40, deadline=None)
+def test_static_approach_carries_the_load(load):
+    law = Shifted(HERTZ, waves())
+    prepared = law.prepare(np.array([7e-4]))
+    approach, stiffness = static_approach(lambda s: evaluate(prepared, 0, s), load)
+    root = brentq(lambda s: evaluate(prepared, 0, s)[0] - load, -1e-3, 1e-2, xtol=1e-18)
+    assert_allclose(approach, root, rtol=1e-7)
+    assert_allclose(stiffness, evaluate(prepared, 0, approach)[1])
+
+
+def test_load_that_no_approach_carries():
+    with pytest.raises(ComputationError, match=r"no approach carries the load of 5 N.*smaller load"):
+        static_approach(lambda s: (0.0, 0.0), 5.0)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda c: Printed(HERTZ, None, 0.0, c),
+        lambda c: Shifted(HERTZ, None, c),
+        lambda c: Areal(HERTZ, waves(), c),
+        lambda c: Table(shifted_table(np.zeros(9)), c),
+        lambda c: Hertz(K, None, c),
+        lambda c: Linear(LOAD, 1e7, 0.0, None, c),
+    ],
+)
+def test_bad_damping_is_refused(make):
+    with pytest.raises(InputError, match="contact damping"):
+        make(-1.0)
+    with pytest.raises(InputError, match="contact damping"):
+        make(np.nan)
+
+
+def test_datum_below_the_first_touch_is_refused():
+    s = np.linspace(-3e-6, 1e-6, 5)
+    curve = ForceCurve.from_samples(s, (s + 3e-6) * 1e6)
+    with pytest.raises(InputError, match=r"datum of the state .*at least 3e-06.*highest first touch"):
+        Printed(curve, None, datum=1e-6)
+    assert Printed(curve, None, datum=3e-6).datum == 3e-6
