@@ -52,8 +52,8 @@ def read(path: Path, hints: Hints) -> list[Surface]:
     path : Path
         The file. One column is a line z; two are x, z at uniform x; three are x, y, z on a regular grid;
         more are a matrix of heights whose rows follow one another along x, so the first axis of the map is
-        the line number. Missing heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers
-        and lines that start with ``#``, ``%`` or ``//`` are header, see
+        the line number. Missing heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the
+        numbers and lines that start with ``#``, ``%`` or ``//`` are header, see
         `asperity.surfaces.readers.headers`.
     hints : Hints
         What the header does not state; a hint is stronger than the header.

@@ -47,7 +47,8 @@ def read(path: Path, hints: Hints) -> list[Surface]:
     ----------
     path : Path
         The file. Its x (CX, the fastest axis of the stored matrix) becomes the first axis of the map, its y
-        (CY) the second. Lengths are in m by the standard.
+        (CY) the second. Lengths are in m by the standard. Points that the validity mask excludes, or whose
+        height is not finite, are missing.
     hints : Hints
         Must be empty.
 
@@ -137,7 +138,8 @@ def _points(
         if axis.absolute:
             points[axis.name] = points[axis.name] * axis.increment + axis.offset
     valid = _valid_points(opened, root, len(points["CZ"]), source)
-    points["CZ"][~valid] = np.nan
+    # instruments also mark missing points by infinite heights
+    points["CZ"][~(valid & np.isfinite(points["CZ"]))] = np.nan
     return points
 
 
