@@ -33,6 +33,9 @@ from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 
 
+STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itself solved to a tolerance
+
+
 @dataclass(frozen=True, eq=False)
 class Rolling:
     """A ball has rolled over a beam.
@@ -156,7 +159,8 @@ def roll(
     positions, at = _path(beam, speed, start, duration, time_step), np.atleast_1d(np.asarray(sensors, float))
     prepared = law.prepare(positions)
     system = _system(beam, ball, at, speed, time_step)
-    approach, stiffness = static_approach(_evaluation(prepared, 0), ball.static_load)
+    relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
+    approach, stiffness = static_approach(_evaluation(prepared, 0), ball.static_load, relative)
     _warn_if_coarse(time_step, stiffness, ball.mass, beam, highest_frequency)
     motion, record = _at_rest(system, beam, start, approach, len(positions))
     beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])

@@ -181,8 +181,8 @@ def _texture_spectra(computed: Computed) -> dict[str, xarray.Variable]:
     if textures.maps:
         spectra = [psd_1d(m)[1] for m in textures.maps]
         wavenumber = psd_1d(textures.maps[0])[0]
-        mean = np.mean([s for s in spectra if s.shape == spectra[0].shape], axis=0)[1:]
-        result["psd_sample"] = variable(dims, mean, units, "PSD of the samples along the path, one-sided")
+        sampled = np.mean([s for s in spectra if s.shape == spectra[0].shape], axis=0)[1:]
+        result["psd_sample"] = variable(dims, sampled, units, "PSD of the samples along the path, one-sided")
         segment = textures.maps[0].shape[0]
     else:
         segment = max(16, len(textures.line) // 8)
