@@ -1,0 +1,133 @@
+"""Power spectral densities of surfaces.
+
+Spectra come in two conventions. One-sided profile spectrum W(ν), m³ per cycle/m, ν >= 0:
+∫ W dν = Sq². Two-sided areal spectrum C(qx, qy), m⁴, angular wavenumbers: ∫∫ C dqx dqy = Sq².
+They are tied by W(ν) = 4π ∫ C(2πν, qy) dqy: a factor 2 for one side and 2π for cycles.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from asperity.errors import InputError
+from asperity.surfaces.heightmap import HeightMap, Profile
+
+
+def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """One-sided profile spectrum, averaged over all lines along an axis.
+
+    Parameters
+    ----------
+    surface : HeightMap or Profile
+        Complete, levelled heights, m; the mean of the surface is removed, not that of each line.
+    axis : int, optional
+        0 along x (rolling direction), 1 along y.
+
+    Returns
+    -------
+    wavenumber : ndarray, shape (k,)
+        Cycles per metre.
+    psd : ndarray, shape (k,)
+        m³ per cycle/m; its integral is Sq², weighted by the squared Hann window.
+
+    Raises
+    ------
+    InputError
+        If points are missing or there is no such axis.
+    """
+    if axis not in range(surface.heights.ndim):
+        raise InputError("axis", axis, f"0 to {surface.heights.ndim - 1}")
+    lines = np.moveaxis(_complete(surface), axis, -1)
+    length = lines.shape[-1]
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
+    spacing = float(np.atleast_1d(surface.spacing)[axis])
+    density = np.abs(fft.rfft(lines * window, axis=-1)) ** 2 * (2.0 * spacing / np.sum(window**2))
+    density[..., 0] /= 2.0
+    if length % 2 == 0:
+        density[..., -1] /= 2.0
+    return fft.rfftfreq(length, spacing), density.reshape(-1, density.shape[-1]).mean(axis=0)
+
+
+def _complete(surface: HeightMap | Profile) -> NDArray[np.float64]:
+    if np.isnan(surface.heights).any():
+        received = f"{surface.missing_share:.2%} missing points"
+        raise InputError("surface", received, "complete heights for a spectrum", "Use fill first.")
+    return surface.heights - surface.heights.mean()
+
+
+def psd_2d(
+    surface: HeightMap, window: bool = True
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Two-sided areal spectrum.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Complete, levelled heights, m; the mean is removed.
+    window : bool, optional
+        Apply a Hann window in both directions; without it only a periodic surface is free of
+        leakage.
+
+    Returns
+    -------
+    qx : ndarray, shape (nx,)
+        Angular wavenumbers, rad/m, rising through zero.
+    qy : ndarray, shape (ny,)
+        The same in y.
+    psd : ndarray, shape (nx, ny)
+        C(qx, qy), m⁴; its double integral is Sq², weighted by the squared window.
+
+    Raises
+    ------
+    InputError
+        If points are missing.
+    """
+    z = _complete(surface)
+    if window:
+        hann = [0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(n) / n) for n in z.shape]
+        weights = np.outer(hann[0], hann[1])
+        z, energy = z * weights, float(np.sum(weights**2))
+    else:
+        energy = float(z.size)
+    dx, dy = surface.spacing
+    density = fft.fftshift(np.abs(fft.fft2(z)) ** 2) * (dx * dy / (4.0 * np.pi**2 * energy))
+    qx, qy = (2.0 * np.pi * fft.fftshift(fft.fftfreq(n, d)) for n, d in zip(z.shape, (dx, dy), strict=True))
+    return qx, qy, density
+
+
+def psd_radial(surface: HeightMap, window: bool = True) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Areal spectrum averaged over directions.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Complete, levelled heights, m.
+    window : bool, optional
+        See `psd_2d`.
+
+    Returns
+    -------
+    q : ndarray, shape (k,)
+        Angular wavenumber, rad/m, mean over each ring; rings are as wide as the coarser of the two
+        wavenumber steps and end at the largest wavenumber that both directions reach.
+    psd : ndarray, shape (k,)
+        C(q), m⁴; for an isotropic surface 2π ∫ C q dq = Sq².
+
+    Raises
+    ------
+    InputError
+        If points are missing.
+    """
+    qx, qy, density = psd_2d(surface, window)
+    q = np.hypot(qx[:, None], qy[None, :])
+    step = max(qx[1] - qx[0], qy[1] - qy[0])
+    rings = int(min(-qx[0], -qy[0]) / step)
+    index = np.rint(q / step).astype(np.intp)
+    inside = (index >= 1) & (index <= rings)
+    count, total, radius = (
+        np.bincount(index[inside], weights, minlength=rings + 1)[1:]
+        for weights in (None, density[inside], q[inside])
+    )
+    return radius / count, total / count
