@@ -255,7 +255,7 @@ def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
         if abs(residual) <= limit:
             return force, iteration + 1, True
         low, high, approach = refine(low, high, approach, residual, 1.0 + compliance * stiffness, iteration)
-        if high - low <= limit:
+        if law.damping > 0.0 and abs(high - low) <= limit:
             # a damper engages with a jump: the force lies inside it
             return (free_approach - approach) / compliance, iteration + 1, True
     return (free_approach - approach) / compliance, ITERATIONS, False

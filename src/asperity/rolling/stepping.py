@@ -153,7 +153,7 @@ def _solve_from_python(
         if abs(residual) <= limit:
             return force, iteration + 1, True
         low, high, approach = refine(low, high, approach, residual, 1.0 + compliance * stiffness, iteration)
-        if high - low <= limit:
+        if damping > 0.0 and abs(high - low) <= limit:
             return (free_approach - approach) / compliance, iteration + 1, True
     return (free_approach - approach) / compliance, STEPPED_ITERATIONS, False
 
