@@ -31,7 +31,8 @@ def test_binary_sdf_of_every_data_type(tmp_path, code):
 
 
 @pytest.mark.parametrize(
-    ("code", "marker"), [(1, 2**16 - 1), (2, 2**32 - 1), (3, np.nan), (5, -(2**15)), (6, -(2**31)), (7, np.nan)]
+    ("code", "marker"),
+    [(1, 2**16 - 1), (2, 2**32 - 1), (3, np.nan), (5, -(2**15)), (6, -(2**31)), (7, np.nan)],
 )
 def test_missing_points_of_binary_sdf(tmp_path, code, marker):
     stored = STORED.astype(float)
@@ -227,7 +228,7 @@ def test_x3p_of_unknown_data_type(tmp_path):
     with zipfile.ZipFile(content) as archive, zipfile.ZipFile(file, "w") as changed:
         main = archive.read("main.xml").replace(b"<DataType>D</DataType>", b"<DataType>Q</DataType>")
         changed.writestr("main.xml", main)
-    with pytest.raises(InputError, match="data type of CX in a.x3p: received 'Q'; allowed: I, L, F or D"):
+    with pytest.raises(InputError, match=r"data type of CX in a\.x3p: received 'Q'; allowed: I, L, F or D"):
         read_surface(file)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from asperity.errors import InputError
 
 TOLERANCE = 0.05  # largest distance of a point from the grid, in spacings
-SPARSEST = 0.1  # smallest share of grid points that must be there
+SPARSEST = 0.5  # smallest share of grid points that must be there
 
 _REMEDY = "Resample the heights at a uniform spacing first."
 
@@ -64,7 +64,7 @@ def line(x: NDArray[np.float64], z: NDArray[np.float64], source: str) -> tuple[N
     Raises
     ------
     InputError
-        If the points do not lie at uniform distances, stand twice, or fill less than a tenth of the line.
+        If the points do not lie at uniform distances, stand twice, or fill less than half of the line.
     """
     index, spacing = _indices(x, source, "x", np.diff(np.sort(x)))
     return _filled_in(index, z, (int(index.max()) + 1,), source), spacing
@@ -92,7 +92,7 @@ def rasterised(
     Raises
     ------
     InputError
-        If the points do not lie on a regular grid, stand twice, or fill less than a tenth of the grid.
+        If the points do not lie on a regular grid, stand twice, or fill less than half of the grid.
     """
     (i, dx), (j, dy) = _indices(x, source, "x", _steps(x)), _indices(y, source, "y", _steps(y))
     shape = (int(i.max()) + 1, int(j.max()) + 1)
@@ -135,7 +135,7 @@ def _indices(
 
 
 def _check_share(source: str, shape: tuple[int, ...], points: int) -> None:
-    """Raise an `InputError` if the points fill less than a tenth of the grid, before it is allocated."""
+    """Raise an `InputError` if the points fill less than half of the grid, before it is allocated."""
     if math.prod(shape) * SPARSEST > points:
         received = f"{points} points that would need a grid of {' x '.join(str(n) for n in shape)}"
         raise InputError(source, received, "points on a regular grid", _REMEDY)

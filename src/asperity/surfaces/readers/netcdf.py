@@ -51,7 +51,8 @@ def read(path: Path, hints: Hints) -> list[Surface]:
         check_claim(source, variable.shape, variable.dtype.itemsize / MAX_COMPRESSION, path.stat().st_size)
         heights = _decoded(variable, hints.heights_in(source, stated), source)
         names = [name.rpartition("/")[2] for name in variable.dimensions]
-        group = variable.parent
+        within = variable.name.strip("/").rpartition("/")[0]
+        group = opened[within] if within else opened
         steps = [_step(group, name, hints, source) for name in names[-2:]]
         if len(names) > 1 and names[-1].lower() == "x":
             heights, steps = np.swapaxes(heights, -1, -2), steps[::-1]
