@@ -84,13 +84,24 @@ def test_stiffness_is_the_derivative(curve):
     s = (curve.knots[:-1] + np.outer([0.3, 0.6], width)).ravel()
     step = 1e-5 * np.tile(width, 2)
     difference = (curve.force(s + step) - curve.force(s - step)) / (2.0 * step)
-    assert_allclose(curve.stiffness(s), difference, rtol=1e-5)
+    assert_allclose(curve.stiffness(s), difference, rtol=1e-5, atol=1e-6 * difference.max())
 
 
-def test_curve_starts_at_the_last_zero_sample():
-    curve = ForceCurve.from_samples([-3e-6, -2e-6, -1e-6, 0.0, 1e-6], [0.0, 0.0, 0.0, 1.0, 4.0])
-    assert curve.first_touch == -1e-6
-    assert_allclose(curve.force([-1.5e-6, 0.0, 1e-6]), [0.0, 1.0, 4.0])
+@given(st.floats(0.0, 0.999), st.integers(1, 4))
+@settings(max_examples=30, deadline=None)
+def test_first_touch_is_found_between_samples(offset, zeros):
+    s = 1e-6 * (np.arange(8) - zeros + offset + 1e-3)
+    curve = ForceCurve.from_samples(s, K * np.maximum(s, 0.0) ** 1.5)
+    assert_allclose(curve.first_touch, 0.0, atol=1e-20)
+    fine = np.linspace(-3e-6, 8e-6, 111)
+    assert_allclose(curve.force(fine), K * np.maximum(fine, 0.0) ** 1.5, rtol=1e-9, atol=1e-9)
+
+
+def test_curve_starts_no_lower_than_the_last_sample_without_contact():
+    # g = 1, 1.1, 3: its continuation would reach below the sample at -1 um
+    curve = ForceCurve.from_samples([-2e-6, -1e-6, 0.0, 1e-6, 2e-6], [0.0, 0.0, 1.0, 1.1**1.5, 3**1.5])
+    assert_allclose(curve.first_touch, -1e-6)
+    assert_allclose(curve.force([-1.5e-6, 0.0, 1e-6]), [0.0, 1.0, 1.1**1.5], rtol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,48 @@ def monotone_slopes(knots: NDArray, values: NDArray) -> NDArray:
     return slopes
 
 
-def _end_slope(outer: float, inner: float, secant: NDArray, inner_secant: NDArray) -> NDArray:
+def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDArray:
+    """Replace the zeros before first touch by the straight continuation of what follows.
+
+    With the root of the force, g = F^(2/3), contact starts on a straight line (exactly so for
+    Hertz). Where that line is flatter than the one to the last sample without contact, the latter
+    is taken; so every zero becomes a value of zero or less, and first touch lies where g crosses zero.
+
+    Parameters
+    ----------
+    knots : ndarray (k,)
+        Increasing approaches.
+    root : ndarray (n, k)
+        Rows of g, not negative and not falling.
+    least : float
+        A value below this share of the next one counts as zero.
+
+    Returns
+    -------
+    ndarray (n, k)
+        Rows in which the zeros of a row with contact are continued.
+    """
+    rows = np.arange(len(root))
+    following = np.concatenate([root[:, 1:], np.zeros((len(root), 1))], axis=1)
+    first = np.argmax(root > least * following, axis=1)
+    before, after, second = first - 1, first + 1, first + 2
+    last = len(knots) - 1
+
+    def secant(low: NDArray, high: NDArray) -> NDArray:
+        low, high = np.clip(low, 0, last), np.clip(high, 0, last)
+        width = np.where(high > low, knots[high] - knots[low], 1.0)
+        return (root[rows, high] - root[rows, low]) / width
+
+    steepness = secant(first, after)
+    outer = knots[np.minimum(after, last)] - knots[first]
+    inner = knots[np.minimum(second, last)] - knots[np.minimum(after, last)]
+    curved = _end_slope(outer, np.maximum(inner, 1e-300), steepness, secant(after, second))
+    slope = np.maximum(np.where(second <= last, curved, steepness), secant(before, first))
+    line = root[rows, first][:, None] + slope[:, None] * (knots - knots[first][:, None])
+    return np.where(np.arange(len(knots)) < first[:, None], line, root)
+
+
+def _end_slope(outer: NDArray, inner: NDArray, secant: NDArray, inner_secant: NDArray) -> NDArray:
     estimate = ((2.0 * outer + inner) * secant - outer * inner_secant) / (outer + inner)
     return np.clip(estimate, 0.5 * secant, 2.0 * secant)
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
-from asperity.kernels.monotone import monotone_slopes
+from asperity.kernels.monotone import continued_to_touch, monotone_slopes
 from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
@@ -162,10 +162,12 @@ def on_table(
     Returns
     -------
     Prepared
-        Arrays for the kernel: g = F^(2/3) and its monotone slopes at every position.
+        Arrays for the kernel: g = F^(2/3), negative before first touch, and its monotone slopes
+        at every position.
     """
     at = np.atleast_1d(np.asarray(positions, dtype=float))
-    root = np.cbrt(table.at(at)) ** 2
+    # ripples of the spline beside a place where contact is lost are no contact
+    root = continued_to_touch(table.approaches, np.cbrt(table.at(at)) ** 2, least=0.05)
     return Prepared(
         TABLE,
         plane_at(plane, at),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
-from asperity.kernels.monotone import cubic_coefficients, monotone_slopes
+from asperity.kernels.monotone import continued_to_touch, cubic_coefficients, monotone_slopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +44,8 @@ class ForceCurve:
     def from_samples(cls, approach: ArrayLike, force: ArrayLike, exponent: float = 1.5) -> ForceCurve:
         """Curve through computed pairs of approach and force.
 
-        Of leading samples with zero force only the last is kept: contact starts there. If none is
-        zero, g is continued downwards with its first slope until it vanishes.
+        First touch lies where g, continued straight below its first positive sample, vanishes, but
+        not below the last sample with zero force.
 
         Parameters
         ----------
@@ -68,11 +68,11 @@ class ForceCurve:
         """
         s, f = np.asarray(approach, dtype=float), np.asarray(force, dtype=float)
         _check_samples(s, f)
-        first = int(np.argmax(f > 0.0))
-        s, g = s[max(first - 1, 0) :], f[max(first - 1, 0) :] ** (1.0 / exponent)
-        if g[0] > 0.0:
-            slope = monotone_slopes(s, g)[0]
-            s, g = np.concatenate([[s[0] - g[0] / slope], s]), np.concatenate([[0.0], g])
+        g = continued_to_touch(s, f[None] ** (1.0 / exponent))[0]
+        first = int(np.argmax(g > 0.0))
+        slope = np.diff(g)[first - 1] / np.diff(s)[first - 1] if first else monotone_slopes(s, g)[0]
+        s, g = s[first:], g[first:]
+        s, g = np.concatenate([[s[0] - g[0] / slope], s]), np.concatenate([[0.0], g])
         return cls(s, cubic_coefficients(s, g, monotone_slopes(s, g)), exponent, float(s[-1]))
 
     @classmethod
