@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import engineering, number, present, values
+from asperity.report.data import engineering, number, plain, present, values, variable
 from asperity.report.part import Columns, Part
 from asperity.report.style import (
     INK,
@@ -121,18 +121,18 @@ def force_figure(tree: DataTree) -> Figure:
     figure = new_figure(4.2)
     panels = figure.subplots(1, 2)
     approach = values(tree, "contact/approach")
-    draw = (
+    forces = (
         ("force", "rough, mean ± standard deviation", _BLUE, "-", "o", 1.0),
         ("hertz_force", "Hertz", INK, (0, (4, 2)), "", 1.0),
     )
-    _curves(panels[0], tree, approach, draw)
+    _curves(panels[0], tree, approach, forces)
     panels[0].set_ylabel("contact force F / N")
-    draw = (
+    stiffnesses = (
         ("stiffness", "k_c = F/r, mean ± standard deviation", _BLUE, "-", "o", 1e6),
         ("tangent_stiffness", "tangent dF/dδ", _GREEN, (0, (1.5, 1.5)), "", 1e6),
-        ("hertz_stiffness", "Hertz, F/δ", INK, (0, (4, 2)), "", 1e6),
+        ("hertz_stiffness", "Hertz", INK, (0, (4, 2)), "", 1e6),
     )
-    _curves(panels[1], tree, approach, draw)
+    _curves(panels[1], tree, approach, stiffnesses)
     panels[1].set_ylabel("stiffness / (MN/m)")
     for axes in panels:
         _approach_axis(axes, tree, approach)
@@ -168,15 +168,7 @@ def _approach_axis(axes: Axes, tree: DataTree, approach: NDArray[np.float64]) ->
         top.set_xlabel("state r = δ + d₀ / µm")
     working = number(tree, "contact", "working_approach")
     if working is not None and low <= 1e6 * working <= high:
-        axes.axvline(1e6 * working, color=MUTED, linewidth=0.9, linestyle=":")
-        axes.text(
-            1e6 * working,
-            0.02,
-            " working load",
-            transform=axes.get_xaxis_transform(),
-            fontsize=8,
-            color=MUTED,
-        )
+        axes.axvline(1e6 * working, color=MUTED, linewidth=0.9, linestyle=":", label="working load")
 
 
 _FORCE_UNITS = {
@@ -203,10 +195,12 @@ def _force_caption(tree: DataTree) -> str:
     common = (
         f"one common datum d₀ = {engineering(datum, 'm')}" if datum is not None else "no common datum stated"
     )
+    hertz = variable(tree, "contact/hertz_stiffness")
+    smooth = "" if hertz is None else f" Stiffness of Hertz: {hertz.attrs.get('long_name', 'secant')}."
     return (
-        "Approach of the mean surfaces, positive closing; rough contact starts below zero. The state r counts from "
-        f"{common}; Hertz's smooth contact is drawn at r − d₀. k_c is the secant F/r (Eq. 2.3), the tangent is what small "
-        "vibration feels."
+        "Approach of the mean surfaces, positive closing; rough contact starts below zero. The state r "
+        f"counts from {common}; Hertz's smooth contact is drawn at r − d₀. k_c is the secant F/r (Eq. 2.3), "
+        f"the tangent is what small vibration feels.{smooth}"
     )
 
 
@@ -247,19 +241,20 @@ def _magnitudes(axes: Axes, tree: DataTree, wavenumber: NDArray[np.float64], row
     theory = _theory(tree)
     approach = values(tree, "contact/approach")
     for row, colour in zip(rows, sequence(len(rows)), strict=True):
-        label = f"δ = {approach[row] * 1e6:.3g} µm"
+        label = f"δ = {plain(approach[row] * 1e6)} µm"
         axes.plot(wavenumber, _level(magnitude[row]), color=colour, label=label, linewidth=1.7)
         if spread is not None:
             band = (_level(magnitude[row] - spread[row]), _level(magnitude[row] + spread[row]))
-            axes.fill_between(wavenumber, *band, color=colour, alpha=0.12, linewidth=0)
+            clear = magnitude[row] > spread[row]
+            axes.fill_between(wavenumber, *band, where=clear, color=colour, alpha=0.09, linewidth=0)
         if theory is not None:
-            axes.plot(
-                wavenumber, _level(np.abs(theory[row])), color=colour, linewidth=0.7, linestyle=(0, (4, 2))
-            )
+            lobe = np.logical_and.accumulate(theory[row] > 0)  # beyond it the lobes of all states would cross
+            level = np.where(lobe, _level(theory[row]), np.nan)
+            axes.plot(wavenumber, level, color=colour, linewidth=0.9, linestyle=(0, (4, 2)))
     axes.set_ylim(FLOOR, 5)
     axes.set_ylabel("|H| / dB")
     axes.legend(loc="lower left", ncols=2)
-    axes.set_title("magnitude" + ("; dashed: |sin q / q|" if theory is not None else ""))
+    axes.set_title("magnitude" + ("; dashed: sin q / q up to its first zero" if theory is not None else ""))
 
 
 def _signed(axes: Axes, tree: DataTree, wavenumber: NDArray[np.float64], rows: list[int]) -> None:
@@ -299,18 +294,39 @@ def filter_columns(tree: DataTree) -> Columns:
 
 def _filter_caption(tree: DataTree) -> str:
     dashed = (
-        " Dashed: sin q / q, q = ka, the closed form of small roughness on Hertz's contact of radius a; it is negative "
-        "beyond q = π, which a magnitude cannot show."
+        " Dashed: sin q / q, q = ka, the closed form of small roughness on Hertz's contact of radius a; it "
+        "is negative beyond q = π, which a magnitude cannot show."
     )
     return (
-        "Contact filter per approach against the wavenumber in rolling direction (cycles per metre), wavelength along the top; "
-        f"shaded: standard deviation of the samples; cut off at {FLOOR:.0f} dB."
+        "Contact filter per approach against the wavenumber in rolling direction (cycles per metre), "
+        f"wavelength along the top; shaded: standard deviation of the samples; cut off at {plain(FLOOR)} dB."
         + (dashed if _theory(tree) is not None else "")
     )
 
 
 CONTACT = (
-    Part("contact_pressure", "Pressure at the working load", ("contact/pressure", "contact/px", "contact/py"), pressure_figure, pressure_columns, _pressure_caption),
-    Part("contact_force", "Contact force and stiffness", ("contact/force", "contact/approach"), force_figure, force_columns, _force_caption),
-    Part("contact_filter", "Contact filter", ("contact/filter", "contact/wavenumber", "contact/approach"), filter_figure, filter_columns, _filter_caption),
-)  # fmt: skip
+    Part(
+        "contact_pressure",
+        "Pressure at the working load",
+        ("contact/pressure", "contact/px", "contact/py"),
+        pressure_figure,
+        pressure_columns,
+        _pressure_caption,
+    ),
+    Part(
+        "contact_force",
+        "Contact force and stiffness",
+        ("contact/force", "contact/approach"),
+        force_figure,
+        force_columns,
+        _force_caption,
+    ),
+    Part(
+        "contact_filter",
+        "Contact filter",
+        ("contact/filter", "contact/wavenumber", "contact/approach"),
+        filter_figure,
+        filter_columns,
+        _filter_caption,
+    ),
+)

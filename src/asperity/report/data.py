@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -51,7 +52,7 @@ def number(tree: DataTree, group: str, name: str) -> float | None:
     return result if math.isfinite(result) else None
 
 
-def entries(attrs: dict[str, Any], name: str, empty: Any) -> Any:
+def entries(attrs: Mapping[Any, Any], name: str, empty: Any) -> Any:
     """JSON text in an attribute, decoded; `empty` if it is missing, damaged or of another kind."""
     try:
         found = json.loads(attrs.get(name, "null"))
@@ -62,7 +63,7 @@ def entries(attrs: dict[str, Any], name: str, empty: Any) -> Any:
 
 def group_attrs(tree: DataTree, group: str) -> dict[str, Any]:
     """Attributes of a group; none if the group is missing."""
-    return dict(tree[group].attrs) if group in tree.children else {}
+    return {str(k): v for k, v in tree[group].attrs.items()} if group in tree.children else {}
 
 
 def laws(tree: DataTree, path: str) -> list[str]:
@@ -71,7 +72,7 @@ def laws(tree: DataTree, path: str) -> list[str]:
     if found is None:
         return []
     rest = [dim for dim in found.dims if dim != "law"]
-    kept = np.isfinite(found).any(rest).values
+    kept = found.notnull().any(rest).values
     return [str(law) for law, keep in zip(found["law"].values, kept, strict=True) if keep]
 
 
@@ -101,13 +102,18 @@ def engineering(value: float, unit: str, digits: int = 3) -> str:
     if not math.isfinite(value):
         return "–"
     if unit in ("", "1"):
-        return f"{value:.{digits}g}"
+        return plain(value, digits)
     power = 2 if unit == "m²" else 1  # a prefix on a squared unit is squared with it
     exponent = 0 if value == 0 else 3 * math.floor(math.floor(math.log10(abs(value))) / (3 * power))
     exponent = min(max(exponent, -12 if power == 1 else -9), 0 if power == 2 else 12)
     scaled = value / 10.0 ** (exponent * power)
     places = 0 if scaled == 0 else max(0, digits - 1 - math.floor(math.log10(abs(scaled))))
-    return f"{scaled:.{places}f} {_PREFIXES[exponent]}{unit}"
+    return f"{scaled:.{places}f} {_PREFIXES[exponent]}{unit}".replace("-", "−")
+
+
+def plain(value: float, digits: int = 3) -> str:
+    """Write a number with `digits` digits and a true minus sign."""
+    return f"{value:.{digits}g}".replace("-", "−")
 
 
 def power_of_ten(value: float) -> str:
@@ -116,7 +122,7 @@ def power_of_ten(value: float) -> str:
 
 
 def nominal_band(centre: float) -> str:
-    """Nominal name of the one-third octave with the exact base-10 `centre` in Hz (IEC 61260-1): ``"31.5"``, ``"1k"``."""
+    """Nominal name of the one-third octave with the exact `centre` in Hz (IEC 61260-1), as ``"31.5"``."""
     index = round(10 * math.log10(centre))
     mantissa = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)[index % 10]
     nominal = mantissa * 10.0 ** (index // 10)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -48,7 +49,9 @@ def drawable_parts(tree: DataTree) -> list[Part]:
 
 def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
     return [
-        Picture(part.name, part.title, part.caption(tree), Markup(svg(part.draw(tree), part.name, part.title)))
+        Picture(
+            part.name, part.title, part.caption(tree), Markup(svg(part.draw(tree), part.name, part.title))
+        )
         for part in parts
         if part.drawable(tree)
     ]
@@ -75,13 +78,16 @@ def _tables(*tables: Table | None) -> list[Picture | Table]:
     return [table for table in tables if table is not None]
 
 
-def _records(attrs: dict[str, Any], name: str) -> list[dict[str, Any]]:
+def _records(attrs: Mapping[Any, Any], name: str) -> list[dict[str, Any]]:
     return [entry for entry in entries(attrs, name, []) if isinstance(entry, dict)]
 
 
 def _law_key(tree: DataTree) -> list[dict[str, str]]:
     meanings = entries(group_attrs(tree, "scenario"), "laws", {})
-    return [{"name": str(law), "meaning": str(text), "colour": law_style(law, "")["color"]} for law, text in meanings.items()]
+    return [
+        {"name": str(law), "meaning": str(text), "colour": law_style(law, "")["color"]}
+        for law, text in meanings.items()
+    ]
 
 
 def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:

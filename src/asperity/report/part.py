@@ -33,6 +33,8 @@ class Part:
         Makes the columns of the CSV file from a result tree.
     caption : callable
         Says, from a result tree, what is drawn and with which conventions.
+    any_of : tuple of str, optional
+        Variables of which it needs at least one.
     """
 
     name: str
@@ -41,7 +43,9 @@ class Part:
     draw: Callable[[DataTree], Figure]
     columns: Callable[[DataTree], Columns]
     caption: Callable[[DataTree], str]
+    any_of: tuple[str, ...] = ()
 
     def drawable(self, tree: DataTree) -> bool:
         """Whether `tree` holds what the figure needs."""
-        return present(tree, *self.needs)
+        some = not self.any_of or any(present(tree, path) for path in self.any_of)
+        return some and present(tree, *self.needs)

@@ -52,7 +52,7 @@ def _narrow(tree: DataTree, psd: NDArray[np.float64], reference: float) -> Spect
     kept = (frequency >= low) & (frequency <= high) & (frequency > 0)
     if not kept.any():
         return np.array([low, high]), np.full(2, np.nan)
-    smooth, power = smooth_on_log_axis(frequency[kept], psd[kept], 48)
+    smooth, power = smooth_on_log_axis(frequency[kept], psd[kept], 24)
     return smooth, decibels(power, reference)
 
 
@@ -86,7 +86,7 @@ def band_figure(tree: DataTree) -> Figure:
     with_difference = present(tree, DIFFERENCE)
     figure = new_figure(6.4 if with_difference else 4.0)
     panels = figure.subplots(2 if with_difference else 1, 1, sharex=True, squeeze=False)[:, 0]
-    _draw_bands(panels[0], tree, LEVEL, laws(tree, LEVEL))
+    _draw_bands(panels[0], tree, LEVEL, laws(tree, LEVEL), span=100.0, step=10.0)
     panels[0].set_ylabel("contact force level / dB re 1 N")
     legend_above(panels[0])
     if with_difference:
@@ -97,7 +97,9 @@ def band_figure(tree: DataTree) -> Figure:
     return figure
 
 
-def _draw_bands(axes: Axes, tree: DataTree, path: str, names: Sequence[str], span: float = 80.0, step: float = 10.0) -> None:
+def _draw_bands(
+    axes: Axes, tree: DataTree, path: str, names: Sequence[str], span: float, step: float
+) -> None:
     bands = values(tree, "spectra/band")
     main = laws(tree, LEVEL)[0] if present(tree, LEVEL) else names[0]
     levels = [of_law(tree, path, law, "band") for law in names]
@@ -123,8 +125,8 @@ def band_columns(tree: DataTree) -> Columns:
 def _sensors(tree: DataTree) -> list[int]:
     found = variable(tree, ACCELERATION)
     assert found is not None
-    finite = np.isfinite(found).any([dim for dim in found.dims if dim != "sensor"]).values
-    return np.flatnonzero(finite).tolist()
+    others = [dim for dim in found.dims if dim != "sensor"]
+    return [int(i) for i in np.flatnonzero(found.notnull().any(others).values)]
 
 
 def _acceleration_level(tree: DataTree, law: str, sensor: int) -> Spectrum:
@@ -191,23 +193,26 @@ def one_sensor_columns(tree: DataTree) -> Columns:
     return columns
 
 
-_DRAWN = "drawn as mean power per 1/48 octave where the lines are denser than that"
+_DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than that"
 
 
 def _force_caption(tree: DataTree) -> str:
     return (
         f"Contact force of all laws, one-sided PSD, {_DRAWN}; thick: the main law, {laws(tree, FORCE)[0]}. "
-        "Grid lines stand at the one-third octaves."
+        "Ticks stand at the one-third octaves."
     )
 
 
 def _band_caption(tree: DataTree) -> str:
     below = " Below: level minus that of the linear law; positive where linear contact underestimates."
-    return "Levels per one-third octave (IEC 61260-1, base 10)." + (below if present(tree, DIFFERENCE) else "")
+    return "Levels per one-third octave (IEC 61260-1, base 10)." + (
+        below if present(tree, DIFFERENCE) else ""
+    )
 
 
 def _sensors_caption(tree: DataTree) -> str:
-    return f"Acceleration at all sensors by the main law, {laws(tree, ACCELERATION)[0]}, positive downwards; {_DRAWN}."
+    main = laws(tree, ACCELERATION)[0]
+    return f"Acceleration at all sensors by the main law, {main}, positive downwards; {_DRAWN}."
 
 
 def _one_sensor_caption(tree: DataTree) -> str:
@@ -217,8 +222,36 @@ def _one_sensor_caption(tree: DataTree) -> str:
 _ACCELERATION_NEEDS = (ACCELERATION, "spectra/frequency")
 
 SPECTRUM = (
-    Part("force_psd", "Contact force against frequency", (FORCE, "spectra/frequency"), force_figure, force_columns, _force_caption),
-    Part("force_bands", "Contact force in one-third octaves", (LEVEL, "spectra/band"), band_figure, band_columns, _band_caption),
-    Part("acceleration_sensors", "Acceleration at the sensors", _ACCELERATION_NEEDS, sensors_figure, sensors_columns, _sensors_caption),
-    Part("acceleration_laws", "Acceleration by law", _ACCELERATION_NEEDS, one_sensor_figure, one_sensor_columns, _one_sensor_caption),
-)  # fmt: skip
+    Part(
+        "force_psd",
+        "Contact force against frequency",
+        (FORCE, "spectra/frequency"),
+        force_figure,
+        force_columns,
+        _force_caption,
+    ),
+    Part(
+        "force_bands",
+        "Contact force in one-third octaves",
+        (LEVEL, "spectra/band"),
+        band_figure,
+        band_columns,
+        _band_caption,
+    ),
+    Part(
+        "acceleration_sensors",
+        "Acceleration at the sensors",
+        _ACCELERATION_NEEDS,
+        sensors_figure,
+        sensors_columns,
+        _sensors_caption,
+    ),
+    Part(
+        "acceleration_laws",
+        "Acceleration by law",
+        _ACCELERATION_NEEDS,
+        one_sensor_figure,
+        one_sensor_columns,
+        _one_sensor_caption,
+    ),
+)

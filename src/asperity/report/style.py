@@ -1,4 +1,4 @@
-"""One look for all figures: colours that colour-blind readers can tell apart, line styles, axes of the field."""
+"""One look for all figures: colours that colour-blind readers can tell apart, dashes, axes of the field."""
 
 from __future__ import annotations
 
@@ -64,9 +64,10 @@ LAW_STYLES = {
     "hertz": LineStyle("#2a93c4", (0, (1.5, 1.5)), "P"),
     "linear": LineStyle("#96700a", (0, (3, 1.5)), "X"),
 }
+VARIANT_DASHES: Dashes = (0, (8, 1.5, 1, 1.5, 1, 1.5))  # of a law with a suffix, as "linear-filtered"
 _OTHER = LineStyle("#6f7a85", (0, (4, 1, 1, 1, 1, 1)), "<")
 
-RC = {
+RC: dict[Any, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "asperity",
     "font.family": "sans-serif",
@@ -117,14 +118,16 @@ def new_figure(height: float, width: float = WIDTH) -> Figure:
 
 def law_style(law: str, main: str) -> dict[str, Any]:
     """Line properties of a law; the main law is drawn thicker and on top."""
-    style = LAW_STYLES.get(law, _OTHER)
+    base, _, variant = law.partition("-")  # "linear-filtered" keeps the colour of "linear"
+    style = LAW_STYLES.get(base, _OTHER)
+    dashes = VARIANT_DASHES if variant else style.dashes
     emphasis = {"linewidth": 2.2, "zorder": 4} if law == main else {"linewidth": 1.25, "zorder": 3}
-    return {"color": style.colour, "linestyle": style.dashes, **emphasis}
+    return {"color": style.colour, "linestyle": dashes, **emphasis}
 
 
 def law_marker(law: str) -> str:
     """Marker of a law."""
-    return LAW_STYLES.get(law, _OTHER).marker
+    return LAW_STYLES.get(law.partition("-")[0], _OTHER).marker
 
 
 def sequence(count: int) -> list[str]:
@@ -148,10 +151,16 @@ def svg(figure: Figure, name: str, title: str) -> str:
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
     head, inner = body.split(">", 1)
     box = re.search(r'viewBox="[^"]*"', head)
-    inner = re.sub(r'\bid="', f'id="{name}-', inner)
-    inner = inner.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
-    for index, colour in enumerate(COLOURS):
-        inner = inner.replace(colour, f"var(--c{index})")
+    used = set(re.findall(r'(?:url\(|href=")#([^")]+)', inner))
+
+    def rewritten(tag: re.Match[str]) -> str:  # tags only: the words of a label stay as they are
+        text = re.sub(r' id="([^"]*)"', lambda m: f' id="{name}-{m[1]}"' if m[1] in used else "", tag[0])
+        text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
+        for index, colour in enumerate(COLOURS):
+            text = text.replace(colour, f"var(--c{index})")
+        return text
+
+    inner = re.sub(r"<[^<>]+>", rewritten, inner)
     label = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     return f'<svg role="img" aria-label="{label}" {box.group(0) if box else ""}>{inner}'
 
@@ -239,6 +248,20 @@ def decibels(power: NDArray[np.float64], reference: float = 1.0) -> NDArray[np.f
     """10 lg(power/reference); NaN where there is no power."""
     ratio = np.where(power > 0, power / reference, np.nan)
     return 10 * np.log10(ratio)
+
+
+def note_at(axes: Axes, x: float, height: float, text: str, va: str) -> None:
+    """Write `text` right of `x`, at the share `height` of the axes, a little away from a line at `x`."""
+    axes.annotate(
+        text,
+        (x, height),
+        xycoords=axes.get_xaxis_transform(),
+        xytext=(5, 0),
+        textcoords="offset points",
+        va=va,
+        fontsize=8.5,
+        color=MUTED,
+    )
 
 
 def legend_above(axes: Axes, columns: int = 7) -> None:

@@ -7,18 +7,27 @@ from dataclasses import dataclass, field
 import numpy as np
 from xarray import DataTree
 
-from asperity.report.data import engineering, entries, group_attrs, laws, nominal_band, of_law, present, values, variable
+from asperity.report.data import (
+    engineering,
+    entries,
+    group_attrs,
+    laws,
+    nominal_band,
+    of_law,
+    present,
+    values,
+    variable,
+)
 
 REFERENCE = "spectra/force_level_difference_to_reference"
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One field of a table: its text, a class for its look, and a share from 0 to 1 drawn as a bar."""
+    """One field of a table: its text, and a class for its look."""
 
     text: str
     look: str = ""
-    bar: float | None = None
 
 
 @dataclass(frozen=True)
@@ -46,9 +55,23 @@ def statistics_table(tree: DataTree) -> Table | None:
         value, unit = entry.get("value"), str(entry.get("unit", ""))
         shown = engineering(float(value), unit) if isinstance(value, int | float) else "–"
         names = [str(entry.get(name, "")) for name in ("symbol", "meaning", "surface")]
-        rows.append([_text(names[0]), _text(names[1]), _text(names[2]), Cell(shown, "number"), _text(entry.get("bandwidth", ""))])
+        rows.append(
+            [
+                _text(names[0]),
+                _text(names[1]),
+                _text(names[2]),
+                Cell(shown, "number"),
+                _text(entry.get("bandwidth", "")),
+            ]
+        )
     note = "A statistic of a texture holds for its bandwidth of wavelengths only."
-    return Table("statistics", "Statistics of the texture", ["symbol", "meaning", "of", "value", "bandwidth"], rows, note)
+    return Table(
+        "statistics",
+        "Statistics of the texture",
+        ["symbol", "meaning", "of", "value", "bandwidth"],
+        rows,
+        note,
+    )
 
 
 def reference_law(tree: DataTree) -> str | None:
@@ -57,7 +80,11 @@ def reference_law(tree: DataTree) -> str | None:
     if found is None:
         return None
     stated = found.attrs.get("reference")
-    return str(stated) if stated else next((law for law in ("direct", "table") if law in laws(tree, REFERENCE)), None)
+    return (
+        str(stated)
+        if stated
+        else next((law for law in ("direct", "table") if law in laws(tree, REFERENCE)), None)
+    )
 
 
 def reference_table(tree: DataTree) -> Table | None:
@@ -68,7 +95,10 @@ def reference_table(tree: DataTree) -> Table | None:
         return None
     differences = np.array([of_law(tree, REFERENCE, law, "band") for law in names])
     bands = values(tree, "spectra/band")
-    rows = [[Cell(nominal_band(f), "number"), *map(_difference, column)] for f, column in zip(bands, differences.T, strict=True)]
+    rows = [
+        [Cell(nominal_band(f), "number"), *map(_difference, column)]
+        for f, column in zip(bands, differences.T, strict=True)
+    ]
     with np.errstate(invalid="ignore"):
         largest = np.nanmax(np.abs(differences), axis=1)
         mean = np.nanmean(differences, axis=1)
@@ -90,24 +120,39 @@ def _difference(value: float) -> Cell:
     return Cell(_signed(value), "number" + look)
 
 
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
+
+
 def loss_table(tree: DataTree) -> Table | None:
     """Share of time without contact, number of events and the longest, per law."""
     names = laws(tree, "rolling/contact_loss_share")
     if not names:
         return None
     has_events, has_longest = (present(tree, f"rolling/{n}") for n in ("contact_loss_events", "longest_loss"))
-    head = ["law", "time without contact", *(["events"] if has_events else []), *(["longest"] if has_longest else [])]
+    head = [
+        "law",
+        "time without contact",
+        *(["events"] if has_events else []),
+        *(["longest"] if has_longest else []),
+    ]
     rows = []
     for law in names:
         share = float(of_law(tree, "rolling/contact_loss_share", law))
-        row = [_text(law), Cell(f"{100 * share:.3g} %", "number", min(max(share, 0.0), 1.0))]
+        row = [_text(law), Cell(_percent(share), "number")]
         if has_events:
             row.append(Cell(f"{float(of_law(tree, 'rolling/contact_loss_events', law)):.0f}", "number"))
         if has_longest:
             longest = float(of_law(tree, "rolling/longest_loss", law))
             row.append(Cell(engineering(longest, "s") if longest > 0 else "–", "number"))
         rows.append(row)
-    return Table("contact_loss", "Loss of contact", head, rows, "The linear law cannot lose contact: it pulls where others let go.")
+    return Table(
+        "contact_loss",
+        "Loss of contact",
+        head,
+        rows,
+        "The linear law cannot lose contact: it pulls where others let go.",
+    )
 
 
 def energy_table(tree: DataTree) -> Table | None:
@@ -127,4 +172,10 @@ def energy_table(tree: DataTree) -> Table | None:
             row.append(Cell(f"{float(of_law(tree, 'rolling/energy_residual', law)):.1e}", "number"))
         rows.append(row)
     head = ["law", *terms, *(["relative residual"] if with_rest else [])]
-    return Table("energy", "Energy balance of the run", head, rows, "Energies at the end of the run; the residual is what the terms leave open, relative to the largest.")
+    return Table(
+        "energy_balance",
+        "Energy balance of the run",
+        head,
+        rows,
+        "Energies at the end of the run; the residual is what the terms leave open, relative to the largest.",
+    )

@@ -20,12 +20,14 @@ from asperity.report.style import (
     MUTED,
     envelope,
     new_figure,
+    note_at,
     power_axis,
     smooth_on_log_axis,
     styled,
     wavenumber_axis,
 )
 
+SLENDER = 2.5  # times longer than wide: such a map gets the whole width
 PIXELS = 320  # along each side of a drawn map; denser maps show every n-th point
 _BLUE, _ORANGE = LAW_STYLES["areal"].colour, LAW_STYLES["shifted"].colour
 
@@ -58,7 +60,7 @@ def draw_map(
     image = axes.imshow(
         field[::skip_x, ::skip_y].T,
         origin="lower",
-        extent=[edge / unit[0] for edge in extent],
+        extent=tuple(edge / unit[0] for edge in extent),
         aspect="equal" if equal else "auto",
         **options,
     )
@@ -69,7 +71,7 @@ def draw_map(
 
 
 def height_scale(heights: NDArray[np.float64]) -> tuple[float, str, dict[str, Any]]:
-    """Unit of heights, its symbol, and colour limits symmetric to the mean that leave out 0.1 % at either end."""
+    """Unit of heights, its symbol, and colours symmetric to the mean that leave out 0.1 % at either end."""
     finite = heights[np.isfinite(heights)]
     middle = finite.mean()
     reach = np.abs(np.percentile(finite, [0.1, 99.9]) - middle).max() or 1e-9
@@ -98,17 +100,27 @@ def height_histogram(axes: Axes, named: dict[str, NDArray[np.float64]], unit: tu
     axes.legend(loc="lower center")
 
 
+def _map_and_histogram(slender: bool) -> tuple[Figure, Axes, Axes]:
+    """Figure with room for a map and a histogram: beneath each other for a map that is long and narrow."""
+    if slender:
+        figure = new_figure(4.6)
+        upper, lower = figure.subplots(2, 1, height_ratios=[1, 1.4])
+        return figure, upper, lower
+    figure = new_figure(4.2)
+    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
+    return figure, left, right
+
+
 @styled()
 def sample_figure(tree: DataTree) -> Figure:
     """Map of the first sample, and how its heights are distributed."""
     heights = values(tree, "surface/sample_heights", "x", "y")
     x, y = values(tree, "surface/x"), values(tree, "surface/y")
     size, symbol, colours = height_scale(heights)
-    figure = new_figure(4.1)
-    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
+    figure, left, right = _map_and_histogram(bool(np.ptp(x) > SLENDER * np.ptp(y)))
     image = draw_map(left, x, y, heights / size, length_unit(np.ptp(x)), **colours)
     left.set_title("first sample")
-    figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9)
+    figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9, pad=0.02)
     named = {"sample": heights}
     if present(tree, "surface/path_heights"):
         named["path"] = values(tree, "surface/path_heights", "path_x", "path_y")
@@ -191,7 +203,7 @@ def psd_figure(tree: DataTree) -> Figure:
     _mark_contact(axes, tree)
     if drawn:
         levels = np.concatenate([level for _, level in drawn])
-        axes.set_ylim(max(levels.min(), levels.max() * 1e-12) / 2, levels.max() * 4)
+        axes.set_ylim(max(levels.min() / 2, levels.max() * 1e-8), levels.max() * 4)
         wavenumber_axis(axes, min(k[0] for k, _ in drawn), max(k[-1] for k, _ in drawn))
     power_axis(axes.yaxis)
     axes.set_ylabel("one-sided PSD / m³")
@@ -204,10 +216,8 @@ def _mark_contact(axes: Axes, tree: DataTree) -> None:
     if radius is None or radius <= 0:
         return
     axes.axvline(1 / (2 * radius), color=INK, linewidth=0.9, linestyle=":")
-    axes.text(
-        1 / (2 * radius), 0.97, f" length of the contact, 2a = {engineering(2 * radius, 'm')}",
-        transform=axes.get_xaxis_transform(), va="top", fontsize=8.5, clip_on=True,
-    )  # fmt: skip
+    label = f"length of the contact, 2a = {engineering(2 * radius, 'm')}"
+    note_at(axes, 1 / (2 * radius), 0.97, label, va="top")
 
 
 def psd_columns(tree: DataTree) -> Columns:
@@ -223,23 +233,43 @@ def _sample_caption(tree: DataTree) -> str:
     missing = number(tree, "surface", "missing_share") or 0.0
     source = tree["surface"].attrs.get("source") or "not stated"
     return (
-        f"Source: {source}; {100 * missing:.3g} % of its points had no height. Heights are positive out of the "
-        "material; the colours leave out 0.1 % of the points at either end."
+        f"Source: {source}; {100 * missing:.3g} % of its points had no height. Heights are positive out of "
+        "the material; the colours leave out 0.1 % of the points at either end."
     )
 
 
 TEXTURE = (
-    Part("texture_sample", "Texture of the samples", ("surface/sample_heights",), sample_figure, sample_columns, _sample_caption),
     Part(
-        "texture_path", "Texture of the path", ("surface/path_heights",), path_figure, path_columns,
-        lambda _: "Heights of the path, positive out of the material. The CSV file holds the piece seen from above.",
+        "texture_sample",
+        "Texture of the samples",
+        ("surface/sample_heights",),
+        sample_figure,
+        sample_columns,
+        _sample_caption,
     ),
     Part(
-        "texture_psd", "Texture against wavenumber", ("surface/surface_wavenumber",), psd_figure, psd_columns,
-        lambda _: "Power spectral density of the lines in rolling direction, mean over the lines, one-sided per "
-        "cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that.",
+        "texture_path",
+        "Texture of the path",
+        ("surface/path_heights",),
+        path_figure,
+        path_columns,
+        lambda _: (
+            "Heights of the path, positive out of the material. The CSV file holds the piece seen from above."
+        ),
     ),
-)  # fmt: skip
+    Part(
+        "texture_psd",
+        "Texture against wavenumber",
+        ("surface/surface_wavenumber",),
+        psd_figure,
+        psd_columns,
+        lambda _: (
+            "Power spectral density of the lines in rolling direction, mean over the lines, one-sided "
+            "per cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that."
+        ),
+        any_of=tuple(f"surface/{name}" for name in _SPECTRA),
+    ),
+)
 
 
 @styled()
@@ -259,12 +289,13 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
     -------
     Figure
     """
-    heights = np.asarray(heights, dtype=float)
+    heights = np.asarray(heights, dtype=np.float64)
     size, symbol, colours = height_scale(heights)
-    figure = new_figure(4.3)
+    length = np.asarray(heights.shape, dtype=np.float64) * spacing[: heights.ndim]
+    figure, left, right = _map_and_histogram(heights.ndim == 1 or bool(length[0] > SLENDER * length[1]))
+    figure.set_facecolor("white")  # it goes to a file of its own
     figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
-    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
-    x = spacing[0] * np.arange(heights.shape[0])
+    x = spacing[0] * np.arange(heights.shape[0], dtype=np.float64)
     unit = length_unit(np.ptp(x))
     if heights.ndim == 1:
         starts, low, high = envelope(heights / size, 1200)
@@ -272,9 +303,9 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
         left.set_xlabel(f"x / {unit[1]}")
         left.set_ylabel(f"height / {symbol}")
     else:
-        y = spacing[1] * np.arange(heights.shape[1])
-        slender = max(np.ptp(x), np.ptp(y)) > 6 * min(np.ptp(x), np.ptp(y))
-        image = draw_map(left, x, y, heights / size, unit, equal=not slender, **colours)
+        y = spacing[1] * np.arange(heights.shape[1], dtype=np.float64)
+        extreme = max(length) > 12 * min(length)
+        image = draw_map(left, x, y, heights / size, unit, equal=not extreme, **colours)
         figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9)
     left.xaxis.set_major_locator(MaxNLocator(6))
     height_histogram(right, {"heights": heights}, (size, symbol))

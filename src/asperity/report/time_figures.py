@@ -10,7 +10,7 @@ from xarray import DataTree
 
 from asperity.report.data import laws, of_law, values
 from asperity.report.part import Columns, Part
-from asperity.report.style import MUTED, envelope, law_style, legend_above, new_figure, styled
+from asperity.report.style import INK, MUTED, envelope, law_style, legend_above, new_figure, styled
 
 FORCE = "rolling/contact_force"
 COLUMNS = 700  # stretches of an envelope
@@ -21,13 +21,18 @@ def lost(tree: DataTree, law: str) -> NDArray[np.bool_]:
     """Time steps at which `law` has lost contact; none for a law whose contact pulls as well (linear)."""
     force = of_law(tree, FORCE, law, "time")
     share = "rolling/contact_loss_share"
-    if law == "linear" or (law in laws(tree, share) and of_law(tree, share, law) == 0):
+    if is_bilateral(law) or (law in laws(tree, share) and of_law(tree, share, law) == 0):
         return np.zeros(len(force), dtype=bool)
     return force <= 0
 
 
+def is_bilateral(law: str) -> bool:
+    """Whether the contact of `law` pulls as well as it pushes, so that it cannot be lost."""
+    return law.partition("-")[0] == "linear"
+
+
 def piece(tree: DataTree) -> slice:
-    """Short piece of the run: around the main law's longest loss of contact, else in the middle of the run."""
+    """Short piece of the run: around the main law's longest loss of contact, else in the middle."""
     flight = lost(tree, laws(tree, FORCE)[0])
     count = len(flight)
     middle = count // 2
@@ -50,8 +55,8 @@ def envelope_figure(tree: DataTree) -> Figure:
     """Contact force of the whole run, one row per law, as the envelope of its extremes."""
     names = laws(tree, FORCE)
     time = values(tree, "rolling/time")
-    figure = new_figure(0.75 + 0.95 * len(names))
-    panels = figure.subplots(len(names), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    figure = new_figure(0.6 + 1.0 * len(names))
+    panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
     unit, symbol = _time_unit(time[-1] - time[0])
     for axes, law in zip(panels, names, strict=True):
         colour = law_style(law, names[0])["color"]
@@ -61,17 +66,26 @@ def envelope_figure(tree: DataTree) -> Figure:
         flights = np.logical_or.reduceat(lost(tree, law), starts)
         _flight_marks(axes, time[starts[flights]] / unit)
         axes.set_title(law + (" (main law)" if law == names[0] and len(names) > 1 else ""))
-        axes.margins(x=0)
+        axes.set_xlim(time[0] / unit, time[-1] / unit)
+        axes.set_ylabel("F / N")
+    _share_limits([axes for axes, law in zip(panels, names, strict=True) if not is_bilateral(law)])
     panels[-1].set_xlabel(f"time / {symbol}")
-    figure.supylabel("contact force / N (compression positive)", fontsize=9)
     return figure
 
 
+def _share_limits(panels: list[Axes]) -> None:
+    """One force axis for the laws that can lose contact; a linear law swings too far to share it."""
+    limits = [axes.get_ylim() for axes in panels]
+    for axes in panels:
+        axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
+
+
 def _flight_marks(axes: Axes, instants: NDArray[np.float64]) -> None:
-    axes.plot(
-        instants, np.full(len(instants), 0.03), "|", transform=axes.get_xaxis_transform(), color="#c8500a",
+    (marks,) = axes.plot(
+        instants, np.full(len(instants), 0.03), "|", transform=axes.get_xaxis_transform(), color=INK,
         markersize=7, markeredgewidth=0.8, clip_on=False, zorder=5,
     )  # fmt: skip
+    marks.set_in_layout(False)
 
 
 def envelope_columns(tree: DataTree) -> Columns:
@@ -97,12 +111,18 @@ def piece_figure(tree: DataTree) -> Figure:
         upper.plot(time / unit, of_law(tree, FORCE, law, "time")[part], label=law, **law_style(law, names[0]))
     upper.axhline(0, color=MUTED, linewidth=0.8)
     upper.set_ylabel("contact force / N")
-    upper.margins(x=0)
+    upper.set_xlim(time[0] / unit, time[-1] / unit)
     legend_above(upper)
     for row, law in enumerate(names):
         flight = lost(tree, law)[part]
         lower.fill_between(
-            time / unit, row - 0.35, row + 0.35, where=flight, color=law_style(law, "")["color"], step="mid", linewidth=0.8
+            time / unit,
+            row - 0.35,
+            row + 0.35,
+            where=flight,
+            color=law_style(law, "")["color"],
+            step="mid",
+            linewidth=0.8,
         )
     lower.set_ylim(len(names) - 0.4, -0.6)
     lower.set_yticks(range(len(names)), names)
@@ -125,7 +145,7 @@ def _piece_caption(tree: DataTree) -> str:
     where = "around the main law's longest loss of contact"
     if not lost(tree, laws(tree, FORCE)[0]).any():
         where = "in the middle of the run"
-    return f"A short piece {where}, every time step. Bars below: no contact (F ≤ 0); the linear law cannot lose it."
+    return f"A short piece {where}, every time step. Bars below: no contact (F ≤ 0); linear cannot lose it."
 
 
 def _envelope_caption(tree: DataTree) -> str:
@@ -133,13 +153,26 @@ def _envelope_caption(tree: DataTree) -> str:
     stretches = min(COLUMNS, count)
     return (
         f"Lowest and highest force in each of {stretches} stretches of the run, compression positive. "
-        "Marks along the bottom: stretches with loss of contact. The full series is in run.nc."
+        "Marks along the bottom: stretches with loss of contact. The linear law has an axis of its own. "
+        "The full series is in run.nc."
     )
 
 
-
-
 TIME = (
-    Part("force_piece", "Contact force, a short piece", (FORCE, "rolling/time"), piece_figure, piece_columns, _piece_caption),
-    Part("force_envelope", "Contact force, the whole run", (FORCE, "rolling/time"), envelope_figure, envelope_columns, _envelope_caption),
-)  # fmt: skip
+    Part(
+        "force_piece",
+        "Contact force, a short piece",
+        (FORCE, "rolling/time"),
+        piece_figure,
+        piece_columns,
+        _piece_caption,
+    ),
+    Part(
+        "force_envelope",
+        "Contact force, the whole run",
+        (FORCE, "rolling/time"),
+        envelope_figure,
+        envelope_columns,
+        _envelope_caption,
+    ),
+)

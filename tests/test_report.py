@@ -1,0 +1,435 @@
+"""The report: everything on one page, nothing from elsewhere, hostile text harmless, numbers exact."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from html.parser import HTMLParser
+from io import BytesIO
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+from asperity.errors import ComputationError
+from asperity.report import surface_picture, write_report
+from asperity.report.csv_files import csv_text
+from asperity.report.data import engineering, nominal_band, power_of_ten
+from asperity.report.page import PARTS, drawable_parts, page
+from asperity.report.spectrum_figures import SPECTRUM
+from asperity.report.style import COLOURS, LAW_STYLES, envelope, smooth_on_log_axis
+from asperity.report.tables import reference_table
+from asperity.report.time_figures import TIME, piece
+from asperity.results import load, save
+from report_tree import LAWS, report_tree
+
+HOSTILE = '"><script>alert(1)</script><img src=x onerror=alert(2)> & {{ 7*7 }} $\\frac$'
+
+
+class Reader(HTMLParser):
+    """Collects tags with their attributes, the text of the page, and checks that tags are closed in order."""
+
+    VOID = frozenset({"meta", "br", "img", "link", "input", "hr"})
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.text, self.open = [], [], []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        if tag not in self.VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+    def all(self, name):
+        return [attrs[name] for _, attrs in self.tags if name in attrs]
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return report_tree()
+
+
+@pytest.fixture(scope="module")
+def folder(tree, tmp_path_factory):
+    return write_report(tree, tmp_path_factory.mktemp("run") / "new").parent
+
+
+@pytest.fixture(scope="module")
+def text(folder):
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def small(**changes):
+    """Tree of a short run; `changes` map a group to the variables dropped from it."""
+    tree = report_tree(["areal", "linear"], steps=1000)
+    for group, names in changes.items():
+        tree[group] = tree[group].to_dataset().drop_vars(names)
+    return tree
+
+
+def contact_only():
+    """Tree with little to draw, for tests of the page's text."""
+    tree = small(contact=["filter"])
+    for group in ("surface", "rolling", "spectra"):
+        del tree[group]
+    return tree
+
+
+def read_csv(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    table = np.array([[float(field) if field else np.nan for field in row] for row in rows])
+    return dict(zip(head, table.T, strict=True))
+
+
+def test_page_loads_nothing(text):
+    reader = Reader(text)
+    assert not reader.open
+    assert not {"script", "link", "iframe", "object", "base"} & {tag for tag, _ in reader.tags}
+    for target in reader.all("src") + reader.all("href") + reader.all("xlink:href"):
+        assert target.startswith(("#", "data:image/png;base64,")) or re.fullmatch(r"[a-z_]+\.csv", target)
+    assert "http:" not in text
+    assert "https:" not in text
+    assert "@import" not in text
+    assert all(match.startswith("#") for match in re.findall(r"url\(([^)]*)\)", text))
+
+
+def test_links_lead_somewhere(text, folder):
+    reader = Reader(text)
+    names = reader.all("id")
+    assert len(names) == len(set(names))
+    for target in reader.all("href") + reader.all("xlink:href"):
+        assert target.startswith("data:") or target.removeprefix("#") in names or (folder / target).is_file()
+    for target in re.findall(r"url\(#([^)]*)\)", text):
+        assert target in names
+
+
+def test_all_figures_and_their_numbers_are_there(text, folder):
+    names = Reader(text).all("id")
+    for part in PARTS:
+        assert part.name in names
+        assert (folder / f"{part.name}.csv").is_file()
+    assert {"statistics", "reference", "contact_loss", "energy_balance", "case", "provenance"} <= set(names)
+    assert sorted(path.name for path in folder.iterdir()) == sorted(
+        [*(f"{p.name}.csv" for p in PARTS), "report.html"]
+    )
+
+
+def test_page_is_small(folder):
+    assert (folder / "report.html").stat().st_size < 3_000_000
+
+
+def test_same_result_same_page():
+    assert page(contact_only()) == page(contact_only())
+
+
+def test_verdict_warnings_and_provenance_are_shown(tree, text):
+    shown = "".join(Reader(text).text)
+    assert tree.attrs["verdict"] in shown
+    for warning in json.loads(tree.attrs["warnings"]):
+        assert warning["message"] in shown
+        assert warning["category"] in shown
+    assert "(12×)" in shown
+    for fact in (
+        "asperity 0.1.0",
+        "seed 1",
+        *json.loads(tree.attrs["citations"]),
+        tree.attrs["case"].strip(),
+    ):
+        assert fact in shown
+    for entry in json.loads(tree["scenario"].attrs["numerics"]):
+        assert entry["value"] in shown
+
+
+def test_no_warnings_is_said():
+    tree = contact_only()
+    tree.attrs["warnings"] = "[]"
+    assert "No warnings on the physics." in page(tree)
+
+
+def test_values_that_differ_from_the_default_are_marked(tree, text):
+    rows = re.findall(r'<tr class="changed"><td>(.*?)</td><td><span class="value">(.*?)</span>', text)
+    parameters = json.loads(tree["scenario"].attrs["parameters"])
+    expected = [(p["key"].rpartition(".")[2], p["value"]) for p in parameters if not p["is_default"]]
+    assert sorted(rows) == sorted(expected)
+    assert f"are the {len(expected)} values that differ" in text
+    assert "default: 10 mm" in text
+
+
+def test_hostile_text_stays_text():
+    tree = small()
+    parameter = {
+        "key": f"surface.{HOSTILE}",
+        "value": HOSTILE,
+        "default": HOSTILE,
+        "is_default": False,
+        "note": HOSTILE,
+    }
+    tree.attrs.update(
+        title=HOSTILE, verdict=HOSTILE, case=HOSTILE, created=HOSTILE, asperity_version=HOSTILE, seed=HOSTILE
+    )
+    tree.attrs["citations"] = json.dumps([HOSTILE])
+    tree.attrs["warnings"] = json.dumps([{"category": HOSTILE, "message": HOSTILE, "count": HOSTILE}])
+    tree["surface"].attrs.update(source=HOSTILE)
+    tree["scenario"].attrs.update(
+        kind=HOSTILE,
+        parameters=json.dumps([parameter]),
+        numerics=json.dumps([{"name": HOSTILE, "value": HOSTILE}]),
+        laws=json.dumps({HOSTILE: HOSTILE}),
+    )
+    statistic = dict.fromkeys(("symbol", "unit", "bandwidth", "surface", "meaning"), HOSTILE) | {"value": 1.0}
+    tree["surface"].attrs["statistics"] = json.dumps([statistic])
+    for group in ("rolling", "spectra"):
+        tree[group] = tree[group].to_dataset().assign_coords(law=[HOSTILE, "linear"])
+    reader = Reader(page(tree))
+    assert not reader.open
+    assert not {"script", "img"} & {tag for tag, _ in reader.tags}
+    assert not reader.all("onerror")
+    assert "".join(reader.text).count(HOSTILE) > 20
+
+
+@pytest.mark.parametrize("attrs", [{}, {"warnings": "not JSON", "citations": "{}"}])
+def test_damaged_or_missing_attributes_are_survived(attrs):
+    tree = contact_only()
+    tree.attrs = attrs
+    for group in tree.children:
+        tree[group].attrs = {}
+    assert "No verdict was stored" in page(tree)
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.name)
+def test_figure_without_its_numbers_is_left_out(part):
+    assert part.drawable(small())
+    for need in part.needs:
+        group, _, name = need.partition("/")
+        assert not part.drawable(small(**{group: [name]}))
+
+
+def test_numbers_that_are_all_missing_count_as_missing():
+    tree = small()
+    tree["contact"]["filter"] = tree["contact"]["filter"] * np.nan
+    assert "contact_filter" not in [part.name for part in drawable_parts(tree)]
+
+
+def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
+    tree = small(surface=["sample_heights", "psd_sample", "psd_path"], contact=["filter", "pressure"])
+    del tree["rolling"], tree["spectra"]
+    text = write_report(tree, tmp_path).read_text(encoding="utf-8")
+    drawn = {"texture_path", "contact_force"}
+    assert {path.stem for path in tmp_path.glob("*.csv")} == drawn
+    assert {name for name in Reader(text).all("id") if name in {part.name for part in PARTS}} == drawn
+
+
+@pytest.mark.parametrize(
+    ("name", "group", "missing"),
+    [
+        ("contact_pressure", "contact", ["gap"]),
+        ("contact_filter", "contact", ["filter_std", "filter_signed", "filter_theory"]),
+        ("contact_force", "contact", ["force_std", "stiffness", "hertz_force"]),
+        ("contact_force", "contact", ["stiffness_std", "tangent_stiffness", "hertz_stiffness"]),
+        ("texture_sample", "surface", ["path_heights"]),
+        ("texture_path", "surface", ["line"]),
+        ("texture_psd", "surface", ["psd_path"]),
+        ("force_psd", "spectra", ["band"]),
+        ("force_bands", "spectra", ["force_level_difference", "force_level_difference_to_reference"]),
+        ("force_envelope", "rolling", ["contact_loss_share"]),
+    ],
+)
+def test_optional_numbers_may_be_missing(name, group, missing):
+    part = next(part for part in PARTS if part.name == name)
+    tree = small(**{group: missing})
+    assert part.draw(tree).axes
+    assert part.columns(tree)
+    assert part.caption(tree)
+
+
+@pytest.mark.parametrize("group", ["scenario", "surface", "contact", "rolling", "spectra"])
+def test_one_group_alone_makes_a_page(group):
+    tree = small()
+    for other in set(tree.children) - {group}:
+        del tree[other]
+    assert "</html>" in page(tree)
+
+
+@pytest.mark.parametrize("laws", [["linear"], ["areal", "hertz-filtered", "linear-filtered"]])
+def test_any_set_of_laws(laws):
+    tree = report_tree(laws, steps=500)
+    for part in (*TIME, *SPECTRUM):
+        labels = [text.get_text() for text in part.draw(tree).findobj(Text)]
+        assert part.name == "acceleration_sensors" or all(
+            any(law in label for label in labels) for law in laws
+        )
+
+
+def test_no_table_of_differences_without_a_reference_law():
+    assert reference_table(small()) is None
+
+
+def test_numbers_survive_the_csv_file_to_the_last_bit(tree, folder):
+    spectra = tree["spectra"].to_dataset()
+    table = read_csv(folder / "force_psd.csv")
+    assert np.array_equal(table["frequency [Hz]"], spectra["frequency"].values)
+    for law in LAWS:
+        assert np.array_equal(table[f"{law} [N^2/Hz]"], spectra["force_psd"].sel(law=law).values)
+    force = read_csv(folder / "contact_force.csv")
+    contact = tree["contact"].to_dataset()
+    assert np.array_equal(force["stiffness [N/m]"], contact["stiffness"].values)
+    assert np.allclose(force["state r [m]"] - force["approach [m]"], contact.attrs["datum"], rtol=1e-12)
+    pressure = read_csv(folder / "contact_pressure.csv")
+    assert np.array_equal(np.array(list(pressure.values()))[1:].T, contact["pressure"].values)
+
+
+def test_every_csv_column_has_a_unit_and_one_length(folder):
+    for path in folder.glob("*.csv"):
+        table = read_csv(path)
+        assert all(
+            re.fullmatch(r".+ \[(m|1/m|m\^3|Pa|N|N/m|1|s|Hz|N\^2/Hz|dB|dB re 1 N|\(m/s\^2\)\^2/Hz)\]", head)
+            for head in table
+        )
+        assert len(table) >= 2
+
+
+def test_missing_numbers_are_empty_fields(folder):
+    table = read_csv(folder / "contact_filter.csv")
+    assert not any("approach=-1e-06 m" in head for head in table)  # a state without a filter has no columns
+    assert all(np.isfinite(values).all() for values in table.values())
+
+
+def test_differences_to_the_reference_law_are_printed(tree, text):
+    spectra = tree["spectra"].to_dataset()
+    printed = spectra["force_level_difference_to_reference"].sel(law="printed").values
+    body = text[text.index('id="reference"') :]
+    rows = re.findall(r"<tr><td.*?>(.*?)</td>(.*?)</tr>", body[: body.index("</table>")])
+    column = LAWS.index("printed")
+    for (band, cells), centre, value in zip(rows, spectra["band"].values, printed, strict=False):
+        assert band == nominal_band(centre)
+        shown = re.findall(r">([^<]+)</td>", cells)[column]
+        assert float(shown.replace("−", "-")) == pytest.approx(value, abs=0.051)
+
+
+def test_laws_keep_their_colours_in_all_figures(text):
+    for law in LAWS:
+        colour = f"var(--c{list(COLOURS).index(LAW_STYLES[law].colour)})"
+        for name in ("force_psd", "force_bands", "acceleration_laws", "force_piece", "force_envelope"):
+            figure = text[text.index(f'<figure id="{name}"') :]
+            assert colour in figure[: figure.index("</figure>")]
+
+
+def test_short_piece_holds_the_longest_loss_of_contact():
+    tree = report_tree(["areal"], steps=5000)
+    rolling = tree["rolling"].to_dataset()
+    force = np.full((1, 5000), 5.0)
+    force[0, 100:110], force[0, 4000:4300] = 0.0, 0.0
+    share = rolling["contact_loss_share"].copy(data=[0.062])
+    tree["rolling"] = rolling.assign(contact_force=(("law", "time"), force), contact_loss_share=share)
+    part = piece(tree)
+    assert part.start < 4000
+    assert part.stop > 4300
+
+
+def test_page_that_cannot_be_written_is_a_computation_error(tmp_path):
+    (tmp_path / "occupied").write_text("a file")
+    with pytest.raises(ComputationError, match="could not be written"):
+        write_report(contact_only(), tmp_path / "occupied")
+
+
+def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
+    tree = small()
+    for node in tree.subtree:  # a result that is saved has units and a long name everywhere
+        for name, values in node.to_dataset(inherit=False).variables.items():
+            node[name].attrs.update({"units": "1", "long_name": str(name)} | values.attrs)
+    loaded = load(save(tree, tmp_path / "run.nc"))
+    assert drawable_parts(loaded) == list(PARTS)
+    for part in PARTS:
+        assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
+
+
+@pytest.mark.parametrize(
+    ("heights", "spacing"),
+    [
+        (np.random.default_rng(1).normal(0, 1e-6, (80, 60)), (1e-6, 2e-6)),
+        (np.random.default_rng(1).normal(0, 1e-6, (900, 20)), (1e-6, 1e-6)),
+        (np.random.default_rng(1).normal(0, 1e-6, 5000), (1e-6, 1e-6)),
+        (np.zeros((8, 8)), (1e-6, 1e-6)),
+        (np.where(np.eye(40) > 0, np.nan, np.arange(40) * 1e-9), (1e-6, 1e-6)),
+    ],
+    ids=["map", "strip", "line", "flat", "missing"],
+)
+def test_picture_of_a_surface(heights, spacing):
+    figure = surface_picture(heights, spacing, HOSTILE)
+    file = BytesIO()
+    figure.savefig(file, format="png", dpi=60)
+    assert file.getvalue().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "shown"),
+    [(3.1e-7, "m", "310 nm"), (1.5e-6, "m", "1.50 µm"), (-0.41, "1", "−0.41"), (2.4e8, "Pa", "240 MPa"),
+     (0.0, "J", "0 J"), (3.1e-8, "m²", "31000 µm²"), (float("nan"), "m", "–"), (0.05, "m", "50.0 mm"), (5.04, "N", "5.04 N")],
+)  # fmt: skip
+def test_numbers_are_written_with_prefixes(value, unit, shown):
+    assert engineering(value, unit) == shown
+
+
+def test_bands_have_their_nominal_names():
+    names = [nominal_band(1000 * 10 ** (n / 10)) for n in range(-16, 8)]
+    assert names == (
+        [
+            "25",
+            "31.5",
+            "40",
+            "50",
+            "63",
+            "80",
+            "100",
+            "125",
+            "160",
+            "200",
+            "250",
+            "315",
+            "400",
+            "500",
+            "630",
+            "800",
+            "1k",
+            "1.25k",
+            "1.6k",
+            "2k",
+            "2.5k",
+            "3.15k",
+            "4k",
+            "5k",
+        ]
+    )
+    assert power_of_ten(1e-16) == "10⁻¹⁶"
+
+
+def test_envelope_keeps_the_extremes():
+    signal = np.sin(np.arange(10_000) * 0.37)
+    signal[1234], signal[8765] = 9.0, -7.0
+    starts, low, high = envelope(signal, 300)
+    assert len(starts) == 300
+    assert high.max() == 9.0
+    assert low.min() == -7.0
+    assert envelope(signal[:20], 300)[1].tolist() == signal[:20].tolist()
+
+
+def test_smoothing_for_the_eye_keeps_level_and_sparse_lines():
+    frequency = np.arange(1.0, 5001.0)
+    smooth, psd = smooth_on_log_axis(frequency, np.full(5000, 3.0))
+    assert np.allclose(psd, 3.0, rtol=1e-12)
+    assert np.array_equal(smooth[:10], frequency[:10])
+    assert len(smooth) < 300
