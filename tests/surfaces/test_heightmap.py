@@ -75,7 +75,12 @@ def test_crop_and_transpose(surface):
 
 @pytest.mark.parametrize(
     ("start", "size"),
-    [((2e-6, 0), (2e-6, 4e-6)), ((-1e-6, 0), (2e-6, 4e-6)), ((0, 0), (1e-6, 4e-6)), ((np.nan, 0), (2e-6, 4e-6))],
+    [
+        ((2e-6, 0), (2e-6, 4e-6)),
+        ((-1e-6, 0), (2e-6, 4e-6)),
+        ((0, 0), (1e-6, 4e-6)),
+        ((np.nan, 0), (2e-6, 4e-6)),
+    ],
 )
 def test_crop_outside_the_map(surface, start, size):
     with pytest.raises(InputError, match="piece of the map along x"):

@@ -1,0 +1,1 @@
+"""Measured and synthesised surfaces: reading, levelling, statistics, synthesis."""
