@@ -97,7 +97,7 @@ def scenario():
             ),
             "laws": json.dumps(
                 {
-                    "areal": "f(r − h̃ₐ(r)): the texture weighted with the flat-punch pressure on the Hertz ellipse",
+                    "areal": "f(r − h̃ₐ(r)): texture weighted with the flat-punch pressure",
                     "shifted": "f(r − h̃(r)): the filtered line texture moves the force curve",
                     "printed": "k_c(r)(r − h̃(r)) + c ṙ: the state-dependent law as printed",
                     "table": "interpolation of the scanned three-dimensional contact force",

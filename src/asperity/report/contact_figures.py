@@ -45,6 +45,7 @@ def pressure_figure(tree: DataTree) -> Figure:
     image = draw_map(panels[0], x, y, loaded, unit, cmap="inferno_r", vmin=0)
     figure.colorbar(image, ax=panels[0], label=f"pressure / {symbol}", shrink=0.9)
     panels[0].set_title("pressure")
+    panels[0].set_facecolor("#f6f6f6")  # on a dark page too: the colours run from light to black
     radius = number(tree, "contact", "hertz_radius")
     if with_gap:
         gap = values(tree, "contact/gap", "px", "py")

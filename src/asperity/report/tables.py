@@ -163,19 +163,21 @@ def energy_table(tree: DataTree) -> Table | None:
     found = variable(tree, "rolling/energy")
     assert found is not None
     terms = [str(term) for term in found["energy_term"].values]
-    with_rest = present(tree, "rolling/energy_residual")
+    residual = variable(tree, "rolling/energy_residual")
     rows = []
     for law in names:
         energies = of_law(tree, "rolling/energy", law, "energy_term")
         row = [_text(law), *(Cell(engineering(energy, "J"), "number") for energy in energies)]
-        if with_rest:
+        if residual is not None:
             row.append(Cell(f"{float(of_law(tree, 'rolling/energy_residual', law)):.1e}", "number"))
         rows.append(row)
-    head = ["law", *terms, *(["relative residual"] if with_rest else [])]
+    meaning = residual.attrs.get("long_name") if residual is not None else None
+    note = "Energies at the end of the run." + (f" Residual: {meaning}." if meaning else "")
+    head = ["law", *terms, *(["relative residual"] if residual is not None else [])]
     return Table(
         "energy_balance",
         "Energy balance of the run",
         head,
         rows,
-        "Energies at the end of the run; the residual is what the terms leave open, relative to the largest.",
+        note,
     )

@@ -84,7 +84,8 @@ def height_histogram(axes: Axes, named: dict[str, NDArray[np.float64]], unit: tu
     colours = [_BLUE, _ORANGE]
     for (name, heights), colour in zip(named.items(), colours, strict=False):
         finite = heights[np.isfinite(heights)] / unit[0]
-        density, edges = np.histogram(finite, bins=80, density=True)
+        bins = int(np.clip(2 * len(finite) ** (1 / 3), 10, 80))  # Rice's rule
+        density, edges = np.histogram(finite, bins=bins, density=True)
         axes.stairs(density, edges, color=colour, label=name, linewidth=1.4)
     first = next(iter(named.values()))
     finite = first[np.isfinite(first)] / unit[0]
@@ -92,6 +93,7 @@ def height_histogram(axes: Axes, named: dict[str, NDArray[np.float64]], unit: tu
     spread = finite.std() or 1.0
     normal = np.exp(-((z - finite.mean()) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi))
     axes.plot(z, normal, color=MUTED, linewidth=0.9, linestyle="--", label="normal")
+    axes.xaxis.set_major_locator(MaxNLocator(6))
     axes.set_yscale("log")
     axes.set_ylim(normal.max() * 1e-4, normal.max() * 4)
     power_axis(axes.yaxis)
