@@ -62,7 +62,7 @@ def test_secant_of_a_quadratic_force_is_the_printed_stiffness():
 
 
 @given(curves)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_curve_is_monotone_smooth_and_inverted(curve):
     low, high = curve.knots[0], curve.knots[-1]
     s = np.sort(np.concatenate([np.linspace(low - 1e-7, high + 1e-6, 301), curve.knots]))
@@ -70,7 +70,8 @@ def test_curve_is_monotone_smooth_and_inverted(curve):
     assert np.all(np.diff(force) >= 0.0)
     assert np.all(curve.stiffness(s) >= 0.0)
     inside = force > 0.0
-    assert_allclose(curve.force(curve.inverse(force[inside])), force[inside], rtol=1e-9)
+    again = curve.force(curve.inverse(force[inside]))
+    assert_allclose(again, force[inside], rtol=1e-9, atol=1e-12 * force.max())
     assert_allclose(curve.inverse(force[inside].reshape(1, -1))[0], curve.inverse(force[inside]))
     step = 1e-13 * (high - low)
     jump = curve.stiffness(curve.knots + step) - curve.stiffness(curve.knots - step)
@@ -88,7 +89,7 @@ def test_stiffness_is_the_derivative(curve):
 
 
 @given(st.floats(0.0, 0.999), st.integers(1, 4))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_first_touch_is_found_between_samples(offset, zeros):
     s = 1e-6 * (np.arange(8) - zeros + offset + 1e-3)
     curve = ForceCurve.from_samples(s, K * np.maximum(s, 0.0) ** 1.5)
