@@ -151,7 +151,7 @@ def loss_table(tree: DataTree) -> Table | None:
         "Loss of contact",
         head,
         rows,
-        "The linear law cannot lose contact: it pulls where others let go.",
+        "The linear law cannot lose contact: it pulls where others let go." if "linear" in names else "",
     )
 
 

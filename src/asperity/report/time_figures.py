@@ -145,7 +145,7 @@ def _piece_caption(tree: DataTree) -> str:
     where = "around the main law's longest loss of contact"
     if not lost(tree, laws(tree, FORCE)[0]).any():
         where = "in the middle of the run"
-    return f"A short piece {where}, every time step. Bars below: no contact (F ≤ 0); linear cannot lose it."
+    return f"A short piece {where}, every time step. Bars below: no contact (F ≤ 0); a linear law cannot lose it."
 
 
 def _envelope_caption(tree: DataTree) -> str:
@@ -153,7 +153,7 @@ def _envelope_caption(tree: DataTree) -> str:
     stretches = min(COLUMNS, count)
     return (
         f"Lowest and highest force in each of {stretches} stretches of the run, compression positive. "
-        "Marks along the bottom: stretches with loss of contact. The linear law has an axis of its own. "
+        "Marks along the bottom: stretches with loss of contact. A linear law has an axis of its own. "
         "The full series is in run.nc."
     )
 
