@@ -145,7 +145,7 @@ def _piece_caption(tree: DataTree) -> str:
     where = "around the main law's longest loss of contact"
     if not lost(tree, laws(tree, FORCE)[0]).any():
         where = "in the middle of the run"
-    return f"A short piece {where}, every time step. Bars below: no contact (F ≤ 0); a linear law cannot lose it."
+    return f"A short piece {where}, every time step. Bars below: no contact (F ≤ 0); linear never does."
 
 
 def _envelope_caption(tree: DataTree) -> str:
