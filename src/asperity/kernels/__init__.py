@@ -1,0 +1,1 @@
+"""Compiled functions on plain arrays: the numerical work of all rooms."""

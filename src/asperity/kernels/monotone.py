@@ -84,7 +84,7 @@ def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDA
     curved = _end_slope(outer, np.maximum(inner, 1e-300), steepness, secant(after, second))
     slope = np.maximum(np.where(second <= last, curved, steepness), secant(before, first))
     line = root[rows, first][:, None] + slope[:, None] * (knots - knots[first][:, None])
-    return np.where(np.arange(len(knots)) < first[:, None], np.minimum(line, 0.0), root)
+    return np.where(np.arange(len(knots)) < first[:, None], np.minimum(line, root), root)
 
 
 def _end_slope(outer: NDArray, inner: NDArray, secant: NDArray, inner_secant: NDArray) -> NDArray:
