@@ -32,7 +32,6 @@ from asperity.rolling.stepping import Checkpoint, Progress, restore, run
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 
-
 STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itself solved to a tolerance
 
 
