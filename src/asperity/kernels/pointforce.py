@@ -87,7 +87,7 @@ def texture_at(states, heights, approach):  # type: ignore[no-untyped-def]
     last = states.shape[0] - 1
     if approach <= states[0]:
         return heights[0], 0.0
-    if approach >= states[last]:
+    if not approach < states[last]:  # not a number included
         return heights[last], 0.0
     i = np.searchsorted(states, approach) - 1
     slope = (heights[i + 1] - heights[i]) / (states[i + 1] - states[i])
@@ -100,7 +100,7 @@ def table_root(states, values, slopes, approach):  # type: ignore[no-untyped-def
     last = states.shape[0] - 1
     if approach <= states[0]:
         return values[0] + slopes[0] * (approach - states[0]), slopes[0]
-    if approach >= states[last]:
+    if not approach < states[last]:
         return values[last] + slopes[last] * (approach - states[last]), slopes[last]
     i = np.searchsorted(states, approach) - 1
     width = states[i + 1] - states[i]
