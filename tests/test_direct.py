@@ -81,7 +81,7 @@ class TestDirect:
 
 
 class TestSlowBump:
-    """Under constant load the ball follows a slow bump: Δr = Δh. Its height is H, its width 20 contact radii."""
+    """Under constant load the ball follows a slow bump: Δr = Δh (20 contact radii wide)."""
 
     HEIGHT = 5e-9
     ROWS = 1201

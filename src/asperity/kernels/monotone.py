@@ -87,6 +87,30 @@ def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDA
     return np.where(np.arange(len(knots)) < first[:, None], np.minimum(line, root), root)
 
 
+def zero_crossing(knots: NDArray, root: NDArray) -> NDArray:
+    """Where rows cross zero, along the straight line between the two knots beside it.
+
+    Parameters
+    ----------
+    knots : ndarray (k,)
+        Increasing abscissae.
+    root : ndarray (n, k)
+        Non-decreasing rows.
+
+    Returns
+    -------
+    ndarray (n,)
+        Abscissae; rows that are positive throughout are continued downwards by their first slope, those
+        that are nowhere positive cross at the last knot.
+    """
+    first = np.clip(np.argmax(root > 0.0, axis=1), 1, len(knots) - 1)
+    rows = np.arange(len(root))
+    low, high = root[rows, first - 1], root[rows, first]
+    width = knots[first] - knots[first - 1]
+    crossing = knots[first] - high * width / np.where(high > low, high - low, 1.0)
+    return np.where(root[:, -1] > 0.0, crossing, knots[-1])
+
+
 def _end_slope(outer: NDArray, inner: NDArray, secant: NDArray, inner_secant: NDArray) -> NDArray:
     estimate = ((2.0 * outer + inner) * secant - outer * inner_secant) / (outer + inner)
     return np.clip(estimate, 0.5 * secant, 2.0 * secant)

@@ -28,6 +28,8 @@ class Prepared(NamedTuple):
         At every position: the texture h over the plane, m, or for `TABLE` the root g of the force, N^(2/3).
     slopes : ndarray (n, s)
         For `TABLE` the slope of g, N^(2/3)/m; else an array without rows.
+    touches : ndarray (n,)
+        For `TABLE` the approach at first touch, m; else an array without rows.
     knots, coefficients, exponent, bilateral
         The force curve, as in `asperity.reduction.stiffness.ForceCurve`.
     datum : float
@@ -45,6 +47,7 @@ class Prepared(NamedTuple):
     states: NDArray
     values: NDArray
     slopes: NDArray
+    touches: NDArray
     knots: NDArray
     coefficients: NDArray
     exponent: float
@@ -95,19 +98,29 @@ def texture_at(states, heights, approach):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def table_root(states, values, slopes, approach):  # type: ignore[no-untyped-def]
-    """Monotone cubic g between the states, straight outside, and its slope."""
+def table_root(states, values, slopes, touch, approach):  # type: ignore[no-untyped-def]
+    """Monotone cubic g between the states, from the first touch on, straight beyond; and its slope."""
     last = states.shape[0] - 1
-    if approach <= states[0]:
-        return values[0] + slopes[0] * (approach - states[0]), slopes[0]
+    if approach <= touch:
+        return 0.0, 0.0
     if not approach < states[last]:
         return values[last] + slopes[last] * (approach - states[last]), slopes[last]
-    i = np.searchsorted(states, approach) - 1
-    width = states[i + 1] - states[i]
-    t = (approach - states[i]) / width
-    secant = (values[i + 1] - values[i]) / width
-    start, end = slopes[i] - secant, slopes[i + 1] - secant
-    g = values[i] + width * t * (secant + (1.0 - t) * (start * (1.0 - t) - end * t))
+    i = max(np.searchsorted(states, approach) - 1, 0)
+    low, value = states[i], values[i]
+    if touch > low:
+        low, value = touch, 0.0
+    elif approach < low:
+        low, value = touch, 0.0
+        i = -1
+    width = states[i + 1] - low
+    t = (approach - low) / width
+    secant = (values[i + 1] - value) / width
+    if low == touch:  # convex from the touch on, as asperities join in
+        start = min(max(2.0 * secant - slopes[i + 1], 0.25 * secant), 2.0 * secant) - secant
+    else:
+        start = slopes[i] - secant
+    end = slopes[i + 1] - secant
+    g = value + width * t * (secant + (1.0 - t) * (start * (1.0 - t) - end * t))
     slope = secant + start * (1.0 - t) * (1.0 - 3.0 * t) + end * t * (3.0 * t - 2.0)
     return g, slope
 
@@ -132,7 +145,7 @@ def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     """
     approach -= law.planes[step]
     if law.form == TABLE:
-        g, slope = table_root(law.states, law.values[step], law.slopes[step], approach)
+        g, slope = table_root(law.states, law.values[step], law.slopes[step], law.touches[step], approach)
         return power(g, slope, 1.5)
     height, height_slope = texture_at(law.states, law.values[step], approach)
     if law.form == SHIFTED:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
-from asperity.kernels.monotone import continued_to_touch, monotone_slopes
+from asperity.kernels.monotone import continued_to_touch, monotone_slopes, zero_crossing
 from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
@@ -114,6 +114,7 @@ def on_curve(
         np.ascontiguousarray(states, dtype=float),
         np.ascontiguousarray(values - planes[:, None], dtype=float),
         np.zeros((0, len(states))),
+        np.zeros(0),
         np.ascontiguousarray(curve.knots, dtype=float),
         np.ascontiguousarray(curve.coefficients, dtype=float),
         float(curve.exponent),
@@ -166,14 +167,19 @@ def on_table(
         at every position.
     """
     at = np.atleast_1d(np.asarray(positions, dtype=float))
-    # ripples of the spline beside a place where contact is lost are no contact
-    root = continued_to_touch(table.approaches, np.cbrt(table.at(at)) ** 2, least=0.05)
+    root = np.cbrt(table.at(at)) ** 2
+    touches = table.touch_at(at)
+    if touches is None:
+        # ripples of the spline beside a place where contact is lost are no contact
+        touches = zero_crossing(table.approaches, continued_to_touch(table.approaches, root, least=0.05))
+    root = _straight_to_touch(table.approaches, root, touches)
     return Prepared(
         TABLE,
         plane_at(plane, at),
         np.ascontiguousarray(table.approaches, dtype=float),
         np.ascontiguousarray(root),
         monotone_slopes(table.approaches, root),
+        np.ascontiguousarray(touches),
         np.zeros(2),
         np.zeros((1, 4)),
         1.5,
@@ -183,6 +189,16 @@ def on_table(
         False,
         float(table.approaches[-1]),
     )
+
+
+def _straight_to_touch(states: NDArray, root: NDArray, touches: NDArray) -> NDArray:
+    """Replace g before first touch, and a little after, by the line through the touch and the next state."""
+    beyond = states - touches[:, None] > 0.2 * np.gradient(states)
+    first = np.minimum(np.argmax(beyond, axis=1), len(states) - 1)
+    rows = np.arange(len(root))
+    rise = root[rows, first] / np.maximum(states[first] - touches, np.finfo(float).tiny)
+    line = np.where(beyond.any(axis=1), rise, 0.0)[:, None] * (states - touches[:, None])
+    return np.where(beyond, root, line)
 
 
 def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray:

@@ -25,6 +25,9 @@ class ForceTable:
         Position of the first point on the path, m.
     spacing : float
         Distance of the points, m.
+    touches : ndarray (m,), optional
+        Approach at which contact begins at each position, m; by default it is
+        estimated from the forces.
 
     Raises
     ------
@@ -36,6 +39,7 @@ class ForceTable:
     approaches: NDArray
     start: float
     spacing: float
+    touches: NDArray | None = None
 
     def __post_init__(self) -> None:
         forces = np.asarray(self.forces, dtype=float)
@@ -52,6 +56,11 @@ class ForceTable:
                 "forces that fall while the approach grows",
                 "forces that rise with the approach",
             )
+        if self.touches is not None and (
+            np.shape(self.touches) != forces.shape[1:] or not np.all(np.isfinite(self.touches))
+        ):
+            allowed = f"{forces.shape[1]} finite approaches, one a position"
+            raise InputError("first touches of the force table", f"shape {np.shape(self.touches)}", allowed)
         object.__setattr__(self, "forces", forces)
         object.__setattr__(self, "approaches", approaches)
 
@@ -76,3 +85,21 @@ class ForceTable:
         forces = along_path("force table", self.forces, self.start, self.spacing, positions)
         # a spline may undershoot beside a place where contact is lost
         return np.maximum.accumulate(np.maximum(forces, 0.0), axis=1)
+
+    def touch_at(self, positions: ArrayLike) -> NDArray | None:
+        """Approach at first touch at given positions, interpolated linearly.
+
+        Parameters
+        ----------
+        positions : array_like (n,)
+            Positions on the path, m.
+
+        Returns
+        -------
+        ndarray (n,) or None
+            Approaches, m; None where they are not known.
+        """
+        if self.touches is None:
+            return None
+        at = self.start + self.spacing * np.arange(self.forces.shape[1])
+        return np.interp(np.asarray(positions, dtype=float), at, self.touches)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 import xarray
@@ -46,8 +46,6 @@ class Computed:
         Time rolled, s.
     seconds : dict
         Wall time of each part, s.
-    caught : list
-        Physics warnings met on the way.
     """
 
     case: BallOnBeamCase
@@ -60,8 +58,7 @@ class Computed:
     runs: dict[str, Rolling]
     scan: ScannedForces | None
     duration: float
-    seconds: dict[str, float] = field(default_factory=dict)
-    caught: list[warnings.WarningMessage] = field(default_factory=list)
+    seconds: dict[str, float]
 
 
 class Checkpoint:
@@ -103,12 +100,11 @@ def run(case: BallOnBeamCase, progress: Progress) -> xarray.DataTree:
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", PhysicsWarning)
-        computed = compute(case, progress)
+        result = layout(compute(case, progress), caught)
     for message in caught:
         if not issubclass(message.category, PhysicsWarning):
             warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
-    computed.caught.extend(m for m in caught if issubclass(m.category, PhysicsWarning))
-    return layout(computed)
+    return result
 
 
 def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
@@ -126,7 +122,7 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
     Computed
         All that was computed.
     """
-    store, seconds = Store(), {}
+    store, seconds = Store(), dict[str, float]()
     began = time.perf_counter()
     ball_material, beam_material = material(case.ball.material), material(case.beam.material)
     ball = Ball(case.ball.radius, ball_material, case.ball.load, case.ball.mass)

@@ -14,7 +14,7 @@ from asperity.pointforce import Areal, Direct, Hertz, Law, Linear, Printed, Shif
 from asperity.progress import Progress
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.filter import filtered_texture
-from asperity.reduction.scan import Cache, ScannedForces, scan_forces, warn_of_flaws
+from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_flaws
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.reducing import Geometry, Reduction
@@ -128,6 +128,7 @@ class Workshop:
         assert self.planes is not None
         dx, half = self.shape.spacing[0], self.shape.body.shape[0] // 2
         stride = max(1, math.floor(self.shape.semi_axes[0] / 8 / dx))
+        planes = self.planes[half : len(self.planes) - half : stride]
         scanned = scan_forces(
             self.textures.path.heights,
             self.shape.spacing,
@@ -137,13 +138,16 @@ class Workshop:
             self.case.contact.hardness,
             stride=stride,
             rtol=self.case.numerics.rtol,
-            planes=self.planes[half : len(self.planes) - half : stride],
+            planes=planes,
             cache=self.cache,
             progress=self.progress,
             message="scanning the path",
         )
         warn_of_flaws([scanned], "the path")
-        table = ForceTable(scanned.forces, self.reduction.approaches, self._start + half * dx, stride * dx)
+        touches = first_touch(self.textures.path.heights, self.shape.body, stride) + planes
+        table = ForceTable(
+            scanned.forces, self.reduction.approaches, self._start + half * dx, stride * dx, touches
+        )
         return Table(table, damping, plane=self._plane()), scanned
 
     def _direct(self, damping: float) -> Law:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections import Counter
 from collections.abc import Iterable
 from datetime import UTC, datetime
@@ -38,13 +39,15 @@ CITATIONS = (
 )
 
 
-def layout(computed: Computed) -> xarray.DataTree:
+def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
     """Lay out what was computed, with units and provenance.
 
     Parameters
     ----------
     computed : Computed
         Textures, reduction and runs.
+    caught : list of WarningMessage
+        Warnings met on the way; those of laying out may still be added to it.
 
     Returns
     -------
@@ -68,14 +71,14 @@ def layout(computed: Computed) -> xarray.DataTree:
         "seed": computed.case.seed,
         "citations": json.dumps(CITATIONS),
         "verdict": verdict(computed.runs, spectra),
-        "warnings": json.dumps(_collected(computed), ensure_ascii=False),
+        "warnings": json.dumps(_collected(caught), ensure_ascii=False),
     }
     return checked(tree)
 
 
-def _collected(computed: Computed) -> list[dict[str, Any]]:
-    counts = Counter((m.category.__name__, str(m.message)) for m in computed.caught)
-    assert all(issubclass(m.category, PhysicsWarning) for m in computed.caught)
+def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
+    physics = [m for m in caught if issubclass(m.category, PhysicsWarning)]
+    counts = Counter((m.category.__name__, str(m.message)) for m in physics)
     return [
         {"category": category, "message": message, "count": n} for (category, message), n in counts.items()
     ]
@@ -177,11 +180,12 @@ def _texture_spectra(computed: Computed) -> dict[str, xarray.Variable]:
     """Spectra of samples and path in the rolling direction, on the samples' wavenumbers."""
     textures, dx = computed.textures, computed.shape.spacing[0]
     result: dict[str, xarray.Variable] = {}
+    wavenumber: NDArray[np.floating[Any]]
     units, dims = "m3", "surface_wavenumber"
     if textures.maps:
         spectra = [psd_1d(m)[1] for m in textures.maps]
         wavenumber = psd_1d(textures.maps[0])[0]
-        sampled = np.mean([s for s in spectra if s.shape == spectra[0].shape], axis=0)[1:]
+        sampled = np.mean([s[1:] for s in spectra if s.shape == spectra[0].shape], axis=0)
         result["psd_sample"] = variable(dims, sampled, units, "PSD of the samples along the path, one-sided")
         segment = textures.maps[0].shape[0]
     else:

@@ -1,0 +1,239 @@
+"""The whole chain on small cases: groups and names of the result, resuming, refusing."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+
+import asperity
+from asperity.config import parse_case
+from asperity.errors import CoarseSamplingWarning, InputError
+from asperity.scenarios import ball_on_beam, run
+from asperity.scenarios.reducing import geometry
+
+CASE = """
+kind = "ball-on-beam"
+laws = {laws}
+start = "0.45 m"
+duration = "20 ms"
+[surface]
+{surface}
+[contact]
+spacing = "20 um"
+window = "0.66 mm"
+samples = 2
+sample_length = "1.4 mm"
+{contact}
+[ball]
+load = "30 N"
+[numerics]
+highest_frequency = "2 kHz"
+"""
+ALL = [
+    "areal", "shifted", "printed", "table", "direct", "hertz", "linear", "hertz-filtered", "linear-filtered",
+]  # fmt: skip
+SYNTHETIC = 'rms = "0.04 um"\nlongest = "0.4 mm"\nshortest = "60 um"'
+
+
+def case(surface=SYNTHETIC, contact="", laws=ALL, source="case.toml", **replace):
+    text = CASE.format(surface=surface, contact=contact, laws=json.dumps(laws))
+    for old, new in replace.items():
+        lines = [f"{old} = {new}" if line.startswith(f"{old} =") else line for line in text.splitlines()]
+        text = "\n".join(lines)
+    return parse_case(text, source)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return run(case())
+
+
+class TestResult:
+    def test_groups_and_fixed_variables(self, tree):
+        assert isinstance(tree, xarray.DataTree)
+        assert set(tree.children) == {"scenario", "surface", "contact", "rolling", "spectra"}
+        assert tree["contact/force"].dims == ("approach",)
+        assert tree["contact/stiffness"].dims == ("approach",)
+        assert tree["contact/filter"].dims == ("approach", "wavenumber")
+        assert tree["rolling/contact_force"].dims == ("law", "time")
+        assert tree["rolling/relative_displacement"].dims == ("law", "time")
+        assert tree["rolling/acceleration"].dims == ("law", "sensor", "time")
+        assert tree["spectra/force_psd"].dims == ("law", "frequency")
+        assert tree["spectra/force_level"].dims == ("law", "band")
+        for node in tree.subtree:
+            for name, values in node.variables.items():
+                assert values.attrs["units"], name
+                assert values.attrs["long_name"], name
+
+    def test_provenance(self, tree):
+        assert tree.attrs["case"].startswith("\nkind")
+        assert tree.attrs["seed"] == 1
+        assert tree.attrs["asperity_version"] == asperity.__version__
+        assert any("Lundberg" in c for c in json.loads(tree.attrs["citations"]))
+        assert tree.attrs["verdict"].startswith("The ball never loses contact")
+
+    def test_time_is_uniform_and_the_mean_force_is_the_load(self, tree):
+        step = np.diff(tree["rolling/time"].values)
+        np.testing.assert_allclose(step, step[0], rtol=1e-9)
+        mean = tree["rolling/contact_force"].mean("time")
+        np.testing.assert_allclose(mean, 30.0, rtol=0.05)
+
+    def test_energy_balances_close(self, tree):
+        assert float(tree["rolling/energy_residual"].max()) < 1e-2
+
+    def test_table_follows_direct(self, tree):
+        force = tree["rolling/contact_force"]
+        direct, table = force.sel(law="direct"), force.sel(law="table")
+        assert float((table - direct).std() / direct.std()) < 0.02
+
+    def test_areal_explains_direct_better_than_a_line_does(self, tree):
+        force = tree["rolling/contact_force"].to_pandas().T
+        correlation = force.corr()["direct"]
+        assert correlation["areal"] > 0.9
+        assert correlation["areal"] > correlation["shifted"] > 0.0
+
+    def test_bare_line_overestimates_high_frequencies(self, tree):
+        level = tree["spectra/force_level"].sel(band=slice(1200, 2100)).mean("band")
+        assert float(level.sel(law="linear")) > float(level.sel(law="direct")) + 3.0
+
+    def test_force_psd_integrates_to_the_variance_in_its_band(self, tree):
+        psd = tree["spectra/force_psd"]
+        frequency = psd.frequency.values
+        variance = psd.sum("frequency") * (frequency[1] - frequency[0])
+        total = tree["rolling/contact_force"].var("time")
+        assert np.all(variance.values < 1.3 * total.values)
+        assert float(variance.sel(law="direct")) > 0.5 * float(total.sel(law="direct"))
+
+    def test_difference_to_the_linear_law(self, tree):
+        level, difference = tree["spectra/force_level"], tree["spectra/force_level_difference"]
+        expected = level - level.sel(law="linear")
+        np.testing.assert_allclose(difference.values, expected.values)
+        assert tree["spectra/force_level_difference_to_reference"].attrs["reference"] == "direct"
+
+    def test_file_round_trip(self, tree, tmp_path):
+        from asperity.results import save
+
+        path = save(tree, tmp_path / "run.nc")
+        again = asperity.load(path)
+        xarray.testing.assert_identical(again["rolling"].to_dataset(), tree["rolling"].to_dataset())
+        assert again.attrs["verdict"] == tree.attrs["verdict"]
+
+    def test_physics_warnings_are_collected_not_raised(self, tree):
+        warnings = json.loads(tree.attrs["warnings"])
+        assert "TruncatedContactWarning" in {w["category"] for w in warnings}
+
+    def test_same_seed_same_result(self, tree):
+        again = run(case(laws=["areal", "linear"]))
+        both = again["rolling/contact_force"].values
+        assert np.array_equal(both, tree["rolling/contact_force"].sel(law=["areal", "linear"]).values)
+
+
+class TestResuming:
+    def test_interrupted_direct_run_goes_on_and_ends_the_same(self, tree, monkeypatch):
+        small = case(laws=["direct"], duration='"10 ms"')
+        whole = run(small)["rolling/contact_force"].values
+        again = case(laws=["direct"], duration='"10 ms"', seed=1)
+        monkeypatch.setenv("ASPERITY_CACHE", str(ball_on_beam.Store().root / "resume"))
+        seen = []
+
+        def interrupt(done, total, message):
+            seen.append((message, done))
+            if message == "rolling" and done > total // 2:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt):
+            run(again, interrupt)
+        half = max(done for message, done in seen if message == "rolling")
+        resumed = []
+        result = run(again, lambda done, total, message: resumed.append((message, done)))
+        first = min(done for message, done in resumed if message == "rolling")
+        assert first >= half
+        assert np.array_equal(result["rolling/contact_force"].values, whole)
+
+
+class TestTextures:
+    def map_file(self, tmp_path, shape=(80, 80), pixel=10e-6, hole=False):
+        rng = np.random.default_rng(0)
+        z = np.cumsum(np.cumsum(rng.standard_normal((2, *shape)), 1), 2)
+        z = 0.05 * (z - z.mean()) / z.std()
+        if hole:
+            z[0, 3, 4] = np.nan
+        np.savez(tmp_path / "maps.npz", patch=z)
+        return f'file = "maps.npz"\narray = "patch"\nheight_unit = "um"\npixel = "{pixel * 1e6} um"'
+
+    def test_measured_maps_are_the_samples_and_the_path_is_like_them(self, tmp_path):
+        surface = self.map_file(tmp_path, pixel=20e-6)
+        found = run(case(surface, laws=["areal", "linear"], source=tmp_path / "case.toml"))
+        assert "2 measured from maps.npz" in found["surface"].attrs["source"]
+        assert "path synthesised in their likeness" in found["surface"].attrs["source"]
+        assert found["contact"].attrs["samples"] == 2
+        assert found["surface/psd_path"].dims == ("surface_wavenumber",)
+
+    def test_long_map_is_the_path_itself(self, tmp_path):
+        surface = self.map_file(tmp_path, (1100, 40), pixel=20e-6)
+        found = run(case(surface, laws=["areal", "linear"], source=tmp_path / "case.toml"))
+        assert "path cut from the first" in found["surface"].attrs["source"]
+
+    def test_missing_points_are_refused_unless_filled(self, tmp_path):
+        surface = self.map_file(tmp_path, pixel=20e-6, hole=True)
+        with pytest.raises(InputError, match="Set fill = true"):
+            run(case(surface, laws=["areal"], source=tmp_path / "case.toml"))
+        filled = run(case(surface + "\nfill = true", laws=["areal"], source=tmp_path / "case.toml"))
+        assert "MissingPointsWarning" in {w["category"] for w in json.loads(filled.attrs["warnings"])}
+
+    def test_map_smaller_than_the_window_is_refused(self, tmp_path):
+        surface = self.map_file(tmp_path, (24, 24), pixel=20e-6)
+        with pytest.raises(InputError, match="window of the contact: received 33 × 33 cells"):
+            run(case(surface, laws=["areal"], source=tmp_path / "case.toml"))
+
+    def test_measured_line(self, tmp_path):
+        x = np.arange(4000) * 10e-6
+        z = 0.05 * np.sin(2 * np.pi * x / 0.7e-3)
+        lines = "\n".join(f"{a * 1e3:.5f}\t{b:.6f}" for a, b in zip(x, z, strict=True))
+        (tmp_path / "line.txt").write_text("x [mm]\tz [um]\n" + lines + "\n")
+        surface = SYNTHETIC + '\nline = "line.txt"'
+        found = run(case(surface, laws=["shifted", "linear"], source=tmp_path / "case.toml"))
+        assert "path measured, line.txt" in found["surface"].attrs["source"]
+        peak = found["spectra/force_psd"].sel(law="linear").idxmax("frequency")
+        assert float(peak) == pytest.approx(1.0 / 0.7e-3, abs=60)
+        long = case(surface, laws=["linear"], source=tmp_path / "case.toml", duration='"50 ms"')
+        with pytest.raises(InputError, match=r"surface\.line: received 0\.04 m; allowed: at least"):
+            run(long)
+
+    def test_spectrum_of_a_rail_as_the_path(self):
+        surface = 'spectrum = "iso3095"\nlevel = "-10 dB"'
+        found = run(case(surface, laws=["hertz", "linear", "linear-filtered"]))
+        assert "ISO 3095:2013 limit -10 dB" in found["surface"].attrs["source"]
+        assert "filter" in found["contact"]
+
+
+class TestLimits:
+    def shape_of(self, **replace):
+        small = case(laws=["areal"], **replace)
+        load = small.ball.load
+        return geometry(small, load, 115e9)
+
+    def test_contact_beyond_the_half_space(self):
+        with pytest.raises(InputError, match="at most R/3"):
+            self.shape_of(load='"5 MN"')
+
+    def test_approach_beyond_the_half_space(self):
+        beyond = case(laws=["areal"], contact='approaches = ["0 um", "4 mm"]')
+        with pytest.raises(InputError, match="an approach of 4e\\+03 µm"):
+            geometry(beyond, 30.0, 115e9)
+
+    def test_window_must_hold_the_contact(self):
+        with pytest.raises(InputError, match=r"contact\.window: received"):
+            self.shape_of(load='"300 N"')
+
+    def test_coarse_grid_warns(self):
+        with pytest.warns(CoarseSamplingWarning, match="an eighth of the contact radius"):
+            self.shape_of(load='"10 N"')
