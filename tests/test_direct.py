@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.errors import InputError
+from asperity.errors import InputError, TruncatedContactWarning
 from asperity.pointforce import Areal, Direct, Printed, Shifted, Table, force
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.filter import filtered_texture
@@ -68,6 +68,13 @@ class TestDirect:
             assert resumed.evaluate(step, 0.2e-6) == expected[step]
             resumed.accept(step)
         assert resumed.solves == whole.solves
+
+    def test_contacts_cut_off_are_told(self):
+        law = direct(rough(60)).prepare([20 * DX])
+        law.evaluate(0, 0.8e-6)
+        law.accept(0)
+        with pytest.warns(TruncatedContactWarning, match="in 1 of 1 contact solutions of the direct law"):
+            law.warn_of_flaws()
 
     def test_path_must_hold_the_window(self):
         with pytest.raises(InputError, match=r"path of the ball \(m\): received"):

@@ -290,6 +290,9 @@ class SteppedShifted:
         assert step == self.accepted + 1
         self.accepted = step
 
+    def warn_of_flaws(self):
+        pass
+
     def state(self):
         return {"accepted": np.array(self.accepted)}
 

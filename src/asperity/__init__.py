@@ -18,7 +18,17 @@ _HOME = {
     "load": "results",
 }
 
-__all__ = ["Contact", "HalfSpace", "HeightMap", "Profile", "__version__", "load", "read_surface", "run", "scan"]
+__all__ = [
+    "Contact",
+    "HalfSpace",
+    "HeightMap",
+    "Profile",
+    "__version__",
+    "load",
+    "read_surface",
+    "run",
+    "scan",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -239,9 +239,7 @@ def band_levels(
     smallest, largest = _covered_centres(lines, step)
     first, last = smallest if low is None else low, largest if high is None else high
     if first > last * HALF_BAND:
-        raise InputError(
-            "frequency", f"{lines.size} lines", "enough lines to cover a band"
-        )
+        raise InputError("frequency", f"{lines.size} lines", "enough lines to cover a band")
     centres, edges_low, edges_high = third_octave_bands(first, max(first, last))
     energies = np.maximum(band_energies(lines, psd, edges_low, edges_high), 0.0)
     with np.errstate(divide="ignore"):

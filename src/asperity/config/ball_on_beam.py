@@ -88,6 +88,9 @@ class Surface(Section):
         goes_with="file",
     )
     fill: YesNo = key(False, "fill points without a height", goes_with="file")
+    form: Annotated[str, BeforeValidator(Choice(("plane", "quadratic")))] = key(
+        "plane", "form that is removed from each measured map", goes_with="file"
+    )
     line: ExistingFile | None = key(
         None,
         "measured long line for the path; without one, a path longer than the map is synthesised from it",

@@ -1,1 +1,1 @@
-"""Compiled functions on plain arrays: the numerical work of all rooms."""
+"""Compiled functions on plain arrays, in SI, without classes and without input or output."""

@@ -35,6 +35,10 @@ class SteppedLaw(Protocol):
         """Go on from a saved state."""
         ...
 
+    def warn_of_flaws(self) -> None:
+        """Warn of evaluations that went wrong on the way."""
+        ...
+
 
 class Law(Protocol):
     """A contact law: contact force from approach, approach rate and position on the path."""

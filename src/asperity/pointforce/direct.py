@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import InputError
 from asperity.pointforce.base import check_damping
-from asperity.reduction.scan import TRUNCATED
+from asperity.reduction.scan import TRUNCATED, warn_of_flaws
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,6 +140,10 @@ class DirectOnPath:
         self.iterations, self.solves, self.unconverged, self.truncated, self._row = counts
         self._pressure = state["pressure"] if state["pressure"].size else None
         self._gap, self._trial, self._start = None, None, (-1, None)
+
+    def warn_of_flaws(self) -> None:
+        """Warn of contacts that did not converge or were cut off."""
+        warn_of_flaws(self.solves, self.unconverged, self.truncated, "the direct law")
 
     def _gap_at(self, step: int) -> NDArray[np.float64]:
         if self._gap is None or self._gap[0] != step:

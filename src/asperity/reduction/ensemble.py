@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import InputError
-from asperity.reduction.scan import scan_forces, warn_of_flaws
+from asperity.reduction.scan import scan_forces, warn_of_scans
 from asperity.reduction.stiffness import ForceCurve
 
 
@@ -168,6 +168,6 @@ def stiffness_ensemble(
         report(i, len(samples), "loading the samples")
         scans.append(scan_forces(sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1))
     report(len(samples), len(samples), "loading the samples")
-    warn_of_flaws(scans, "the loading curves")
+    warn_of_scans(scans, "the loading curves")
     forces = np.array([scanned.forces[:, 0] for scanned in scans])
     return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), forces, datum)

@@ -122,7 +122,7 @@ def scan(
         z - z.mean(), spacing, body, modulus, delta, hardness,
         stride=stride, rtol=rtol, workers=workers, cache=cache, progress=progress,
     )  # fmt: skip
-    warn_of_flaws([result], "the scan")
+    warn_of_scans([result], "the scan")
     position = np.arange(result.forces.shape[1]) * stride * spacing[0]
     return xarray.DataArray(
         result.forces,
@@ -292,7 +292,7 @@ def _in_threads(
         executor.shutdown(wait=True, cancel_futures=True)
 
 
-def warn_of_flaws(scans: Sequence[ScannedForces], what: str) -> None:
+def warn_of_scans(scans: Sequence[ScannedForces], what: str) -> None:
     """Warn, once for all of them, of solutions that did not converge or were cut off.
 
     Parameters
@@ -303,13 +303,25 @@ def warn_of_flaws(scans: Sequence[ScannedForces], what: str) -> None:
         What they were made for, as ``"the scan"``.
     """
     solved = sum(int(np.count_nonzero(s.forces)) for s in scans)
-    unconverged, truncated = sum(s.unconverged for s in scans), sum(s.truncated for s in scans)
+    warn_of_flaws(solved, sum(s.unconverged for s in scans), sum(s.truncated for s in scans), what)
+
+
+def warn_of_flaws(solved: int, unconverged: int, truncated: int, what: str) -> None:
+    """Warn of contact solutions that did not converge or were cut off.
+
+    Parameters
+    ----------
+    solved, unconverged, truncated : int
+        Number of solutions in contact, and of those that missed the tolerance or reached the edge.
+    what : str
+        What they were made for.
+    """
     if unconverged:
         warnings.warn(
             f"{unconverged} of {solved} contact solutions of {what} missed their tolerance; their "
             "forces are approximate. Try a larger `rtol`, and check the surface for outliers.",
             UnconvergedWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
     if truncated:
         warnings.warn(
@@ -317,7 +329,7 @@ def warn_of_flaws(scans: Sequence[ScannedForces], what: str) -> None:
             "the force acts on the window's edge: the contact is cut off and its force too small. Enlarge "
             "the window.",
             TruncatedContactWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 

@@ -1,0 +1,1 @@
+"""Cited tables and named parameter sets: materials and rail roughness."""

@@ -166,7 +166,7 @@ def roll(
     restore(checkpoint, motion, record, prepared)
     run(system, motion, record, prepared, law.damping, beam, positions, progress, checkpoint)
     flying = _flying(prepared, record)
-    _warn_after(motion, prepared, record)
+    _warn_after(law.name, motion, prepared, record)
     return Rolling(
         time=time_step * np.arange(len(positions)),
         position=positions,
@@ -293,20 +293,23 @@ def _warn_if_coarse(
             )
 
 
-def _warn_after(motion: Motion, prepared: Prepared | SteppedLaw, record: Record) -> None:
+def _warn_after(name: str, motion: Motion, prepared: Prepared | SteppedLaw, record: Record) -> None:
     steps = max(int(motion.counts[0]), 1)
     if motion.counts[1]:
         warnings.warn(
-            f"{motion.counts[1]} of {steps} time steps missed the tolerance on the contact force: "
+            f"{name}: {motion.counts[1]} of {steps} time steps missed the tolerance on the contact force: "
             "their force is uncertain; take a smaller time step",
             UnconvergedWarning,
             stacklevel=3,
         )
-    beyond = count_beyond(prepared, record.approach) if isinstance(prepared, Prepared) else 0
+    if not isinstance(prepared, Prepared):
+        prepared.warn_of_flaws()
+        return
+    beyond = count_beyond(prepared, record.approach)
     if beyond:
         warnings.warn(
-            f"the contact was closer than its largest computed state in {beyond} of {steps} time steps: "
-            "the force there is a continuation; compute larger approaches",
+            f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
+            "steps: the force there is a continuation; compute larger approaches",
             ExtrapolationWarning,
             stacklevel=3,
         )

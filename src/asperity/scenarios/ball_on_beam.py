@@ -151,6 +151,7 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
             duration=duration,
             time_step=case.time_step,
             sensors=case.beam.sensor_positions,
+            highest_frequency=case.numerics.highest_frequency,
             progress=progress,
             checkpoint=Checkpoint(store, _run_key(case, textures, duration)) if name == "direct" else None,
         )

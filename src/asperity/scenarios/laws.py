@@ -14,7 +14,7 @@ from asperity.pointforce import Areal, Direct, Hertz, Law, Linear, Printed, Shif
 from asperity.progress import Progress
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.filter import filtered_texture
-from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_flaws
+from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.reducing import Geometry, Reduction
@@ -143,7 +143,7 @@ class Workshop:
             progress=self.progress,
             message="scanning the path",
         )
-        warn_of_flaws([scanned], "the path")
+        warn_of_scans([scanned], "the path")
         touches = first_touch(self.textures.path.heights, self.shape.body, stride) + planes
         table = ForceTable(
             scanned.forces, self.reduction.approaches, self._start + half * dx, stride * dx, touches

@@ -23,7 +23,7 @@ from asperity.reduction.filter import (
     mean_filter,
     tap_count,
 )
-from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_flaws
+from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
 from asperity.scenarios.textures import Textures, window_cells
 
 STATES = 14
@@ -316,6 +316,6 @@ def _filters(
                 scanned.forces, lines, stride * dx, tangent_stiffness=tangent, asymptote=asymptote
             )
         )
-    warn_of_flaws(scans, "the filters")
+    warn_of_scans(scans, "the filters")
     degree, normalise = case.contact.filter_degree, case.contact.normalise
     return mean_filter(estimates, approaches, degree=degree, normalise=normalise), scans  # type: ignore[arg-type]

@@ -21,6 +21,8 @@ from asperity.surfaces.synthesis import from_bands, from_map, self_affine
 STRIP_WINDOWS = 8
 """Length of a synthesised strip for the filters, in windows."""
 
+FORM_DEGREE = {"plane": 1, "quadratic": 2}
+
 
 @dataclass(frozen=True, eq=False)
 class Textures:
@@ -114,7 +116,7 @@ def _measured(case: BallOnBeamCase) -> tuple[tuple[HeightMap, ...], float]:
         found = [read_surface(surface.file, index=surface.index, fill=surface.fill, **hints)]
     else:
         found = read_surfaces(surface.file, fill=surface.fill, **hints)
-    result = []
+    result, degree = [], FORM_DEGREE[surface.form]
     for measured in found:
         if not isinstance(measured, HeightMap):
             remedy = "A single line can be the path: give it as surface.line."
@@ -129,7 +131,7 @@ def _measured(case: BallOnBeamCase) -> tuple[tuple[HeightMap, ...], float]:
                 ShortRecordWarning,
                 stacklevel=2,
             )
-        result.append(level(resample(level(measured), case.contact.spacing)))
+        result.append(level(resample(level(measured, degree), case.contact.spacing), degree))
     return tuple(result), float(np.mean([m.missing_share for m in found]))
 
 

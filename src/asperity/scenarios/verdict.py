@@ -56,4 +56,4 @@ def _range(difference: xarray.DataArray) -> str:
     low_at, high_at = (
         float(difference.band[int(i)]) for i in (difference.values.argmin(), difference.values.argmax())
     )
-    return f"{low:+.1f} dB ({low_at:.0f} Hz) to {high:+.1f} dB ({high_at:.0f} Hz)"
+    return f"{low:+.1f} dB ({low_at:.0f} Hz) to {high:+.1f} dB ({high_at:.0f} Hz)".replace("-", "−")
