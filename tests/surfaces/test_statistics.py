@@ -52,7 +52,7 @@ def test_areal_statistics_of_a_sine_wave():
     assert_allclose(found["Sdr"].value, slope**2 / 2.0, rtol=1e-2)
     # parts of a wave at the ends change the mean products by up to wavelength/(2π length)
     assert_allclose(found["Sal"].value, np.arccos(0.2) / (2.0 * np.pi) * wavelength, rtol=3.2e-3)
-    assert found["Str"].value < 0.1
+    assert found["Str"].value < 0.36  # at most this map's half width, 25 µm, shows
     assert found["Sq"].bandwidth == (2 * UM, 2000 * UM)
     assert (found["Sq"].unit, found["Sdq"].unit) == ("m", "1")
 

@@ -1,0 +1,167 @@
+"""Is the texture the same everywhere, and does it have a direction?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from asperity.errors import InputError
+from asperity.surfaces.areal_psd import psd_2d
+from asperity.surfaces.correlation import autocorrelation_lengths
+from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.levelling import level
+from asperity.surfaces.synthesis import from_map
+
+SIGNIFICANCE = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Homogeneity:
+    """Outcome of the homogeneity test.
+
+    Parameters
+    ----------
+    tile_rms : ndarray, shape (kx, ky)
+        Root mean square height of each tile about the map's mean plane, m.
+    variation : float
+        Coefficient of variation of the tiles' mean squares.
+    expected : float
+        Median of the same over stationary surrogates.
+    p_value : float
+        Share of surrogates, this map included, that vary at least as much.
+    """
+
+    tile_rms: NDArray[np.float64]
+    variation: float
+    expected: float
+    p_value: float
+
+    @property
+    def homogeneous(self) -> bool:
+        """Whether the tiles differ no more than chance makes them, at 5 % significance."""
+        return self.p_value > SIGNIFICANCE
+
+
+def homogeneity(
+    surface: HeightMap, tiles: tuple[int, int] = (4, 4), *, surrogates: int = 39, seed: int = 0
+) -> Homogeneity:
+    """Test whether the mean square of tiles varies more than on a stationary surface.
+
+    The surrogates are pieces of a stationary surface with the spectrum and the height
+    distribution of the map (see `asperity.surfaces.synthesis.from_map`), levelled and tiled as
+    the map is.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Complete heights, m.
+    tiles : tuple of int, optional
+        Tiles (kx, ky) to cut the map into; rows and columns left over at the end are not used.
+    surrogates : int, optional
+        Number of surrogates, at least 19; the smallest p-value is 1/(surrogates + 1).
+    seed : int, optional
+        Seed of the surrogates.
+
+    Returns
+    -------
+    Homogeneity
+        Tiles, their variation and how unusual it is.
+
+    Raises
+    ------
+    InputError
+        If points are missing, the tiles are not smaller than the map or the surrogates too few.
+
+    Notes
+    -----
+    One-sided rank test (Monte Carlo test). Finds patches and trends of roughness larger than a
+    tile; a change of the spectrum at equal mean square goes unseen.
+
+    References
+    ----------
+    J. Theiler et al., Physica D 58 (1992) 77 (surrogate data).
+    """
+    nx, ny = surface.shape
+    if not (
+        len(tiles) == 2 and min(tiles) >= 1 and max(tiles) > 1 and nx >= 2 * tiles[0] and ny >= 2 * tiles[1]
+    ):
+        raise InputError("tiles", tiles, f"two or more tiles of 2 points or more in {surface.shape}")
+    if surrogates < 19:
+        raise InputError("surrogates", surrogates, "at least 19, for 5 % significance")
+    measured = _tile_mean_squares(level(surface), tiles)
+    variation = float(measured.std() / measured.mean())
+    long = from_map(surface, (nx * surrogates, ny), seed).heights
+    pieces = (HeightMap(long[k * nx : (k + 1) * nx], surface.spacing) for k in range(surrogates))
+    squares = [_tile_mean_squares(level(piece), tiles) for piece in pieces]
+    chance = np.array([s.std() / s.mean() for s in squares])
+    p_value = (1.0 + float(np.sum(chance >= variation))) / (surrogates + 1.0)
+    return Homogeneity(np.sqrt(measured), variation, float(np.median(chance)), p_value)
+
+
+def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> NDArray[np.float64]:
+    px, py = (n // k for n, k in zip(surface.shape, tiles, strict=True))
+    kept = surface.heights[: px * tiles[0], : py * tiles[1]]
+    return np.mean(kept.reshape(tiles[0], px, tiles[1], py) ** 2, axis=(1, 3))
+
+
+@dataclass(frozen=True)
+class Anisotropy:
+    """Strength and direction of a texture.
+
+    Parameters
+    ----------
+    aspect_ratio : float
+        Str: shortest over longest correlation length; 1 is isotropic.
+    direction : float
+        Std: angle from x in which the texture varies most, rad, 0 to π; the lay is at right
+        angles to it. Meaningless for an isotropic texture.
+    """
+
+    aspect_ratio: float
+    direction: float
+
+
+def anisotropy(surface: HeightMap) -> Anisotropy:
+    """Texture aspect ratio and direction.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Complete, levelled heights, m.
+
+    Returns
+    -------
+    Anisotropy
+        Str, and Std within about 2°.
+
+    Raises
+    ------
+    InputError
+        If points are missing.
+
+    Warns
+    -----
+    ShortRecordWarning
+        If the autocorrelation does not fall to 0.2 inside the map.
+
+    Notes
+    -----
+    The angular spectrum is the areal one summed over rings from three wavenumber steps, below
+    which directions cannot be told apart, to the largest wavenumber that both directions reach,
+    and smoothed over ±4°.
+
+    References
+    ----------
+    ISO 25178-2:2021, clauses 4.3.2 (Str) and 4.5.1 (Std).
+    """
+    shortest, longest = autocorrelation_lengths(surface)
+    qx, qy, density = psd_2d(surface)
+    q, angle = np.hypot(qx[:, None], qy[None, :]), np.arctan2(qy[None, :], qx[:, None]) % np.pi
+    inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
+    degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
+    energy = np.bincount(degrees, density[inside], minlength=180)
+    smooth = ndimage.uniform_filter1d(energy, 9, mode="wrap")
+    return Anisotropy(shortest / longest, float(np.radians(smooth.argmax())))
