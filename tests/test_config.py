@@ -369,6 +369,12 @@ def test_laws_that_need_more_texture_than_there_is(map_file):
     assert parse_case(case_with('laws = ["hertz", "linear"]', 'line = "line.csv"'), map_file).surface.has_line
 
 
+def test_rough_linearisation_needs_samples():
+    text = 'kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n[contact]\nlinearise = "rough"\n'
+    with pytest.raises(CaseError, match=r'contact\.linearise: received "rough" without samples'):
+        parse_case(text)
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_may_be_asked_for(law):
     assert parse_case(case_with(f'laws = ["{law}"]')).laws == (law,)

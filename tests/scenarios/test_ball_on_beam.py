@@ -136,6 +136,21 @@ class TestResult:
         assert np.array_equal(both, tree["rolling/contact_force"].sel(law=["areal", "linear"]).values)
 
 
+class TestProgress:
+    def test_long_work_says_what_it_does(self):
+        seen = {}
+        run(
+            case(laws=["areal", "table"], duration='"6 ms"'),
+            lambda d, n, m: seen.setdefault(m, []).append((d, n)),
+        )
+        assert [m for m in seen if m.startswith("compiled functions")]
+        assert {"loading the samples", "contact filter, strip 2 of 2", "scanning the path", "rolling"} <= set(
+            seen
+        )
+        for steps in seen.values():
+            assert steps[-1][0] == steps[-1][1]
+
+
 class TestResuming:
     def test_interrupted_direct_run_goes_on_and_ends_the_same(self, tree, monkeypatch):
         small = case(laws=["direct"], duration='"10 ms"')

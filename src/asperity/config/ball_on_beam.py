@@ -46,7 +46,7 @@ LAWS = (
     "linear-filtered",
 )
 NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
-NEED_NO_SAMPLES = ("hertz", "linear")  # laws of smooth bodies over the bare line
+NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line
 MOST_CELLS = 2048  # along one side of the window
 MOST_STEPS = 10**8
 SAMPLING = 2.5  # points per period of the highest frequency, at least
@@ -370,6 +370,9 @@ def _problems_of_laws(case: BallOnBeamCase) -> Iterator[InputError]:
             yield InputError(
                 "laws", f'"{law}" without samples of the surface', _listed(NEED_NO_SAMPLES), remedy
             )
+
+    if case.contact.linearise == "rough" and not case.surface.has_samples:
+        yield InputError("contact.linearise", '"rough" without samples of the surface', '"hertz"')
 
 
 def _problems_of_sampling(case: BallOnBeamCase) -> Iterator[InputError]:

@@ -17,6 +17,7 @@ from asperity.progress import Progress
 from asperity.reduction.scan import ScannedForces
 from asperity.reference.materials import contact_modulus, material
 from asperity.rolling.ball_on_beam import Rolling, roll
+from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.laws import Workshop
 from asperity.scenarios.reducing import Geometry, Reduction, geometry, patch_planes, reduce
 from asperity.scenarios.textures import Textures, gather, window_cells
@@ -122,6 +123,7 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
     Computed
         All that was computed.
     """
+    compile_kernels(progress)
     store, seconds = Store(), dict[str, float]()
     began = time.perf_counter()
     ball_material, beam_material = material(case.ball.material), material(case.beam.material)

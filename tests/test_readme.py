@@ -1,0 +1,35 @@
+"""The README does what it says."""
+
+import re
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from asperity.cli import main
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+
+def test_it_is_short():
+    assert README.count("\n") <= 120
+
+
+def test_its_snippet_makes_its_figure(tmp_path, monkeypatch, capsys):
+    (snippet,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(snippet, "README.md", "exec"), {})
+    assert (tmp_path / "quick_start.png").stat().st_size > 10_000
+    assert capsys.readouterr().out.startswith("30.0 N on ")
+    shown = Path(__file__).parents[1] / "docs" / "quick_start.png"
+    assert shown.is_file()
+
+
+def test_its_links_lead_somewhere():
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (Path(__file__).parents[1] / target).exists(), target
+
+
+def test_its_commands_exist():
+    for command in set(re.findall(r"^asperity (\w+)|&& asperity (\w+)", README, re.MULTILINE)):
+        name = "".join(command)
+        assert CliRunner().invoke(main, [name, "--help"]).exit_code == 0, name
