@@ -47,7 +47,7 @@ def test_a_minimal_case_has_the_documented_defaults():
     assert case.laws == ("areal", "shifted", "printed", "table", "linear")
     assert case.seed == 1
     assert (case.surface.rms, case.surface.hurst) == (pytest.approx(5e-7), 0.8)
-    assert (case.surface.longest, case.surface.shortest) == pytest.approx((4e-4, 16e-6))
+    assert case.surface.band == pytest.approx((4e-4, 16e-6))
     assert case.ball.radius == pytest.approx(0.025)
     assert case.ball.mass is case.ball.load is None
     assert (case.beam.length, case.beam.width, case.beam.height) == pytest.approx((1.0, 0.05, 0.01))

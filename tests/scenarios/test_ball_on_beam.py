@@ -204,6 +204,13 @@ class TestTextures:
         filled = run(case(surface + "\nfill = true", laws=["areal"], source=tmp_path / "case.toml"))
         assert "MissingPointsWarning" in {w["category"] for w in json.loads(filled.attrs["warnings"])}
 
+    def test_measured_maps_are_band_limited_on_request(self, tmp_path):
+        surface = self.map_file(tmp_path, pixel=20e-6)
+        bare = run(case(surface, laws=["linear"], source=tmp_path / "case.toml"))
+        limited = run(case(surface + '\nlongest = "0.4 mm"', laws=["linear"], source=tmp_path / "case.toml"))
+        rms = [float(found["surface/sample_heights"].std()) for found in (bare, limited)]
+        assert rms[1] < 0.7 * rms[0]
+
     def test_map_smaller_than_the_window_is_refused(self, tmp_path):
         surface = self.map_file(tmp_path, (24, 24), pixel=20e-6)
         with pytest.raises(InputError, match="window of the contact: received 33 × 33 cells"):

@@ -49,6 +49,7 @@ NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture 
 NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line
 MOST_CELLS = 2048  # along one side of the window
 MOST_STEPS = 10**8
+LONGEST, SHORTEST = 0.4e-3, 16e-6  # m, of synthesised samples where the case names no wavelengths
 SAMPLING = 2.5  # points per period of the highest frequency, at least
 
 
@@ -100,8 +101,18 @@ class Surface(Section):
     hurst: Annotated[float, BeforeValidator(Number(above=0, at_most=1))] = key(
         0.8, "Hurst exponent of the synthesised texture", goes_with="rms"
     )
-    longest: Length = key("0.4 mm", "longest wavelength of the synthesised texture", goes_with="rms")
-    shortest: Length = key("16 um", "shortest wavelength of the synthesised texture", goes_with="rms")
+    longest: Length | None = key(
+        None,
+        "longest wavelength of the samples",
+        otherwise="with rms 0.4 mm, else all they hold",
+        example='"0.4 mm"',
+    )
+    shortest: Length | None = key(
+        None,
+        "shortest wavelength of the samples",
+        otherwise="with rms 16 um, else all they hold",
+        example='"16 um"',
+    )
     anisotropy: Annotated[float, BeforeValidator(Number(above=0, at_most=100))] = key(
         1.0, "ratio of the correlation lengths along and across the path", goes_with="rms"
     )
@@ -120,6 +131,13 @@ class Surface(Section):
         """Whether the path is given as a line, without the texture beside it."""
         return self.line is not None or self.spectrum is not None
 
+    @property
+    def band(self) -> tuple[float | None, float | None]:
+        """Longest and shortest wavelength of the samples in m; None where a file decides."""
+        if self.rms is None:
+            return self.longest, self.shortest
+        return self.longest or LONGEST, self.shortest or SHORTEST
+
     def problems(self) -> Iterator[InputError]:
         """Exactly one source of samples, at most one line, and wavelengths in order."""
         if self.file is not None and self.rms is not None:
@@ -132,8 +150,9 @@ class Surface(Section):
         if not self.has_samples and not self.has_line:
             remedy = 'Name a measured map (file = "…") or synthesise one (rms = "0.5 um").'
             yield InputError("", "no texture", "file, rms, line or spectrum", remedy)
-        if self.longest <= self.shortest:
-            received = f"{self.longest * 1e6:g} um with shortest {self.shortest * 1e6:g} um"
+        longest, shortest = self.band
+        if longest is not None and shortest is not None and longest <= shortest:
+            received = f"{longest * 1e6:g} um with shortest {shortest * 1e6:g} um"
             yield InputError("longest", received, "a wavelength greater than shortest")
 
 
@@ -386,8 +405,9 @@ def _problems_of_sampling(case: BallOnBeamCase) -> Iterator[InputError]:
     if case.time_step > 1 / (SAMPLING * highest):
         allowed = f"at most 1 / ({SAMPLING} highest_frequency) = {1e6 / (SAMPLING * highest):.4g} us"
         yield InputError("numerics.time_step", f"{case.time_step * 1e6:g} us", allowed)
-    if surface.rms is not None and surface.shortest < 2 * spacing * (1 - 1e-9):
-        received = f"{surface.shortest * 1e6:g} um on a spacing of {spacing * 1e6:g} um"
+    shortest = surface.band[1]
+    if shortest is not None and shortest < 2 * spacing * (1 - 1e-9):
+        received = f"{shortest * 1e6:g} um on a spacing of {spacing * 1e6:g} um"
         yield InputError("surface.shortest", received, f"at least two spacings, {2e6 * spacing:g} um")
 
 

@@ -14,7 +14,7 @@ from asperity.config import BallOnBeamCase
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.reference.rail_roughness import iso_3095_limit
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.synthesis import from_bands, from_map, self_affine
 
@@ -131,7 +131,10 @@ def _measured(case: BallOnBeamCase) -> tuple[tuple[HeightMap, ...], float]:
                 ShortRecordWarning,
                 stacklevel=2,
             )
-        result.append(level(resample(level(measured, degree), case.contact.spacing), degree))
+        on_grid = level(resample(level(measured, degree), case.contact.spacing), degree)
+        longest, shortest = surface.band
+        limited = longest is not None or shortest is not None
+        result.append(band_limit(on_grid, longest=longest, shortest=shortest) if limited else on_grid)
     return tuple(result), float(np.mean([m.missing_share for m in found]))
 
 
@@ -171,14 +174,17 @@ def _path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> 
 
 def _synthesised(case: BallOnBeamCase, shape: tuple[int, int], seed: int) -> HeightMap:
     surface, spacing = case.surface, case.contact.spacing
+    longest, shortest = surface.band
     assert surface.rms is not None
+    assert longest is not None
+    assert shortest is not None
     return self_affine(
         shape,
         (spacing, spacing),
         rms=surface.rms,
         hurst=surface.hurst,
-        longest=surface.longest,
-        shortest=surface.shortest,
+        longest=longest,
+        shortest=shortest,
         anisotropy=surface.anisotropy,
         seed=seed,
     )
