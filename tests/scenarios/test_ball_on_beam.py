@@ -252,6 +252,15 @@ class TestLimits:
         with pytest.raises(InputError, match="an approach of 4e\\+03 µm"):
             geometry(beyond, 30.0, 115e9)
 
+    def test_approaches_must_reach_the_load(self):
+        shallow = case(laws=["areal"], contact='approaches = ["-0.1 um", "0.1 um", "0.3 um"]')
+        with pytest.raises(InputError, match=r"contact\.approaches: received up to 0\.3 um"):
+            run(shallow)
+
+    def test_approaches_as_given_are_the_states(self):
+        given = case(laws=["areal", "printed"], contact='approaches = ["-0.1 um", "0.4 um", "1 um", "2 um"]')
+        np.testing.assert_allclose(run(given)["contact/approach"], [-1e-7, 4e-7, 1e-6, 2e-6])
+
     def test_window_must_hold_the_contact(self):
         with pytest.raises(InputError, match=r"contact\.window: received"):
             self.shape_of(load='"300 N"')

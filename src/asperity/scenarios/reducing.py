@@ -227,6 +227,13 @@ def reduce(
         rtol=rtol, progress=progress,
     )  # fmt: skip
     mean = ensemble.mean_force
+    if mean[-1] < shape.load:
+        raise InputError(
+            "contact.approaches",
+            f"up to {approaches[-1] * 1e6:.4g} um, where the samples carry {mean[-1]:.3g} N",
+            f"approaches that reach the working load of {shape.load:.3g} N and beyond",
+            f"Go to {2e6 * contacts[0].approach:.3g} um or more, or leave the key out.",
+        )
     semi_axes = np.array([shape.hertz.semi_axes(shape.hertz.approach(f)) for f in mean])
     loaded = mean >= LIGHTEST_STATE * shape.load
     contact_filter, scans = _filters(case, textures, shape, ensemble, loaded, cache, progress)
