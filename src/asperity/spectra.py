@@ -104,7 +104,7 @@ def third_octave_bands(
 
     References
     ----------
-    IEC 61260-1:2014, clauses 5.2 to 5.6 (base-ten system, b = 3).
+    IEC 61260-1:2014 (base-ten system, b = 3).
     """
     if not 0.0 < f_low <= f_high < np.inf:
         raise InputError("band limits", f"{f_low} to {f_high}", "0 < f_low <= f_high, finite")
@@ -294,7 +294,7 @@ def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
 
     References
     ----------
-    IEC 61672-1:2013, annex E, Eq. (E.6), with the rounded constants 20.60, 107.7, 737.9 and
+    IEC 61672-1:2013, analytical A-weighting, with the rounded constants 20.60, 107.7, 737.9 and
     12194 Hz and -2.000 dB.
     """
     f = np.asarray(frequency, dtype=np.float64)

@@ -119,7 +119,7 @@ def test_gaussian_transmission_with_zero_phase(ratio):
     cut_off, wavelength = 80 * UM, 80 * UM * ratio
     x = np.arange(4000) * UM
     line = Profile(np.sin(2 * np.pi * x / wavelength), UM)
-    expected = np.exp(-np.log(2.0) / ratio**2)  # ISO 16610-21, clause 4.2
+    expected = np.exp(-np.log(2.0) / ratio**2)  # ISO 16610-21
     assert_allclose(inner_amplitude(band_limit(line, shortest=cut_off), wavelength), [expected, 0], atol=1e-5)
     assert_allclose(
         inner_amplitude(band_limit(line, longest=cut_off), wavelength), [1 - expected, 0], atol=1e-5

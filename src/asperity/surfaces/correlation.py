@@ -35,7 +35,7 @@ def autocorrelation(surface: HeightMap) -> NDArray[np.float64]:
 
     References
     ----------
-    ISO 25178-2:2021, clause 3.1.15 (autocorrelation function).
+    ISO 25178-2:2021 (autocorrelation function).
     """
     valid = np.isfinite(surface.heights)
     z = np.where(valid, surface.heights - np.nanmean(surface.heights), 0.0)
@@ -80,7 +80,7 @@ def autocorrelation_lengths(
 
     References
     ----------
-    ISO 25178-2:2021, clauses 4.3.1 and 4.3.2.
+    ISO 25178-2:2021 (Sal, Str).
     """
     if not 0.0 < threshold < 1.0:
         raise InputError("threshold", threshold, "between 0 and 1")

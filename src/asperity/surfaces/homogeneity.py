@@ -155,7 +155,7 @@ def anisotropy(surface: HeightMap) -> Anisotropy:
 
     References
     ----------
-    ISO 25178-2:2021, clauses 4.3.2 (Str) and 4.5.1 (Std).
+    ISO 25178-2:2021 (Str, Std).
     """
     shortest, longest = autocorrelation_lengths(surface)
     qx, qy, density = psd_2d(surface)

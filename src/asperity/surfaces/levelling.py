@@ -17,7 +17,7 @@ from asperity.surfaces.heightmap import Profile
 __all__ = ["GAUSSIAN_CONSTANT", "Form", "band_limit", "fill", "fit_form", "level", "remove_form", "resample"]
 
 GAUSSIAN_CONSTANT = float(np.sqrt(np.log(2.0) / np.pi))
-"""ISO 16610-21, clause 4.1: makes the transmission 50 % at the cut-off wavelength."""
+"""Of ISO 16610-21: makes the transmission 50 % at the cut-off wavelength."""
 
 FILLED_SHARE_WARNED = 0.05
 

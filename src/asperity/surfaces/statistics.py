@@ -77,7 +77,7 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
 
     References
     ----------
-    ISO 25178-2:2021, clauses 4.2 to 4.4. Slopes by the seven-point formula of ISO 4287:1997, 3.3.
+    ISO 25178-2:2021. Slopes by the seven-point formula of ISO 4287:1997.
     """
     band = bandwidth or (2.0 * min(surface.spacing), max(surface.size))
     dx, dy = surface.spacing
@@ -121,7 +121,7 @@ def profile_statistics(profile: Profile, bandwidth: tuple[float, float] | None =
 
     References
     ----------
-    ISO 21920-2:2021; slopes by the seven-point formula of ISO 4287:1997, 3.3. Rz is the total
+    ISO 21920-2:2021; slopes by the seven-point formula of ISO 4287:1997. Rz is the total
     height over the evaluation length.
     """
     band = bandwidth or (2.0 * profile.spacing, profile.size)

@@ -63,7 +63,7 @@ def self_affine(
 
     References
     ----------
-    B. N. J. Persson et al., J. Phys.: Condens. Matter 17 (2005) R1, section 2 (spectrum).
+    B. N. J. Persson et al., J. Phys.: Condens. Matter 17 (2005) R1 (spectrum).
     """
     steps = (float(spacing[0]), float(spacing[1]))
     _check_shape(shape)
@@ -255,7 +255,7 @@ def from_map(
     References
     ----------
     C. R. Dietrich and G. N. Newsam, SIAM J. Sci. Comput. 18 (1997) 1088 (circulant embedding).
-    M. Grigoriu, Applied Non-Gaussian Processes (1995), section 3.1 (translation).
+    M. Grigoriu, Applied Non-Gaussian Processes (1995) (translation).
     """
     _check_shape(shape)
     levelled = _prepared([maps] if isinstance(maps, HeightMap) else list(maps), spacing)

@@ -76,7 +76,7 @@ def gaussian_correlation(transform: HeightTransform, correlation: NDArray[np.flo
 
     References
     ----------
-    M. Grigoriu, Applied Non-Gaussian Processes (1995), section 3.1.1.
+    M. Grigoriu, Applied Non-Gaussian Processes (1995).
     """
     u = transform.deviates
     weight = np.exp(-u * u / 2.0)
