@@ -355,8 +355,12 @@ class BallOnBeamCase(Section):
             return self.numerics.time_step
         per_cell = self.contact.spacing / self.speed
         wanted = 1 / (20 * self.numerics.highest_frequency)
-        whole = max(1, math.floor(wanted / per_cell * (1 + 1e-9)))
-        return per_cell * whole / math.ceil(per_cell / wanted * (1 - 1e-9))
+        if wanted >= per_cell:
+            return per_cell * math.floor(wanted / per_cell * (1 + 1e-9))
+        parts = math.ceil(per_cell / wanted * (1 - 1e-9))
+        # on the grid the texture needs no interpolation: rather a slightly longer step than a finer one
+        nearest = min((parts, max(parts - 1, 1)), key=lambda n: abs(math.log(per_cell / n / wanted)))
+        return per_cell / nearest
 
     @property
     def rolled_time(self) -> float:

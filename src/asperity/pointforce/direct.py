@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import BSpline, make_interp_spline
 
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import InputError
@@ -107,6 +108,7 @@ class DirectOnPath:
     _trial: Contact | None = None
     _pressure: NDArray[np.float64] | None = None
     _row: int = 0
+    _spline: BSpline | None = None
     _start: tuple[int, NDArray[np.float64] | None] = field(default=(-1, None))
 
     def evaluate(self, step: int, approach: float) -> tuple[float, float]:
@@ -147,9 +149,18 @@ class DirectOnPath:
 
     def _gap_at(self, step: int) -> NDArray[np.float64]:
         if self._gap is None or self._gap[0] != step:
-            rows = _rows_at(self.law.heights, float(self.offsets[step]), self.law.body.shape[0])
-            self._gap = (step, self.law.body - rows)
+            self._gap = (step, self.law.body - self._rows_at(float(self.offsets[step])))
         return self._gap[1]
+
+    def _rows_at(self, offset: float) -> NDArray[np.float64]:
+        """Rows of the texture from an offset on; between rows by quintic splines, which keep short waves."""
+        first, count = round(offset), self.law.body.shape[0]
+        if abs(offset - first) < 1e-6:
+            return self.law.heights[first : first + count]
+        if self._spline is None:
+            rows = np.arange(len(self.law.heights))
+            self._spline = make_interp_spline(rows, self.law.heights, k=5)
+        return np.asarray(self._spline(offset + np.arange(count)))
 
     def _start_at(self, step: int) -> NDArray[np.float64] | None:
         """Start of the step: its last trial, else the accepted pressure moved with the surface."""
@@ -164,21 +175,3 @@ class DirectOnPath:
                 pressure = np.vstack([pressure[shift:], np.zeros((shift, pressure.shape[1]))])
         self._start = (step, pressure)
         return pressure
-
-
-def _rows_at(heights: NDArray[np.float64], offset: float, count: int) -> NDArray[np.float64]:
-    """Rows of a texture from a fractional offset on, by four-point (cubic) interpolation."""
-    first = round(offset)
-    if abs(offset - first) < 1e-6:
-        return heights[first : first + count]
-    first = int(np.floor(offset))
-    t = offset - first
-    rows = np.clip(np.arange(first - 1, first + count + 2), 0, len(heights) - 1)
-    z = heights[rows]
-    weights = (
-        -t * (t - 1) * (t - 2) / 6,
-        (t + 1) * (t - 1) * (t - 2) / 2,
-        -(t + 1) * t * (t - 2) / 2,
-        (t + 1) * t * (t - 1) / 6,
-    )
-    return np.asarray(sum(w * z[i : i + count] for i, w in enumerate(weights)))
