@@ -55,7 +55,7 @@ class TestDirect:
             np.cos(2 * np.pi * at / (2.7 * DX))[:, None] * np.ones((1, N)) for at in (x, x + 0.5 * DX)
         )
         found = direct(wave).prepare([40.5 * DX])._rows_at(25.5)
-        # quintic cardinal splines lose (k/(1 − k))^6 of a wave of k cycles a row, and add as much of its image
+        # quintic splines lose (k/(1 − k))^6 of a wave of k cycles a row, and add as much of its image
         loss = (1 / 2.7 / (1 - 1 / 2.7)) ** 6
         np.testing.assert_allclose(found, shifted[25 : 25 + N], atol=2 * loss)
 
