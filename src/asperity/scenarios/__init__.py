@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,7 +36,15 @@ def run(case: str | os.PathLike[str] | BallOnBeamCase, progress: Progress | None
         If a computation fails.
     """
     from asperity.config import load_case
-    from asperity.scenarios import ball_on_beam
+    from asperity.errors import PhysicsWarning
+    from asperity.scenarios.ball_on_beam import compute
+    from asperity.scenarios.tree import layout
 
     loaded = load_case(case) if isinstance(case, str | os.PathLike) else case
-    return ball_on_beam.run(loaded, progress or (lambda done, total, message: None))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", PhysicsWarning)
+        result = layout(compute(loaded, progress or (lambda done, total, message: None)), caught)
+    for message in caught:
+        if not issubclass(message.category, PhysicsWarning):
+            warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
+    return result

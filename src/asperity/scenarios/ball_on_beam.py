@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import time
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
-import xarray
 from numpy.typing import NDArray
 
 from asperity.config import BallOnBeamCase
-from asperity.errors import PhysicsWarning
 from asperity.pointforce import Law
 from asperity.progress import Progress
 from asperity.reduction.scan import ScannedForces
@@ -75,37 +72,6 @@ class Checkpoint:
     def save(self, state: dict[str, NDArray]) -> None:
         """Keep a state."""
         self.store.put(self.key, state)
-
-
-def run(case: BallOnBeamCase, progress: Progress) -> xarray.DataTree:
-    """Compute a ball-on-beam case.
-
-    Parameters
-    ----------
-    case : BallOnBeamCase
-        The case.
-    progress : Progress
-        Called during long work.
-
-    Returns
-    -------
-    xarray.DataTree
-        The result.
-
-    Raises
-    ------
-    InputError
-        If the case, or a file it names, is wrong.
-    """
-    from asperity.scenarios.tree import layout
-
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", PhysicsWarning)
-        result = layout(compute(case, progress), caught)
-    for message in caught:
-        if not issubclass(message.category, PhysicsWarning):
-            warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
-    return result
 
 
 def compute(case: BallOnBeamCase, progress: Progress) -> Computed:

@@ -222,7 +222,9 @@ def _contact(computed: Computed) -> xarray.Dataset:
     state = ensemble.states
     safe = np.where(state > 0.0, state, np.inf)
     force, spread = ensemble.mean_force, ensemble.force_spread
-    hertz = np.array([shape.hertz.force(s) for s in reduction.approaches])
+    approach = reduction.approaches
+    hertz = np.array([shape.hertz.force(s) for s in approach])
+    touching = np.where(approach > 0.0, approach, np.inf)
     variables = {
         "approach": variable("approach", reduction.approaches, "m", "approach of the mean surfaces"),
         "force": variable("approach", force, "N", "contact force, ensemble mean"),
@@ -233,7 +235,12 @@ def _contact(computed: Computed) -> xarray.Dataset:
             "approach", ensemble.curve.stiffness(reduction.approaches), "N/m", "tangent stiffness dF/dr"
         ),
         "hertz_force": variable("approach", hertz, "N", "contact force of smooth bodies (Hertz)"),
-        "hertz_stiffness": variable("approach", hertz / safe, "N/m", "F/r of smooth bodies, at r − d0"),
+        "hertz_stiffness": variable(
+            "approach",
+            hertz / touching,
+            "N/m",
+            "F/δ of smooth bodies (Hertz), at δ = r − d0",
+        ),
         "contact_radius": variable(
             "approach", reduction.semi_axes[:, 0], "m", "radius of the nominal patch at the mean force"
         ),
