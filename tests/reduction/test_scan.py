@@ -1,5 +1,7 @@
 """The quasi-static scan: geometry, signs, caching and messages."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -81,10 +83,19 @@ class Memory(dict):
 
 def test_interrupted_scan_goes_on_where_it_was(monkeypatch):
     monkeypatch.setattr("asperity.reduction.scan.BLOCK", 8)
-    heights, body, cache = rough(72, 41), ball(41), Memory()
+    heights, body, interrupted = rough(72, 41), ball(41), threading.Event()
+
+    class Waiting(Memory):
+        def put(self, key, arrays):
+            if len(self) >= 2:  # the third block ends after the interrupt, however slow the main thread is
+                interrupted.wait(30)
+            super().put(key, arrays)
+
+    cache = Waiting()
 
     def interrupt(done, total, message):
         if done >= 16:
+            interrupted.set()
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

@@ -94,6 +94,11 @@ class TestResult:
         direct, table = force.sel(law="direct"), force.sel(law="table")
         assert float((table - direct).std() / direct.std()) < 0.02
 
+    def test_table_is_within_0_3_dB_of_direct_in_permanent_contact(self, tree):
+        difference = tree["spectra/force_level_difference_to_reference"].sel(law="table")
+        assert difference.sizes["band"] >= 10
+        assert float(abs(difference).max()) < 0.3
+
     def test_areal_explains_direct_better_than_a_line_does(self, tree):
         force = tree["rolling/contact_force"].to_pandas().T
         correlation = force.corr()["direct"]
