@@ -122,14 +122,29 @@ def force_figure(tree: DataTree) -> Figure:
     figure = new_figure(4.2)
     panels = figure.subplots(1, 2)
     approach = values(tree, "contact/approach")
+    rough = present(tree, "contact/force_std")
     forces = (
-        ("force", "rough, mean ± standard deviation", _BLUE, "-", "o", 1.0),
+        (
+            "force",
+            "rough, mean ± standard deviation" if rough else "smooth bodies (Hertz)",
+            _BLUE,
+            "-",
+            "o",
+            1.0,
+        ),
         ("hertz_force", "Hertz", INK, (0, (4, 2)), "", 1.0),
     )
     _curves(panels[0], tree, approach, forces)
     panels[0].set_ylabel("contact force F / N")
     stiffnesses = (
-        ("stiffness", "k_c = F/r, mean ± standard deviation", _BLUE, "-", "o", 1e6),
+        (
+            "stiffness",
+            "k_c = F/r, mean ± standard deviation" if rough else "F/r, smooth bodies (Hertz)",
+            _BLUE,
+            "-",
+            "o",
+            1e6,
+        ),
         ("tangent_stiffness", "tangent dF/dδ", _GREEN, (0, (1.5, 1.5)), "", 1e6),
         ("hertz_stiffness", "Hertz", INK, (0, (4, 2)), "", 1e6),
     )

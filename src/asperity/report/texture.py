@@ -147,19 +147,21 @@ def _matrix(tree: DataTree, path: str, x: str, y: str, symbol: str, unit: str) -
 
 @styled()
 def path_figure(tree: DataTree) -> Figure:
-    """Strip of the path, and its centre line."""
-    with_line = present(tree, "surface/line")
-    figure = new_figure(3.9 if with_line else 2.0)
-    panels = figure.subplots(2 if with_line else 1, 1, squeeze=False)[:, 0]
+    """Strip of the path, and its middle line; a path given as a line has the line alone."""
+    drawn = [draw for path, draw in _PATH_PANELS.items() if present(tree, path)]
+    figure = new_figure(3.9 if len(drawn) == 2 else 2.2)
+    for axes, draw in zip(figure.subplots(len(drawn), 1, squeeze=False)[:, 0], drawn, strict=True):
+        draw(axes, tree)
+    return figure
+
+
+def _draw_strip(axes: Axes, tree: DataTree) -> None:
     heights = values(tree, "surface/path_heights", "path_x", "path_y")
     x, y = values(tree, "surface/path_x"), values(tree, "surface/path_y")
     size, symbol, colours = height_scale(heights)
-    image = draw_map(panels[0], x, y, heights / size, length_unit(np.ptp(x)), equal=False, **colours)
-    panels[0].set_title("a piece of the path, seen from above (y stretched)")
-    figure.colorbar(image, ax=panels[0], label=f"height / {symbol}", extend="both", pad=0.01)
-    if with_line:
-        _draw_line(panels[1], tree)
-    return figure
+    image = draw_map(axes, x, y, heights / size, length_unit(np.ptp(x)), equal=False, **colours)
+    axes.set_title("a piece of the path, seen from above (y stretched)")
+    axes.figure.colorbar(image, ax=axes, label=f"height / {symbol}", extend="both", pad=0.01)
 
 
 def _draw_line(axes: Axes, tree: DataTree) -> None:
@@ -171,11 +173,16 @@ def _draw_line(axes: Axes, tree: DataTree) -> None:
     axes.set_xlim(distance[0] / along, distance[-1] / along)
     axes.set_xlabel(f"distance / {along_symbol}")
     axes.set_ylabel(f"height / {symbol}")
-    axes.set_title("centre line of the path (envelope)")
+    axes.set_title("middle line of the path (envelope)")
+
+
+_PATH_PANELS = {"surface/path_heights": _draw_strip, "surface/line": _draw_line}
 
 
 def path_columns(tree: DataTree) -> Columns:
-    """Heights of the piece of the path: one row per x, one column per y."""
+    """Heights of the piece of the path, one row per x and one column per y; or of its line."""
+    if not present(tree, "surface/path_heights"):
+        return {"x [m]": values(tree, "surface/distance"), "z [m]": values(tree, "surface/line")}
     return _matrix(tree, "surface/path_heights", "path_x", "path_y", "z", "m")
 
 
@@ -252,12 +259,14 @@ TEXTURE = (
     Part(
         "texture_path",
         "Texture of the path",
-        ("surface/path_heights",),
+        (),
         path_figure,
         path_columns,
-        lambda _: (
-            "Heights of the path, positive out of the material. The CSV file holds the piece seen from above."
+        lambda tree: (
+            "Heights of the path, positive out of the material."
+            + (" The CSV file holds the piece seen from above." if "path_heights" in tree["surface"] else "")
         ),
+        ("surface/path_heights", "surface/line"),
     ),
     Part(
         "texture_psd",
