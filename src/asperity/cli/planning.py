@@ -8,9 +8,8 @@ from asperity.config import BallOnBeamCase
 from asperity.errors import InputError
 from asperity.progress import duration
 
-STATES = 14  # approaches, where the case names none
-SOLVE_TIME = 1e-6  # s per grid cell of one contact solution on one core, in order of magnitude
-STEP_TIME = 1e-5  # s per time step of one compiled law, in order of magnitude
+SOLVE_TIME = 2e-7  # s per grid cell of one contact solution on one core, in order of magnitude
+STEP_TIME = 3e-6  # s per time step of one compiled law, in order of magnitude
 
 
 def show_plan(case: BallOnBeamCase, source: str) -> None:
@@ -57,6 +56,8 @@ def plan(case: BallOnBeamCase) -> list[tuple[str, str]]:
     list of (str, str)
         Name and value, with units.
     """
+    from asperity.scenarios.reducing import STATES
+
     contact = case.contact
     states = STATES if contact.approaches is None else len(contact.approaches)
     positions = round(case.rolled_time * case.speed / contact.spacing) + 1
