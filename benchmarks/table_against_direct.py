@@ -77,11 +77,11 @@ def case_of(options: argparse.Namespace, seed: int) -> BallOnBeamCase:
         [surface]
         rms = "{options.rms} um"
         longest = "0.4 mm"
-        shortest = "32 um"
+        shortest = "{options.shortest} um"
         [ball]
         load = "{options.load} N"
         [contact]
-        spacing = "12 um"
+        spacing = "{options.spacing} um"
         window = "{options.window} mm"
         samples = {options.samples}
         """
@@ -123,6 +123,8 @@ def main() -> None:
     parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--duration", type=float, default=0.3, help="s of each path")
     parser.add_argument("--samples", type=int, default=4, help="surface samples for the state functions")
+    parser.add_argument("--spacing", type=float, default=12.0, help="of the contact grid, um")
+    parser.add_argument("--shortest", type=float, default=32.0, help="wavelength of the texture, um")
     parser.add_argument("--window", type=float, default=0.65, help="mm")
     options = parser.parse_args()
     ensemble, caught = Ensemble(), Counter[str]()
