@@ -80,6 +80,14 @@ def test_run_writes_results_and_report(computed):
     assert "scan" in outcome.stderr
 
 
+def test_run_says_what_is_kept_and_how_to_clear_it(computed):
+    assert "Kept" not in call("run", "case.toml").stderr
+    Store().put("scan-1", {"block": np.zeros(100_000)})
+    kept = call("run", "case.toml").stderr
+    assert f"MiB of finished work in {Store().root}" in kept
+    assert "asperity cache --clear" in kept
+
+
 def test_run_without_report(computed):
     call("run", "case.toml", "-o", "out", "--no-report")
     assert [path.name for path in Path("out").iterdir()] == ["run.nc"]

@@ -35,6 +35,7 @@ def run_into(case: BallOnBeamCase, directory: Path, *, report: bool = True, over
         _refuse_to_overwrite(case, directory)
     from asperity.results import save
     from asperity.scenarios import run
+    from asperity.store import Store
 
     with progress_bar() as progress:
         tree = run(case, progress=progress)
@@ -50,6 +51,10 @@ def run_into(case: BallOnBeamCase, directory: Path, *, report: bool = True, over
 
         write_report(tree, directory)
         click.echo(f"Report:  {(directory / 'report.html').resolve()}")
+    store = Store()
+    if size := store.size():
+        kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"
+        click.echo(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
 
 
 def _refuse_to_overwrite(case: BallOnBeamCase, directory: Path) -> None:
