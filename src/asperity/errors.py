@@ -107,7 +107,6 @@ class Outcome(Enum):
     SINGULAR = "the search direction broke down; try a larger `rtol`, and check the gap for outliers"
     NO_CONTACT = "the bodies do not touch at this approach"
     STEPS_UNCONVERGED = "the contact force did not converge in some time steps; try a smaller time step"
-    WINDOW_FULL = "the load cannot be carried inside the window; try a larger window or a smaller load"
 
     @property
     def ok(self) -> bool:

@@ -306,9 +306,6 @@ def _rolling(computed: Computed) -> xarray.Dataset:
     runs = list(computed.runs.values())
     laws, sensors = list(computed.runs), np.array(computed.case.beam.sensor_positions)
 
-    def stacked(name: str) -> NDArray[np.float64]:
-        return np.stack([getattr(run, name) for run in runs])
-
     terms = list(runs[0].energy.terms())
     energy = np.array([[run.energy.terms()[t] for t in terms] for run in runs])
     events = np.array([len(run.contact_loss) for run in runs])
@@ -318,36 +315,38 @@ def _rolling(computed: Computed) -> xarray.Dataset:
             "sensor": variable("sensor", sensors, "m", "position of the accelerometer on the beam"),
             "time": variable("time", runs[0].time, "s", "time"),
             "position": variable("time", runs[0].position, "m", "position of the contact on the beam"),
-            "contact_force": variable(("law", "time"), stacked("contact_force"), "N", "contact force"),
+            "contact_force": variable(("law", "time"), _stack(runs, "contact_force"), "N", "contact force"),
             "relative_displacement": variable(
                 ("law", "time"),
-                stacked("relative_displacement"),
+                _stack(runs, "relative_displacement"),
                 "m",
                 "approach of the mean surfaces, positive closing",
             ),
             "acceleration": variable(
                 ("law", "sensor", "time"),
-                stacked("acceleration"),
+                _stack(runs, "acceleration"),
                 "m/s2",
                 "acceleration of the beam, positive downwards",
             ),
             "ball_displacement": variable(
                 ("law", "time"),
-                stacked("ball_displacement"),
+                _stack(runs, "ball_displacement"),
                 "m",
                 "displacement of the ball, positive downwards",
             ),
             "beam_displacement": variable(
                 ("law", "time"),
-                stacked("beam_displacement"),
+                _stack(runs, "beam_displacement"),
                 "m",
                 "displacement of the beam under the ball, positive downwards",
             ),
             "contact_loss_share": variable(
-                "law", stacked("contact_loss_share"), "1", "share of the time without contact"
+                "law", _stack(runs, "contact_loss_share"), "1", "share of the time without contact"
             ),
             "contact_loss_events": variable("law", events, "1", "losses of contact"),
-            "longest_loss": variable("law", stacked("longest_loss"), "s", "longest time without contact"),
+            "longest_loss": variable(
+                "law", _stack(runs, "longest_loss"), "s", "longest time without contact"
+            ),
             "energy_term": variable("energy_term", np.array(terms), "1", "term of the energy balance"),
             "energy": variable(("law", "energy_term"), energy, "J", "energy since the start"),
             "energy_residual": variable(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtr
 
 REACH = 6.0
 """Largest standard normal deviate in the tables: one point in 10^9 lies beyond."""
@@ -91,22 +91,3 @@ def gaussian_correlation(transform: HeightTransform, correlation: NDArray[np.flo
     table = -np.cos(np.linspace(0.0, np.pi, 4001))
     mapped = np.polynomial.polynomial.polyval(table, np.concatenate([[0.0], energies / energies.sum()]))
     return np.interp(correlation, np.maximum.accumulate(mapped), table)
-
-
-def normal_scores(heights: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Standard normal deviates with the ranks of the heights.
-
-    Parameters
-    ----------
-    heights : ndarray
-        Heights of any shape, m.
-
-    Returns
-    -------
-    ndarray
-        Deviates, same shape; equal heights are ranked in order of appearance.
-    """
-    order = np.argsort(heights, axis=None, kind="stable")
-    scores = np.empty(heights.size)
-    scores[order] = ndtri((np.arange(heights.size) + 0.5) / heights.size)
-    return scores.reshape(heights.shape)
