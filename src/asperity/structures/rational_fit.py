@@ -1,0 +1,229 @@
+"""Vector fitting: common poles of many responses, and their residues."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import ComputationError, InputError
+
+Domain = Literal["half-plane", "disc"]
+
+
+@dataclass(frozen=True, eq=False)
+class RationalFit:
+    """Responses as sums over common stable poles.
+
+    Parameters
+    ----------
+    poles : ndarray (p,) of complex
+        Poles with Im >= 0. Those with Im > 0 stand for themselves and their conjugates.
+    residues : ndarray (m, p) of complex
+        Of each response; real where the pole is real. The response is the sum of r/(s − p) over real
+        poles, and of r/(s − p) + r*/(s − p*) over the others.
+    error : float
+        Root mean square of the weighted error, relative to that of the weighted responses.
+    """
+
+    poles: NDArray[np.complex128]
+    residues: NDArray[np.complex128]
+    error: float
+
+
+def vector_fit(
+    points: ArrayLike,
+    responses: ArrayLike,
+    poles: ArrayLike,
+    *,
+    weights: ArrayLike | None = None,
+    iterations: int = 10,
+    domain: Domain = "half-plane",
+) -> RationalFit:
+    """Fit responses by rational functions with common poles and no polynomial part.
+
+    Parameters
+    ----------
+    points : array_like (n,) of complex
+        Where the responses are known: s = iω for ``"half-plane"``, z = e^{iωΔt} for ``"disc"``.
+    responses : array_like (m, n) or (n,) of complex
+        Responses; those of real signals, so that conjugate points have conjugate responses.
+    poles : array_like (p,) of complex
+        Start poles with Im >= 0.
+    weights : array_like (n,), optional
+        Weights of the points; one by default.
+    iterations : int
+        Relocations of the poles; the best set met is kept.
+    domain : {"half-plane", "disc"}
+        Where stable poles lie: Re s < 0, or |z| < 1. Others are mirrored into it.
+
+    Returns
+    -------
+    RationalFit
+        Poles, residues and error.
+
+    Raises
+    ------
+    InputError
+        If there are fewer points than unknowns, or something is not finite.
+    ComputationError
+        If the iteration breaks down.
+
+    Notes
+    -----
+    B. Gustavsen and A. Semlyen, IEEE Trans. Power Delivery 14 (1999) 1052; relaxed: B. Gustavsen, ibid. 21
+    (2006) 1587; one QR factorisation per response: D. Deschrijver et al., IEEE Microw. Wireless Compon. Lett.
+    18 (2008) 383. Responses are first compressed to the few that span them.
+    """
+    s, found = np.asarray(points, dtype=complex), np.asarray(poles, dtype=complex)
+    values = np.atleast_2d(np.asarray(responses, dtype=complex))
+    weight = np.ones(s.size) if weights is None else np.asarray(weights, dtype=float)
+    if not (np.isfinite(s).all() and np.isfinite(values).all() and np.isfinite(weight).all()):
+        raise InputError("responses to fit", "values that are not finite", "finite values")
+    if s.size < 2 * found.size + 1:
+        received = f"{s.size} points for {found.size} poles"
+        raise InputError(
+            "responses to fit", received, "more than two points per pole", "Fit fewer poles, or give more."
+        )
+    weighted = weight * values
+    scale, spanning = np.linalg.norm(weighted), _spanning(weighted)
+    best = RationalFit(found, np.zeros((len(values), found.size), dtype=complex), np.inf)
+    for _ in range(iterations):
+        found = _stable(_relocated(s, weight, spanning, found), domain)
+        if found.size == 0 or not np.isfinite(found).all():
+            break
+        residues, left = _residues(s, weight, weighted, found)
+        error = float(np.linalg.norm(left) / scale) if scale > 0.0 else 0.0
+        if error < best.error:
+            best = RationalFit(found, residues, error)
+    if not np.isfinite(best.error):
+        raise ComputationError("the rational fit broke down", "fewer poles, or a smoother response")
+    return best
+
+
+def partial_fractions(points: NDArray, poles: NDArray) -> NDArray[np.complex128]:
+    """Real-coefficient basis of partial fractions.
+
+    Parameters
+    ----------
+    points : ndarray (n,) of complex
+        Points s.
+    poles : ndarray (p,) of complex
+        Poles with Im >= 0.
+
+    Returns
+    -------
+    ndarray (n, p + q)
+        For each pole 1/(s − p), or for Im > 0 the two columns 1/(s − p) ± 1/(s − p*), the second times i.
+    """
+    columns = []
+    for pole in poles:
+        first = 1.0 / (points - pole)
+        if pole.imag == 0.0:
+            columns.append(first)
+        else:
+            second = 1.0 / (points - np.conj(pole))
+            columns += [first + second, 1j * (first - second)]
+    return np.array(columns).T
+
+
+def _spanning(weighted: NDArray) -> NDArray:
+    """Few combinations of the responses that span all of them, by singular values."""
+    if len(weighted) == 1:
+        return weighted
+    _, size, rows = np.linalg.svd(weighted, full_matrices=False)
+    kept = size > 1e-5 * size[0]
+    return np.asarray(size[kept, None] * rows[kept])
+
+
+def _stacked(matrix: NDArray) -> NDArray:
+    return np.concatenate([matrix.real, matrix.imag])
+
+
+def _relocated(s: NDArray, weight: NDArray, spanning: NDArray, poles: NDArray) -> NDArray:
+    """Zeros of the fitted scaling function: the next poles."""
+    basis = partial_fractions(s, poles)
+    known, unknowns = _stacked(weight[:, None] * basis), basis.shape[1]
+    scaling = np.column_stack([basis, np.ones(s.size)])
+    blocks = []
+    for response in spanning:  # already weighted
+        system = np.hstack([known, -_stacked(response[:, None] * scaling)])
+        blocks.append(np.linalg.qr(system, mode="r")[unknowns:, unknowns:])
+    scale = np.linalg.norm(spanning) / s.size
+    relaxation = scale * scaling.real.sum(axis=0)
+    matrix = np.vstack([*blocks, relaxation])
+    right = np.zeros(len(matrix))
+    right[-1] = scale * s.size
+    size = np.linalg.norm(matrix, axis=0)
+    solution = np.linalg.lstsq(matrix / size, right, rcond=None)[0] / size
+    state, drive = _realisation(poles)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        update = np.outer(drive, solution[:-1]) / solution[-1]
+    if not np.isfinite(update).all():
+        return np.zeros(0, dtype=complex)
+    zeros = np.linalg.eigvals(state - update)
+    zeros = np.where(np.abs(zeros.imag) <= 1e-12 * np.abs(zeros), zeros.real, zeros)
+    return zeros[zeros.imag >= 0.0]
+
+
+def _realisation(poles: NDArray) -> tuple[NDArray, NDArray]:
+    """Real state matrix and input vector of the partial fractions."""
+    columns = int(np.sum(np.where(poles.imag == 0.0, 1, 2)))
+    state, drive, i = np.zeros((columns, columns)), np.zeros(columns), 0
+    for pole in poles:
+        if pole.imag == 0.0:
+            state[i, i], drive[i] = pole.real, 1.0
+            i += 1
+        else:
+            state[i : i + 2, i : i + 2] = [[pole.real, pole.imag], [-pole.imag, pole.real]]
+            drive[i] = 2.0
+            i += 2
+    return state, drive
+
+
+def _stable(poles: NDArray, domain: Domain) -> NDArray:
+    if domain == "disc":
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mirrored = np.where(np.abs(poles) > 1.0, 1.0 / np.conj(poles), poles)
+    else:
+        mirrored = -np.abs(poles.real) + 1j * poles.imag
+    return np.asarray(mirrored, dtype=complex)
+
+
+def _residues(
+    s: NDArray, weight: NDArray, weighted: NDArray, poles: NDArray
+) -> tuple[NDArray[np.complex128], NDArray]:
+    """Residues by least squares, and what they leave of the weighted responses."""
+    matrix = _stacked(weight[:, None] * partial_fractions(s, poles))
+    right = np.concatenate([weighted.real, weighted.imag], axis=1).T
+    size = np.linalg.norm(matrix, axis=0)
+    solution = np.linalg.lstsq(matrix / size, right, rcond=None)[0] / size[:, None]
+    return paired(solution, poles), matrix @ solution - right
+
+
+def paired(coefficients: NDArray, poles: NDArray) -> NDArray[np.complex128]:
+    """Complex residues from the coefficients of `partial_fractions`.
+
+    Parameters
+    ----------
+    coefficients : ndarray (p + q, m)
+        Real coefficients.
+    poles : ndarray (p,) of complex
+        Poles with Im >= 0.
+
+    Returns
+    -------
+    ndarray (m, p) of complex
+        Residues.
+    """
+    result, i = np.zeros((coefficients.shape[1], poles.size), dtype=complex), 0
+    for j, pole in enumerate(poles):
+        if pole.imag == 0.0:
+            result[:, j] = coefficients[i]
+            i += 1
+        else:
+            result[:, j] = coefficients[i] + 1j * coefficients[i + 1]
+            i += 2
+    return result
