@@ -130,12 +130,12 @@ def partial_fractions(points: NDArray, poles: NDArray) -> NDArray[np.complex128]
 
 
 def _spanning(weighted: NDArray) -> NDArray:
-    """Few combinations of the responses that span all of them, by singular values."""
-    if len(weighted) == 1:
-        return weighted
-    _, size, rows = np.linalg.svd(weighted, full_matrices=False)
-    kept = size > 1e-5 * size[0]
-    return np.asarray(size[kept, None] * rows[kept])
+    """Few real combinations of the responses that span all of them, by singular values."""
+    joined = np.concatenate([weighted.real, weighted.imag], axis=1)
+    _, size, rows = np.linalg.svd(joined, full_matrices=False)
+    large = size > 1e-5 * size[0]
+    real, imaginary = np.hsplit(size[large, None] * rows[large], 2)
+    return np.asarray(real + 1j * imaginary)
 
 
 def _stacked(matrix: NDArray) -> NDArray:
@@ -147,10 +147,10 @@ def _relocated(s: NDArray, weight: NDArray, spanning: NDArray, poles: NDArray) -
     basis = partial_fractions(s, poles)
     known, unknowns = _stacked(weight[:, None] * basis), basis.shape[1]
     scaling = np.column_stack([basis, np.ones(s.size)])
-    blocks = []
+    blocks: list[NDArray] = []
     for response in spanning:  # already weighted
         system = np.hstack([known, -_stacked(response[:, None] * scaling)])
-        blocks.append(np.linalg.qr(system, mode="r")[unknowns:, unknowns:])
+        blocks.append(np.asarray(np.linalg.qr(system, mode="r"))[unknowns:, unknowns:])
     scale = np.linalg.norm(spanning) / s.size
     relaxation = scale * scaling.real.sum(axis=0)
     matrix = np.vstack([*blocks, relaxation])
