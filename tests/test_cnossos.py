@@ -31,7 +31,7 @@ def test_tables_stand_on_distinct_one_third_octaves(table, name):
 def test_ranges():
     assert_allclose(cnossos.wavelengths()[[0, -1]], [2.0, 0.8e-3])
     assert len(cnossos.wavelengths()) == 35
-    assert_allclose(cnossos.wheel_roughness("disc")[0][[0, -1]], [0.1, 3.15e-3])
+    assert_allclose(cnossos.wheel_roughness("disc")[0][[0, -1]], [1.0, 0.8e-3])
     assert_allclose(cnossos.track_transfer("soft")[0][[0, -1]], [50.0, 10e3])
     assert len(cnossos.TRANSFER_FREQUENCIES) == 24
 
@@ -96,7 +96,7 @@ def test_nearest_contact_filter_needs_positive_numbers(load, diameter):
         (cnossos.wheel_roughness, "'cast-iron'; 'composite'; 'disc'"),
         (cnossos.contact_filter, "'50 kN, 360 mm'"),
         (cnossos.track_transfer, "'soft'; 'medium'; 'hard'"),
-        (cnossos.wheel_transfer, "'920 mm'"),
+        (cnossos.wheel_transfer, "'920 mm'; '840 mm'"),
     ],
 )
 def test_unknown_names_list_the_known(table, allowed):

@@ -43,24 +43,28 @@ RAIL_ROUGHNESS: dict[str, tuple[float, ...]] = {
         -19.0, -19.0,
     ),
 }  # fmt: skip
-"""Table G-1, rail, dB re 1 µm at `WAVELENGTHS_MM`: well maintained (the limit of EN ISO 3095:2013, continued
+"""Table G-1b, rail, dB re 1 µm at `WAVELENGTHS_MM`: well maintained (the limit of EN ISO 3095:2013, continued
 by the directive beyond 400 mm and below 3.15 mm) and average network."""
 
-WHEEL_WAVELENGTHS_MM = WAVELENGTHS_MM[13:29]
-"""Wavelengths 100 mm to 3.15 mm of the wheel roughness given here."""
+WHEEL_WAVELENGTHS_MM = WAVELENGTHS_MM[3:]
+"""Wavelengths of the wheel roughness, 1 m to 0.8 mm; printed as 120, 12, 3.2 and 1.2 mm where the nominal bands
+are 125, 12.5, 3.15 and 1.25 mm."""
 
 WHEEL_ROUGHNESS: dict[str, tuple[float, ...]] = {
     "cast-iron": (
-        2.6, 5.8, 8.8, 11.1, 11.0, 9.8, 7.5, 5.1, 3.0, 1.3, 0.2, -0.7, -1.2, -1.0, 0.3, 0.2,
+        2.2, 2.2, 2.2, 2.2, 2.2, 2.2, 2.2, 2.2, 2.4, 0.6, 2.6, 5.8, 8.8, 11.1, 11.0, 9.8, 7.5, 5.1, 3.0, 1.3,
+        0.2, -0.7, -1.2, -1.0, 0.3, 0.2, 1.3, 3.1, 3.1, 3.1, 3.1, 3.1,
     ),
     "composite": (
-        -4.0, -4.3, -4.6, -4.9, -5.2, -6.3, -6.8, -7.2, -7.3, -7.3, -7.1, -6.9, -6.7, -6.0, -3.7, -2.4,
+        -4.0, -4.0, -4.0, -4.0, -4.0, -4.0, -4.0, -4.0, -4.0, -4.0, -4.0, -4.3, -4.6, -4.9, -5.2, -6.3, -6.8,
+        -7.2, -7.3, -7.3, -7.1, -6.9, -6.7, -6.0, -3.7, -2.4, -2.6, -2.5, -2.5, -2.5, -2.5, -2.5,
     ),
     "disc": (
-        2.1, 0.9, -0.3, -1.6, -2.9, -4.9, -7.0, -8.6, -9.3, -9.5, -10.1, -10.3, -10.3, -10.8, -10.9, -9.5,
+        -5.9, -5.9, -5.9, -5.9, -5.9, -5.9, 2.3, 2.8, 2.6, 1.2, 2.1, 0.9, -0.3, -1.6, -2.9, -4.9, -7.0, -8.6,
+        -9.3, -9.5, -10.1, -10.3, -10.3, -10.8, -10.9, -9.5, -9.5, -9.5, -9.5, -9.5, -9.5, -9.5,
     ),
 }  # fmt: skip
-"""Table G-1, wheel, dB re 1 µm at `WHEEL_WAVELENGTHS_MM`, by brake."""
+"""Table G-1a, wheel, dB re 1 µm at `WHEEL_WAVELENGTHS_MM`, by brake."""
 
 CONTACT_FILTERS: dict[tuple[int, int], tuple[float, ...]] = {
     (50, 360): (
@@ -105,15 +109,27 @@ TRACK_TRANSFER: dict[str, tuple[float, ...]] = {
         107.1, 107.9, 108.2, 108.7, 109.4, 109.7, 110.4, 111.4,
     ),
 }  # fmt: skip
-"""Table G-3, track on mono-block sleepers by rail pad, dB at `TRANSFER_FREQUENCIES`."""
+"""Table G-3a, track on mono-block sleepers by rail pad, dB at `TRANSFER_FREQUENCIES`."""
 
 WHEEL_TRANSFER: dict[str, tuple[float, ...]] = {
     "920 mm": (
         75.4, 77.3, 81.1, 84.1, 83.3, 84.3, 86.0, 90.1, 89.8, 89.0, 88.8, 90.4, 92.4, 94.9, 100.4, 104.6,
         109.6, 114.9, 115.0, 115.0, 115.5, 115.6, 116.0, 116.7,
     ),
+    "840 mm": (
+        75.4, 77.3, 81.1, 84.1, 82.8, 83.3, 84.1, 86.9, 87.9, 89.9, 90.9, 91.5, 91.5, 93.0, 98.7, 101.6,
+        107.6, 111.9, 114.5, 114.5, 115.0, 115.1, 115.5, 116.2,
+    ),
+    "680 mm": (
+        75.4, 77.3, 81.1, 84.1, 82.8, 83.3, 83.9, 86.3, 88.0, 92.2, 93.9, 92.5, 90.9, 90.4, 93.2, 93.5, 99.6,
+        104.9, 108.0, 111.0, 111.5, 111.6, 112.0, 112.7,
+    ),
+    "1200 mm": (
+        75.4, 77.3, 81.1, 84.1, 82.8, 83.3, 84.5, 90.4, 90.4, 89.9, 90.1, 91.3, 91.5, 93.6, 100.5, 104.6,
+        115.6, 115.9, 116.0, 116.0, 116.5, 116.6, 117.0, 117.7,
+    ),
 }  # fmt: skip
-"""Table G-3, vehicle by wheel diameter, dB at `TRANSFER_FREQUENCIES`."""
+"""Table G-3b, vehicle by wheel diameter, dB at `TRANSFER_FREQUENCIES`."""
 
 
 def wavelengths() -> NDArray[np.float64]:
@@ -149,7 +165,7 @@ def rail_roughness(name: str) -> Spectrum:
 
     Notes
     -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-1. Of the 35 bands EN ISO 3095:2013 itself
+    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-1b. Of the 35 bands EN ISO 3095:2013 itself
     gives the 22 from 400 mm to 3.15 mm, see `asperity.reference.rail_roughness`.
     """
     aliases = {"EN ISO 3095:2013": "iso3095", "average-network": "cnossos-average"}
@@ -166,9 +182,9 @@ def wheel_roughness(name: str) -> Spectrum:
 
     Returns
     -------
-    wavelength : ndarray, shape (16,)
-        Nominal band centres, m, 100 mm to 3.15 mm. Nothing is given here outside of them.
-    level : ndarray, shape (16,)
+    wavelength : ndarray, shape (32,)
+        Nominal band centres, m, 1 m to 0.8 mm. The directive gives nothing outside of them.
+    level : ndarray, shape (32,)
         dB re 1 µm.
 
     Raises
@@ -178,7 +194,7 @@ def wheel_roughness(name: str) -> Spectrum:
 
     Notes
     -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-1.
+    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-1a.
     """
     return np.array(WHEEL_WAVELENGTHS_MM) * 1e-3, _table("wheel roughness", WHEEL_ROUGHNESS, name)
 
@@ -264,7 +280,7 @@ def track_transfer(name: str) -> Spectrum:
 
     Notes
     -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-3.
+    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-3a.
     """
     return np.array(TRANSFER_FREQUENCIES), _table("track transfer", TRACK_TRANSFER, name)
 
@@ -275,7 +291,7 @@ def wheel_transfer(name: str) -> Spectrum:
     Parameters
     ----------
     name : str
-        Wheel diameter: "920 mm".
+        Wheel diameter: "1200 mm", "920 mm", "840 mm" or "680 mm".
 
     Returns
     -------
@@ -291,7 +307,7 @@ def wheel_transfer(name: str) -> Spectrum:
 
     Notes
     -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-3.
+    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-3b.
     """
     return np.array(TRANSFER_FREQUENCIES), _table("wheel transfer", WHEEL_TRANSFER, name)
 
