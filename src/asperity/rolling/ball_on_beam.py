@@ -25,6 +25,7 @@ from asperity.kernels.modal import (
 )
 from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all
 from asperity.pointforce.base import Law, SteppedLaw
+from asperity.rolling.beam_stepper import BeamStepper
 from asperity.rolling.energy import EnergyBalance, balance, beam_energy
 from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.events import ContactLoss, contact_losses
@@ -163,8 +164,9 @@ def roll(
     _warn_if_coarse(time_step, stiffness, ball.mass, beam, highest_frequency)
     motion, record = _at_rest(system, beam, start, approach, len(positions))
     beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])
-    restore(checkpoint, motion, record, prepared)
-    run(system, motion, record, prepared, law.damping, beam, positions, progress, checkpoint)
+    stepper = BeamStepper(system, motion, record, beam, positions)
+    restore(checkpoint, stepper, prepared)
+    run(stepper, prepared, law.damping, progress, checkpoint)
     flying = _flying(prepared, record)
     _warn_after(law.name, motion, prepared, record)
     return Rolling(

@@ -1,0 +1,303 @@
+"""Rolling on a rail, compiled: the rail by poles or by scattering, a wheel, and the contact between them.
+
+The force varies linearly over a step. For that the wheel is exact, and so is the rail, whose kernel is
+the response to one hat-shaped piece of such a force. Rail and wheel are then affine in the force at the
+end of the step, and one scalar equation remains.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from asperity.kernels.modal import solve_contact
+
+REASSOCIATE = {"reassoc", "contract", "nsz"}  # lets sums over poles be vectorised; NaN stays NaN
+
+
+class Vehicle(NamedTuple):
+    """Wheel and rail: what does not change while rolling.
+
+    Attributes
+    ----------
+    decay_real, decay_imag : ndarray (p,)
+        Poles of the rail, per step.
+    residue_real, residue_imag : ndarray (cells + 1, p)
+        Residues at equal places over one sleeper bay, both ends included, m/N.
+    direct : ndarray (cells + 1,)
+        Displacement at the end of a step for unit force at the end, m/N, at the same places.
+    scattered : ndarray (positions, taps)
+        The kernel itself where the rail is scattered, m/N; else without rows.
+    flexible_decay, flexible_before, flexible_now : ndarray (w,) of complex
+        Poles of the wheel per step, and factors of the forces at start and end of the step, m/N.
+    flexible_compliance : float
+        Twice the real part of the sum of the last, m/N.
+    mass, load, time_step : float
+        Of the wheel, kg and N; s.
+    first, stride : float
+        Position at step zero and distance rolled in a step, in sleeper bays.
+    """
+
+    decay_real: NDArray
+    decay_imag: NDArray
+    residue_real: NDArray
+    residue_imag: NDArray
+    direct: NDArray
+    scattered: NDArray
+    flexible_decay: NDArray
+    flexible_before: NDArray
+    flexible_now: NDArray
+    flexible_compliance: float
+    mass: float
+    load: float
+    time_step: float
+    first: float
+    stride: float
+
+
+class Motion(NamedTuple):
+    """What changes from step to step; the arrays are written in place.
+
+    Attributes
+    ----------
+    rail_real, rail_imag : ndarray (p,)
+        States of the poles.
+    ring : ndarray (taps,)
+        Displacement to come where the rail is scattered, m.
+    flexible : ndarray (w,) of complex
+        States of the wheel's poles, m.
+    wheel : ndarray (2,)
+        Rigid displacement, m, and velocity, m/s.
+    force, approach : ndarray (2,)
+        Contact force, N, and approach, m, now and one step ago.
+    free : ndarray (2,)
+        Displacements of rail and flexible wheel at the end of the step without its last force, m.
+    counts : ndarray (3,) of int
+        Steps done, steps not converged, evaluations of the law.
+    """
+
+    rail_real: NDArray
+    rail_imag: NDArray
+    ring: NDArray
+    flexible: NDArray
+    wheel: NDArray
+    force: NDArray
+    approach: NDArray
+    free: NDArray
+    counts: NDArray
+
+
+class Record(NamedTuple):
+    """Time histories, written in place: ndarrays (n,) in N and m.
+
+    Attributes
+    ----------
+    force, approach, wheel, rail : ndarray (n,)
+        Contact force, approach, displacement of the wheel and of the rail at the contact.
+    """
+
+    force: NDArray
+    approach: NDArray
+    wheel: NDArray
+    rail: NDArray
+
+
+@njit(cache=True)
+def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
+    """Cell of the bay in which the contact is at a step, and the share of the cell behind it."""
+    bays = vehicle.first + vehicle.stride * step
+    at = (bays - np.floor(bays)) * cells
+    cell = min(int(at), cells - 1)
+    return cell, at - cell
+
+
+@njit(cache=True, fastmath=REASSOCIATE)
+def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
+    """Advance the rail by one step under the force at its start.
+
+    Parameters
+    ----------
+    vehicle, motion
+        Constants and state.
+    step : int
+        Step at the start.
+    force : float
+        Force at the start, N.
+
+    Returns
+    -------
+    float
+        Displacement at the end without the force there, m.
+    """
+    cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
+    real, imag = motion.rail_real, motion.rail_imag
+    decay_real, decay_imag = vehicle.decay_real, vehicle.decay_imag
+    low_real, high_real = vehicle.residue_real[cell], vehicle.residue_real[cell + 1]
+    low_imag, high_imag = vehicle.residue_imag[cell], vehicle.residue_imag[cell + 1]
+    low, high = force * (1.0 - share), force * share
+    total = 0.0
+    for p in range(real.shape[0]):
+        a, b = real[p], imag[p]
+        c = decay_real[p] * a - decay_imag[p] * b + low * low_real[p] + high * high_real[p]
+        imag[p] = decay_real[p] * b + decay_imag[p] * a + low * low_imag[p] + high * high_imag[p]
+        real[p] = c
+        total += c
+    return total
+
+
+@njit(cache=True, fastmath=REASSOCIATE)
+def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
+    """Add to the ring what a force at a step will do, and read the displacement of the next step.
+
+    Parameters and result as in `advance_poles`; the start positions of the kernel are interpolated by
+    a periodic cubic.
+    """
+    rows, taps = vehicle.scattered.shape
+    cell, t = place(vehicle, step, rows)
+    before, after = vehicle.scattered[(cell + rows - 1) % rows], vehicle.scattered[(cell + 1) % rows]
+    here, beyond = vehicle.scattered[cell % rows], vehicle.scattered[(cell + 2) % rows]
+    w0 = -t * (t - 1.0) * (t - 2.0) / 6.0 * force
+    w1 = (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * force
+    w2 = -(t + 1.0) * t * (t - 2.0) / 2.0 * force
+    w3 = (t + 1.0) * t * (t - 1.0) / 6.0 * force
+    ring, now = motion.ring, step % taps
+    for k in range(1, taps - now):
+        ring[now + k] += w0 * before[k] + w1 * here[k] + w2 * after[k] + w3 * beyond[k]
+    for k in range(max(taps - now, 1), taps):
+        ring[now + k - taps] += w0 * before[k] + w1 * here[k] + w2 * after[k] + w3 * beyond[k]
+    ring[now] = 0.0
+    return ring[(step + 1) % taps]
+
+
+@njit(cache=True)
+def advance_rail(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
+    """Advance the rail by poles or by scattering; see `advance_poles`."""
+    if vehicle.scattered.shape[0] > 0:
+        return scatter(vehicle, motion, step, force)
+    return advance_poles(vehicle, motion, step, force)
+
+
+@njit(cache=True)
+def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
+    """Let a constant force roll up to step zero; rail displacement there and one step before.
+
+    Parameters
+    ----------
+    vehicle, motion
+        Constants, and the state at rest.
+    force : float
+        N.
+    steps : int
+        Number of steps.
+
+    Returns
+    -------
+    now, before : float
+        Rail displacement without the force at its own step, m, at step zero and one step earlier.
+    """
+    now, before = 0.0, 0.0
+    for step in range(-steps, 0):
+        before = now
+        now = advance_rail(vehicle, motion, step, force)
+    return now, before
+
+
+@njit(cache=True)
+def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
+    """Advance all but the last force of the step that ends at `step`.
+
+    Parameters
+    ----------
+    vehicle, motion
+        Constants and state; the free displacements are written.
+    step : int
+        Index of the step's end.
+
+    Returns
+    -------
+    approach, rate, compliance, rate_compliance : float
+        As in `asperity.kernels.modal.free_step`; the rate is the second-order backward difference.
+    """
+    h, force = vehicle.time_step, motion.force[0]
+    motion.free[0] = advance_rail(vehicle, motion, step - 1, force)
+    flexible = 0.0
+    for w in range(motion.flexible.shape[0]):
+        state = vehicle.flexible_decay[w] * motion.flexible[w] - vehicle.flexible_before[w] * force
+        motion.flexible[w] = state
+        flexible += 2.0 * state.real
+    motion.free[1] = flexible
+    wheel = motion.wheel[0] + h * motion.wheel[1] + h * h / vehicle.mass * (0.5 * vehicle.load - force / 3.0)
+    approach = wheel + flexible - motion.free[0]
+    cells = vehicle.direct.shape[0] - 1
+    cell, share = place(vehicle, step, cells)
+    compliance = vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
+    compliance += h * h / (6.0 * vehicle.mass) + vehicle.flexible_compliance
+    rate = (1.5 * approach - 2.0 * motion.approach[0] + 0.5 * motion.approach[1]) / h
+    return approach, rate, compliance, 1.5 * compliance / h
+
+
+@njit(cache=True)
+def complete_step(vehicle, motion, record, step, force, evaluations, converged):  # type: ignore[no-untyped-def]
+    """Apply the force at the end of a step, advance the state and write the records.
+
+    Parameters
+    ----------
+    vehicle, motion, record
+        Constants, state with its free step done, histories.
+    step : int
+        Index of the step's end.
+    force : float
+        Contact force at the end, N.
+    evaluations : int
+        Evaluations of the law that it took.
+    converged : bool
+        Whether it converged.
+    """
+    h, mass, before = vehicle.time_step, vehicle.mass, motion.force[0]
+    motion.wheel[0] += h * motion.wheel[1]
+    motion.wheel[0] += h * h / mass * (0.5 * vehicle.load - before / 3.0 - force / 6.0)
+    motion.wheel[1] += h / mass * (vehicle.load - 0.5 * (before + force))
+    for w in range(motion.flexible.shape[0]):
+        motion.flexible[w] -= vehicle.flexible_now[w] * force
+    cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
+    direct = vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
+    rail = motion.free[0] + direct * force
+    wheel = motion.wheel[0] + motion.free[1] - vehicle.flexible_compliance * force
+    motion.force[1], motion.force[0] = before, force
+    motion.approach[1], motion.approach[0] = motion.approach[0], wheel - rail
+    record.force[step], record.approach[step] = force, wheel - rail
+    record.wheel[step], record.rail[step] = wheel, rail
+    motion.counts[0] = step
+    motion.counts[1] += 0 if converged else 1
+    motion.counts[2] += evaluations
+
+
+@njit(cache=True)
+def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-def]
+    """Roll a compiled law from the state's step to another.
+
+    Parameters
+    ----------
+    vehicle, motion, record
+        Constants, state, histories.
+    law : Prepared
+        The law on the whole path.
+    stop : int
+        The step at which to stop.
+
+    Returns
+    -------
+    bool
+        False if the force is no longer finite; the state then stands at that step.
+    """
+    for step in range(motion.counts[0] + 1, stop + 1):
+        free = free_step(vehicle, motion, step)
+        guess = 2.0 * motion.force[0] - motion.force[1]
+        force, evaluations, converged = solve_contact(law, step, free, vehicle.load, guess)
+        complete_step(vehicle, motion, record, step, force, evaluations, converged)
+        if not np.isfinite(force):
+            return False
+    return True

@@ -1,0 +1,75 @@
+"""A ball on a beam, advanced step by step."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.kernels.modal import Motion, Record, System, complete_step, free_step, roll_steps
+from asperity.kernels.pointforce import Prepared
+from asperity.rolling.stepping import Free
+from asperity.structures.beam import Beam
+
+CHUNK = 2048  # steps whose mode shapes are held at once
+
+
+class BeamStepper:
+    """Ball and beam behind the protocol of `asperity.rolling.stepping.Stepper`.
+
+    Mode shapes are evaluated in chunks whose bounds do not depend on where a run was taken up, so that a
+    resumed run equals an uninterrupted one bit by bit.
+
+    Parameters
+    ----------
+    system, motion, record
+        Constants, state and histories.
+    beam : Beam
+        Gives the mode shapes under the contact.
+    positions : ndarray (n,)
+        Of the contact, m.
+    """
+
+    def __init__(
+        self, system: System, motion: Motion, record: Record, beam: Beam, positions: NDArray[np.float64]
+    ) -> None:
+        self.system, self.motion, self.record = system, motion, record
+        self.beam, self.positions = beam, positions
+        self.load, self.total = system.load, len(positions) - 1
+        self._offset = -1
+        self._shapes = self._slopes = np.zeros((0, 0))
+
+    def bound(self) -> int:
+        """End of the chunk in which the next step lies; its mode shapes are made ready."""
+        offset = int(self.motion.counts[0]) // CHUNK * CHUNK
+        end = min(offset + CHUNK, self.total)
+        if offset != self._offset:
+            self._shapes, self._slopes = self.beam.shapes(self.positions[offset : end + 1])
+            self._offset = offset
+        return end
+
+    def roll(self, law: Prepared, stop: int) -> bool:
+        """Advance to a step under a compiled law."""
+        return bool(
+            roll_steps(
+                self.system, self.motion, self.record, law, self._shapes, self._slopes, self._offset, stop
+            )
+        )
+
+    def free(self, step: int) -> Free:
+        """Advance all but the last force of a step."""
+        row = step - self._offset
+        shapes, slopes = self._shapes, self._slopes
+        result: Free = free_step(self.system, self.motion, shapes[row - 1], shapes[row], slopes[row])
+        return result
+
+    def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:
+        """Apply the force at the end of the step."""
+        row = step - self._offset
+        shape, slope = self._shapes[row], self._slopes[row]
+        complete_step(
+            self.system, self.motion, self.record, step, shape, slope, force, evaluations, converged
+        )
+
+    def where(self, step: int) -> str:
+        """Time and position of a step."""
+        return f"time {step * self.system.time_step:.6g} s, position {self.positions[step]:.6g} m"
