@@ -10,7 +10,7 @@ import asperity
 from asperity.config import parse_case
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.scenarios import ball_on_beam, run
-from asperity.scenarios.reducing import geometry
+from asperity.scenarios.ball_on_beam import ball_geometry
 
 CASE = """
 kind = "ball-on-beam"
@@ -246,7 +246,7 @@ class TestLimits:
     def shape_of(self, **replace):
         small = case(laws=["areal"], **replace)
         load = small.ball.load
-        return geometry(small, load, 115e9)
+        return ball_geometry(small, load, 115e9)
 
     def test_contact_beyond_the_half_space(self):
         with pytest.raises(InputError, match="at most R/3"):
@@ -255,7 +255,7 @@ class TestLimits:
     def test_approach_beyond_the_half_space(self):
         beyond = case(laws=["areal"], contact='approaches = ["0 um", "4 mm"]')
         with pytest.raises(InputError, match="an approach of 4e\\+03 µm"):
-            geometry(beyond, 30.0, 115e9)
+            ball_geometry(beyond, 30.0, 115e9)
 
     def test_approaches_must_reach_the_load(self):
         shallow = case(laws=["areal"], contact='approaches = ["-0.1 um", "0.1 um", "0.3 um"]')

@@ -38,7 +38,7 @@ def run(case: str | os.PathLike[str] | BallOnBeamCase, progress: Progress | None
     from asperity.config import load_case
     from asperity.errors import PhysicsWarning
     from asperity.scenarios.ball_on_beam import compute
-    from asperity.scenarios.tree import layout
+    from asperity.scenarios.beam_tree import layout
 
     loaded = load_case(case) if isinstance(case, str | os.PathLike) else case
     with warnings.catch_warnings(record=True) as caught:

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity.config import BallOnBeamCase
+from asperity.contact import Hertz
 from asperity.pointforce import Law
 from asperity.progress import Progress
-from asperity.reduction.scan import ScannedForces
 from asperity.reference.materials import contact_modulus, material
 from asperity.rolling.ball_on_beam import Rolling, roll
+from asperity.scenarios.beam_textures import gather
+from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
 from asperity.scenarios.compiling import compile_kernels
-from asperity.scenarios.laws import Workshop
-from asperity.scenarios.reducing import Geometry, Reduction, geometry, patch_planes, reduce
-from asperity.scenarios.textures import Textures, gather, window_cells
+from asperity.scenarios.geometry import Geometry, geometry, parabola, window_cells
+from asperity.scenarios.textures import Textures
 from asperity.store import Store, content_key
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
@@ -32,46 +31,18 @@ class Computed:
 
     Attributes
     ----------
-    case, textures, shape, ball, beam
+    case : BallOnBeamCase
+        The case.
+    chain : Chain
+        Textures, state functions, laws and runs.
+    ball, beam
         What was rolled.
-    reduction : Reduction or None
-        State functions; None without samples.
-    laws, runs : dict
-        Laws and their time histories, by name, in the order of the case.
-    scan : ScannedForces or None
-        Scan of the path.
-    duration : float
-        Time rolled, s.
-    seconds : dict
-        Wall time of each part, s.
     """
 
     case: BallOnBeamCase
-    textures: Textures
-    shape: Geometry
+    chain: Chain[Rolling]
     ball: Ball
     beam: Beam
-    reduction: Reduction | None
-    laws: dict[str, Law]
-    runs: dict[str, Rolling]
-    scan: ScannedForces | None
-    duration: float
-    seconds: dict[str, float]
-
-
-class Checkpoint:
-    """State of an interrupted run in the store, so that the same case goes on where it was."""
-
-    def __init__(self, store: Store, key: str) -> None:
-        self.store, self.key = store, key
-
-    def load(self) -> dict[str, NDArray] | None:
-        """What was saved last, or None."""
-        return self.store.get(self.key)
-
-    def save(self, state: dict[str, NDArray]) -> None:
-        """Keep a state."""
-        self.store.put(self.key, state)
 
 
 def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
@@ -90,30 +61,23 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
         All that was computed.
     """
     compile_kernels(progress)
-    store, seconds = Store(), dict[str, float]()
-    began = time.perf_counter()
+    store, watch = Store(), Stopwatch()
     ball_material, beam_material = material(case.ball.material), material(case.beam.material)
     ball = Ball(case.ball.radius, ball_material, case.ball.load, case.ball.mass)
     beam = _beam(case)
-    shape = geometry(case, ball.static_load, contact_modulus(ball_material, beam_material))
-    textures = gather(case, window_cells(case))
-    planes = None if textures.path is None else patch_planes(textures.path.heights, shape)
-    seconds["textures"] = time.perf_counter() - began
-    reduction = reduce(case, textures, shape, planes, store, progress) if textures.maps else None
-    seconds["reduction"] = time.perf_counter() - began - sum(seconds.values())
+    shape = ball_geometry(case, ball.static_load, contact_modulus(ball_material, beam_material))
+    textures = gather(case, window_cells(case.contact))
+    watch.lap("textures")
     travel = (len(textures.line) - 1 - 2 * textures.margin) * case.contact.spacing
     duration = min(case.rolled_time, travel / case.speed)
-    workshop = Workshop(case, textures, shape, reduction, planes, store, progress)
-    laws: dict[str, Law] = {}
-    runs: dict[str, Rolling] = {}
-    scan = None
-    for name in case.laws:
-        laws[name], scanned = workshop.build(name)
-        scan = scanned or scan
-        runs[name] = roll(
+
+    checkpoint = Checkpoint(store, _run_key(case, textures, duration)) if "direct" in case.laws else None
+
+    def roll_law(law: Law) -> Rolling:
+        return roll(
             beam,
             ball,
-            laws[name],
+            law,
             speed=case.speed,
             start=case.start,
             duration=duration,
@@ -121,10 +85,36 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
             sensors=case.beam.sensor_positions,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=Checkpoint(store, _run_key(case, textures, duration)) if name == "direct" else None,
+            checkpoint=Checkpoint(store, _run_key(case, textures, duration))
+            if law.name == "direct"
+            else None,
         )
-        seconds[f"law {name}"] = time.perf_counter() - began - sum(seconds.values())
-    return Computed(case, textures, shape, ball, beam, reduction, laws, runs, scan, duration, seconds)
+
+    start = case.start - textures.margin * case.contact.spacing
+    chain = reduce_and_roll(case, textures, shape, start, roll_law, store, progress, watch)
+    return Computed(case, chain, ball, beam)
+
+
+def ball_geometry(case: BallOnBeamCase, load: float, modulus: float) -> Geometry:
+    """Lay out the ball of a case on the contact grid.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase
+        The case.
+    load : float
+        Working load, N.
+    modulus : float
+        Contact modulus E*, Pa.
+
+    Returns
+    -------
+    Geometry
+        Shape of the ball.
+    """
+    radius, contact = case.ball.radius, case.contact
+    hertz = Hertz(modulus, radius, radius)
+    return geometry(contact, parabola(contact, radius), hertz, load, smallest_radius=radius, body="ball")
 
 
 def _beam(case: BallOnBeamCase) -> Beam:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config import BallOnBeamCase
+from asperity.config.sections import ContactCase
 from asperity.contact import Hertz as HertzContact
 from asperity.pointforce import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
 from asperity.progress import Progress
@@ -17,7 +17,8 @@ from asperity.reduction.filter import filtered_texture
 from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
-from asperity.scenarios.reducing import Geometry, Reduction
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.reducing import Reduction
 from asperity.scenarios.textures import Textures
 
 
@@ -27,8 +28,14 @@ class Workshop:
 
     Attributes
     ----------
-    case, textures, shape
-        The case, its textures and its geometry.
+    contact : ContactCase
+        The contact section of the case.
+    rtol : float
+        Tolerance of each contact solution.
+    textures, shape
+        Textures and geometry of the case.
+    start : float
+        Position of the first row of the path, m.
     reduction : Reduction or None
         State functions; None where the case has no samples.
     planes : ndarray, shape (rows,), or None
@@ -37,18 +44,15 @@ class Workshop:
         For the scan of the path.
     """
 
-    case: BallOnBeamCase
+    contact: ContactCase
+    rtol: float
     textures: Textures
     shape: Geometry
+    start: float
     reduction: Reduction | None
     planes: NDArray[np.float64] | None
     cache: Cache | None
     progress: Progress
-
-    @property
-    def _start(self) -> float:
-        """Position of the first row of the path on the beam, m."""
-        return self.case.start - self.textures.margin * self.shape.spacing[0]
 
     def build(self, name: str) -> tuple[Law, ScannedForces | None]:
         """Build one law, and return the scan that it needed, if any.
@@ -61,11 +65,11 @@ class Workshop:
         Returns
         -------
         law : Law
-            The law, on positions along the beam, m.
+            The law, on positions along the path, m.
         scanned : ScannedForces or None
             The scan of the path, for ``table``.
         """
-        damping = self.case.contact.damping
+        damping = self.contact.damping
         base, _, filtered = name.partition("-")
         if base == "table":
             return self._table(damping)
@@ -87,7 +91,7 @@ class Workshop:
 
     def _linear(self, texture: StateTexture, damping: float, name: str) -> Law:
         load = self.shape.load
-        if self.case.contact.linearise == "rough" and self.reduction is not None:
+        if self.contact.linearise == "rough" and self.reduction is not None:
             curve = self.reduction.ensemble.curve
             approach = float(curve.inverse(load))
             return Linear(load, float(curve.stiffness(approach)), approach, texture, damping, name)
@@ -95,71 +99,82 @@ class Workshop:
         return Linear(load, self.shape.hertz.tangent_stiffness(approach), approach, texture, damping, name)
 
     def _line(self) -> StateTexture:
-        return StateTexture.unfiltered(-self.textures.line, self.shape.spacing[0], self._start)
+        return StateTexture.unfiltered(-self.textures.followed, self.shape.spacing[0], self.start)
 
     def _filtered_line(self) -> StateTexture:
         dx = self.shape.spacing[0]
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
             taps = punch_taps(self.shape.hertz, self.shape.load, dx)
-            return filtered_texture(self.textures.line, dx, taps[None], [0.0], self._start)
+            return self._over_defects(filtered_texture(self.textures.line, dx, taps[None], [0.0], self.start))
         states = self.reduction.contact_filter.approaches
-        return filtered_texture(self.textures.line, dx, self.reduction.taps, states, self._start)
+        return self._over_defects(
+            filtered_texture(self.textures.line, dx, self.reduction.taps, states, self.start)
+        )
+
+    def _over_defects(self, texture: StateTexture) -> StateTexture:
+        """Add the trajectory over defects: rolled over already, it is not to be filtered again."""
+        if self.textures.trajectory is None:
+            return texture
+        return replace(texture, heights=texture.heights - self.textures.trajectory)
 
     def _plane(self) -> StateTexture | None:
         if self.planes is None:
             return None
-        return StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self._start)
+        return self._over_defects(StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self.start))
 
     def _areal(self) -> StateTexture:
         assert self.reduction is not None
         assert self.textures.path is not None
         loaded = self.reduction.semi_axes[:, 0] > 0.0
-        return areal_texture(
-            self.textures.path.heights,
-            self.shape.spacing,
-            self.reduction.approaches[loaded],
-            np.minimum(self.reduction.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
-            self._start,
+        return self._over_defects(
+            areal_texture(
+                self.textures.path.heights,
+                self.shape.spacing,
+                self.reduction.approaches[loaded],
+                np.minimum(self.reduction.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
+                self.start,
+            )
         )
 
     def _table(self, damping: float) -> tuple[Law, ScannedForces]:
         assert self.reduction is not None
-        assert self.textures.path is not None
         assert self.planes is not None
+        plane = self._plane()
+        assert plane is not None
         dx, half = self.shape.spacing[0], self.shape.body.shape[0] // 2
         stride = max(1, math.floor(self.shape.semi_axes[0] / 8 / dx))
-        planes = self.planes[half : len(self.planes) - half : stride]
+        heights = self.textures.surface
+        planes = -plane.heights[0, half : len(self.planes) - half : stride]
         scanned = scan_forces(
-            self.textures.path.heights,
+            heights,
             self.shape.spacing,
             self.shape.body,
             self.shape.modulus,
             self.reduction.approaches,
-            self.case.contact.hardness,
+            self.contact.hardness,
             stride=stride,
-            rtol=self.case.numerics.rtol,
+            rtol=self.rtol,
             planes=planes,
             cache=self.cache,
             progress=self.progress,
             message="scanning the path",
         )
         warn_of_scans([scanned], "the path")
-        touches = first_touch(self.textures.path.heights, self.shape.body, stride) + planes
+        touches = first_touch(heights, self.shape.body, stride) + planes
         table = ForceTable(
-            scanned.forces, self.reduction.approaches, self._start + half * dx, stride * dx, touches
+            scanned.forces, self.reduction.approaches, self.start + half * dx, stride * dx, touches
         )
-        return Table(table, damping, plane=self._plane()), scanned
+        return Table(table, damping, plane=plane), scanned
 
     def _direct(self, damping: float) -> Law:
-        assert self.textures.path is not None
         return Direct(
-            self.textures.path.heights,
+            self.textures.surface,
             self.shape.body,
             self.shape.spacing,
             self.shape.modulus,
-            self._start,
-            self.case.contact.hardness,
-            self.case.numerics.rtol,
+            self.start,
+            self.contact.hardness,
+            self.rtol,
             damping,
         )
 

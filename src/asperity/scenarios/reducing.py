@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config import BallOnBeamCase
-from asperity.contact import Contact, HalfSpace, Hertz
-from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
+from asperity.config.sections import ContactCase
+from asperity.contact import Contact, HalfSpace
+from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
@@ -24,46 +23,15 @@ from asperity.reduction.filter import (
     tap_count,
 )
 from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
-from asperity.scenarios.textures import Textures, window_cells
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.textures import Textures
 
 STATES = 14
 """States chosen where the case names no approaches."""
-HIGHEST_FORCE = 8.0
-"""Largest force that the chosen states cover, in working loads."""
 LIGHTEST_STATE = 0.02
 """Least mean force of a state that has a filter, in working loads."""
 LONG_WAVE = 0.5
 """k a below which a filter is taken to be at its asymptote: sin q/q is 0.96 there."""
-
-
-@dataclass(frozen=True, eq=False)
-class Geometry:
-    """What presses on what: the ball's shape on the contact grid, and Hertz's answer.
-
-    Attributes
-    ----------
-    body : ndarray, shape (n, n)
-        Shape of the ball, m, zero at its lowest point, the middle cell.
-    spacing : tuple of float
-        (dx, dy), m.
-    modulus : float
-        Contact modulus E*, Pa.
-    hertz : Hertz
-        Smooth contact.
-    load : float
-        Working load, N.
-    """
-
-    body: NDArray[np.float64]
-    spacing: tuple[float, float]
-    modulus: float
-    hertz: Hertz
-    load: float
-
-    @property
-    def semi_axes(self) -> tuple[float, float]:
-        """Semi-axes of the nominal patch under the working load, m."""
-        return self.hertz.semi_axes(self.hertz.approach(self.load))
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,71 +69,6 @@ class Reduction:
     iterations: int
 
 
-def geometry(case: BallOnBeamCase, load: float, modulus: float) -> Geometry:
-    """Ball and window of a case, checked against the half-space assumption.
-
-    Parameters
-    ----------
-    case : BallOnBeamCase
-        The case.
-    load : float
-        Working load, N.
-    modulus : float
-        Contact modulus E*, Pa.
-
-    Returns
-    -------
-    Geometry
-        Shape of the ball on the contact grid.
-
-    Raises
-    ------
-    InputError
-        If the contact is not small against the ball (a > R/3), or the window does not hold it.
-    """
-    n, h, radius = window_cells(case), case.contact.spacing, case.ball.radius
-    hertz = Hertz(modulus, radius, radius)
-    a = hertz.semi_axes(hertz.approach(load))[0]
-    _check_half_space(a, radius, f"a working load of {load:.3g} N")
-    if case.contact.approaches is not None:
-        top = case.contact.approaches[-1]
-        _check_half_space(hertz.semi_axes(top)[0], radius, f"an approach of {top * 1e6:.3g} µm")
-    if 2.2 * a > n * h:
-        raise InputError(
-            "contact.window",
-            f"{n * h * 1e6:.4g} um",
-            f"at least {2.2e6 * a:.4g} um, 1.1 times the width of the smooth contact under {load:.3g} N",
-            "Enlarge the window.",
-        )
-    if h > a / 8:
-        warnings.warn(
-            f"contact.spacing = {h * 1e6:.3g} µm is coarser than an eighth of the contact radius "
-            f"({a * 1e6:.3g} µm under {load:.3g} N): forces carry an error of some per cent. "
-            "Refine the spacing.",
-            CoarseSamplingWarning,
-            stacklevel=2,
-        )
-    x = (np.arange(n) - n // 2) * h
-    return Geometry((x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius), (h, h), modulus, hertz, load)
-
-
-def _check_half_space(a: float, radius: float, cause: str) -> None:
-    if a > radius / 3:
-        raise InputError(
-            "contact",
-            f"{cause}, a contact radius of {a / radius:.2g} R",
-            "a contact radius of at most R/3, where the ball is an elastic half-space",
-            "Lower the load or the approaches, or take a larger ball.",
-        )
-    if a > radius / 10:
-        warnings.warn(
-            f"{cause} makes a contact radius of {a / radius:.2g} R, above 0.1 R: the elastic half-space "
-            "overestimates the stiffness by some per cent. Lower the load.",
-            HalfSpaceWarning,
-            stacklevel=3,
-        )
-
-
 def patch_planes(path: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64]:
     """Height of the plane that the nominal patch feels at each row of a path, m.
 
@@ -185,23 +88,26 @@ def patch_planes(path: NDArray[np.float64], shape: Geometry) -> NDArray[np.float
 
 
 def reduce(
-    case: BallOnBeamCase,
+    contact: ContactCase,
+    rtol: float,
     textures: Textures,
     shape: Geometry,
     planes: NDArray[np.float64] | None,
     cache: Cache | None,
     progress: Progress,
 ) -> Reduction:
-    """Press and move the ball on the samples, and reduce the forces to state functions.
+    """Press and move the body on the samples, and reduce the forces to state functions.
 
     Parameters
     ----------
-    case : BallOnBeamCase
-        The case.
+    contact : ContactCase
+        The contact section of the case.
+    rtol : float
+        Tolerance of each contact solution, as in `HalfSpace.solve`.
     textures : Textures
         Samples, strips and path.
     shape : Geometry
-        The ball on the grid.
+        The gap on the grid.
     planes : ndarray, shape (rows,), optional
         From `patch_planes` for the path, where it is areal.
     cache : Cache, optional
@@ -214,13 +120,13 @@ def reduce(
     Reduction
         Stiffness and filters.
     """
-    hardness, rtol = case.contact.hardness, case.numerics.rtol
+    hardness = contact.hardness
     weights = punch_weights(shape.spacing, shape.semi_axes)
-    n = shape.body.shape[0]
-    samples = patches([m.heights for m in textures.maps], (n, n), case.contact.samples, weights)
-    half_space = HalfSpace((n, n), shape.spacing, shape.modulus, hardness)
+    cells = (shape.body.shape[0], shape.body.shape[1])
+    samples = patches([m.heights for m in textures.maps], cells, contact.samples, weights)
+    half_space = HalfSpace(cells, shape.spacing, shape.modulus, hardness)
     contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=rtol) for s in samples]
-    approaches = _approaches(case, textures, shape, planes, samples, half_space)
+    approaches = _approaches(contact, textures, shape, planes, samples, half_space)
     datum = -min(float(approaches[0]), _lowest_touch(textures, shape, planes, samples))
     ensemble = stiffness_ensemble(
         samples, shape.spacing, shape.body, shape.modulus, approaches, datum, hardness,
@@ -234,10 +140,10 @@ def reduce(
             f"approaches that reach the working load of {shape.load:.3g} N and beyond",
             f"Go to {2e6 * contacts[0].approach:.3g} um or more, or leave the key out.",
         )
-    semi_axes = np.array([shape.hertz.semi_axes(shape.hertz.approach(f)) for f in mean])
+    semi_axes = np.array([shape.axes(f) for f in mean])
     loaded = mean >= LIGHTEST_STATE * shape.load
-    contact_filter, scans = _filters(case, textures, shape, ensemble, loaded, cache, progress)
-    order = case.contact.filter_taps or tap_count(shape.spacing[0], float(semi_axes.max()))
+    contact_filter, scans = _filters(contact, rtol, textures, shape, ensemble, loaded, cache, progress)
+    order = contact.filter_taps or tap_count(shape.spacing[0], float(semi_axes.max()))
     return Reduction(
         approaches,
         ensemble,
@@ -272,7 +178,7 @@ def _centred(planes: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64
 
 
 def _approaches(
-    case: BallOnBeamCase,
+    contact: ContactCase,
     textures: Textures,
     shape: Geometry,
     planes: NDArray[np.float64] | None,
@@ -280,16 +186,18 @@ def _approaches(
     half_space: HalfSpace,
 ) -> NDArray[np.float64]:
     """States as given, or from the first touch to a high force, denser where contact begins."""
-    if case.contact.approaches is not None:
-        return np.array(case.contact.approaches)
+    if contact.approaches is not None:
+        return np.array(contact.approaches)
     low = _lowest_touch(textures, shape, planes, samples)
-    largest = HIGHEST_FORCE * shape.load
-    high = max(half_space.solve(shape.body - s, load=largest, rtol=1e-3).approach for s in samples)
+    high = max(
+        half_space.solve(shape.body - s, load=shape.largest_force, rtol=1e-3).approach for s in samples
+    )
     return np.asarray(low + (high - low) * np.linspace(0.0, 1.0, STATES) ** 1.3)
 
 
 def _filters(
-    case: BallOnBeamCase,
+    contact: ContactCase,
+    rtol: float,
     textures: Textures,
     shape: Geometry,
     ensemble: StiffnessEnsemble,
@@ -300,29 +208,29 @@ def _filters(
     """Scan the strips and average their fitted filters."""
     a, b = shape.semi_axes
     dx, dy = shape.spacing
-    n = shape.body.shape[0]
+    half, middle = (n // 2 for n in shape.body.shape)
     stride = max(1, math.floor(a / 6 / dx))
     approaches = ensemble.approaches[loaded]
     curve = ensemble.curve
-    tangent = curve.stiffness(approaches) if case.contact.normalise == "tangent" else None
-    across = min(n // 2, int(b / dy))
-    axes = [shape.hertz.semi_axes(shape.hertz.approach(f))[0] for f in ensemble.mean_force[loaded]]
+    tangent = curve.stiffness(approaches) if contact.normalise == "tangent" else None
+    across = min(middle, int(b / dy))
+    axes = [shape.axes(f)[0] for f in ensemble.mean_force[loaded]]
     asymptote = LONG_WAVE / (2 * np.pi * np.array(axes))
     estimates, scans = [], []
     for i, strip in enumerate(textures.strips):
         z = strip.heights
         scanned = scan_forces(
-            z, shape.spacing, shape.body, shape.modulus, approaches, case.contact.hardness,
-            stride=stride, rtol=case.numerics.rtol, cache=cache, progress=progress,
+            z, shape.spacing, shape.body, shape.modulus, approaches, contact.hardness,
+            stride=stride, rtol=rtol, cache=cache, progress=progress,
             message=f"contact filter, strip {i + 1} of {len(textures.strips)}",
         )  # fmt: skip
         scans.append(scanned)
-        lines = z[n // 2 :: stride, n // 2 - across : n // 2 + across + 1][: scanned.forces.shape[1]].T
+        lines = z[half::stride, middle - across : middle + across + 1][: scanned.forces.shape[1]].T
         estimates.append(
             estimate_filter(
                 scanned.forces, lines, stride * dx, tangent_stiffness=tangent, asymptote=asymptote
             )
         )
     warn_of_scans(scans, "the filters")
-    degree, normalise = case.contact.filter_degree, case.contact.normalise
+    degree, normalise = contact.filter_degree, contact.normalise
     return mean_filter(estimates, approaches, degree=degree, normalise=normalise), scans  # type: ignore[arg-type]

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config import BallOnBeamCase
+from asperity.config.sections import ContactCase, Surface
 from asperity.errors import InputError, ShortRecordWarning
-from asperity.reference.rail_roughness import iso_3095_limit
+from asperity.scenarios.geometry import window_cells
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.readers import read_surface, read_surfaces
-from asperity.surfaces.synthesis import from_bands, from_map, self_affine
+from asperity.surfaces.synthesis import from_map, self_affine
 
 STRIP_WINDOWS = 8
 """Length of a synthesised strip for the filters, in windows."""
@@ -39,11 +39,14 @@ class Textures:
     line : ndarray, shape (rows,)
         Line texture of the path, m, peaks positive.
     margin : int
-        Rows before the place where the ball starts.
+        Rows before the place where rolling starts, and beyond its end.
     missing_share : float
         Share of points without a height in the measured file.
     origin : str
         Where samples and path come from, in one sentence.
+    defects, trajectory : ndarray, shape (rows,), or None
+        Heights of defects along the path, and of the rolling body's centre over them, m; neither in
+        `line` nor in `path`.
     """
 
     maps: tuple[HeightMap, ...]
@@ -53,60 +56,44 @@ class Textures:
     margin: int
     missing_share: float
     origin: str
+    defects: NDArray[np.float64] | None = None
+    trajectory: NDArray[np.float64] | None = None
+
+    @property
+    def followed(self) -> NDArray[np.float64]:
+        """Line texture with the trajectory over defects, m, peaks positive, shape (rows,)."""
+        return self.line if self.trajectory is None else self.line + self.trajectory
+
+    @property
+    def surface(self) -> NDArray[np.float64]:
+        """Heights of the path with its defects, m, shape (rows, ny)."""
+        assert self.path is not None
+        return self.path.heights if self.defects is None else self.path.heights + self.defects[:, None]
 
 
-def window_cells(case: BallOnBeamCase) -> int:
-    """Cells along the window's side: odd, so that the ball's lowest point lies on a cell."""
-    return 2 * (case.contact.cells // 2) + 1
-
-
-def gather(case: BallOnBeamCase, margin: int) -> Textures:
-    """Read or synthesise all textures of a case.
+def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:
+    """Read the maps of a case's file, levelled and on the contact grid.
 
     Parameters
     ----------
-    case : BallOnBeamCase
-        The case.
-    margin : int
-        Rows needed before the start of the path and beyond its end.
+    surface : Surface
+        The surface section of the case, with a file.
+    spacing : float
+        Of the contact grid, m.
 
     Returns
     -------
-    Textures
-        Samples, strips and path.
+    maps : tuple of HeightMap
+        Complete maps.
+    missing_share : float
+        Share of points that had no height in the file.
 
     Raises
     ------
     InputError
-        If a file does not hold what the case needs of it.
+        If the file holds a line, or points are missing and are not to be filled.
     """
-    seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
-    ny, spacing = window_cells(case), case.contact.spacing
-    rows = math.ceil(case.rolled_time * case.speed / spacing) + 1 + 2 * margin
-    missing, origin = 0.0, ""
-    maps: tuple[HeightMap, ...] = ()
-    strips: tuple[HeightMap, ...] = ()
-    path = None
-    if case.surface.file is not None:
-        maps, missing = _measured(case)
-        strips, strip_origin = _strips_of(maps, case, ny, seeds[1:])
-        path, path_origin = _path_of(maps, (rows, ny), seeds[0])
-        origin = f"{len(maps)} measured from {case.surface.file.name}; {strip_origin}; {path_origin}"
-    elif case.surface.rms is not None:
-        strips = tuple(_synthesised(case, (_strip_rows(case, ny), ny), seed) for seed in seeds[1:])
-        maps, path = strips, _synthesised(case, (rows, ny), seeds[0])
-        origin = "samples and path synthesised: self-affine, Gaussian"
-    if case.surface.has_line:
-        line, line_origin = _line(case, rows, 2 * margin + 2, seeds[0])
-        path, origin = None, "; ".join(filter(None, [origin, line_origin]))
-    elif path is not None:
-        line = path.heights[:, ny // 2]
-    return Textures(maps, strips, path, line, margin, missing, origin)
-
-
-def _measured(case: BallOnBeamCase) -> tuple[tuple[HeightMap, ...], float]:
-    """Maps of the file, levelled and on the contact grid, and the share of missing points."""
-    surface, hints = case.surface, {}
+    hints = {}
     assert surface.file is not None
     for name in ("array", "height_unit", "pixel"):
         if getattr(surface, name) is not None:
@@ -124,32 +111,61 @@ def _measured(case: BallOnBeamCase) -> tuple[tuple[HeightMap, ...], float]:
         if measured.missing_share > 0.0:
             received = f"{100 * measured.missing_share:.2g} % of the points without a height"
             raise InputError("surface.file", received, "complete maps", "Set fill = true in [surface].")
-        if max(measured.spacing) > case.contact.spacing * (1 + 1e-9):
+        if max(measured.spacing) > spacing * (1 + 1e-9):
             warnings.warn(
                 f"the map's points are {max(measured.spacing) * 1e6:.3g} µm apart, more than contact.spacing "
-                f"= {case.contact.spacing * 1e6:.3g} µm: shorter waves are missing. Coarsen contact.spacing.",
+                f"= {spacing * 1e6:.3g} µm: shorter waves are missing. Coarsen contact.spacing.",
                 ShortRecordWarning,
                 stacklevel=2,
             )
-        on_grid = level(resample(level(measured, degree), case.contact.spacing), degree)
+        on_grid = level(resample(level(measured, degree), spacing), degree)
         longest, shortest = surface.band
         limited = longest is not None or shortest is not None
         result.append(band_limit(on_grid, longest=longest, shortest=shortest) if limited else on_grid)
     return tuple(result), float(np.mean([m.missing_share for m in found]))
 
 
-def _strip_rows(case: BallOnBeamCase, ny: int) -> int:
-    wanted = case.contact.sample_length
-    return STRIP_WINDOWS * ny if wanted is None else math.ceil(wanted / case.contact.spacing)
+def strip_rows(contact: ContactCase) -> int:
+    """Rows of a strip for the filters.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+
+    Returns
+    -------
+    int
+        Rows of the contact grid.
+    """
+    wanted = contact.sample_length
+    return STRIP_WINDOWS * window_cells(contact) if wanted is None else math.ceil(wanted / contact.spacing)
 
 
-def _strips_of(
-    maps: tuple[HeightMap, ...], case: BallOnBeamCase, ny: int, seeds: list[int]
+def strips_of(
+    maps: tuple[HeightMap, ...], contact: ContactCase, seeds: list[int]
 ) -> tuple[tuple[HeightMap, ...], str]:
-    """Strips for the filters: cut from the maps where these are long enough, else in their likeness."""
-    rows = _strip_rows(case, ny)
+    """Take strips for the filters from maps.
+
+    Parameters
+    ----------
+    maps : tuple of HeightMap
+        From `measured_maps`.
+    contact : ContactCase
+        The contact section of the case.
+    seeds : list of int
+        One a strip.
+
+    Returns
+    -------
+    strips : tuple of HeightMap
+        Cut from the maps where these are long enough, else synthesised in their likeness.
+    origin : str
+        Which of the two.
+    """
+    rows, ny = strip_rows(contact), window_cells(contact)
     longest = min(m.shape[0] for m in maps)
-    if case.contact.sample_length is None and longest >= rows // 2:
+    if contact.sample_length is None and longest >= rows // 2:
         rows = min(rows, longest)
     if longest >= rows and min(m.shape[1] for m in maps) >= ny:
         cut = []
@@ -163,7 +179,25 @@ def _strips_of(
     return strips, "filter strips synthesised in their likeness"
 
 
-def _path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> tuple[HeightMap, str]:
+def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> tuple[HeightMap, str]:
+    """Take the path from maps.
+
+    Parameters
+    ----------
+    maps : tuple of HeightMap
+        From `measured_maps`.
+    shape : tuple of int
+        (rows, ny) of the path.
+    seed : int
+        Of the synthesis.
+
+    Returns
+    -------
+    path : HeightMap
+        Cut from the first map where it is large enough, else synthesised in their likeness.
+    origin : str
+        Which of the two.
+    """
     first = maps[0]
     if first.shape[0] >= shape[0] and first.shape[1] >= shape[1]:
         middle = (first.shape[1] - shape[1]) // 2
@@ -172,8 +206,25 @@ def _path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> 
     return from_map(maps, shape, seed), "path synthesised in their likeness"
 
 
-def _synthesised(case: BallOnBeamCase, shape: tuple[int, int], seed: int) -> HeightMap:
-    surface, spacing = case.surface, case.contact.spacing
+def synthesised(surface: Surface, spacing: float, shape: tuple[int, int], seed: int) -> HeightMap:
+    """Synthesise a self-affine texture.
+
+    Parameters
+    ----------
+    surface : Surface
+        The surface section of a case, with an rms height.
+    spacing : float
+        Of the contact grid, m.
+    shape : tuple of int
+        (rows, ny).
+    seed : int
+        Of the synthesis.
+
+    Returns
+    -------
+    HeightMap
+        Gaussian texture.
+    """
     longest, shortest = surface.band
     assert surface.rms is not None
     assert longest is not None
@@ -188,32 +239,3 @@ def _synthesised(case: BallOnBeamCase, shape: tuple[int, int], seed: int) -> Hei
         anisotropy=surface.anisotropy,
         seed=seed,
     )
-
-
-def _line(case: BallOnBeamCase, rows: int, least: int, seed: int) -> tuple[NDArray[np.float64], str]:
-    spacing = case.contact.spacing
-    if case.surface.spectrum is not None:
-        wavelengths, levels = iso_3095_limit()
-        # a line that closes on itself: longer than the path and than the longest band
-        points = max(rows, math.ceil(1.2 * wavelengths.max() / spacing))
-        profile = from_bands(points, spacing, wavelengths, levels + case.surface.level, seed)
-        return profile.heights[:rows], f"path of ISO 3095:2013 limit {case.surface.level:+g} dB"
-    assert case.surface.line is not None
-    measured = read_surface(case.surface.line)
-    if not isinstance(measured, Profile):
-        remedy = "Give a map as surface.file."
-        raise InputError("surface.line", "a map of heights", "a line of heights", remedy)
-    if measured.missing_share > 0.0:
-        raise InputError("surface.line", "points without a height", "a complete line", "Fill it first.")
-    profile = level(resample(level(measured), spacing))
-    length = profile.heights.size * spacing
-    if case.duration is None:
-        rows = min(rows, profile.heights.size)  # the run lasts as long as the line
-    if profile.heights.size < rows or rows < least:
-        raise InputError(
-            "surface.line",
-            f"{length:.4g} m",
-            f"at least {max(rows, least) * spacing:.4g} m: the path and a window at both ends",
-            "Give a shorter duration, or a longer line.",
-        )
-    return profile.heights[:rows], f"path measured, {case.surface.line.name}"

@@ -7,21 +7,23 @@ from collections.abc import Mapping
 import numpy as np
 import xarray
 
-from asperity.rolling.ball_on_beam import Rolling
+from asperity.scenarios.chain import Run
 
 COMPARED = (100.0, 5000.0)
 """Band centres between which laws are compared, Hz."""
 
 
-def verdict(runs: Mapping[str, Rolling], spectra: xarray.Dataset) -> str:
+def verdict(runs: Mapping[str, Run], spectra: xarray.Dataset, body: str) -> str:
     """Say in a few words how the main law's contact went, and how far it is from the others.
 
     Parameters
     ----------
-    runs : mapping of str to Rolling
+    runs : mapping of str to Run
         Runs by law; the first is the main one.
     spectra : Dataset
         The spectra group of the result.
+    body : str
+        What rolls: "ball" or "wheel".
 
     Returns
     -------
@@ -30,7 +32,7 @@ def verdict(runs: Mapping[str, Rolling], spectra: xarray.Dataset) -> str:
     """
     main, run = next(iter(runs.items()))
     dynamic = float(np.std(run.contact_force))
-    parts = [f"{_contact(run)} ({main}); the contact force varies by {dynamic:.3g} N rms"]
+    parts = [f"{_contact(run, body)} ({main}); the contact force varies by {dynamic:.3g} N rms"]
     bands = (spectra["band"] >= COMPARED[0] * 0.9) & (spectra["band"] <= COMPARED[1] * 1.1)
     if "force_level_difference" in spectra and main != "linear" and bool(bands.any()):
         difference = spectra["force_level_difference"].sel(law=main).where(bands, drop=True)
@@ -44,11 +46,11 @@ def verdict(runs: Mapping[str, Rolling], spectra: xarray.Dataset) -> str:
     return ", ".join(parts) + "."
 
 
-def _contact(run: Rolling) -> str:
+def _contact(run: Run, body: str) -> str:
     if not run.contact_loss:
-        return "The ball never loses contact"
+        return f"The {body} never loses contact"
     share, count = 100.0 * run.contact_loss_share, len(run.contact_loss)
-    return f"The ball loses contact {count} time{'s' if count > 1 else ''}, {share:.2g} % of the time"
+    return f"The {body} loses contact {count} time{'s' if count > 1 else ''}, {share:.2g} % of the time"
 
 
 def _range(difference: xarray.DataArray) -> str:

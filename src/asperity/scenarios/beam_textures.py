@@ -1,0 +1,99 @@
+"""The textures of a ball-on-beam case."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config import BallOnBeamCase
+from asperity.errors import InputError
+from asperity.reference.rail_roughness import iso_3095_limit
+from asperity.scenarios.geometry import window_cells
+from asperity.scenarios.textures import (
+    Textures,
+    measured_maps,
+    path_of,
+    strip_rows,
+    strips_of,
+    synthesised,
+)
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.readers import read_surface
+from asperity.surfaces.synthesis import from_bands
+
+
+def gather(case: BallOnBeamCase, margin: int) -> Textures:
+    """Read or synthesise all textures of a case.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase
+        The case.
+    margin : int
+        Rows needed before the start of the path and beyond its end.
+
+    Returns
+    -------
+    Textures
+        Samples, strips and path.
+
+    Raises
+    ------
+    InputError
+        If a file does not hold what the case needs of it.
+    """
+    seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
+    ny, spacing = window_cells(case.contact), case.contact.spacing
+    rows = math.ceil(case.rolled_time * case.speed / spacing) + 1 + 2 * margin
+    missing, origin = 0.0, ""
+    maps: tuple[HeightMap, ...] = ()
+    strips: tuple[HeightMap, ...] = ()
+    path = None
+    if case.surface.file is not None:
+        maps, missing = measured_maps(case.surface, spacing)
+        strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
+        path, path_origin = path_of(maps, (rows, ny), seeds[0])
+        origin = f"{len(maps)} measured from {case.surface.file.name}; {strip_origin}; {path_origin}"
+    elif case.surface.rms is not None:
+        size = (strip_rows(case.contact), ny)
+        strips = tuple(synthesised(case.surface, spacing, size, seed) for seed in seeds[1:])
+        maps, path = strips, synthesised(case.surface, spacing, (rows, ny), seeds[0])
+        origin = "samples and path synthesised: self-affine, Gaussian"
+    if case.surface.has_line:
+        line, line_origin = _line(case, rows, 2 * margin + 2, seeds[0])
+        path, origin = None, "; ".join(filter(None, [origin, line_origin]))
+    elif path is not None:
+        line = path.heights[:, ny // 2]
+    return Textures(maps, strips, path, line, margin, missing, origin)
+
+
+def _line(case: BallOnBeamCase, rows: int, least: int, seed: int) -> tuple[NDArray[np.float64], str]:
+    spacing = case.contact.spacing
+    if case.surface.spectrum is not None:
+        wavelengths, levels = iso_3095_limit()
+        # a line that closes on itself: longer than the path and than the longest band
+        points = max(rows, math.ceil(1.2 * wavelengths.max() / spacing))
+        profile = from_bands(points, spacing, wavelengths, levels + case.surface.level, seed)
+        return profile.heights[:rows], f"path of ISO 3095:2013 limit {case.surface.level:+g} dB"
+    assert case.surface.line is not None
+    measured = read_surface(case.surface.line)
+    if not isinstance(measured, Profile):
+        remedy = "Give a map as surface.file."
+        raise InputError("surface.line", "a map of heights", "a line of heights", remedy)
+    if measured.missing_share > 0.0:
+        raise InputError("surface.line", "points without a height", "a complete line", "Fill it first.")
+    profile = level(resample(level(measured), spacing))
+    length = profile.heights.size * spacing
+    if case.duration is None:
+        rows = min(rows, profile.heights.size)  # the run lasts as long as the line
+    if profile.heights.size < rows or rows < least:
+        raise InputError(
+            "surface.line",
+            f"{length:.4g} m",
+            f"at least {max(rows, least) * spacing:.4g} m: the path and a window at both ends",
+            "Give a shorter duration, or a longer line.",
+        )
+    return profile.heights[:rows], f"path measured, {case.surface.line.name}"

@@ -1,0 +1,208 @@
+"""The chain that all kinds of case share: textures are reduced, laws are built and rolled one by one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config.sections import ContactCase
+from asperity.pointforce import Law
+from asperity.progress import Progress
+from asperity.reduction.scan import ScannedForces
+from asperity.rolling.events import ContactLoss
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.laws import Workshop
+from asperity.scenarios.reducing import Reduction, patch_planes, reduce
+from asperity.scenarios.textures import Textures
+from asperity.store import Store
+
+
+class Run(Protocol):
+    """What all kinds of rolling record."""
+
+    @property
+    def time(self) -> NDArray:
+        """Times, s, shape (n,)."""
+
+    @property
+    def contact_force(self) -> NDArray:
+        """Contact force, N, shape (n,)."""
+
+    @property
+    def contact_loss(self) -> list[ContactLoss]:
+        """Flights."""
+
+    @property
+    def contact_loss_share(self) -> float:
+        """Share of the time out of contact."""
+
+    @property
+    def unconverged_steps(self) -> int:
+        """Time steps whose contact force missed the tolerance."""
+
+
+class Case(Protocol):
+    """What all kinds of case hold."""
+
+    @property
+    def kind(self) -> str:
+        """What rolls on what."""
+
+    @property
+    def text(self) -> str:
+        """The TOML text of the case."""
+
+    @property
+    def seed(self) -> int:
+        """Seed of everything random."""
+
+    @property
+    def laws(self) -> tuple[str, ...]:
+        """Names of the laws; the first is the main one."""
+
+    @property
+    def contact(self) -> ContactCase:
+        """How the rough contact is solved and reduced."""
+
+    @property
+    def time_step(self) -> float:
+        """Time step, s."""
+
+    @property
+    def numerics(self) -> Any:
+        """How finely time is resolved."""
+
+    def parameters(self) -> list[dict[str, Any]]:
+        """List the keys that matter."""
+
+
+R = TypeVar("R", bound=Run)
+
+
+@dataclass(frozen=True, eq=False)
+class Chain(Generic[R]):
+    """What was computed for a case of any kind, before it is laid out as a result.
+
+    Attributes
+    ----------
+    case, textures, shape
+        What was rolled.
+    reduction : Reduction or None
+        State functions; None without samples.
+    laws, runs : dict
+        Laws and their time histories, by name, in the order of the case.
+    scan : ScannedForces or None
+        Scan of the path.
+    seconds : dict
+        Wall time of each part, s.
+    """
+
+    case: Case
+    textures: Textures
+    shape: Geometry
+    reduction: Reduction | None
+    laws: dict[str, Law]
+    runs: dict[str, R]
+    scan: ScannedForces | None
+    seconds: dict[str, float]
+
+    def stacked(self, name: str) -> NDArray[np.float64]:
+        """Stack one record of all runs.
+
+        Parameters
+        ----------
+        name : str
+            Attribute of the runs.
+
+        Returns
+        -------
+        ndarray, shape (laws, ...)
+            The record.
+        """
+        return np.stack([getattr(run, name) for run in self.runs.values()])
+
+
+class Checkpoint:
+    """State of an interrupted run in the store, so that the same case goes on where it was."""
+
+    def __init__(self, store: Store, key: str) -> None:
+        self.store, self.key = store, key
+
+    def load(self) -> dict[str, NDArray] | None:
+        """What was saved last, or None."""
+        return self.store.get(self.key)
+
+    def save(self, state: dict[str, NDArray]) -> None:
+        """Keep a state."""
+        self.store.put(self.key, state)
+
+
+class Stopwatch:
+    """Wall time of consecutive parts of the work."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def lap(self, part: str) -> None:
+        """Book the time since the last lap on a part."""
+        now = time.perf_counter()
+        self.seconds[part] = now - self._last
+        self._last = now
+
+
+def reduce_and_roll(
+    case: Case,
+    textures: Textures,
+    shape: Geometry,
+    start: float,
+    roll: Callable[[Law], R],
+    store: Store,
+    progress: Progress,
+    watch: Stopwatch,
+) -> Chain[R]:
+    """Reduce the samples, build the laws of a case and roll each of them.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    textures, shape
+        What presses on what.
+    start : float
+        Position of the first row of the path, m.
+    roll : callable
+        Rolls one law.
+    store : Store
+        Keeps finished scans.
+    progress : Progress
+        Called during long work.
+    watch : Stopwatch
+        Books the wall time.
+
+    Returns
+    -------
+    Chain
+        All that was computed.
+    """
+    rtol = case.numerics.rtol
+    planes = None if textures.path is None else patch_planes(textures.path.heights, shape)
+    reduction = (
+        reduce(case.contact, rtol, textures, shape, planes, store, progress) if textures.maps else None
+    )
+    watch.lap("reduction")
+    workshop = Workshop(case.contact, rtol, textures, shape, start, reduction, planes, store, progress)
+    laws: dict[str, Law] = {}
+    runs: dict[str, R] = {}
+    scan = None
+    for name in case.laws:
+        laws[name], scanned = workshop.build(name)
+        scan = scanned or scan
+        runs[name] = roll(laws[name])
+        watch.lap(f"law {name}")
+    return Chain(case, textures, shape, reduction, laws, runs, scan, watch.seconds)

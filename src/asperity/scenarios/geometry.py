@@ -1,0 +1,210 @@
+"""What presses on what: the gap of the bodies on the contact grid, and Hertz's answer to it."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config.sections import ContactCase
+from asperity.contact import Hertz
+from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
+
+HIGHEST_FORCE = 8.0
+"""Largest force that the chosen states cover, in working loads."""
+FILLED = 0.95
+"""Share of the window's width that the contact of the largest chosen state may fill."""
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """The gap of two smooth bodies on the contact grid, and their closed-form contact.
+
+    Attributes
+    ----------
+    body : ndarray, shape (nx, ny)
+        Gap of the smooth bodies at zero approach, m, zero at its lowest point, the middle cell.
+    spacing : tuple of float
+        (dx, dy), m.
+    modulus : float
+        Contact modulus E*, Pa.
+    hertz : Hertz
+        Smooth contact of the bodies; of their osculating paraboloids where the gap is none.
+    load : float
+        Working load, N.
+    largest_force : float
+        Largest force that chosen states cover, N.
+    """
+
+    body: NDArray[np.float64]
+    spacing: tuple[float, float]
+    modulus: float
+    hertz: Hertz
+    load: float
+    largest_force: float
+
+    @property
+    def semi_axes(self) -> tuple[float, float]:
+        """Semi-axes of the nominal patch under the working load, m."""
+        return self.axes(self.load)
+
+    def axes(self, force: float) -> tuple[float, float]:
+        """Semi-axes of the nominal patch under a force, m.
+
+        Parameters
+        ----------
+        force : float
+            N.
+
+        Returns
+        -------
+        tuple of float
+            (a_x, a_y), m.
+        """
+        return self.hertz.semi_axes(self.hertz.approach(force))
+
+    def within_window(self) -> Geometry:
+        """Lower the largest force to what makes a contact that the window holds.
+
+        Returns
+        -------
+        Geometry
+            The same gap.
+        """
+        sides = [n * d for n, d in zip(self.body.shape, self.spacing, strict=True)]
+        room = min(FILLED * side / (2 * a) for side, a in zip(sides, self.semi_axes, strict=True))
+        return replace(self, largest_force=min(self.largest_force, self.load * max(room, 1.0) ** 3))
+
+
+def window_cells(contact: ContactCase) -> int:
+    """Cells along the window's side: odd, so that the lowest point of the gap lies on a cell.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+
+    Returns
+    -------
+    int
+        Odd number of cells.
+    """
+    return 2 * (contact.cells // 2) + 1
+
+
+def across_window(contact: ContactCase) -> NDArray[np.float64]:
+    """Coordinate of the window's cells from its middle, m.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        m, in both directions.
+    """
+    n = window_cells(contact)
+    return contact.spacing * np.arange(-(n // 2), n // 2 + 1, dtype=np.float64)
+
+
+def parabola(contact: ContactCase, radius: float) -> NDArray[np.float64]:
+    """Section x²/2R of the gap on the window's cells.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+    radius : float
+        R, m.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        m.
+    """
+    return across_window(contact) ** 2 / (2.0 * radius)
+
+
+def geometry(
+    contact: ContactCase,
+    section: NDArray[np.float64],
+    hertz: Hertz,
+    load: float,
+    *,
+    smallest_radius: float,
+    body: str,
+) -> Geometry:
+    """Lay the gap of two bodies out on the contact grid, checked against the half-space assumption.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+    section : ndarray, shape (n,)
+        Gap across the rolling direction, m, from `parabola` or of given profiles.
+    hertz : Hertz
+        Smooth contact; its radius in the rolling direction is that of the gap.
+    load : float
+        Working load, N.
+    smallest_radius : float
+        Smallest radius of curvature of the bodies, m.
+    body : str
+        The rolling body, for messages.
+
+    Returns
+    -------
+    Geometry
+        The gap x²/2R + section.
+
+    Raises
+    ------
+    InputError
+        If the contact is not small against the bodies (a > R/3), or the window does not hold it.
+    """
+    n, h = window_cells(contact), contact.spacing
+    gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
+    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, HIGHEST_FORCE * load)
+    axes = shape.semi_axes
+    _check_half_space(max(axes), smallest_radius, f"a working load of {load:.3g} N", body)
+    if contact.approaches is not None:
+        top = contact.approaches[-1]
+        cause = f"an approach of {top * 1e6:.3g} µm"
+        _check_half_space(max(hertz.semi_axes(top)), smallest_radius, cause, body)
+    if 2.2 * max(axes) > n * h:
+        raise InputError(
+            "contact.window",
+            f"{n * h * 1e6:.4g} um",
+            f"at least {2.2e6 * max(axes):.4g} um, 1.1 times the width of the smooth contact under "
+            f"{load:.3g} N",
+            "Enlarge the window.",
+        )
+    if h > min(axes) / 8:
+        warnings.warn(
+            f"contact.spacing = {h * 1e6:.3g} µm is coarser than an eighth of the contact radius "
+            f"({min(axes) * 1e6:.3g} µm under {load:.3g} N): forces carry an error of some per cent. "
+            "Refine the spacing.",
+            CoarseSamplingWarning,
+            stacklevel=2,
+        )
+    return shape
+
+
+def _check_half_space(a: float, radius: float, cause: str, body: str) -> None:
+    if a > radius / 3:
+        raise InputError(
+            "contact",
+            f"{cause}, a contact radius of {a / radius:.2g} R",
+            f"a contact radius of at most R/3, where the {body} is an elastic half-space",
+            f"Lower the load or the approaches, or take a larger {body}.",
+        )
+    if a > radius / 10:
+        warnings.warn(
+            f"{cause} makes a contact radius of {a / radius:.2g} R, above 0.1 R: the elastic half-space "
+            "overestimates the stiffness by some per cent. Lower the load.",
+            HalfSpaceWarning,
+            stacklevel=3,
+        )
