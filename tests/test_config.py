@@ -174,8 +174,8 @@ def test_every_commented_key_of_the_template_works(map_file):
 
 
 def test_there_is_no_template_of_another_kind():
-    with pytest.raises(InputError, match='allowed: "ball-on-beam"'):
-        template("wheel-on-rail")
+    with pytest.raises(InputError, match='allowed: "ball-on-beam", "wheel-on-rail"'):
+        template("ball-on-rail")
 
 
 def test_the_demonstration_is_a_case():
@@ -384,7 +384,7 @@ def test_every_law_may_be_asked_for(law):
     ("kind", "message"),
     [
         ("", "kind: received nothing"),
-        ('kind = "wheel-on-rail"', "kind: received 'wheel-on-rail'; allowed: \"ball-on-beam\""),
+        ('kind = "wheel-on-rial"', 'Did you mean "wheel-on-rail"?'),
         ('kind = "ball-on-beem"', 'Did you mean "ball-on-beam"?'),
         ("kind = 3", 'kind: received 3; allowed: "ball-on-beam"'),
     ],

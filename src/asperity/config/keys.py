@@ -24,6 +24,10 @@ _WORDS = {
     "Pa": ("a pressure", "3 GPa"),
     "Hz": ("a frequency", "5 kHz"),
     "N s/m": ("a damping constant", "10 N s/m"),
+    "N/m": ("a stiffness", "300 MN/m"),
+    "N m^2": ("a bending stiffness", "4.7 MN m^2"),
+    "kg/m": ("a mass per length", "60 kg/m"),
+    "kg m": ("a rotary inertia per length", "0.24 kg m"),
     "dB": ("a level", "+0 dB"),
 }
 
@@ -49,17 +53,21 @@ class Quantity:
         The value must be greater than this.
     at_least : float, optional
         The value must not be less than this.
+    infinite : bool
+        Whether "inf" is a value, too.
     """
 
     dimension: str
     above: float | None = None
     at_least: float | None = None
+    infinite: bool = False
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
         word, example = _WORDS[self.dimension]
-        return f'{word}{_range(self.above, self.at_least)}, with its unit, as "{example}"'
+        infinite = ', or "inf"' if self.infinite else ""
+        return f'{word}{_range(self.above, self.at_least)}{infinite}, with its unit, as "{example}"'
 
     def __call__(self, value: object) -> float:
         """Return the value in SI."""
@@ -74,7 +82,7 @@ class Quantity:
             number = quantity(value, self.dimension)
         except InputError as error:
             self._fail(value, error.remedy)
-        if not math.isfinite(number):
+        if not math.isfinite(number) and not (self.infinite and number > 0):
             self._fail(value, "Give a finite value.")
         if _outside(number, self.above, self.at_least):
             self._fail(value)
@@ -92,16 +100,18 @@ class Number:
     at_least: float | None = None
     at_most: float | None = None
     whole: bool = False
+    infinite: bool = False  # "inf" is a value, too
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
-        return ("a whole number" if self.whole else "a number") + _range(
-            self.above, self.at_least, self.at_most
-        )
+        limits = _range(self.above, self.at_least, self.at_most)
+        return ("a whole number" if self.whole else "a number") + limits + (', or "inf"' * self.infinite)
 
     def __call__(self, value: object) -> float | int:
         """Return the number."""
+        if self.infinite and value in ("inf", math.inf):
+            return math.inf
         kinds = int if self.whole else int | float
         if isinstance(value, bool) or not isinstance(value, kinds):
             remedy = "Write it without quotes and unit." if isinstance(value, str) else ""
@@ -189,7 +199,30 @@ class File:
         return path
 
 
-Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File
+@dataclass(frozen=True)
+class ChoiceOrFile:
+    """One of a few words, or else an existing file."""
+
+    words: tuple[str, ...]
+    content: str
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return f"{Choice(self.words).allowed}, or the path of {self.content}"
+
+    def __call__(self, value: object, info: ValidationInfo) -> str | Path:
+        """Return the word or the path."""
+        if value in self.words:
+            return str(value)
+        try:
+            return File()(value, info)
+        except InputError as error:
+            remedy = nearest(value, self.words) or error.remedy
+            raise InputError("choice", error.received, self.allowed, remedy) from None
+
+
+Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File | ChoiceOrFile
 
 
 def kind_of(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:
@@ -319,6 +352,7 @@ Length = Annotated[float, BeforeValidator(Quantity("m", above=0))]
 Position = Annotated[float, BeforeValidator(Quantity("m", at_least=0))]
 Approach = Annotated[float, BeforeValidator(Quantity("m"))]
 Duration = Annotated[float, BeforeValidator(Quantity("s", above=0))]
+DurationOrZero = Annotated[float, BeforeValidator(Quantity("s", at_least=0))]
 Speed = Annotated[float, BeforeValidator(Quantity("m/s", above=0))]
 Mass = Annotated[float, BeforeValidator(Quantity("kg", above=0))]
 Force = Annotated[float, BeforeValidator(Quantity("N", above=0))]
@@ -326,6 +360,8 @@ Pressure = Annotated[float, BeforeValidator(Quantity("Pa", above=0))]
 Frequency = Annotated[float, BeforeValidator(Quantity("Hz", above=0))]
 Damping = Annotated[float, BeforeValidator(Quantity("N s/m", at_least=0))]
 Level = Annotated[float, BeforeValidator(Quantity("dB"))]
+LengthOrInfinite = Annotated[float, BeforeValidator(Quantity("m", above=0, infinite=True))]
+Stiffness = Annotated[float, BeforeValidator(Quantity("N/m", above=0))]
 ExistingFile = Annotated[Path, BeforeValidator(File())]
 Name = Annotated[str, BeforeValidator(Text())]
 HeightUnit = Annotated[str, BeforeValidator(LengthUnit())]

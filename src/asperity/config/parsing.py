@@ -9,14 +9,16 @@ from pathlib import Path
 from pydantic import BaseModel, ValidationError
 
 from asperity.config.ball_on_beam import BallOnBeamCase
+from asperity.config.case import Case
 from asperity.config.keys import Problems, allowed_in, nearest, shown
+from asperity.config.wheel_on_rail import WheelOnRailCase
 from asperity.errors import CaseError, InputError
 
-KINDS: dict[str, type[BallOnBeamCase]] = {"ball-on-beam": BallOnBeamCase}
+KINDS: dict[str, type[Case]] = {"ball-on-beam": BallOnBeamCase, "wheel-on-rail": WheelOnRailCase}
 LARGEST_CASE = 2**20  # bytes
 
 
-def load_case(path: str | os.PathLike[str]) -> BallOnBeamCase:
+def load_case(path: str | os.PathLike[str]) -> Case:
     """Read a case from a TOML file.
 
     Parameters
@@ -26,7 +28,7 @@ def load_case(path: str | os.PathLike[str]) -> BallOnBeamCase:
 
     Returns
     -------
-    BallOnBeamCase
+    BallOnBeamCase or WheelOnRailCase
         The case, in SI.
 
     Raises
@@ -52,7 +54,7 @@ def load_case(path: str | os.PathLike[str]) -> BallOnBeamCase:
     return parse_case(text, path)
 
 
-def parse_case(text: str, source: str | os.PathLike[str] = "case") -> BallOnBeamCase:
+def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
     """Read a case from its text.
 
     Parameters
@@ -64,7 +66,7 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> BallOnBeam
 
     Returns
     -------
-    BallOnBeamCase
+    BallOnBeamCase or WheelOnRailCase
         The case, in SI.
 
     Raises
@@ -96,8 +98,6 @@ def not_a_kind(kind: object) -> InputError:
     allowed = ", ".join(f'"{name}"' for name in KINDS)
     if kind is None:
         return InputError("kind", "nothing", allowed, 'Write kind = "ball-on-beam" as the first line.')
-    if kind == "wheel-on-rail":
-        return InputError("kind", shown(kind), allowed, "This version rolls balls on beams only.")
     return InputError("kind", shown(kind), allowed, nearest(kind, list(KINDS)))
 
 

@@ -1,0 +1,139 @@
+"""What all kinds of case have in common: keys at the top, time step, and what must fit together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator, PrivateAttr
+
+from asperity.config.describing import parameters
+from asperity.config.keys import Choice, Duration, Position, Section, Speed, key
+from asperity.config.sections import ContactCase, Index, Numerics, Surface
+from asperity.errors import InputError
+
+LAWS = (
+    "areal",
+    "shifted",
+    "printed",
+    "table",
+    "direct",
+    "hertz",
+    "linear",
+    "hertz-filtered",
+    "linear-filtered",
+)
+MOST_STEPS = 10**8
+SAMPLING = 2.5  # points per period of the highest frequency, at least
+
+Law = Annotated[str, BeforeValidator(Choice(LAWS))]
+
+
+class Case(Section):
+    """A body rolls over a rough surface; each kind of case adds its bodies and its defaults.
+
+    Every length, time, force and so on is in SI here; units stand in the case file alone.
+    """
+
+    kind: str
+    speed: Speed
+    laws: tuple[Law, ...]
+    seed: Index = key(1, "seed of everything random")
+    start: Position
+    duration: Duration | None
+    surface: Surface
+
+    if TYPE_CHECKING:  # each kind declares these two after the sections of its own
+        contact: ContactCase
+        numerics: Numerics
+
+    _text: str = PrivateAttr("")
+    _given: dict[str, Any] = PrivateAttr(default_factory=dict)
+
+    @property
+    def text(self) -> str:
+        """The TOML text that this case was read from."""
+        return self._text
+
+    def parameters(self) -> list[dict[str, Any]]:
+        """List the keys that matter in this case, for people.
+
+        Returns
+        -------
+        list of dict
+            For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
+            ``note`` (what the key is).
+        """
+        given = dict(self._given)
+        given.setdefault("laws", list(self.laws))
+        return parameters(self, given)
+
+    @property
+    def time_step(self) -> float:
+        """Time step in s."""
+        raise NotImplementedError
+
+    @property
+    def rolled_time(self) -> float:
+        """Time in s that is recorded."""
+        raise NotImplementedError
+
+
+def problems_of_laws(case: Case) -> Iterator[InputError]:
+    """At least one law, and each once."""
+    if not case.laws:
+        yield InputError("laws", "an empty list", "at least one law", 'Take laws = ["areal", "linear"].')
+    for law in sorted(set(case.laws)):
+        if case.laws.count(law) > 1:
+            yield InputError("laws", f'"{law}" more than once', "each law once")
+
+
+def problems_of_sampling(case: Case) -> Iterator[InputError]:
+    """Grid and time step resolve the highest frequency and the shortest wavelength."""
+    highest = case.numerics.highest_frequency
+    coarsest = case.speed / (SAMPLING * highest)
+    spacing, surface = case.contact.spacing, case.surface
+    if spacing > coarsest:
+        received = f"{spacing * 1e6:g} um at {case.speed:g} m/s and {highest:g} Hz"
+        allowed = f"at most speed / ({SAMPLING} highest_frequency) = {coarsest * 1e6:.4g} um"
+        yield InputError("contact.spacing", received, allowed, "Refine spacing, or lower highest_frequency.")
+    if case.time_step > 1 / (SAMPLING * highest):
+        allowed = f"at most 1 / ({SAMPLING} highest_frequency) = {1e6 / (SAMPLING * highest):.4g} us"
+        yield InputError("numerics.time_step", f"{case.time_step * 1e6:g} us", allowed)
+    shortest = surface.band[1]
+    if shortest is not None and shortest < 2 * spacing * (1 - 1e-9):
+        received = f"{shortest * 1e6:g} um on a spacing of {spacing * 1e6:g} um"
+        yield InputError("surface.shortest", received, f"at least two spacings, {2e6 * spacing:g} um")
+
+
+def problem_of_steps(case: Case, time: float) -> Iterator[InputError]:
+    """Not more time steps than can be computed."""
+    if time / case.time_step > MOST_STEPS:
+        received = f"{time / case.time_step:.2g} time steps"
+        yield InputError(
+            "duration", received, f"at most {MOST_STEPS:g} time steps", "Roll faster or shorter."
+        )
+
+
+def time_step_on_grid(wanted: float, per_cell: float) -> float:
+    """Time step near the one wanted, with positions on the grid of the contact solution.
+
+    Parameters
+    ----------
+    wanted : float
+        Time step in s.
+    per_cell : float
+        Time in s in which one cell is rolled over.
+
+    Returns
+    -------
+    float
+        A whole multiple, rounded down, or a whole fraction of `per_cell`.
+    """
+    if wanted >= per_cell:
+        return per_cell * math.floor(wanted / per_cell * (1 + 1e-9))
+    parts = math.ceil(per_cell / wanted * (1 - 1e-9))
+    # on the grid the texture needs no interpolation: rather a slightly longer step than a finer one
+    nearest = min((parts, max(parts - 1, 1)), key=lambda n: abs(math.log(per_cell / n / wanted)))
+    return per_cell / nearest

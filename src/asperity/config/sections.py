@@ -1,0 +1,219 @@
+"""Sections that all kinds of case share: the surface, the contact, and how finely time is resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+from pydantic import BeforeValidator
+
+from asperity.config.keys import (
+    Approach,
+    Choice,
+    Damping,
+    Duration,
+    ExistingFile,
+    Frequency,
+    HeightUnit,
+    Length,
+    Level,
+    Name,
+    Number,
+    Pressure,
+    Section,
+    YesNo,
+    key,
+)
+from asperity.errors import InputError
+from asperity.reference.materials import MATERIALS
+
+MOST_CELLS = 2048  # along one side of the window
+
+Material = Annotated[str, BeforeValidator(Choice(tuple(MATERIALS)))]
+Index = Annotated[int, BeforeValidator(Number(at_least=0, at_most=10**9, whole=True))]
+
+
+class Surface(Section):
+    """What is rolled over: samples (measured or synthesised), and the line of the path."""
+
+    synthesised_band: ClassVar = (0.4e-3, 16e-6)  # m, longest and shortest wavelength beside rms
+
+    file: ExistingFile | None = key(
+        None, "measured map: the samples, and the path where it is long enough", example='"beam.x3p"'
+    )
+    array: Name | None = key(
+        None,
+        "name of the array in a file that holds several",
+        otherwise="the only one",
+        example='"polished"',
+        goes_with="file",
+    )
+    height_unit: HeightUnit | None = key(
+        None, "unit of heights that carry none", otherwise="from the file", example='"um"', goes_with="file"
+    )
+    pixel: Length | None = key(
+        None,
+        "spacing of points that carry none",
+        otherwise="from the file",
+        example='"1.5625 um"',
+        goes_with="file",
+    )
+    index: Index | None = key(
+        None,
+        "which one of an ensemble of maps, from 0",
+        otherwise="all of them",
+        example="0",
+        goes_with="file",
+    )
+    fill: YesNo = key(False, "fill points without a height", goes_with="file")
+    form: Annotated[str, BeforeValidator(Choice(("plane", "quadratic")))] = key(
+        "plane", "form that is removed from each measured map", goes_with="file"
+    )
+    line: ExistingFile | None = key(
+        None,
+        "measured long line for the path; without one, a path longer than the map is synthesised from it",
+        example='"line.csv"',
+    )
+    rms: Length | None = key(None, "rms height of synthesised samples, instead of a file", example='"0.5 um"')
+    hurst: Annotated[float, BeforeValidator(Number(above=0, at_most=1))] = key(
+        0.8, "Hurst exponent of the synthesised texture", goes_with="rms"
+    )
+    longest: Length | None = key(
+        None,
+        "longest wavelength of the samples",
+        otherwise="with rms 0.4 mm, else all they hold",
+        example='"0.4 mm"',
+    )
+    shortest: Length | None = key(
+        None,
+        "shortest wavelength of the samples",
+        otherwise="with rms 16 um, else all they hold",
+        example='"16 um"',
+    )
+    anisotropy: Annotated[float, BeforeValidator(Number(above=0, at_most=100))] = key(
+        1.0, "ratio of the correlation lengths along and across the path", goes_with="rms"
+    )
+    spectrum: Annotated[str | Path, BeforeValidator(Choice(("iso3095",)))] | None = key(
+        None, "one-third-octave wavelength spectrum of the line of the path", example='"iso3095"'
+    )
+    level: Level = key("+0 dB", "level added to the spectrum", goes_with="spectrum")
+
+    @property
+    def has_samples(self) -> bool:
+        """Whether there is a 3-D texture, from which stiffness and filters are reduced."""
+        return self.file is not None or self.rms is not None
+
+    @property
+    def has_line(self) -> bool:
+        """Whether the path is given as a line, without the texture beside it."""
+        return self.line is not None or self.spectrum is not None
+
+    @property
+    def band(self) -> tuple[float | None, float | None]:
+        """Longest and shortest wavelength of the samples in m; None where a file decides."""
+        if self.rms is None:
+            return self.longest, self.shortest
+        longest, shortest = self.synthesised_band
+        return self.longest or longest, self.shortest or shortest
+
+    def problems(self) -> Iterator[InputError]:
+        """Some texture, from sources that do not exclude one another."""
+        yield from self.problems_of_sources()
+        if not self.has_samples and not self.has_line:
+            remedy = 'Name a measured map (file = "…") or synthesise one (rms = "0.5 um").'
+            yield InputError("", "no texture", "file, rms, line or spectrum", remedy)
+
+    def problems_of_sources(self) -> Iterator[InputError]:
+        """At most one source of samples, at most one of the path, and wavelengths in order."""
+        if self.file is not None and self.rms is not None:
+            remedy = "Remove one: samples are either measured or synthesised."
+            yield InputError("", "both file and rms", "one of them", remedy)
+        if self.line is not None and self.spectrum is not None:
+            yield InputError(
+                "", "both line and spectrum", "one of them", "Remove one: the path has one line."
+            )
+        longest, shortest = self.band
+        if longest is not None and shortest is not None and longest <= shortest:
+            received = f"{longest * 1e6:g} um with shortest {shortest * 1e6:g} um"
+            yield InputError("longest", received, "a wavelength greater than shortest")
+
+
+class ContactCase(Section):
+    """How the rough contact is solved and reduced."""
+
+    spacing: Length = key("8 um", "grid spacing of the contact solution")
+    window: Length = key(
+        "0.5 mm", "side of the square window in which contact is solved; wider than the contact"
+    )
+    samples: Annotated[int, BeforeValidator(Number(at_least=1, at_most=10_000, whole=True))] = key(
+        8, "number of surface samples for the stiffness and the filters"
+    )
+    sample_length: Length | None = key(
+        None,
+        "length of the strips from which filters are estimated",
+        otherwise="eight windows, or the length of the map",
+        example='"2 mm"',
+    )
+    approaches: tuple[Approach, ...] | None = key(
+        None,
+        "approaches of the mean surfaces, increasing, at which the contact is reduced",
+        otherwise="chosen from the load and the roughness",
+        example='["-0.5 um", "0 um", "1 um"]',
+    )
+    damping: Damping = key("0 N s/m", "damping of the contact")
+    hardness: Pressure | None = key(None, "largest pressure", otherwise="elastic contact", example='"3 GPa"')
+    normalise: Annotated[str, BeforeValidator(Choice(("low-wavenumber", "tangent")))] = key(
+        "low-wavenumber",
+        "what the filter is 1 at: its own low wavenumbers (as printed), or the tangent stiffness",
+    )
+    linearise: Annotated[str, BeforeValidator(Choice(("hertz", "rough")))] = key(
+        "hertz", "which stiffness at the load the linear law has"
+    )
+    filter_degree: Annotated[int, BeforeValidator(Number(at_least=1, at_most=20, whole=True))] = key(
+        6, "degree of the polynomial fitted to each filter, in dB over wavenumber"
+    )
+    filter_taps: Annotated[int, BeforeValidator(Number(at_least=2, at_most=4096, whole=True))] | None = key(
+        None, "order J of the filter (J + 1 taps), even", otherwise="four contact radii long", example="64"
+    )
+
+    @property
+    def cells(self) -> int:
+        """Number of grid cells along one side of the window."""
+        return round(self.window / self.spacing)
+
+    def problems(self) -> Iterator[InputError]:
+        """The window holds a sensible number of cells; approaches increase; the filter order is even."""
+        if not 8 <= self.cells <= MOST_CELLS:
+            received = f"{self.window * 1e6:g} um, {self.cells} cells of {self.spacing * 1e6:g} um"
+            remedy = "Change window or spacing."
+            yield InputError("window", received, f"8 to {MOST_CELLS} cells of the spacing", remedy)
+        if self.approaches is not None and len(self.approaches) < 2:
+            yield InputError(
+                "approaches", f"{len(self.approaches)} values", "at least 2", "Or remove the key."
+            )
+        if any(later <= earlier for earlier, later in pairwise(self.approaches or ())):
+            received = ", ".join(f"{value * 1e6:g} um" for value in self.approaches or ())
+            yield InputError("approaches", received, "increasing values", "Sort them, each once.")
+        if self.filter_taps is not None and self.filter_taps % 2:
+            remedy = "An odd order would shift the texture by half a step."
+            yield InputError("filter_taps", self.filter_taps, "an even number", remedy)
+        if self.sample_length is not None and self.sample_length < 2 * self.window:
+            allowed = f"at least two windows, {2e6 * self.window:g} um"
+            yield InputError("sample_length", f"{self.sample_length * 1e6:g} um", allowed)
+
+
+class Numerics(Section):
+    """How finely time is resolved."""
+
+    highest_frequency: Frequency = key("5 kHz", "upper end of the spectra")
+    time_step: Duration | None = key(
+        None,
+        "time step",
+        otherwise="near 1/20 of the highest frequency's period, a whole number or fraction of spacing/speed",
+        example='"8 us"',
+    )
+    rtol: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
+        1e-6, "tolerance of the contact solution, relative to the largest overlap"
+    )

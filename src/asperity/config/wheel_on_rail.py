@@ -1,0 +1,124 @@
+"""The case of a wheel that rolls on an infinite track: its keys, defaults, and what must fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import BeforeValidator
+
+from asperity.config.case import (
+    Case,
+    Law,
+    problem_of_steps,
+    problems_of_laws,
+    problems_of_sampling,
+    time_step_on_grid,
+)
+from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed, key
+from asperity.config.railway import NoiseCase, RailContact, RailNumerics, RailSurface, TrackCase, WheelCase
+from asperity.errors import InputError
+
+if TYPE_CHECKING:
+    from asperity.structures.track import Track
+
+STEPS_PER_PERIOD = 8  # of the highest frequency
+CLOSE = 1.2  # a time step may be changed by this factor to bring positions onto the grid
+
+
+class WheelOnRailCase(Case):
+    """A wheel rolls on a rail of infinite length on discrete supports.
+
+    Each key's meaning, default and allowed values are printed by ``asperity new wheel-on-rail``. Positions
+    count along the rail, in m from a sleeper. Every law is allowed: textures are laid out as strips.
+    """
+
+    kind: Annotated[str, BeforeValidator(Choice(("wheel-on-rail",)))] = key("wheel-on-rail", "what rolls")
+    speed: Speed = key("56 m/s", "rolling speed")
+    laws: tuple[Law, ...] = key(
+        ("areal", "shifted", "printed", "linear"),
+        "laws of the contact force; the first is the main one",
+    )
+    start: Position = key("0 m", "where the record starts, from a sleeper")
+    duration: Duration = key("1 s", "time that is recorded")
+    settling: DurationOrZero = key(
+        "0.3 s", "time that is rolled before the record starts, so that the start is forgotten"
+    )
+    surface: RailSurface = key({}, "texture of the rail: measured or synthesised, with defects on top")
+    wheel: WheelCase = key({}, "the wheel that rolls")
+    track: TrackCase = key({}, "the track that is rolled over")
+    contact: RailContact = key({}, "how the rough contact is solved and reduced")
+    numerics: RailNumerics = key({}, "how finely time and the track are resolved")
+    noise: NoiseCase = key({}, "how force is turned into sound power")
+
+    @property
+    def time_step(self) -> float:
+        """Time step in s: as given, or near 1/(8 f_max).
+
+        Where that changes it by less than 20 %, the distance rolled in one step is a whole multiple, or a
+        whole fraction, of ``contact.spacing``.
+        """
+        if self.numerics.time_step is not None:
+            return self.numerics.time_step
+        per_cell = self.contact.spacing / self.speed
+        wanted = 1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency)
+        cells = round(wanted / per_cell)
+        found = cells * per_cell if cells else time_step_on_grid(wanted, per_cell)
+        return found if 1 / CLOSE <= found / wanted <= CLOSE else wanted
+
+    @property
+    def rolled_time(self) -> float:
+        """Time in s that is recorded; `settling` comes before it."""
+        return self.duration
+
+    @property
+    def rolled_range(self) -> tuple[float, float]:
+        """First and last position of the contact on the rail in m, from the start of the run-in."""
+        return self.start - self.speed * self.settling, self.start + self.speed * self.duration
+
+    @property
+    def point_positions(self) -> tuple[float, ...]:
+        """Positions in m at which the rail's motion is recorded, with the default filled in."""
+        if self.track.points is not None:
+            return self.track.points
+        bay = self.track_model().sleeper_spacing
+        sleeper = bay * round((self.start + self.speed * self.duration / 2) / bay)
+        return sleeper, sleeper + bay / 2
+
+    def track_model(self) -> Track:
+        """Build the track of this case.
+
+        Returns
+        -------
+        Track
+            The named set with the case's own keys in it.
+        """
+        from asperity.structures.track import Track
+
+        return Track.named(self.track.name, **self.track.overrides)
+
+    def problems(self) -> Iterator[InputError]:
+        """What must fit together across the sections."""
+        yield from problems_of_laws(self)
+        yield from problems_of_sampling(self)
+        yield from problem_of_steps(self, self.settling + self.duration)
+        yield from _problems_of_texture(self)
+        yield from _problems_of_path(self)
+        widest = 2 * min(self.wheel.radius, self.track.rail_head_radius)
+        if self.contact.window > widest:
+            allowed = f"at most the smaller diameter of wheel and rail head, {1e3 * widest:g} mm"
+            yield InputError("contact.window", f"{self.contact.window * 1e3:g} mm", allowed)
+
+
+def _problems_of_texture(case: WheelOnRailCase) -> Iterator[InputError]:
+    if not (case.surface.has_texture or case.wheel.has_texture or case.surface.smooth):
+        allowed = "file, rms, line, spectrum or a defect in [surface], roughness, line or a flat in [wheel]"
+        yield InputError("surface", "no texture", allowed, "For a smooth rail, set smooth = true.")
+
+
+def _problems_of_path(case: WheelOnRailCase) -> Iterator[InputError]:
+    length = case.speed * case.duration
+    if length < case.contact.window:
+        received = f"{case.duration:g} s, in which {length * 1e3:.4g} mm are rolled"
+        allowed = f"a path longer than contact.window, {case.contact.window * 1e3:g} mm"
+        yield InputError("duration", received, allowed)
