@@ -1,0 +1,95 @@
+"""Named sets of track parameters, each value with its source."""
+
+from __future__ import annotations
+
+import difflib
+
+from asperity.errors import InputError
+
+_NORDBORG = "A. Nordborg, J. Acoust. Soc. Am. 112 (2002), as used by a public re-implementation"
+_NORDBORG_VISCOUS = "viscous variant of " + _NORDBORG
+_UIC60 = "UIC 60 section: E = 210 GPa, I = 3.037e-5 m^4, A = 76.7e-4 m^2, m' = 60.2 kg/m, as in rolland"
+_UIC60_SHEAR = _UIC60 + "; kappa = 0.393, G = 80.77 GPa"
+_RANGE = "chosen here within the published range "
+_OWN = "default of asperity, chosen here: the thesis prints none; "
+
+Parameters = dict[str, tuple[float, str]]
+
+_UIC60_RAIL: Parameters = {
+    "bending_stiffness": (210e9 * 3.037e-5, _UIC60),
+    "mass_per_length": (60.2, _UIC60),
+    "rail_loss_factor": (0.02, _UIC60),
+}
+_UIC60_SUPPORTS: Parameters = {
+    "pad_stiffness": (180e6, _RANGE + "65 to 225 MN/m"),
+    "pad_damping": (18e3, _RANGE + "18 to 30 kN s/m for pads of 180 MN/m"),
+    "sleeper_mass": (150.0, _RANGE + "140 to 177.5 kg"),
+    "ballast_stiffness": (40e6, _RANGE + "20 to 150 MN/m"),
+    "ballast_damping": (47e3, "published together with a ballast of 40 MN/m"),
+    "sleeper_spacing": (0.6, _RANGE + "0.55 to 0.65 m"),
+}
+_NORDBORG_RAIL: Parameters = {
+    "bending_stiffness": (210e9 * 22.5e-6, _NORDBORG + ": E = 210 GPa, I = 22.5e-6 m^4"),
+    "mass_per_length": (60.0, _NORDBORG),
+    "rail_loss_factor": (0.004, _NORDBORG),
+    "pad_stiffness": (300e6, _NORDBORG),
+    "sleeper_mass": (150.0, _NORDBORG),
+    "ballast_stiffness": (150e6, _NORDBORG),
+    "sleeper_spacing": (0.6, _NORDBORG),
+}
+
+TRACKS: dict[str, Parameters] = {
+    "x2000": {
+        "bending_stiffness": (210e9 * 3.037e-5, _OWN + _UIC60),
+        "mass_per_length": (60.2, _OWN + _UIC60),
+        "rail_loss_factor": (0.02, _OWN + _UIC60),
+        "pad_stiffness": (200e6, _OWN + "published range 65 to 225 MN/m"),
+        "pad_damping": (28e3, _OWN + "published together with a pad of 200 MN/m"),
+        "sleeper_mass": (150.0, _OWN + "published range 140 to 177.5 kg"),
+        "ballast_stiffness": (150e6, _OWN + "published range 20 to 150 MN/m"),
+        "ballast_damping": (48e3, _OWN + "published together with a ballast of 150 MN/m"),
+        "sleeper_spacing": (0.6, _OWN + "published range 0.55 to 0.65 m"),
+    },
+    "nordborg": {
+        **_NORDBORG_RAIL,
+        "pad_damping": (18e3, _NORDBORG_VISCOUS),
+        "ballast_damping": (48e3, _NORDBORG_VISCOUS),
+    },
+    "nordborg-loss-factor": {
+        **_NORDBORG_RAIL,
+        "pad_loss_factor": (0.15, _NORDBORG),
+        "ballast_loss_factor": (0.4, _NORDBORG),
+    },
+    "uic60": {
+        **_UIC60_RAIL,
+        "shear_stiffness": (80.77e9 * 76.7e-4 * 0.393, _UIC60_SHEAR),
+        "rotary_inertia": (60.2 / 76.7e-4 * 3.037e-5, _UIC60),
+        **_UIC60_SUPPORTS,
+    },
+    "uic60-euler": {**_UIC60_RAIL, **_UIC60_SUPPORTS},
+}
+
+
+def named_track(name: str) -> Parameters:
+    """Parameters of a named track.
+
+    Parameters
+    ----------
+    name : str
+        A key of `TRACKS`.
+
+    Returns
+    -------
+    dict
+        Parameter of `asperity.structures.track.Track` to (value in SI, source).
+
+    Raises
+    ------
+    InputError
+        If the name is unknown.
+    """
+    if name not in TRACKS:
+        close = difflib.get_close_matches(str(name), TRACKS, n=1)
+        remedy = f"Did you mean {close[0]!r}?" if close else ""
+        raise InputError("track name", repr(name), "one of " + ", ".join(TRACKS), remedy)
+    return dict(TRACKS[name])

@@ -1,0 +1,207 @@
+"""Waves of an infinite rail on equal, equally spaced supports, in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+
+_LARGEST_EXPONENT = 200.0  # products of three exponentials stay inside the range of doubles
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicWaves:
+    """The two Floquet waves of a periodically supported rail at each frequency.
+
+    With 0 <= x0 <= L and x = p L + xi >= x0, the displacement at x per force at x0 is
+    G(x|x0) = sum_j coefficients_j multipliers_j**p outgoing(xi)_j incoming(x0)_j.
+
+    Parameters
+    ----------
+    multipliers : ndarray (2, f) of complex
+        lambda_j, the change of wave j over one bay, |lambda_j| < 1.
+    coefficients : ndarray (2, f) of complex
+        C_j, N/m times the square of a scale that the shapes carry (see Notes).
+    wavenumbers : ndarray (2, f) of complex
+        k_i of the free rail, rad/m, Im k_i <= 0.
+    weights : ndarray (2, 2, f) of complex
+        Share of the free wave i in wave j, axes (i, j, f).
+    spacing : float
+        Distance of the supports L, m.
+
+    Notes
+    -----
+    The shapes are those of the Floquet sum phi_lambda(x) = sum_n lambda^n G_0(x - n L), multiplied by
+    (cos k_1 L - c)(cos k_2 L - c), c = (lambda + 1/lambda)/2, and the coefficients divided by its
+    square. So written, nothing becomes infinite where the supports exert no force.
+    """
+
+    multipliers: NDArray
+    coefficients: NDArray
+    wavenumbers: NDArray
+    weights: NDArray
+    spacing: float
+
+    def outgoing(self, x: float) -> NDArray:
+        """Shapes of the waves that decay towards growing x.
+
+        Parameters
+        ----------
+        x : float
+            Position in the bay, 0 <= x <= L, m.
+
+        Returns
+        -------
+        ndarray (2, f) of complex
+            phi_lambda(x), scaled.
+        """
+        return self._shapes(x, self.multipliers)
+
+    def incoming(self, x: float) -> NDArray:
+        """Shapes of the waves that grow towards growing x.
+
+        Parameters
+        ----------
+        x : float
+            Position in the bay, 0 <= x <= L, m.
+
+        Returns
+        -------
+        ndarray (2, f) of complex
+            phi_{1/lambda}(x), scaled.
+        """
+        return self._shapes(x, 1.0 / self.multipliers)
+
+    def _shapes(self, x: float, multipliers: NDArray) -> NDArray:
+        near, far = np.sin(self.wavenumbers * x), np.sin(self.wavenumbers * (self.spacing - x))
+        return np.sum(self.weights * (far[:, None] + multipliers * near[:, None]), axis=0)
+
+    def receptance(self, x: float, x0: float) -> NDArray:
+        """Displacement at `x` per force at `x0`.
+
+        Parameters
+        ----------
+        x, x0 : float
+            Positions from any support, m.
+
+        Returns
+        -------
+        ndarray (f,) of complex
+            m/N.
+        """
+        first, last = min(x, x0), max(x, x0)
+        first_bay = np.floor(first / self.spacing)
+        start = first - first_bay * self.spacing
+        bays = np.floor(last / self.spacing)
+        along = last - bays * self.spacing
+        waves = self.coefficients * self.outgoing(along) * self.incoming(start)
+        return np.sum(waves * self.multipliers ** (bays - first_bay), axis=0)
+
+
+def periodic_waves(
+    wavenumbers: NDArray, amplitudes: NDArray, support: NDArray, spacing: float
+) -> PeriodicWaves:
+    """Floquet waves from the receptance of the free rail.
+
+    Parameters
+    ----------
+    wavenumbers, amplitudes : ndarray (2, f) of complex
+        k_i (rad/m) and A_i (m/N) of the free rail, G_0(x) = sum_i A_i exp(-i k_i |x|).
+    support : ndarray (f,) of complex
+        Dynamic stiffness K of one support, N/m.
+    spacing : float
+        Distance of the supports L, m.
+
+    Returns
+    -------
+    PeriodicWaves
+
+    Raises
+    ------
+    InputError
+        If a free wave decays by more than exp(-200) in one bay.
+
+    Notes
+    -----
+    1 + K phi_lambda(0) = 0 is the quadratic c^2 - B c + D = 0 with a_i = i K A_i sin k_i L,
+    C_i = cos k_i L, B = C_1 + C_2 + a_1 + a_2, D = C_1 C_2 + a_1 C_2 + a_2 C_1; the superposition of
+    the supports is the sum of the residues at its roots.
+    """
+    phase = wavenumbers * spacing
+    if np.abs(phase.imag).max(initial=0.0) > _LARGEST_EXPONENT:
+        raise InputError(
+            "decay of a rail wave over one bay (neper)",
+            f"{np.abs(phase.imag).max():.4g}",
+            f"at most {_LARGEST_EXPONENT:g}",
+            "Lower the highest frequency.",
+        )
+    sine, cosine = np.sin(phase), np.cos(phase)
+    unit = 1j * amplitudes * sine  # a_i per support stiffness
+    (c_1, c_2), (u_1, u_2) = cosine, unit
+    total = c_1 + c_2 + support * (u_1 + u_2)
+    product = c_1 * c_2 + support * (u_1 * c_2 + u_2 * c_1)
+    root = np.sqrt(total**2 - 4.0 * product)
+    sign = np.where(np.real(root * np.conj(total)) < 0.0, -1.0, 1.0)
+    larger = 0.5 * (total + sign * root)
+    c = np.stack([larger, product / larger])
+    root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
+    sign = np.where(np.real(root * np.conj(c)) < 0.0, -1.0, 1.0)
+    multipliers = 1.0 / (c + sign * root)
+    slope = u_1 * (c - c_2) + u_2 * (c - c_1)  # (C_1 - c)(C_2 - c) / K on the roots
+    coefficients = -2.0 / (slope * (c - c[::-1]) * (multipliers - 1.0 / multipliers))
+    weights = 1j * amplitudes[:, None] * (cosine[::-1, None] - c)
+    return PeriodicWaves(multipliers, coefficients, wavenumbers, weights, spacing)
+
+
+def static_receptance(
+    bending_stiffness: float,
+    shear_stiffness: float | None,
+    support_stiffness: float,
+    spacing: float,
+    x: float,
+) -> float:
+    """Static deflection at a unit force, the limit of the Floquet sum at zero frequency.
+
+    Parameters
+    ----------
+    bending_stiffness : float
+        E I, N m^2.
+    shear_stiffness : float or None
+        G A kappa, N; None for no shear.
+    support_stiffness : float
+        Static stiffness of one support, N/m.
+    spacing : float
+        Distance of the supports L, m.
+    x : float
+        Position of the force in the bay, 0 <= x <= L, m.
+
+    Returns
+    -------
+    float
+        m/N.
+
+    Notes
+    -----
+    With y = 1 - c, G_0 = |x|^3/12EI - |x|/2S gives phi(0) = L^3/(4EI y^2) + b/y,
+    b = L/(2S) - L^3/(12EI), and the multipliers from y^2 + K b y + K L^3/(4EI) = 0.
+    """
+    bending, shear = 1.0 / bending_stiffness, 0.0 if shear_stiffness is None else 1.0 / shear_stiffness
+    cubic = 0.25 * bending * spacing**3
+    linear = 0.5 * shear * spacing - bending * spacing**3 / 12.0
+    y = np.roots(np.array([1.0, support_stiffness * linear, support_stiffness * cubic], dtype=complex))
+    c = 1.0 - y
+    root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
+    multipliers = 1.0 / np.where(np.abs(c + root) > 1.0, c + root, c - root)
+
+    def shape(multiplier: NDArray) -> NDArray:
+        ramp = (spacing - x) + multiplier * x
+        cube = (spacing - x) ** 3 + multiplier * x**3
+        slope = bending * spacing**2 / (4.0 * y**2) + 0.5 * shear / y
+        return slope * ramp - bending * cube / (12.0 * y)
+
+    change = 2.0 * cubic / y**3 + linear / y**2  # d phi(0)/d c
+    coefficients = -2.0 / (change * (multipliers - 1.0 / multipliers))
+    return float(np.sum(coefficients * shape(multipliers) * shape(1.0 / multipliers)).real)

@@ -1,0 +1,451 @@
+"""Infinite railway track: a rail on discrete supports of pad, sleeper and ballast."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError
+from asperity.reference.tracks import named_track
+from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
+
+_ALTERNATIVES = {
+    "pad_damping": "pad_loss_factor",
+    "pad_loss_factor": "pad_damping",
+    "ballast_damping": "ballast_loss_factor",
+    "ballast_loss_factor": "ballast_damping",
+}
+_VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
+
+
+@dataclass(frozen=True)
+class Track:
+    """Rail of infinite length on equal supports, Euler-Bernoulli or Timoshenko.
+
+    Each support is a pad (spring and damper) on a rigid half sleeper on ballast (spring and damper).
+    All stiffnesses, dampers and masses are those under one rail.
+
+    Parameters
+    ----------
+    bending_stiffness : float
+        E I, N m^2.
+    mass_per_length : float
+        m', kg/m.
+    pad_stiffness : float
+        k_p, N/m.
+    sleeper_mass : float
+        m_s, half a sleeper, kg; zero is allowed.
+    ballast_stiffness : float
+        k_b, N/m.
+    sleeper_spacing : float
+        L, m.
+    rail_loss_factor : float
+        E (1 + i eta), and for Timoshenko G likewise.
+    pad_damping, pad_loss_factor : float, optional
+        Viscous, N s/m, or hysteretic, k_p (1 + i eta); one of them, or none for no damping.
+    ballast_damping, ballast_loss_factor : float, optional
+        The same for the ballast.
+    shear_stiffness, rotary_inertia : float, optional
+        G A kappa, N, and rho I, kg m: both for a Timoshenko rail, none for Euler-Bernoulli.
+    name : str
+        What the set is called.
+    sources : tuple of str
+        Where the values come from, one text per parameter.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, one element has both viscous damping and a loss factor, or only one
+        of shear stiffness and rotary inertia is given.
+
+    Notes
+    -----
+    Vertical motion of one rail alone: valid up to about 2 kHz for Euler-Bernoulli and 5 kHz for
+    Timoshenko, above which the section of a rail deforms (Knothe and Grassie, Vehicle System
+    Dynamics 22, 1993). A constant loss factor is slightly non-causal in time; viscous damping is exact.
+    """
+
+    bending_stiffness: float
+    mass_per_length: float
+    pad_stiffness: float
+    sleeper_mass: float
+    ballast_stiffness: float
+    sleeper_spacing: float
+    rail_loss_factor: float = 0.0
+    pad_damping: float | None = None
+    pad_loss_factor: float | None = None
+    ballast_damping: float | None = None
+    ballast_loss_factor: float | None = None
+    shear_stiffness: float | None = None
+    rotary_inertia: float | None = None
+    name: str = ""
+    sources: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for what, value in (
+            ("bending stiffness of the rail (N m^2)", self.bending_stiffness),
+            ("mass per length of the rail (kg/m)", self.mass_per_length),
+            ("pad stiffness (N/m)", self.pad_stiffness),
+            ("ballast stiffness (N/m)", self.ballast_stiffness),
+            ("sleeper spacing (m)", self.sleeper_spacing),
+            ("shear stiffness of the rail (N)", self.shear_stiffness),
+            ("rotary inertia of the rail (kg m)", self.rotary_inertia),
+        ):
+            if value is not None and not (np.isfinite(value) and value > 0.0):
+                raise InputError(what, value, "a finite positive number")
+        for what, value in (
+            ("sleeper mass (kg)", self.sleeper_mass),
+            ("rail loss factor", self.rail_loss_factor),
+            ("pad damping (N s/m)", self.pad_damping),
+            ("pad loss factor", self.pad_loss_factor),
+            ("ballast damping (N s/m)", self.ballast_damping),
+            ("ballast loss factor", self.ballast_loss_factor),
+        ):
+            if value is not None and not (np.isfinite(value) and value >= 0.0):
+                raise InputError(what, value, "a finite number, zero or more")
+        self._refuse_doubles()
+
+    def _refuse_doubles(self) -> None:
+        for element, viscous, factor in (
+            ("pad", self.pad_damping, self.pad_loss_factor),
+            ("ballast", self.ballast_damping, self.ballast_loss_factor),
+        ):
+            if viscous is not None and factor is not None:
+                raise InputError(
+                    f"damping of the {element}",
+                    f"{element}_damping = {viscous:g} N s/m and {element}_loss_factor = {factor:g}",
+                    "one of them",
+                    "Remove one: an element is either viscous or has a loss factor.",
+                )
+        if (self.shear_stiffness is None) != (self.rotary_inertia is None):
+            missing = "rotary_inertia" if self.rotary_inertia is None else "shear_stiffness"
+            raise InputError(
+                "Timoshenko rail",
+                f"no {missing}",
+                "shear_stiffness and rotary_inertia together, or neither (Euler-Bernoulli)",
+            )
+
+    @classmethod
+    def named(cls, name: str, **overrides: Any) -> Track:
+        """A named set of parameters with its sources.
+
+        Parameters
+        ----------
+        name : str
+            One of `asperity.reference.tracks.TRACKS`.
+        **overrides
+            Parameters of `Track` that replace those of the set. A viscous damping replaces the loss
+            factor of the same element, and the other way round.
+
+        Returns
+        -------
+        Track
+
+        Raises
+        ------
+        InputError
+            If the name or a parameter is unknown, or a value is out of range.
+        """
+        parameters = named_track(name)
+        known = {field.name for field in fields(cls)}
+        for key in overrides:
+            if key not in known:
+                raise InputError("track parameter", repr(key), "one of " + ", ".join(sorted(known)))
+            alternative = _ALTERNATIVES.get(key)
+            if overrides[key] is not None and alternative is not None and alternative not in overrides:
+                parameters.pop(alternative, None)
+        values = {key: value for key, (value, _) in parameters.items()} | overrides
+        sources = [
+            f"{key}: {'given' if key in overrides else parameters[key][1]}"
+            for key in values
+            if key not in ("name", "sources") and values[key] is not None
+        ]
+        return cls(**({"name": name, "sources": tuple(sources)} | values))
+
+    @property
+    def is_timoshenko(self) -> bool:
+        """Whether shear and rotary inertia of the rail are in."""
+        return self.shear_stiffness is not None
+
+    @property
+    def is_viscous(self) -> bool:
+        """Whether pads and ballast have no loss factor; their response in time is then causal."""
+        return not self.pad_loss_factor and not self.ballast_loss_factor
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether anything in the track dissipates."""
+        return bool(
+            self.rail_loss_factor
+            or self.pad_damping
+            or self.pad_loss_factor
+            or self.ballast_damping
+            or self.ballast_loss_factor
+        )
+
+    def support_stiffness(self, omega: ArrayLike) -> NDArray:
+        """Dynamic stiffness of one support under the rail.
+
+        Parameters
+        ----------
+        omega : array_like of complex
+            Angular frequency, rad/s, with positive real part or, if viscous, in the lower half-plane.
+
+        Returns
+        -------
+        ndarray of complex
+            K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2), N/m.
+        """
+        omega = np.asarray(omega, dtype=complex)
+        pad = self.pad_stiffness * (1.0 + 1j * (self.pad_loss_factor or 0.0))
+        pad = pad + 1j * omega * (self.pad_damping or 0.0)
+        ballast = self.ballast_stiffness * (1.0 + 1j * (self.ballast_loss_factor or 0.0))
+        ballast = ballast + 1j * omega * (self.ballast_damping or 0.0)
+        below = ballast - self.sleeper_mass * omega**2
+        return pad * below / (pad + below)
+
+    def free_waves(self, omega: ArrayLike) -> tuple[NDArray, NDArray]:
+        """Waves of the rail without supports.
+
+        Parameters
+        ----------
+        omega : array_like (f,) of complex
+            Angular frequency, rad/s.
+
+        Returns
+        -------
+        wavenumbers, amplitudes : ndarray (2, f) of complex
+            k_i, rad/m, and A_i, m/N, of the receptance G_0(x) = sum_i A_i exp(-i k_i |x|).
+        """
+        omega = np.asarray(omega, dtype=complex)
+        bending = self.bending_stiffness * (1.0 + 1j * self.rail_loss_factor)
+        if self.shear_stiffness is None or self.rotary_inertia is None:
+            k = np.sqrt(omega) * (self.mass_per_length / bending) ** 0.25
+            scale = 1.0 / (4.0 * bending * k**3)
+            return np.stack([k, -1j * k]), np.stack([-1j * scale, -scale])
+        shear = self.shear_stiffness * (1.0 + 1j * self.rail_loss_factor)
+        inertia, mass = self.rotary_inertia, self.mass_per_length
+        spread = omega * np.sqrt(omega**2 * (inertia - mass * bending / shear) ** 2 + 4.0 * bending * mass)
+        sum_of_squares = omega**2 * (inertia + mass * bending / shear)
+        product = -mass * omega**2 * (1.0 - inertia * omega**2 / shear)
+        first = sum_of_squares + spread
+        squares = np.stack([first / (2.0 * bending), 2.0 * product / first])
+        k = np.sqrt(squares)
+        k = np.where(k.imag > 0.0, -k, k)
+        rotation = (bending * squares + shear - inertia * omega**2) / shear
+        return k, -1j * rotation / (2.0 * k * bending * (squares - squares[::-1]))
+
+    def waves(self, omega: ArrayLike) -> PeriodicWaves:
+        """The two waves of the supported rail.
+
+        Parameters
+        ----------
+        omega : array_like (f,) of complex
+            Angular frequency, rad/s, with positive real part or, if viscous, in the lower half-plane.
+
+        Returns
+        -------
+        PeriodicWaves
+
+        Raises
+        ------
+        InputError
+            If the frequency is so high that a wave decays by more than exp(-200) in one bay.
+
+        Notes
+        -----
+        Without any damping the outgoing wave is that of a damping which vanishes.
+        """
+        omega = np.atleast_1d(np.asarray(omega, dtype=complex))
+        if not self.is_damped:
+            omega = omega * (1.0 - _VANISHING_DAMPING * 1j)
+        wavenumbers, amplitudes = self.free_waves(omega)
+        return periodic_waves(wavenumbers, amplitudes, self.support_stiffness(omega), self.sleeper_spacing)
+
+    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray:
+        """Displacement at `x` per harmonic force at `x0`.
+
+        Parameters
+        ----------
+        frequency : array_like
+            Hz, positive. Time factor exp(+i omega t).
+        x, x0 : float
+            Positions of the response and of the force, m from a sleeper.
+
+        Returns
+        -------
+        ndarray of complex
+            m/N, of the shape of `frequency`.
+
+        Raises
+        ------
+        InputError
+            If a frequency is not positive or a position not finite.
+
+        Notes
+        -----
+        Exact for the infinite track: Floquet sum in closed form.
+        """
+        frequency = np.asarray(frequency, dtype=float)
+        if not (np.all(np.isfinite(frequency)) and np.all(frequency > 0.0)):
+            raise InputError("frequency (Hz)", np.min(frequency), "finite positive numbers")
+        if not (np.isfinite(x) and np.isfinite(x0)):
+            raise InputError("positions on the track (m)", (x, x0), "finite numbers")
+        response = self.waves(2.0 * np.pi * frequency.ravel()).receptance(x, x0)
+        return response.reshape(frequency.shape)
+
+    def with_parameters(self, **changes: Any) -> Track:
+        """The same track with other values of some parameters.
+
+        Parameters
+        ----------
+        **changes
+            Parameters of `Track`.
+
+        Returns
+        -------
+        Track
+        """
+        return replace(self, **changes)
+
+    @property
+    def foundation_stiffness(self) -> float:
+        """Static stiffness of the supports per length s = K(0)/L, N/m^2."""
+        pad, ballast = self.pad_stiffness, self.ballast_stiffness
+        return pad * ballast / (pad + ballast) / self.sleeper_spacing
+
+    def static_deflection(self, force: float, x: float = 0.0) -> float:
+        """Deflection under a constant force at rest, at the force.
+
+        Parameters
+        ----------
+        force : float
+            N.
+        x : float
+            Position of the force, m from a sleeper.
+
+        Returns
+        -------
+        float
+            m. Exact for discrete supports.
+        """
+        at = x % self.sleeper_spacing
+        compliance = static_receptance(
+            self.bending_stiffness,
+            self.shear_stiffness,
+            self.foundation_stiffness * self.sleeper_spacing,
+            self.sleeper_spacing,
+            at,
+        )
+        return force * compliance
+
+    def winkler_deflection(self, force: float, speed: float = 0.0) -> float:
+        """Deflection under a force that moves over a continuous foundation of the same stiffness.
+
+        Parameters
+        ----------
+        force : float
+            N.
+        speed : float
+            m/s, below the critical speed.
+
+        Returns
+        -------
+        float
+            F beta/(2 s)/sqrt(1 - (v/v_cr)^2), beta = (s/4B)^(1/4), m.
+
+        Raises
+        ------
+        InputError
+            If the speed is not below the critical speed.
+        """
+        self.refuse_speed(speed)
+        stiffness = self.foundation_stiffness
+        beta = (stiffness / (4.0 * self.bending_stiffness)) ** 0.25
+        return force * beta / (2.0 * stiffness) / np.sqrt(1.0 - (speed / self.critical_speed) ** 2)
+
+    @property
+    def critical_speed(self) -> float:
+        """Critical speed of the continuous foundation (4 s B/m^2)^(1/4), m/s.
+
+        The mass m is that of rail and sleepers together, m' + m_s/L, which gives the smaller speed: at
+        the low frequencies of a constant moving force the sleepers move with the rail.
+        """
+        mass = self.mass_per_length + self.sleeper_mass / self.sleeper_spacing
+        return float((4.0 * self.foundation_stiffness * self.bending_stiffness / mass**2) ** 0.25)
+
+    def refuse_speed(self, speed: float) -> None:
+        """Refuse a speed at which the response of this track has no bound.
+
+        Parameters
+        ----------
+        speed : float
+            m/s.
+
+        Raises
+        ------
+        InputError
+            If the speed is negative or not below the critical speed.
+        """
+        if not 0.0 <= speed < self.critical_speed:
+            raise InputError(
+                "speed (m/s)",
+                f"{speed:.4g}",
+                f"zero or more, below the critical speed of the track, {self.critical_speed:.4g} m/s",
+                "Lower the speed, or take stiffer supports or a stiffer rail.",
+            )
+
+    @property
+    def pinned_pinned_frequency(self) -> float:
+        """Frequency at which half a bending wave fits between two supports, Hz.
+
+        Euler-Bernoulli (pi/2L^2) sqrt(B/m'); Timoshenko from the dispersion relation at k = pi/L.
+        """
+        k = np.pi / self.sleeper_spacing
+        bending, mass = self.bending_stiffness, self.mass_per_length
+        if self.shear_stiffness is None or self.rotary_inertia is None:
+            return float(k**2 * np.sqrt(bending / mass) / (2.0 * np.pi))
+        shear, inertia = self.shear_stiffness, self.rotary_inertia
+        middle = mass + (inertia + mass * bending / shear) * k**2
+        root = np.sqrt(middle**2 - 4.0 * mass * inertia / shear * bending * k**4)
+        return float(np.sqrt(2.0 * bending * k**4 / (middle + root)) / (2.0 * np.pi))
+
+    @property
+    def cut_on_frequencies(self) -> tuple[float, ...]:
+        """Frequencies of the whole track moving as one on its layers, undamped, Hz, ascending.
+
+        Rail and sleepers on the ballast, then the rail on its pads against the sleepers; from each of
+        them on waves travel. Without sleeper mass only one, sqrt(s/m')/2 pi.
+        """
+        rail = self.mass_per_length * self.sleeper_spacing
+        pad, ballast = self.pad_stiffness, self.ballast_stiffness
+        if self.sleeper_mass == 0.0:
+            return (float(np.sqrt(self.foundation_stiffness / self.mass_per_length) / (2.0 * np.pi)),)
+        middle = pad / rail + (pad + ballast) / self.sleeper_mass
+        root = np.sqrt(middle**2 - 4.0 * pad * ballast / (rail * self.sleeper_mass))
+        upper = 0.5 * (middle + root)
+        lower = pad * ballast / (rail * self.sleeper_mass) / upper
+        return tuple(float(np.sqrt(square) / (2.0 * np.pi)) for square in (lower, upper))
+
+    @property
+    def cut_on_frequency(self) -> float:
+        """Frequency above which bending waves run along the rail on its pads, Hz.
+
+        The last of `cut_on_frequencies`; waves of rail and sleepers together run in a band below it.
+        """
+        return self.cut_on_frequencies[-1]
+
+    @property
+    def antiresonance_frequency(self) -> float:
+        """Frequency sqrt((k_p + k_b)/m_s)/2 pi at which the sleepers hold the rail still, Hz.
+
+        Infinite without sleeper mass.
+        """
+        if self.sleeper_mass == 0.0:
+            return float("inf")
+        return float(
+            np.sqrt((self.pad_stiffness + self.ballast_stiffness) / self.sleeper_mass) / (2.0 * np.pi)
+        )
