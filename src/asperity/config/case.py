@@ -50,6 +50,7 @@ class Case(Section):
 
     _text: str = PrivateAttr("")
     _given: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _source: str = PrivateAttr("case")
 
     @property
     def text(self) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from pathlib import Path
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
@@ -81,6 +82,37 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
     except (ValueError, RecursionError) as error:  # TOML errors, and numbers too long to read
         remedy = 'Strings and quantities stand in double quotes: speed = "1 m/s".'
         raise InputError(str(source), f"no TOML ({error})", "a case in TOML", remedy) from None
+    return _validated(data, text, source)
+
+
+def changed(case: Case, **values: Any) -> Case:
+    """Return a case with other values for some keys.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase or WheelOnRailCase
+        As `parse_case` or `load_case` returned it.
+    **values
+        New values as they stand in TOML, as ``speed="20 m/s"``; a dict of keys for a section, as
+        ``wheel={"load": "50 kN"}``.
+
+    Returns
+    -------
+    BallOnBeamCase or WheelOnRailCase
+        The new case; its text is the old one below a comment that names the changes.
+
+    Raises
+    ------
+    CaseError
+        If the new values are wrong.
+    """
+    data = dict(case._given)
+    for name, value in values.items():
+        data[name] = {**data.get(name, {}), **value} if isinstance(value, dict) else value
+    return _validated(data, f"# changed: {values}\n{case.text}", case._source)
+
+
+def _validated(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> Case:
     kind = data.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         raise CaseError(str(source), [str(not_a_kind(kind))])
@@ -89,7 +121,7 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
         case = model.model_validate(data, context={"folder": Path(source).parent})
     except ValidationError as error:
         raise CaseError(str(source), _messages(error, model)) from None
-    case._text, case._given = text, data
+    case._text, case._given, case._source = text, data, str(source)
     return case
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -31,9 +31,10 @@ from asperity.config.keys import (
     key,
 )
 from asperity.config.sections import ContactCase, Material, Numerics, Surface
+from asperity.config.tables import read_levels, read_modes, read_receptance
 from asperity.errors import InputError
+from asperity.reference.tracks import TRACKS
 
-TRACKS = ("x2000", "nordborg", "nordborg-loss-factor", "uic60", "uic60-euler")
 RAIL_SPECTRA = ("iso3095", "cnossos-average")
 WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")
 PROCESSING = ("spikes", "curvature")
@@ -147,6 +148,7 @@ class RailSurface(Surface):
         if self.corrugation is not None and self.corrugation_wavelength is None:
             remedy = 'Add corrugation_wavelength = "40 mm", say.'
             yield InputError("corrugation", "no corrugation_wavelength", "both keys together", remedy)
+        yield from _problems_of_table(self, "spectrum", read_levels)
 
 
 class WheelCase(Section):
@@ -250,6 +252,9 @@ class WheelCase(Section):
         if self.flat_depth is not None and self.flat_position >= self.circumference:
             allowed = f"less than the circumference, {self.circumference:.4g} m"
             yield InputError("flat_position", f"{self.flat_position:g} m", allowed)
+        yield from _problems_of_table(self, "roughness", read_levels)
+        yield from _problems_of_table(self, "modes", read_modes)
+        yield from _problems_of_table(self, "receptance", read_receptance)
 
 
 _NAMED = "of the named set"
@@ -258,7 +263,7 @@ _NAMED = "of the named set"
 class TrackCase(Section):
     """The track: a named, cited set; each single key overrides it."""
 
-    name: Annotated[str, BeforeValidator(Choice(TRACKS))] = key("x2000", "named set of parameters")
+    name: Annotated[str, BeforeValidator(Choice(tuple(TRACKS)))] = key("x2000", "named set of parameters")
     bending_stiffness: Annotated[float, BeforeValidator(Quantity("N m^2", above=0))] | None = key(
         None, "bending stiffness of the rail", otherwise=_NAMED, example='"4.7 MN m^2"'
     )
@@ -404,3 +409,13 @@ def _repeated(processing: tuple[str, ...]) -> Iterator[InputError]:
     for step in sorted(set(processing)):
         if processing.count(step) > 1:
             yield InputError("processing", f'"{step}" more than once', "each step once")
+
+
+def _problems_of_table(section: Section, name: str, read: Callable[[Path], object]) -> Iterator[InputError]:
+    """Say what is wrong with the table that a key names."""
+    path = getattr(section, name)
+    if isinstance(path, Path):
+        try:
+            read(path)
+        except InputError as error:
+            yield InputError(name, f"{error.received} in {path.name}", error.allowed, error.remedy)

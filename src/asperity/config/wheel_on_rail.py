@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
 from pydantic import BeforeValidator
 
 from asperity.config.case import (
@@ -17,6 +19,7 @@ from asperity.config.case import (
 )
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed, key
 from asperity.config.railway import NoiseCase, RailContact, RailNumerics, RailSurface, TrackCase, WheelCase
+from asperity.config.tables import check_levels, read_levels
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
@@ -103,6 +106,8 @@ class WheelOnRailCase(Case):
         yield from problems_of_sampling(self)
         yield from problem_of_steps(self, self.settling + self.duration)
         yield from _problems_of_texture(self)
+        yield from _problems_of_levels(self)
+        yield from _problems_of_track(self)
         yield from _problems_of_path(self)
         widest = 2 * min(self.wheel.radius, self.track.rail_head_radius)
         if self.contact.window > widest:
@@ -111,14 +116,59 @@ class WheelOnRailCase(Case):
 
 
 def _problems_of_texture(case: WheelOnRailCase) -> Iterator[InputError]:
-    if not (case.surface.has_texture or case.wheel.has_texture or case.surface.smooth):
-        allowed = "file, rms, line, spectrum or a defect in [surface], roughness, line or a flat in [wheel]"
+    surface, spacing = case.surface, case.contact.spacing
+    if not (surface.has_texture or case.wheel.has_texture or surface.smooth):
+        allowed = "file, rms, line, spectrum or a defect in [surface]; roughness, line or a flat in [wheel]"
         yield InputError("surface", "no texture", allowed, "For a smooth rail, set smooth = true.")
+    if surface.corrugation_wavelength is not None and surface.corrugation_wavelength < 2 * spacing:
+        received = f"{surface.corrugation_wavelength * 1e3:g} mm on a spacing of {spacing * 1e3:g} mm"
+        allowed = f"at least two spacings, {2e3 * spacing:g} mm"
+        yield InputError("surface.corrugation_wavelength", received, allowed)
+
+
+def _problems_of_levels(case: WheelOnRailCase) -> Iterator[InputError]:
+    """Band levels that no wheel or rail has ask for their unit."""
+    if case.surface.accept_levels:
+        return
+    for name, table, level in (
+        ("surface.spectrum", case.surface.spectrum, case.surface.level),
+        ("wheel.roughness", case.wheel.roughness, case.wheel.roughness_level),
+    ):
+        levels = read_levels(table)[1] if isinstance(table, Path) else np.zeros(1)
+        if table is not None:
+            try:
+                check_levels(levels + level, name)
+            except InputError as error:
+                yield error
+
+
+def _problems_of_track(case: WheelOnRailCase) -> Iterator[InputError]:
+    """A track that exists, and on which the wheel is slower than the waves that it sends out."""
+    try:
+        track = case.track_model()
+    except InputError as error:
+        yield InputError("track", error.received, error.allowed, error.remedy)
+        return
+    try:
+        track.refuse_speed(case.speed)
+    except InputError as error:
+        yield InputError("speed", f"{case.speed:g} m/s", error.allowed, error.remedy)
 
 
 def _problems_of_path(case: WheelOnRailCase) -> Iterator[InputError]:
-    length = case.speed * case.duration
-    if length < case.contact.window:
+    length, contact = case.speed * case.duration, case.contact
+    filters = (contact.filter_taps or 0) * contact.spacing
+    if length < max(contact.window, filters):
         received = f"{case.duration:g} s, in which {length * 1e3:.4g} mm are rolled"
-        allowed = f"a path longer than contact.window, {case.contact.window * 1e3:g} mm"
-        yield InputError("duration", received, allowed)
+        allowed = f"at least contact.window, {contact.window * 1e3:g} mm"
+        if filters > contact.window:
+            allowed = f"at least contact.filter_taps spacings, {filters * 1e3:g} mm"
+        yield InputError("duration", received, allowed, "A path must be longer than window and filters.")
+    (first, last), joint = case.rolled_range, case.surface.joint_position
+    if joint is not None and not first <= joint <= last:
+        allowed = f"a position that is rolled over, {first:g} m to {last:g} m"
+        yield InputError("surface.joint_position", f"{joint:g} m", allowed)
+    for point in case.track.points or ():
+        if not case.start <= point <= last:
+            allowed = f"positions that are passed, {case.start:g} m to {last:g} m"
+            yield InputError("track.points", f"{point:g} m", allowed)

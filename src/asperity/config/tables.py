@@ -1,0 +1,229 @@
+"""Tables that a case names: band levels, modes and receptance of a wheel, as text with columns."""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+from asperity.units import factor
+
+LARGEST_TABLE = 10 * 2**20  # bytes
+LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
+FEWEST_LINES = 10  # of a receptance
+
+_UNIT = re.compile(r"[(\[](.*?)[)\]]")
+_BAND = 0.1  # of a decade
+
+
+class Column(NamedTuple):
+    """A column of a table."""
+
+    name: str
+    dimension: str  # SI unit; "" for a pure number
+
+
+LEVELS = (Column("wavelength", "m"), Column("level", "dB"))
+MODES = (Column("frequency", "Hz"), Column("damping ratio", ""), Column("modal mass", "kg"))
+RECEPTANCE = (Column("frequency", "Hz"), Column("real part", "m/N"), Column("imaginary part", "m/N"))
+
+
+def read_levels(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Read one-third-octave band levels of a texture over wavelength.
+
+    Parameters
+    ----------
+    path : Path
+        Table of two columns, wavelength (m, unless the heading names another unit) and level (dB re 1 um).
+
+    Returns
+    -------
+    wavelength : ndarray, shape (n,)
+        Band centres in m, falling.
+    level : ndarray, shape (n,)
+        dB re 1 um.
+
+    Raises
+    ------
+    InputError
+        If the file is no such table, or if a band is missing.
+    """
+    wavelength, level = read_table(path, LEVELS).T
+    order = np.argsort(-wavelength)
+    wavelength, level = wavelength[order], level[order]
+    if wavelength[-1] <= 0:
+        raise InputError(path.name, f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0")
+    for longer, shorter in pairwise(wavelength):
+        step = math.log10(longer / shorter)
+        if abs(step - _BAND) > _BAND / 5:
+            kind = "a gap in the bands" if step > _BAND else "bands closer than one-third octaves"
+            received = f"{kind} between {longer * 1e3:.4g} mm and {shorter * 1e3:.4g} mm"
+            remedy = "Complete the table; nothing is filled in silently."
+            raise InputError(path.name, received, "every one-third octave of wavelength, each once", remedy)
+    return wavelength, level
+
+
+def read_modes(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Read the modes of a wheel.
+
+    Parameters
+    ----------
+    path : Path
+        Table of three columns: frequency (Hz), damping ratio, modal mass (kg).
+
+    Returns
+    -------
+    frequency, damping_ratio, modal_mass : ndarray, shape (n,)
+        In Hz, 1 and kg.
+
+    Raises
+    ------
+    InputError
+        If the file is no such table, or if a value cannot belong to a mode.
+    """
+    frequency, ratio, mass = read_table(path, MODES).T
+    for name, values, right, allowed in (
+        ("frequency", frequency, frequency > 0, "greater than 0 Hz"),
+        ("damping ratio", ratio, (ratio > 0) & (ratio < 1), "greater than 0 and less than 1"),
+        ("modal mass", mass, mass > 0, "greater than 0 kg"),
+    ):
+        if not right.all():
+            raise InputError(path.name, f"a {name} of {values[~right][0]:g}", allowed)
+    return frequency, ratio, mass
+
+
+def read_receptance(path: Path) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    """Read the receptance of a wheel.
+
+    Parameters
+    ----------
+    path : Path
+        Table of three columns: frequency (Hz), real and imaginary part (m/N), e^{+iwt}.
+
+    Returns
+    -------
+    frequency : ndarray, shape (n,)
+        Hz, rising.
+    receptance : ndarray, shape (n,)
+        m/N.
+
+    Raises
+    ------
+    InputError
+        If the file is no such table, or too short, or its frequencies do not rise.
+    """
+    frequency, real, imaginary = read_table(path, RECEPTANCE).T
+    if frequency.size < FEWEST_LINES:
+        raise InputError(path.name, f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
+    if frequency[0] <= 0 or (np.diff(frequency) <= 0).any():
+        raise InputError(path.name, "frequencies that do not rise", "rising frequencies, all above 0 Hz")
+    return frequency, real + 1j * imaginary
+
+
+def check_levels(levels: NDArray[np.float64], name: str) -> None:
+    """Ask for the unit where levels are those of no wheel or rail.
+
+    Parameters
+    ----------
+    levels : ndarray
+        Band levels, dB re 1 um.
+    name : str
+        The key, for the message.
+
+    Raises
+    ------
+    InputError
+        If a level is beyond 60 dB re 1 um.
+    """
+    worst = levels[np.argmax(np.abs(levels))]
+    if abs(worst) > LARGEST_LEVEL:
+        received = f"a level of {worst:.3g} dB re 1 um"
+        allowed = f"-{LARGEST_LEVEL:g} to {LARGEST_LEVEL:g} dB re 1 um"
+        remedy = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
+        raise InputError(name, received, allowed, remedy)
+
+
+def read_table(path: Path, columns: tuple[Column, ...]) -> NDArray[np.float64]:
+    """Read a table of numbers.
+
+    Parameters
+    ----------
+    path : Path
+        Text: columns apart by comma, semicolon (with decimal commas) or white space; text from '#' on is left out. A heading may
+        name units in brackets, as ``wavelength (cm)``; without one, columns are in SI.
+    columns : tuple of Column
+        What the columns hold.
+
+    Returns
+    -------
+    ndarray, shape (lines, columns)
+        In SI.
+
+    Raises
+    ------
+    InputError
+        If a line does not hold one finite number for each column, or a unit is of another dimension.
+    """
+    allowed = "a table with the columns " + ", ".join(
+        f"{column.name} ({column.dimension or '1'})" for column in columns
+    )
+    scale, rows = [1.0] * len(columns), []
+    for number, cells in _lines(path, allowed):
+        values = [_number(cell) for cell in cells]
+        if len(cells) == len(columns) and all(map(math.isfinite, values)):
+            rows.append(values)
+        elif len(cells) == len(columns) and not rows and all(map(math.isnan, values)):
+            scale = [_scale(cell, column, path) for cell, column in zip(cells, columns, strict=True)]
+        else:
+            raise InputError(path.name, f"'{', '.join(cells)[:40]}' in line {number}", allowed)
+    if not rows:
+        raise InputError(path.name, "no line of numbers", allowed)
+    return np.array(rows) * scale
+
+
+def _lines(path: Path, allowed: str) -> list[tuple[int, list[str]]]:
+    """Cells of each line that holds any, with its number."""
+    content = path.read_bytes()[: LARGEST_TABLE + 1]
+    if len(content) > LARGEST_TABLE:
+        raise InputError(path.name, "more than 10 MiB", allowed)
+    try:
+        lines = content.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        raise InputError(path.name, "no text", allowed) from None
+    found = []
+    for number, line in enumerate(lines, start=1):
+        text = line.partition("#")[0].strip()
+        separator = next((mark for mark in (";", ",") if mark in text), None)
+        if separator == ";":
+            text = text.replace(",", ".")
+        if text:
+            found.append((number, [cell.strip() for cell in text.split(separator)]))
+    return found
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return math.nan
+
+
+def _scale(heading: str, column: Column, path: Path) -> float:
+    """SI value of the unit that a heading names in brackets; 1 without one."""
+    match = _UNIT.search(heading)
+    unit = match[1].strip() if match else ""
+    if column.dimension == "dB":
+        unit = re.sub(r"\s*re\s*1\s*[uµμ]m$", "", unit)
+    if unit in ("", "-", "1"):
+        return 1.0
+    try:
+        return factor(unit, column.dimension)
+    except InputError as error:
+        allowed = f"{column.name} in {column.dimension or 'no unit'}"
+        raise InputError(path.name, f"the heading '{heading}'", allowed, error.remedy) from None
