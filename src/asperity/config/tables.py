@@ -155,8 +155,8 @@ def read_table(path: Path, columns: tuple[Column, ...]) -> NDArray[np.float64]:
     Parameters
     ----------
     path : Path
-        Text: columns apart by comma, semicolon (with decimal commas) or white space; text from '#' on is left out. A heading may
-        name units in brackets, as ``wavelength (cm)``; without one, columns are in SI.
+        Text: columns apart by comma, semicolon (with decimal commas) or white space; text from '#' on is
+        left out. A heading may name units in brackets, as ``wavelength (cm)``; without one, they are SI.
     columns : tuple of Column
         What the columns hold.
 

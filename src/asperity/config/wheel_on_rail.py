@@ -18,8 +18,10 @@ from asperity.config.case import (
     time_step_on_grid,
 )
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed, key
-from asperity.config.railway import NoiseCase, RailContact, RailNumerics, RailSurface, TrackCase, WheelCase
+from asperity.config.railway import NoiseCase, RailContact, RailNumerics, TrackCase
+from asperity.config.railway_textures import RailSurface
 from asperity.config.tables import check_levels, read_levels
+from asperity.config.wheel import WheelCase
 from asperity.errors import InputError
 
 if TYPE_CHECKING:

@@ -1,0 +1,158 @@
+"""Textures of a rail: measured, synthesised, and defects; and what a rail's and a wheel's have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+from pydantic import BeforeValidator
+
+from asperity.config.keys import (
+    Choice,
+    ChoiceOrFile,
+    ExistingFile,
+    HeightUnit,
+    Length,
+    Name,
+    Number,
+    Position,
+    Section,
+    YesNo,
+    key,
+)
+from asperity.config.sections import Surface
+from asperity.config.tables import read_levels
+from asperity.errors import InputError
+
+RAIL_SPECTRA = ("iso3095", "cnossos-average")
+PROCESSING = ("spikes", "curvature")
+TABLE_OF_LEVELS = "a table of wavelengths and levels"
+
+Spectrum = Annotated[str | Path, BeforeValidator(ChoiceOrFile(RAIL_SPECTRA, TABLE_OF_LEVELS))]
+Step = Annotated[str, BeforeValidator(Choice(PROCESSING))]
+
+
+class MeasuredLines(Section):
+    """Measured lines along a rail or around a tread."""
+
+    line: ExistingFile | None = key(
+        None, "measured long line, or several side by side", example='"lines.csv"'
+    )
+    line_array: Name | None = key(
+        None,
+        "name of the lines in a file that holds several arrays",
+        otherwise="the only one",
+        example='"lines"',
+        goes_with="line",
+    )
+    line_unit: HeightUnit | None = key(
+        None,
+        "unit of lines that carry none",
+        otherwise="from the file",
+        example='"um"',
+        goes_with="line",
+    )
+    line_spacing: Length | None = key(
+        None,
+        "spacing of points along lines that carry none",
+        otherwise="from the file",
+        example='"1 mm"',
+        goes_with="line",
+    )
+    line_distance: Length | None = key(
+        None,
+        "distance across between neighbouring lines; a single line holds all across",
+        otherwise="for a single line",
+        example='"5 mm"',
+        goes_with="line",
+    )
+    processing: tuple[Step, ...] = key(
+        (), "steps of EN 15610 that are applied to measured lines", goes_with="line"
+    )
+
+    def problems_of_lines(self) -> Iterator[InputError]:
+        """Each step of the processing once."""
+        for step in sorted(set(self.processing)):
+            if self.processing.count(step) > 1:
+                yield InputError("processing", f'"{step}" more than once', "each step once")
+
+
+class RailSurface(MeasuredLines, Surface):
+    """Texture of the rail: measured or synthesised, with defects on top; or smooth."""
+
+    synthesised_band: ClassVar = (20e-3, 1.25e-3)
+
+    file: ExistingFile | None = key(
+        None, "measured map: the samples, and the path where it is long enough", example='"rail.x3p"'
+    )
+    longest: Length | None = key(
+        None,
+        "longest wavelength of the samples",
+        otherwise="with rms 20 mm, else all they hold",
+        example='"20 mm"',
+    )
+    shortest: Length | None = key(
+        None,
+        "shortest wavelength of the samples",
+        otherwise="with rms 1.25 mm, else all they hold",
+        example='"1.25 mm"',
+    )
+    spectrum: Spectrum | None = key(
+        None, "one-third-octave wavelength spectrum of the rail", example='"iso3095"'
+    )
+    lateral: Annotated[float, BeforeValidator(Number(above=0, infinite=True))] = key(
+        1.0,
+        "correlation length across over that along the rail, at every wavelength; inf: the same all across",
+        goes_with="spectrum",
+    )
+    continuation: Annotated[str, BeforeValidator(Choice(("refuse", "mirror", "repeat")))] = key(
+        "refuse", "how a record that is shorter than the run goes on"
+    )
+    accept_levels: YesNo = key(False, "take levels beyond 60 dB re 1 um as they are")
+    corrugation: Length | None = key(
+        None, "amplitude of a corrugation on top of the rail's texture", example='"25 um"'
+    )
+    corrugation_wavelength: Length | None = key(
+        None, "its wavelength", otherwise="must be given", example='"40 mm"', goes_with="corrugation"
+    )
+    corrugation_bandwidth: Annotated[float, BeforeValidator(Number(above=0, at_most=3))] | None = key(
+        None, "its bandwidth in octaves", otherwise="a sine", example="0.3", goes_with="corrugation"
+    )
+    joint_depth: Length | None = key(None, "depth of a dipped joint", example='"1 mm"')
+    joint_length: Length = key("1 m", "length of the dip", goes_with="joint_depth")
+    joint_position: Position | None = key(
+        None,
+        "position of the joint, from the sleeper that start counts from",
+        otherwise="the middle of the run",
+        example='"10 m"',
+        goes_with="joint_depth",
+    )
+    smooth: YesNo = key(False, "a rail without texture")
+
+    @property
+    def has_texture(self) -> bool:
+        """Whether the rail has any texture or defect."""
+        defects = self.corrugation is not None or self.joint_depth is not None
+        return self.has_samples or self.has_line or defects
+
+    def problems(self) -> Iterator[InputError]:
+        """Sources and defects of the rail's texture that do not exclude one another."""
+        yield from self.problems_of_sources()
+        yield from self.problems_of_lines()
+        if self.smooth and self.has_texture:
+            yield InputError("smooth", "true beside a texture", "one of them", "Remove smooth.")
+        if self.corrugation is not None and self.corrugation_wavelength is None:
+            remedy = 'Add corrugation_wavelength = "40 mm", say.'
+            yield InputError("corrugation", "no corrugation_wavelength", "both keys together", remedy)
+        yield from problems_of_table(self, "spectrum", read_levels)
+
+
+def problems_of_table(section: Section, name: str, read: Callable[[Path], object]) -> Iterator[InputError]:
+    """Say what is wrong with the table that a key names."""
+    path = getattr(section, name)
+    if isinstance(path, Path):
+        try:
+            read(path)
+        except InputError as error:
+            yield InputError(name, f"{error.received} in {path.name}", error.allowed, error.remedy)
