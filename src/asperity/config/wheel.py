@@ -19,6 +19,7 @@ from asperity.config.keys import (
     Level,
     Mass,
     Position,
+    Section,
     key,
 )
 from asperity.config.railway_textures import TABLE_OF_LEVELS, MeasuredLines, problems_of_table
