@@ -29,6 +29,7 @@ def contact_group(chain: Chain[Any]) -> xarray.Dataset:
     shape, reduction = chain.shape, chain.reduction
     attrs: dict[str, Any] = {
         "hertz_radius": shape.semi_axes[0],
+        "hertz_radius_across": shape.semi_axes[1],
         "working_load": shape.load,
         "contact_modulus": shape.modulus,
     }
