@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import xarray
 
-    from asperity.config import BallOnBeamCase
+    from asperity.config import Case
     from asperity.progress import Progress
 
 
-def run(case: str | os.PathLike[str] | BallOnBeamCase, progress: Progress | None = None) -> xarray.DataTree:
+def run(case: str | os.PathLike[str] | Case, progress: Progress | None = None) -> xarray.DataTree:
     """Compute a case.
 
     Parameters
@@ -26,7 +26,8 @@ def run(case: str | os.PathLike[str] | BallOnBeamCase, progress: Progress | None
     Returns
     -------
     xarray.DataTree
-        Groups scenario, surface, contact, rolling and spectra; see `asperity.results`.
+        Groups scenario, surface, contact, rolling and spectra, and track for a wheel on rail; see
+        `asperity.results`.
 
     Raises
     ------
@@ -37,14 +38,25 @@ def run(case: str | os.PathLike[str] | BallOnBeamCase, progress: Progress | None
     """
     from asperity.config import load_case
     from asperity.errors import PhysicsWarning
-    from asperity.scenarios.ball_on_beam import compute
-    from asperity.scenarios.beam_tree import layout
 
     loaded = load_case(case) if isinstance(case, str | os.PathLike) else case
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", PhysicsWarning)
-        result = layout(compute(loaded, progress or (lambda done, total, message: None)), caught)
+        result = _computed(loaded, progress or (lambda done, total, message: None), caught)
     for message in caught:
         if not issubclass(message.category, PhysicsWarning):
             warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
     return result
+
+
+def _computed(case: Case, progress: Progress, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
+    from asperity.config import BallOnBeamCase, WheelOnRailCase
+
+    if isinstance(case, WheelOnRailCase):
+        from asperity.scenarios import rail_tree, wheel_on_rail
+
+        return rail_tree.layout(wheel_on_rail.compute(case, progress), caught)
+    from asperity.scenarios import ball_on_beam, beam_tree
+
+    assert isinstance(case, BallOnBeamCase)
+    return beam_tree.layout(ball_on_beam.compute(case, progress), caught)

@@ -68,7 +68,7 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
     shape = ball_geometry(case, ball.static_load, contact_modulus(ball_material, beam_material))
     textures = gather(case, window_cells(case.contact))
     watch.lap("textures")
-    travel = (len(textures.line) - 1 - 2 * textures.margin) * case.contact.spacing
+    travel = (len(textures.line[textures.recorded]) - 1) * case.contact.spacing
     duration = min(case.rolled_time, travel / case.speed)
 
     checkpoint = Checkpoint(store, _run_key(case, textures, duration)) if "direct" in case.laws else None
@@ -85,13 +85,10 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
             sensors=case.beam.sensor_positions,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=Checkpoint(store, _run_key(case, textures, duration))
-            if law.name == "direct"
-            else None,
+            checkpoint=checkpoint if law.name == "direct" else None,
         )
 
-    start = case.start - textures.margin * case.contact.spacing
-    chain = reduce_and_roll(case, textures, shape, start, roll_law, store, progress, watch)
+    chain = reduce_and_roll(case, textures, shape, roll_law, store, progress, watch)
     return Computed(case, chain, ball, beam)
 
 

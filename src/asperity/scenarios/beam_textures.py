@@ -67,7 +67,8 @@ def gather(case: BallOnBeamCase, margin: int) -> Textures:
         path, origin = None, "; ".join(filter(None, [origin, line_origin]))
     elif path is not None:
         line = path.heights[:, ny // 2]
-    return Textures(maps, strips, path, line, margin, missing, origin)
+    start = case.start - margin * spacing
+    return Textures(maps, strips, path, line, start, margin, margin, missing, origin)
 
 
 def _line(case: BallOnBeamCase, rows: int, least: int, seed: int) -> tuple[NDArray[np.float64], str]:

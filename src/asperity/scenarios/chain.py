@@ -5,12 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.sections import ContactCase
+from asperity.config import Case
 from asperity.pointforce import Law
 from asperity.progress import Progress
 from asperity.reduction.scan import ScannedForces
@@ -44,41 +44,6 @@ class Run(Protocol):
     @property
     def unconverged_steps(self) -> int:
         """Time steps whose contact force missed the tolerance."""
-
-
-class Case(Protocol):
-    """What all kinds of case hold."""
-
-    @property
-    def kind(self) -> str:
-        """What rolls on what."""
-
-    @property
-    def text(self) -> str:
-        """The TOML text of the case."""
-
-    @property
-    def seed(self) -> int:
-        """Seed of everything random."""
-
-    @property
-    def laws(self) -> tuple[str, ...]:
-        """Names of the laws; the first is the main one."""
-
-    @property
-    def contact(self) -> ContactCase:
-        """How the rough contact is solved and reduced."""
-
-    @property
-    def time_step(self) -> float:
-        """Time step, s."""
-
-    @property
-    def numerics(self) -> Any:
-        """How finely time is resolved."""
-
-    def parameters(self) -> list[dict[str, Any]]:
-        """List the keys that matter."""
 
 
 R = TypeVar("R", bound=Run)
@@ -160,7 +125,6 @@ def reduce_and_roll(
     case: Case,
     textures: Textures,
     shape: Geometry,
-    start: float,
     roll: Callable[[Law], R],
     store: Store,
     progress: Progress,
@@ -174,8 +138,6 @@ def reduce_and_roll(
         The case.
     textures, shape
         What presses on what.
-    start : float
-        Position of the first row of the path, m.
     roll : callable
         Rolls one law.
     store : Store
@@ -196,7 +158,7 @@ def reduce_and_roll(
         reduce(case.contact, rtol, textures, shape, planes, store, progress) if textures.maps else None
     )
     watch.lap("reduction")
-    workshop = Workshop(case.contact, rtol, textures, shape, start, reduction, planes, store, progress)
+    workshop = Workshop(case.contact, rtol, textures, shape, reduction, planes, store, progress)
     laws: dict[str, Law] = {}
     runs: dict[str, R] = {}
     scan = None

@@ -34,8 +34,6 @@ class Workshop:
         Tolerance of each contact solution.
     textures, shape
         Textures and geometry of the case.
-    start : float
-        Position of the first row of the path, m.
     reduction : Reduction or None
         State functions; None where the case has no samples.
     planes : ndarray, shape (rows,), or None
@@ -48,7 +46,6 @@ class Workshop:
     rtol: float
     textures: Textures
     shape: Geometry
-    start: float
     reduction: Reduction | None
     planes: NDArray[np.float64] | None
     cache: Cache | None
@@ -99,16 +96,18 @@ class Workshop:
         return Linear(load, self.shape.hertz.tangent_stiffness(approach), approach, texture, damping, name)
 
     def _line(self) -> StateTexture:
-        return StateTexture.unfiltered(-self.textures.followed, self.shape.spacing[0], self.start)
+        return StateTexture.unfiltered(-self.textures.followed, self.shape.spacing[0], self.textures.start)
 
     def _filtered_line(self) -> StateTexture:
-        dx = self.shape.spacing[0]
+        dx, start = self.shape.spacing[0], self.textures.start
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
             taps = punch_taps(self.shape.hertz, self.shape.load, dx)
-            return self._over_defects(filtered_texture(self.textures.line, dx, taps[None], [0.0], self.start))
+            return self._over_defects(
+                filtered_texture(self.textures.line, dx, taps[None], [0.0], self.textures.start)
+            )
         states = self.reduction.contact_filter.approaches
         return self._over_defects(
-            filtered_texture(self.textures.line, dx, self.reduction.taps, states, self.start)
+            filtered_texture(self.textures.line, dx, self.reduction.taps, states, start)
         )
 
     def _over_defects(self, texture: StateTexture) -> StateTexture:
@@ -120,7 +119,9 @@ class Workshop:
     def _plane(self) -> StateTexture | None:
         if self.planes is None:
             return None
-        return self._over_defects(StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self.start))
+        return self._over_defects(
+            StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self.textures.start)
+        )
 
     def _areal(self) -> StateTexture:
         assert self.reduction is not None
@@ -132,7 +133,7 @@ class Workshop:
                 self.shape.spacing,
                 self.reduction.approaches[loaded],
                 np.minimum(self.reduction.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
-                self.start,
+                self.textures.start,
             )
         )
 
@@ -162,7 +163,7 @@ class Workshop:
         warn_of_scans([scanned], "the path")
         touches = first_touch(heights, self.shape.body, stride) + planes
         table = ForceTable(
-            scanned.forces, self.reduction.approaches, self.start + half * dx, stride * dx, touches
+            scanned.forces, self.reduction.approaches, self.textures.start + half * dx, stride * dx, touches
         )
         return Table(table, damping, plane=plane), scanned
 
@@ -172,7 +173,7 @@ class Workshop:
             self.shape.body,
             self.shape.spacing,
             self.shape.modulus,
-            self.start,
+            self.textures.start,
             self.contact.hardness,
             self.rtol,
             damping,

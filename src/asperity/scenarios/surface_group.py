@@ -44,7 +44,7 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
         }
         statistics += _listed(areal_statistics(first), "samples")
     if textures.path is not None:
-        piece = textures.path.heights[textures.margin :][:PATH_ROWS]
+        piece = textures.surface[textures.recorded][:PATH_ROWS]
         variables |= {
             "path_x": variable("path_x", np.arange(len(piece)) * dx, "m", "rolling direction"),
             "path_y": variable("path_y", np.arange(piece.shape[1]) * dx, "m", "across"),
@@ -53,7 +53,7 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
         statistics += _listed(areal_statistics(HeightMap(piece, textures.path.spacing)), "path")
     else:
         statistics += _listed(profile_statistics(Profile(textures.line, dx)), "path")
-    line = textures.line[textures.margin : len(textures.line) - textures.margin][:LINE_POINTS]
+    line = textures.followed[textures.recorded][:LINE_POINTS]
     variables["distance"] = variable("distance", np.arange(len(line)) * dx, "m", "distance along the path")
     variables["line"] = variable("distance", line, "m", "height along the middle of the path")
     variables |= _texture_spectra(chain)

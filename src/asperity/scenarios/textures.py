@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,12 +38,16 @@ class Textures:
         Texture of the path with its neighbourhood; None where the path is a line.
     line : ndarray, shape (rows,)
         Line texture of the path, m, peaks positive.
-    margin : int
-        Rows before the place where rolling starts, and beyond its end.
+    start : float
+        Position of the first row, m.
+    before, beyond : int
+        Rows of the path before the place where the record starts, and beyond its end.
     missing_share : float
         Share of points without a height in the measured file.
     origin : str
         Where samples and path come from, in one sentence.
+    parts : dict
+        Line textures that `line` is the sum of, by the body that bears them, m.
     defects, trajectory : ndarray, shape (rows,), or None
         Heights of defects along the path, and of the rolling body's centre over them, m; neither in
         `line` nor in `path`.
@@ -53,11 +57,19 @@ class Textures:
     strips: tuple[HeightMap, ...]
     path: HeightMap | None
     line: NDArray[np.float64]
-    margin: int
+    start: float
+    before: int
+    beyond: int
     missing_share: float
     origin: str
+    parts: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     defects: NDArray[np.float64] | None = None
     trajectory: NDArray[np.float64] | None = None
+
+    @property
+    def recorded(self) -> slice:
+        """Rows over which the record runs."""
+        return slice(self.before, len(self.line) - self.beyond)
 
     @property
     def followed(self) -> NDArray[np.float64]:
