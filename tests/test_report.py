@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
-from html.parser import HTMLParser
 from io import BytesIO
 
 import numpy as np
@@ -16,45 +14,16 @@ from asperity.errors import ComputationError
 from asperity.report import surface_picture, write_report
 from asperity.report.csv_files import csv_text
 from asperity.report.data import engineering, nominal_band, power_of_ten
-from asperity.report.page import PARTS, drawable_parts, page
+from asperity.report.page import BALL_ON_BEAM, drawable_parts, page
 from asperity.report.spectrum_figures import SPECTRUM
 from asperity.report.style import COLOURS, LAW_STYLES, envelope, smooth_on_log_axis
 from asperity.report.tables import reference_table
 from asperity.report.time_figures import TIME, piece
 from asperity.results import load, save
+from report_reading import HOSTILE, Reader, read_csv
 from report_tree import LAWS, report_tree
 
-HOSTILE = '"><script>alert(1)</script><img src=x onerror=alert(2)> & {{ 7*7 }} $\\frac$'
-
-
-class Reader(HTMLParser):
-    """Collects tags with their attributes, the text of the page, and checks that tags are closed in order."""
-
-    VOID = frozenset({"meta", "br", "img", "link", "input", "hr"})
-
-    def __init__(self, text):
-        super().__init__()
-        self.tags, self.text, self.open = [], [], []
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-        if tag not in self.VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-
-    def handle_endtag(self, tag):
-        if tag not in self.VOID:
-            assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.text.append(data)
-
-    def all(self, name):
-        return [attrs[name] for _, attrs in self.tags if name in attrs]
+PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.parts]
 
 
 @pytest.fixture(scope="module")
@@ -86,13 +55,6 @@ def contact_only():
     for group in ("surface", "rolling", "spectra"):
         del tree[group]
     return tree
-
-
-def read_csv(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        head, *rows = csv.reader(file)
-    table = np.array([[float(field) if field else np.nan for field in row] for row in rows])
-    return dict(zip(head, table.T, strict=True))
 
 
 def test_page_loads_nothing(text):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
+from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import engineering, number, plain, present, values, variable
+from asperity.report.data import engineering, force_unit, number, plain, present, values, variable
 from asperity.report.part import Columns, Part
 from asperity.report.style import (
     INK,
@@ -33,7 +33,7 @@ def _centre(axis: NDArray[np.float64]) -> float:
 
 @styled()
 def pressure_figure(tree: DataTree) -> Figure:
-    """Pressure and, if known, gap at the working load, with the circle of Hertz's contact."""
+    """Pressure and, if known, gap at the working load, with the outline of Hertz's contact."""
     with_gap = present(tree, "contact/gap")
     figure = new_figure(4.1)
     panels = figure.subplots(1, 2)
@@ -46,7 +46,7 @@ def pressure_figure(tree: DataTree) -> Figure:
     figure.colorbar(image, ax=panels[0], label=f"pressure / {symbol}", shrink=0.9)
     panels[0].set_title("pressure")
     panels[0].set_facecolor("#f6f6f6")  # on a dark page too: the colours run from light to black
-    radius = number(tree, "contact", "hertz_radius")
+    semi_axes = _semi_axes(tree)
     if with_gap:
         gap = values(tree, "contact/gap", "px", "py")
         height, height_symbol = length_unit(float(np.nanmax(gap)) or 1e-6)
@@ -56,19 +56,30 @@ def pressure_figure(tree: DataTree) -> Figure:
     else:
         _pressure_section(panels[1], x, y, pressure / size, unit, symbol)
     for axes in panels[: 2 if with_gap else 1]:
-        _circle(axes, x, y, radius, unit)
+        _ellipse(axes, x, y, semi_axes, unit)
     return figure
 
 
-def _circle(
-    axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], radius: float | None, unit: tuple[float, str]
+def _semi_axes(tree: DataTree) -> tuple[float, float] | None:
+    """Semi-axes of Hertz's contact in m: along the rolling direction and across; the same for a circle."""
+    along, across = (number(tree, "contact", f"hertz_radius{end}") for end in ("", "_across"))
+    return (along, across or along) if along else None
+
+
+def _ellipse(
+    axes: Axes,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    semi_axes: tuple[float, float] | None,
+    unit: tuple[float, str],
 ) -> None:
-    if not radius:
+    if semi_axes is None:
         return
     centre = (_centre(x) / unit[0], _centre(y) / unit[0])
+    size = [2 * semi_axis / unit[0] for semi_axis in semi_axes]
     for colour, width, dashes in (("white", 2.6, "-"), ("black", 1.1, (0, (4, 2)))):
         axes.add_patch(
-            Circle(centre, radius / unit[0], fill=False, edgecolor=colour, linewidth=width, linestyle=dashes)
+            Ellipse(centre, *size, fill=False, edgecolor=colour, linewidth=width, linestyle=dashes)
         )
 
 
@@ -100,19 +111,23 @@ def pressure_columns(tree: DataTree) -> Columns:
 
 def _pressure_caption(tree: DataTree) -> str:
     parts = []
+    semi_axes = _semi_axes(tree)
+    oval = semi_axes is not None and semi_axes[0] != semi_axes[1]
+    outline = "semi-axis of Hertz's contact in rolling direction" if oval else "radius of Hertz's contact"
     for name, label, unit in (
         ("working_load", "working load", "N"),
         ("working_approach", "approach of the mean surfaces", "m"),
-        ("hertz_radius", "radius of Hertz's contact (dashed circle)", "m"),
+        ("hertz_radius", f"{outline} (dashed {'ellipse' if oval else 'circle'})", "m"),
+        *([("hertz_radius_across", "across", "m")] if oval else []),
         ("contact_area", "area in contact", "m²"),
     ):
         found = number(tree, "contact", name)
         if found is not None:
             parts.append(f"{label} {engineering(found, unit)}")
     peak = engineering(float(np.nanmax(values(tree, "contact/pressure"))), "Pa")
-    area, radius = number(tree, "contact", "contact_area"), number(tree, "contact", "hertz_radius")
-    if area and radius:
-        parts[-1] += f" ({100 * area / (np.pi * radius**2):.0f} % of Hertz's)"
+    area = number(tree, "contact", "contact_area")
+    if area and semi_axes:
+        parts[-1] += f" ({100 * area / (np.pi * semi_axes[0] * semi_axes[1]):.0f} % of Hertz's)"
     return f"First sample at the working load: {'; '.join([*parts, f'highest pressure {peak}'])}."
 
 
@@ -123,6 +138,7 @@ def force_figure(tree: DataTree) -> Figure:
     panels = figure.subplots(1, 2)
     approach = values(tree, "contact/approach")
     rough = present(tree, "contact/force_std")
+    size, symbol = force_unit(float(np.nanmax(values(tree, "contact/force"))))
     forces = (
         (
             "force",
@@ -130,12 +146,12 @@ def force_figure(tree: DataTree) -> Figure:
             _BLUE,
             "-",
             "o",
-            1.0,
+            size,
         ),
-        ("hertz_force", "Hertz", INK, (0, (4, 2)), "", 1.0),
+        ("hertz_force", "Hertz", INK, (0, (4, 2)), "", size),
     )
     _curves(panels[0], tree, approach, forces)
-    panels[0].set_ylabel("contact force F / N")
+    panels[0].set_ylabel(f"contact force F / {symbol}")
     stiffnesses = (
         (
             "stiffness",

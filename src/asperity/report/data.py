@@ -116,6 +116,11 @@ def plain(value: float, digits: int = 3) -> str:
     return f"{value:.{digits}g}".replace("-", "−")
 
 
+def force_unit(largest: float) -> tuple[float, str]:
+    """Unit in which forces up to `largest` N read well: its size in N and its symbol."""
+    return (1e3, "kN") if largest >= 5e3 else (1.0, "N")
+
+
 def power_of_ten(value: float) -> str:
     """Write a power of ten with superscripts: ``"10⁻¹⁶"``."""
     return "10" + str(round(math.log10(value))).translate(_SUPERSCRIPT)

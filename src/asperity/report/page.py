@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -13,14 +13,65 @@ from xarray import DataTree
 
 from asperity.report.contact_figures import CONTACT
 from asperity.report.data import entries, group_attrs
+from asperity.report.motion_figures import MOTION
+from asperity.report.noise_figures import NOISE
 from asperity.report.part import Part
-from asperity.report.spectrum_figures import SPECTRUM
+from asperity.report.rail_force_figures import FORCE_PEAK, FORCE_PSD
+from asperity.report.roughness_levels import ROUGHNESS_LEVELS
+from asperity.report.spectrum_figures import FORCE_BANDS, SPECTRUM
 from asperity.report.style import colour_variables, law_style, svg
-from asperity.report.tables import Table, energy_table, loss_table, reference_table, statistics_table
+from asperity.report.tables import (
+    Table,
+    energy_table,
+    loss_table,
+    reference_table,
+    sound_power_table,
+    statistics_table,
+)
 from asperity.report.texture import TEXTURE
-from asperity.report.time_figures import TIME
+from asperity.report.time_figures import FORCE_ENVELOPE, TIME
+from asperity.report.track_figures import TRACK
 
-PARTS: tuple[Part, ...] = (*TEXTURE, *CONTACT, *TIME, *SPECTRUM)
+
+@dataclass(frozen=True)
+class Chapter:
+    """What a chapter can hold: its figures, then its tables."""
+
+    name: str
+    title: str
+    parts: tuple[Part, ...]
+    tables: tuple[Callable[[DataTree], Table | None], ...] = ()
+
+
+_CONTACT = Chapter("contact", "Contact", CONTACT)
+
+BALL_ON_BEAM = (
+    Chapter("texture", "Texture", TEXTURE, (statistics_table,)),
+    _CONTACT,
+    Chapter("force", "Contact force", (*TIME, *SPECTRUM[:2]), (reference_table, loss_table)),
+    Chapter("acceleration", "Acceleration", SPECTRUM[2:]),
+    Chapter("energy", "Energy", (), (energy_table,)),
+)
+WHEEL_ON_RAIL = (
+    Chapter("texture", "Texture", (ROUGHNESS_LEVELS, *TEXTURE), (statistics_table,)),
+    Chapter("track", "Track and wheel", TRACK),
+    _CONTACT,
+    Chapter(
+        "force",
+        "Contact force",
+        (FORCE_ENVELOPE, FORCE_PEAK, FORCE_PSD, FORCE_BANDS),
+        (reference_table, loss_table),
+    ),
+    Chapter("noise", "Rolling noise", NOISE, (sound_power_table,)),
+    Chapter("motion", "Motion", MOTION),
+)
+
+
+def chapters(tree: DataTree) -> tuple[Chapter, ...]:
+    """Chapters of the page for the kind of case that `tree` is the result of."""
+    kind = group_attrs(tree, "scenario").get("kind")
+    on_rail = kind == "wheel-on-rail" or (kind is None and "track" in tree.children)
+    return WHEEL_ON_RAIL if on_rail else BALL_ON_BEAM
 
 
 @dataclass(frozen=True)
@@ -44,7 +95,7 @@ class Section:
 
 def drawable_parts(tree: DataTree) -> list[Part]:
     """Figures that `tree` holds the data of, in the order of the page."""
-    return [part for part in PARTS if part.drawable(tree)]
+    return [part for chapter in chapters(tree) for part in chapter.parts if part.drawable(tree)]
 
 
 def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
@@ -59,23 +110,15 @@ def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
 
 def sections(tree: DataTree) -> list[Section]:
     """Chapters of the page; a chapter without any data is left out."""
-    force, acceleration = SPECTRUM[:2], SPECTRUM[2:]
-    chapters = [
-        Section("texture", "Texture", [*_pictures(tree, TEXTURE), *_tables(statistics_table(tree))]),
-        Section("contact", "Contact", _pictures(tree, CONTACT)),
+    found = (
         Section(
-            "force",
-            "Contact force",
-            [*_pictures(tree, (*TIME, *force)), *_tables(reference_table(tree), loss_table(tree))],
-        ),
-        Section("acceleration", "Acceleration", _pictures(tree, acceleration)),
-        Section("energy", "Energy", [*_tables(energy_table(tree))]),
-    ]
-    return [chapter for chapter in chapters if chapter.blocks]
-
-
-def _tables(*tables: Table | None) -> list[Picture | Table]:
-    return [table for table in tables if table is not None]
+            chapter.name,
+            chapter.title,
+            [*_pictures(tree, chapter.parts), *(t for make in chapter.tables if (t := make(tree)))],
+        )
+        for chapter in chapters(tree)
+    )
+    return [section for section in found if section.blocks]
 
 
 def _records(attrs: Mapping[Any, Any], name: str) -> list[dict[str, Any]]:

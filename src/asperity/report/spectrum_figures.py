@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +14,7 @@ from xarray import DataTree
 from asperity.report.data import laws, of_law, present, sensor_labels, values, variable
 from asperity.report.part import Columns, Part
 from asperity.report.style import (
+    INK,
     MUTED,
     band_axis,
     decibels,
@@ -29,8 +31,17 @@ from asperity.report.style import (
 
 FORCE, ACCELERATION = "spectra/force_psd", "spectra/acceleration_psd"
 LEVEL, DIFFERENCE = "spectra/force_level", "spectra/force_level_difference"
+LINEAR_REFERENCE = "spectra/linear_reference_level"  # by the frequency domain
 ACCELERATION_REFERENCE = 1e-6  # m/s²
 _SENSOR_DASHES = ("-", (0, (6, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (3, 1.5)), (0, (1.5, 1.5)), "-")
+
+REFERENCE_STYLE: dict[str, Any] = {
+    "color": INK,
+    "linestyle": (0, (4, 2)),
+    "linewidth": 1.1,
+    "zorder": 5,
+    "label": "linear, frequency domain",
+}
 
 Spectrum = tuple[NDArray[np.float64], NDArray[np.float64]]
 
@@ -45,7 +56,7 @@ def frequency_range(tree: DataTree) -> tuple[float, float]:
     return min(20.0, high / 100), high
 
 
-def _narrow(tree: DataTree, psd: NDArray[np.float64], reference: float) -> Spectrum:
+def narrow_level(tree: DataTree, psd: NDArray[np.float64], reference: float) -> Spectrum:
     """Level of a PSD in dB within the drawn range, no denser than a line can show."""
     frequency = values(tree, "spectra/frequency")
     low, high = frequency_range(tree)
@@ -62,7 +73,7 @@ def force_figure(tree: DataTree) -> Figure:
     names = laws(tree, FORCE)
     figure = new_figure(4.4)
     axes = figure.subplots()
-    spectra = {law: _narrow(tree, of_law(tree, FORCE, law, "frequency"), 1.0) for law in names}
+    spectra = {law: narrow_level(tree, of_law(tree, FORCE, law, "frequency"), 1.0) for law in names}
     for law, (frequency, level) in spectra.items():
         axes.plot(frequency, level, label=law, **law_style(law, names[0]))
     frequency_axis(axes, *frequency_range(tree))
@@ -87,6 +98,8 @@ def band_figure(tree: DataTree) -> Figure:
     figure = new_figure(6.4 if with_difference else 4.0)
     panels = figure.subplots(2 if with_difference else 1, 1, sharex=True, squeeze=False)[:, 0]
     _draw_bands(panels[0], tree, LEVEL, laws(tree, LEVEL), span=100.0, step=10.0)
+    if present(tree, LINEAR_REFERENCE):
+        panels[0].plot(values(tree, "spectra/band"), values(tree, LINEAR_REFERENCE), **REFERENCE_STYLE)
     panels[0].set_ylabel("contact force level / dB re 1 N")
     legend_above(panels[0])
     if with_difference:
@@ -119,6 +132,8 @@ def band_columns(tree: DataTree) -> Columns:
     ):
         for law in laws(tree, path):
             columns[f"{label.format(law)} [{unit}]"] = of_law(tree, path, law, "band")
+    if present(tree, LINEAR_REFERENCE):
+        columns["linear, frequency domain [dB re 1 N]"] = values(tree, LINEAR_REFERENCE)
     return columns
 
 
@@ -131,7 +146,7 @@ def _sensors(tree: DataTree) -> list[int]:
 
 def _acceleration_level(tree: DataTree, law: str, sensor: int) -> Spectrum:
     psd = of_law(tree, ACCELERATION, law, "sensor", "frequency")[sensor]
-    return _narrow(tree, psd, ACCELERATION_REFERENCE**2)
+    return narrow_level(tree, psd, ACCELERATION_REFERENCE**2)
 
 
 def _finish_acceleration(axes: Axes, tree: DataTree, spectra: Sequence[Spectrum]) -> None:
@@ -193,33 +208,43 @@ def one_sensor_columns(tree: DataTree) -> Columns:
     return columns
 
 
-_DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than that"
+DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than that"
 
 
 def _force_caption(tree: DataTree) -> str:
     return (
-        f"Contact force of all laws, one-sided PSD, {_DRAWN}; thick: the main law, {laws(tree, FORCE)[0]}. "
+        f"Contact force of all laws, one-sided PSD, {DRAWN}; thick: the main law, {laws(tree, FORCE)[0]}. "
         "Ticks stand at the one-third octaves."
     )
 
 
 def _band_caption(tree: DataTree) -> str:
     below = " Below: level minus that of the linear law; positive where linear contact underestimates."
+    dashed = " Dashed: the linear contact solved in the frequency domain."
     return "Levels per one-third octave (IEC 61260-1, base 10)." + (
-        below if present(tree, DIFFERENCE) else ""
+        (dashed if present(tree, LINEAR_REFERENCE) else "") + (below if present(tree, DIFFERENCE) else "")
     )
 
 
 def _sensors_caption(tree: DataTree) -> str:
     main = laws(tree, ACCELERATION)[0]
-    return f"Acceleration at all sensors by the main law, {main}, positive downwards; {_DRAWN}."
+    return f"Acceleration at all sensors by the main law, {main}, positive downwards; {DRAWN}."
 
 
 def _one_sensor_caption(tree: DataTree) -> str:
-    return f"Acceleration at {sensor_labels(tree, ACCELERATION)[_middle_sensor(tree)]} by all laws; {_DRAWN}."
+    return f"Acceleration at {sensor_labels(tree, ACCELERATION)[_middle_sensor(tree)]} by all laws; {DRAWN}."
 
 
 _ACCELERATION_NEEDS = (ACCELERATION, "spectra/frequency")
+
+FORCE_BANDS = Part(
+    "force_bands",
+    "Contact force in one-third octaves",
+    (LEVEL, "spectra/band"),
+    band_figure,
+    band_columns,
+    _band_caption,
+)
 
 SPECTRUM = (
     Part(
@@ -230,14 +255,7 @@ SPECTRUM = (
         force_columns,
         _force_caption,
     ),
-    Part(
-        "force_bands",
-        "Contact force in one-third octaves",
-        (LEVEL, "spectra/band"),
-        band_figure,
-        band_columns,
-        _band_caption,
-    ),
+    FORCE_BANDS,
     Part(
         "acceleration_sensors",
         "Acceleration at the sensors",

@@ -1,4 +1,4 @@
-"""Tables of the report: statistics, difference to the reference law, loss of contact, energy."""
+"""Tables of the report: statistics, difference to the reference law, loss of contact, energy, noise."""
 
 from __future__ import annotations
 
@@ -181,3 +181,28 @@ def energy_table(tree: DataTree) -> Table | None:
         rows,
         note,
     )
+
+
+def sound_power_table(tree: DataTree) -> Table | None:
+    """A-weighted sound power per law and source, and its difference to the linear law."""
+    path = "spectra/sound_power_level_a"
+    names, found = laws(tree, path), variable(tree, path)
+    if found is None:
+        return None
+    sources = [str(source) for source in found["source"].values]
+    levels = {law: of_law(tree, path, law, "source") for law in names}
+    head = ["law", *(f"{source} / dB(A)" for source in sources)]
+    if "linear" in names:
+        head += [f"{source} − linear / dB" for source in sources]
+    rows = []
+    for law, level in levels.items():
+        row = [_text(law), *(Cell(_level(value), "number") for value in level)]
+        if "linear" in names:
+            row += [Cell(_signed(d) if law != "linear" else "–", "number") for d in level - levels["linear"]]
+        rows.append(row)
+    note = "Re 1 pW. Positive differences: the linear contact underestimates."
+    return Table("sound_power_table", "A-weighted sound power", head, rows, note)
+
+
+def _level(value: float) -> str:
+    return f"{value:.1f}" if np.isfinite(value) else "–"

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import laws, of_law, values
+from asperity.report.data import force_unit, laws, of_law, values
 from asperity.report.part import Columns, Part
 from asperity.report.style import INK, MUTED, envelope, law_style, legend_above, new_figure, styled
 
@@ -46,7 +46,12 @@ def piece(tree: DataTree) -> slice:
     return slice(start, start + length)
 
 
-def _time_unit(duration: float) -> tuple[float, str]:
+def _force_unit(tree: DataTree) -> tuple[float, str]:
+    return force_unit(float(np.nanmax(np.abs(values(tree, FORCE)))))
+
+
+def time_unit(duration: float) -> tuple[float, str]:
+    """Unit in which a time of `duration` s reads well: its size in s and its symbol."""
     return (1.0, "s") if duration >= 0.5 else (1e-3, "ms")
 
 
@@ -57,17 +62,18 @@ def envelope_figure(tree: DataTree) -> Figure:
     time = values(tree, "rolling/time")
     figure = new_figure(0.6 + 1.0 * len(names))
     panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-    unit, symbol = _time_unit(time[-1] - time[0])
+    unit, symbol = time_unit(time[-1] - time[0])
+    size, force_symbol = _force_unit(tree)
     for axes, law in zip(panels, names, strict=True):
         colour = law_style(law, names[0])["color"]
-        starts, low, high = envelope(of_law(tree, FORCE, law, "time"), COLUMNS)
+        starts, low, high = envelope(of_law(tree, FORCE, law, "time") / size, COLUMNS)
         axes.fill_between(time[starts] / unit, low, high, color=colour, linewidth=0.5)
         axes.axhline(0, color=MUTED, linewidth=0.8)
         flights = np.logical_or.reduceat(lost(tree, law), starts)
         _flight_marks(axes, time[starts[flights]] / unit)
         axes.set_title(law + (" (main law)" if law == names[0] and len(names) > 1 else ""))
         axes.set_xlim(time[0] / unit, time[-1] / unit)
-        axes.set_ylabel("F / N")
+        axes.set_ylabel(f"F / {force_symbol}")
     _share_limits([axes for axes, law in zip(panels, names, strict=True) if not is_bilateral(law)])
     panels[-1].set_xlabel(f"time / {symbol}")
     return figure
@@ -101,16 +107,22 @@ def envelope_columns(tree: DataTree) -> Columns:
 @styled()
 def piece_figure(tree: DataTree) -> Figure:
     """Contact force of all laws over a short piece of the run, and below it where each has lost contact."""
+    return draw_piece(tree, piece(tree))
+
+
+def draw_piece(tree: DataTree, part: slice) -> Figure:
+    """Contact force of all laws over the time steps `part`, and below it where each has lost contact."""
     names = laws(tree, FORCE)
-    part = piece(tree)
     time = values(tree, "rolling/time")[part]
-    unit, symbol = _time_unit(time[-1])
+    unit, symbol = time_unit(time[-1])
+    size, force_symbol = _force_unit(tree)
     figure = new_figure(3.9 + 0.16 * len(names))
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1, 0.06 * len(names) + 0.04])
     for law in names:
-        upper.plot(time / unit, of_law(tree, FORCE, law, "time")[part], label=law, **law_style(law, names[0]))
+        force = of_law(tree, FORCE, law, "time")[part] / size
+        upper.plot(time / unit, force, label=law, **law_style(law, names[0]))
     upper.axhline(0, color=MUTED, linewidth=0.8)
-    upper.set_ylabel("contact force / N")
+    upper.set_ylabel(f"contact force / {force_symbol}")
     upper.set_xlim(time[0] / unit, time[-1] / unit)
     legend_above(upper)
     for row, law in enumerate(names):
@@ -134,7 +146,11 @@ def piece_figure(tree: DataTree) -> Figure:
 
 def piece_columns(tree: DataTree) -> Columns:
     """Contact force per law over the short piece, every time step."""
-    part = piece(tree)
+    return columns_of_piece(tree, piece(tree))
+
+
+def columns_of_piece(tree: DataTree, part: slice) -> Columns:
+    """Contact force per law over the time steps `part`."""
     columns: Columns = {"time [s]": values(tree, "rolling/time")[part]}
     for law in laws(tree, FORCE):
         columns[f"{law} [N]"] = of_law(tree, FORCE, law, "time")[part]
@@ -158,21 +174,20 @@ def _envelope_caption(tree: DataTree) -> str:
     )
 
 
-TIME = (
-    Part(
-        "force_piece",
-        "Contact force, a short piece",
-        (FORCE, "rolling/time"),
-        piece_figure,
-        piece_columns,
-        _piece_caption,
-    ),
-    Part(
-        "force_envelope",
-        "Contact force, the whole run",
-        (FORCE, "rolling/time"),
-        envelope_figure,
-        envelope_columns,
-        _envelope_caption,
-    ),
+FORCE_PIECE = Part(
+    "force_piece",
+    "Contact force, a short piece",
+    (FORCE, "rolling/time"),
+    piece_figure,
+    piece_columns,
+    _piece_caption,
 )
+FORCE_ENVELOPE = Part(
+    "force_envelope",
+    "Contact force, the whole run",
+    (FORCE, "rolling/time"),
+    envelope_figure,
+    envelope_columns,
+    _envelope_caption,
+)
+TIME = (FORCE_PIECE, FORCE_ENVELOPE)

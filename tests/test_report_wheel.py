@@ -1,0 +1,306 @@
+"""The report of a wheel on a rail: its figures, marks, tables and numbers."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+from asperity.report import write_report
+from asperity.report.csv_files import csv_text
+from asperity.report.marks import sleeper_spacing, speed
+from asperity.report.motion_figures import point_labels
+from asperity.report.page import BALL_ON_BEAM, WHEEL_ON_RAIL, chapters, drawable_parts, page
+from asperity.report.rail_force_figures import AROUND_PEAK, around_peak
+from asperity.report.tables import sound_power_table
+from asperity.results import load, save
+from report_reading import HOSTILE, Reader, read_csv
+from report_tree import report_tree
+from report_wheel_tree import LAWS, PINNED, SLEEPERS, SPEED, wheel_tree
+
+PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
+OWN = ("track", "noise", "motion")  # chapters that a ball has not
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return wheel_tree()
+
+
+@pytest.fixture(scope="module")
+def folder(tree, tmp_path_factory):
+    return write_report(tree, tmp_path_factory.mktemp("wheel")).parent
+
+
+@pytest.fixture(scope="module")
+def text(folder):
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def small(laws=("areal", "linear"), **changes):
+    """Tree of a short run; `changes` map a group to the variables dropped from it."""
+    tree = wheel_tree(list(laws), steps=4000)
+    for group, names in changes.items():
+        tree[group] = tree[group].to_dataset().drop_vars(names)
+    return tree
+
+
+def without_attrs():
+    """Tree of a short run that states nothing beside its variables, but for its kind."""
+    tree = small()
+    for group in tree.children:
+        tree[group].attrs = {}
+    tree["scenario"].attrs = {"kind": "wheel-on-rail"}
+    return tree
+
+
+def lines_at(axes):
+    """Places of the vertical lines of a panel."""
+    found = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
+    return [x[0] for x in found if x[0] == x[1]]
+
+
+def ticks_of(axes):
+    (ticks,) = [line.get_xdata() for line in axes.lines if line.get_label() == "_ticks"]
+    return ticks
+
+
+def test_page_is_whole_and_loads_nothing(text, folder):
+    reader = Reader(text)
+    names = reader.all("id")
+    assert not reader.open
+    assert len(names) == len(set(names))
+    assert not {"script", "link", "iframe"} & {tag for tag, _ in reader.tags}
+    assert "http:" not in text
+    assert "https:" not in text
+    for target in reader.all("href") + reader.all("xlink:href"):
+        assert target.startswith("data:") or target.removeprefix("#") in names or (folder / target).is_file()
+    assert set(PARTS) | {"contact_loss", "sound_power_table", "statistics", *OWN} <= set(names)
+    assert {p.stem for p in folder.glob("*.csv")} == set(PARTS)
+    assert len(text) < 3_000_000
+
+
+def test_kind_of_case_chooses_the_chapters(tree):
+    assert chapters(tree) == WHEEL_ON_RAIL
+    assert chapters(report_tree(["areal"], steps=500)) == BALL_ON_BEAM
+    ball = {part.name for chapter in BALL_ON_BEAM for part in chapter.parts}
+    assert not {"receptance", "roughness", "sound_power", "displacement"} & ball
+
+
+def test_result_without_a_kind_is_known_by_its_track():
+    tree = without_attrs()
+    tree["scenario"].attrs = {}
+    assert chapters(tree) == WHEEL_ON_RAIL
+
+
+@pytest.mark.parametrize("part", PARTS.values(), ids=lambda part: part.name)
+def test_figure_without_its_numbers_is_left_out(part):
+    assert part.drawable(small())
+    for need in part.needs:
+        group, _, name = need.partition("/")
+        assert not part.drawable(small(**{group: [name]}))
+
+
+@pytest.mark.parametrize("part", PARTS.values(), ids=lambda part: part.name)
+def test_attributes_may_be_missing(part):
+    tree = without_attrs()
+    assert part.draw(tree).axes
+    assert part.columns(tree)
+    assert part.caption(tree)
+
+
+@pytest.mark.parametrize(
+    ("name", "group", "missing"),
+    [
+        ("receptance", "track", ["receptance_midspan_phase", "receptance_support_phase"]),
+        ("receptance", "track", ["receptance_midspan", "wheel_receptance", "contact_receptance"]),
+        ("decay_rate", "track", ["decay_rate_limit", "decay_rate_en15461"]),
+        ("roughness", "rolling", ["position"]),
+        ("force_envelope", "rolling", ["contact_loss_share"]),
+        ("force_peak", "rolling", ["position", "contact_loss_share"]),
+        ("force_psd", "spectra", ["linear_reference_psd", "band"]),
+        ("force_bands", "spectra", ["linear_reference_level", "force_level_difference"]),
+        ("displacement", "rolling", ["wheel_displacement", "position"]),
+        ("displacement", "rolling", ["contact_force", "relative_displacement"]),
+        ("rail_velocity", "rolling", ["position"]),
+        ("rail_velocity_psd", "spectra", ["band"]),
+        ("contact_force", "contact", ["force_std"]),
+    ],
+)
+def test_optional_numbers_may_be_missing(name, group, missing):
+    tree = small(**{group: missing})
+    assert PARTS[name].draw(tree).axes
+    assert PARTS[name].columns(tree)
+    assert PARTS[name].caption(tree)
+
+
+@pytest.mark.parametrize("group", ["scenario", "surface", "track", "contact", "rolling", "spectra"])
+def test_one_group_alone_makes_a_page(group):
+    tree = small()
+    for other in set(tree.children) - {group}:
+        del tree[other]
+    assert "</html>" in page(tree)
+
+
+@pytest.mark.parametrize("laws", [["linear"], ["table"], ["direct", "hertz-filtered", "linear"]])
+def test_any_set_of_laws(laws):
+    tree = small(laws)
+    for name in ("force_envelope", "force_peak", "force_psd", "force_bands", "sound_power", "displacement"):
+        labels = [label.get_text() for label in PARTS[name].draw(tree).findobj(Text)]
+        assert all(any(law in label for label in labels) for law in laws)
+    assert sound_power_table(tree) is not None
+
+
+def test_hostile_names_stay_text():
+    tree = small()
+    tree["rolling"] = tree["rolling"].to_dataset().assign_coords(law=[HOSTILE, "linear"])
+    names = {"law": [HOSTILE, "linear"], "part": [HOSTILE, "b", "c"], "source": [HOSTILE, "b", "total"]}
+    tree["spectra"] = tree["spectra"].to_dataset().assign_coords(names)
+    tree["track"].attrs["kernel_method"] = HOSTILE
+    del tree["surface"], tree["contact"]
+    reader = Reader(page(tree))
+    assert not reader.open
+    assert not {"script", "img"} & {tag for tag, _ in reader.tags}
+    assert "".join(reader.text).count(HOSTILE) > 10
+
+
+def test_numbers_survive_the_csv_files_to_the_last_bit(tree, folder):
+    spectra, track = tree["spectra"].to_dataset(), tree["track"].to_dataset()
+    psd, bands = read_csv(folder / "force_psd.csv"), read_csv(folder / "force_bands.csv")
+    for law in LAWS:
+        assert np.array_equal(psd[f"{law} [N^2/Hz]"], spectra["force_psd"].sel(law=law).values)
+        power = read_csv(folder / "sound_power_bands.csv")[f"wheel, {law} [dB re 1 pW]"]
+        assert np.array_equal(power, spectra["sound_power_level"].sel(law=law, source="wheel").values)
+    assert np.array_equal(psd["linear, frequency domain [N^2/Hz]"], spectra["linear_reference_psd"].values)
+    reference = bands["linear, frequency domain [dB re 1 N]"]
+    assert np.array_equal(reference, spectra["linear_reference_level"].values)
+    roughness = read_csv(folder / "roughness.csv")["wheel [dB re 1 µm]"]
+    level = spectra["roughness_level"].sel(part="wheel").values
+    assert np.array_equal(roughness, level, equal_nan=True)
+    receptance = read_csv(folder / "receptance.csv")
+    assert np.array_equal(receptance["receptance_midspan [m/N]"], track["receptance_midspan"].values)
+    phase = receptance["receptance_support phase [rad]"]
+    assert np.array_equal(phase, track["receptance_support_phase"].values)
+    kernel = read_csv(folder / "moving_kernel.csv")["kernel(start=0.3 m) [m/(N s)]"]
+    assert np.array_equal(kernel, track["moving_kernel"].sel(start_position=0.3).values)
+
+
+UNITS = r"m|1/m|m\^3|m/N|rad|m/\(N s\)|Pa|N|N/m|1|s|Hz|m/s|N\^2/Hz|\(m/s\)\^2/Hz"
+LEVELS = r"dB|dB/m|dB re 1 N|dB re 1 µm|dB re 1 pW|dB\(A\) re 1 pW"
+
+
+def test_every_csv_column_has_a_unit(folder):
+    for path in folder.glob("*.csv"):
+        assert all(re.fullmatch(rf".+ \[({UNITS}|{LEVELS})\]", head) for head in read_csv(path))
+
+
+def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
+    tree = small()
+    for node in tree.subtree:  # a result that is saved has units and a long name everywhere
+        for name, values in node.to_dataset(inherit=False).variables.items():
+            node[name].attrs.update({"units": "1", "long_name": str(name)} | values.attrs)
+    loaded = load(save(tree, tmp_path / "run.nc"))
+    assert drawable_parts(loaded) == list(PARTS.values())
+    for part in PARTS.values():
+        assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
+
+
+def test_speed_and_sleepers_follow_from_the_run(tree):
+    assert speed(tree) == pytest.approx(SPEED, rel=1e-9)
+    assert sleeper_spacing(tree) == pytest.approx(SLEEPERS, rel=1e-9)
+
+
+def test_force_spectrum_carries_the_marks_of_the_track(tree):
+    axes = PARTS["force_psd"].draw(tree).axes[0]
+    assert lines_at(axes) == pytest.approx([PINNED - SPEED / 1.2, PINNED + SPEED / 1.2])
+    tones = ticks_of(axes)
+    assert tones == pytest.approx(SPEED / SLEEPERS * np.arange(1, len(tones) + 1))
+    assert axes.get_xlim()[1] - tones[-1] < SPEED / SLEEPERS
+    caption = PARTS["force_psd"].caption(tree)
+    assert "every 93.3 Hz" in caption
+    assert "1016 and 1110 Hz" in caption
+
+
+def test_drawn_force_spectrum_keeps_the_power(tree):
+    axes = PARTS["force_psd"].draw(tree).axes[0]
+    line = next(line for line in axes.lines if line.get_label() == "areal")
+    spectra = tree["spectra"].to_dataset()
+    drawn = np.mean(10 ** (line.get_ydata() / 10))
+    count = 4 * len(line.get_xdata())  # lines 5 Hz apart, drawn every 20 Hz
+    assert drawn == pytest.approx(spectra["force_psd"].sel(law="areal").values[1 : count + 1].mean())
+
+
+@pytest.mark.parametrize("name", ["receptance", "decay_rate"])
+def test_track_frequencies_are_marked_and_named(tree, name):
+    figure = PARTS[name].draw(tree)
+    assert lines_at(figure.axes[0])[-3:] == [225.0, 283.0, PINNED]
+    labels = [label.get_text() for label in figure.findobj(Text)]
+    assert {"anti-resonance, 225 Hz", "cut-on, 283 Hz", "pinned–pinned, 1063 Hz"} <= set(labels)
+
+
+def test_sleepers_are_marked_where_the_wheel_passes_them(tree):
+    for axes in PARTS["displacement"].draw(tree).axes:
+        places = (0.3 + SPEED * ticks_of(axes)) / SLEEPERS
+        assert len(places) > 5
+        assert places == pytest.approx(np.round(places), abs=1e-6)
+
+
+def test_piece_around_the_peak_holds_it(tree):
+    rolling = tree["rolling"].to_dataset()
+    peak = int(np.argmax(rolling["contact_force"].sel(law="areal").values))
+    part = around_peak(tree)
+    assert part.start < peak < part.stop
+    assert (part.stop - part.start) * 2.5e-5 == pytest.approx(AROUND_PEAK, rel=1e-3)
+    assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].caption(tree)
+
+
+@pytest.mark.parametrize("peak", [0, 3999])
+def test_piece_around_a_peak_at_an_end_stays_inside(peak):
+    tree = small()
+    tree["rolling"]["contact_force"].values[:, peak] = 1e6
+    part = around_peak(tree)
+    assert (part.start, part.stop)[peak > 0] == (0, 4000)[peak > 0]
+    assert part.stop - part.start == 960
+
+
+def test_passed_points_are_named_by_their_place_in_the_bay():
+    tree = small()
+    points = {"point": [1.2, 1.5, 1.65]}
+    rolling = tree["rolling"].to_dataset().drop_dims("point")
+    tree["rolling"] = rolling.assign_coords(points)
+    assert point_labels(tree) == ["x = 1.2 m, over a sleeper", "x = 1.5 m, mid-span", "x = 1.65 m"]
+
+
+def test_table_of_sound_power_holds_levels_and_differences(tree, text):
+    body = text[text.index('id="sound_power_table"') :]
+    rows = re.findall(r"<tr><td>(.*?)</td>(.*?)</tr>", body[: body.index("</table>")])
+    assert [law for law, _ in rows] == LAWS
+    levels = tree["spectra"].to_dataset()["sound_power_level_a"]
+    linear = levels.sel(law="linear").values
+    for law, cells in rows:
+        shown = [cell.replace("−", "-") for cell in re.findall(r">([^<]+)</td>", cells)]
+        expected = levels.sel(law=law).values
+        assert [float(cell) for cell in shown[:3]] == pytest.approx(expected, abs=0.051)
+        if law != "linear":
+            assert [float(cell) for cell in shown[3:]] == pytest.approx(expected - linear, abs=0.051)
+
+
+def test_bars_end_at_their_levels(tree):
+    axes = PARTS["sound_power"].draw(tree).axes[0]
+    levels = tree["spectra"].to_dataset()["sound_power_level_a"].values
+    assert [bar.get_x() + bar.get_width() for bar in axes.patches] == pytest.approx(levels.ravel())
+
+
+def test_contact_of_wheel_and_rail_is_outlined_by_its_ellipse(tree):
+    axes = PARTS["contact_pressure"].draw(tree).axes[0]
+    for outline in axes.patches:
+        assert (outline.get_width(), outline.get_height()) == pytest.approx((12.4, 9.34))
+    assert len(axes.patches) == 2  # dark on light: seen on every colour
+    assert "dashed ellipse" in PARTS["contact_pressure"].caption(tree)
+
+
+def test_large_forces_are_shown_in_kilonewtons(tree):
+    for name in ("force_envelope", "force_peak", "contact_force"):
+        assert any(axes.get_ylabel().endswith("/ kN") for axes in PARTS[name].draw(tree).axes)
