@@ -220,9 +220,9 @@ def test_exit_codes_of_the_program_itself():
     done = subprocess.run([*program, "new", "ball-on-beam"], capture_output=True, text=True, check=False)
     assert done.returncode == 0
     assert done.stdout.startswith("# A ball rolls over a rough beam")
-    wrong = subprocess.run([*program, "new", "wheel-on-rail"], capture_output=True, text=True, check=False)
+    wrong = subprocess.run([*program, "new", "wheel-on-beam"], capture_output=True, text=True, check=False)
     assert wrong.returncode == 2
-    assert wrong.stderr.startswith("Error: kind: received 'wheel-on-rail'; allowed: \"ball-on-beam\".")
+    assert wrong.stderr.startswith("Error: kind: received 'wheel-on-beam'; allowed: \"ball-on-beam\", ")
     assert len(wrong.stderr.splitlines()) == 1
 
 

@@ -20,9 +20,10 @@ _report = click.option(
 @click.version_option(__version__, prog_name="asperity")
 @click.option("--debug", is_flag=True, help="Show where in the program an error arose.")
 def main(debug: bool) -> None:
-    """Roll a ball over a rough surface: 3-D contact, reduced to a point force, and the vibration it causes.
+    """Roll a ball or a wheel over a rough surface: 3-D contact, reduced to a point force, and its vibration.
 
-    Start with 'asperity demo', then 'asperity new ball-on-beam > case.toml' and 'asperity run case.toml'.
+    Start with 'asperity demo', then 'asperity new ball-on-beam > case.toml' and 'asperity run case.toml';
+    'asperity new wheel-on-rail' writes the case of a railway wheel.
     Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
     """
 
@@ -81,6 +82,26 @@ def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> No
     from asperity.config import load_case
 
     run_into(load_case(case), directory or Path("runs") / case.stem, report=report, overwrite=overwrite)
+
+
+@main.command()
+@_case
+@click.option("--speed", "speeds", help="Speeds, as '20 m/s, 200 km/h'. [default: that of the case]")
+@click.option("--load", "loads", help="Loads of the wheel, as '50 kN, 65 kN'. [default: that of the case]")
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    type=click.Path(path_type=Path),
+    help="Folder of the results. [default: runs/NAME]",
+)
+@click.option("--overwrite", is_flag=True, help="Replace the sweep in the folder.")
+def sweep(case: Path, speeds: str | None, loads: str | None, directory: Path | None, overwrite: bool) -> None:
+    """Compute a wheel on a rail at several speeds and loads: writes sweep.nc and sweep.csv."""
+    from asperity.cli.sweeping import sweep_into
+    from asperity.config import load_case
+
+    sweep_into(load_case(case), speeds, loads, directory or Path("runs") / case.stem, overwrite)
 
 
 @main.command()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from asperity.config import BallOnBeamCase
+from asperity.config import Case, WheelOnRailCase
 from asperity.errors import InputError
 from asperity.progress import duration
 
@@ -12,12 +12,12 @@ SOLVE_TIME = 2e-7  # s per grid cell of one contact solution on one core, in ord
 STEP_TIME = 3e-6  # s per time step of one compiled law, in order of magnitude
 
 
-def show_plan(case: BallOnBeamCase, source: str) -> None:
+def show_plan(case: Case, source: str) -> None:
     """Print the values of a case, and what will be computed from it.
 
     Parameters
     ----------
-    case : BallOnBeamCase
+    case : BallOnBeamCase or WheelOnRailCase
         The case.
     source : str
         Its file.
@@ -43,12 +43,12 @@ def show_plan(case: BallOnBeamCase, source: str) -> None:
     console.print(work)
 
 
-def plan(case: BallOnBeamCase) -> list[tuple[str, str]]:
+def plan(case: Case) -> list[tuple[str, str]]:
     """List what will be computed and how much work it is.
 
     Parameters
     ----------
-    case : BallOnBeamCase
+    case : BallOnBeamCase or WheelOnRailCase
         The case.
 
     Returns
@@ -60,14 +60,18 @@ def plan(case: BallOnBeamCase) -> list[tuple[str, str]]:
 
     contact = case.contact
     states = STATES if contact.approaches is None else len(contact.approaches)
-    positions = round(case.rolled_time * case.speed / contact.spacing) + 1
-    steps = round(case.rolled_time / case.time_step)
-    where = f"{case.rolled_time * case.speed:g} m from {case.start:g} m"
+    settling = case.settling if isinstance(case, WheelOnRailCase) else 0.0
+    length = (settling + case.rolled_time) * case.speed
+    positions = round(length / contact.spacing) + 1
+    steps = round((settling + case.rolled_time) / case.time_step)
+    where = f"{length:g} m from {case.start - settling * case.speed:g} m"
+    run_in = f", and {settling:g} s before it" if settling else ""
     solves = _solves(case, states, positions, steps)
     seconds = sum(solves.values()) * contact.cells**2 * SOLVE_TIME + steps * len(case.laws) * STEP_TIME
     return [
         ("path", f"{where}, {positions} positions {contact.spacing * 1e6:g} µm apart"),
-        ("time", f"{case.rolled_time:g} s, {steps} steps of {case.time_step * 1e6:.4g} µs"),
+        ("time", f"{case.rolled_time:g} s{run_in}, {steps} steps of {case.time_step * 1e6:.4g} µs"),
+        *_track(case),
         ("laws", ", ".join(case.laws)),
         (
             "contact",
@@ -78,19 +82,35 @@ def plan(case: BallOnBeamCase) -> list[tuple[str, str]]:
     ]
 
 
-def _solves(case: BallOnBeamCase, states: int, positions: int, steps: int) -> dict[str, int]:
+def _solves(case: Case, states: int, positions: int, steps: int) -> dict[str, int]:
     """Contact solutions by what they are for."""
     contact = case.contact
     strip = 8 * contact.window if contact.sample_length is None else contact.sample_length
     scanned = max(1, round((strip - contact.window) / contact.spacing))
     return {
-        "stiffness and filters": contact.samples * states * scanned if case.surface.has_samples else 0,
+        "stiffness and filters": contact.samples * states * scanned if _is_reduced(case) else 0,
         "table": states * positions if "table" in case.laws else 0,
         "direct": 3 * steps if "direct" in case.laws else 0,  # two or three iterations in each time step
     }
 
 
-def _measured(case: BallOnBeamCase) -> list[tuple[str, str]]:
+def _is_reduced(case: Case) -> bool:
+    """Whether stiffness and filters are reduced from rough samples."""
+    return isinstance(case, WheelOnRailCase) or case.surface.has_samples
+
+
+def _track(case: Case) -> list[tuple[str, str]]:
+    """Characteristic numbers of the track."""
+    if not isinstance(case, WheelOnRailCase):
+        return []
+    track = case.track_model()
+    frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, sleeper passing"
+    passing = f"{case.speed / track.sleeper_spacing:.4g} Hz, critical speed {track.critical_speed:.4g} m/s"
+    points = ", ".join(f"{position:g} m" for position in case.point_positions)
+    return [("track", f"{frequencies} {passing}"), ("rail motion recorded at", points)]
+
+
+def _measured(case: Case) -> list[tuple[str, str]]:
     """Read the measured samples, so that their errors come before the work."""
     surface = case.surface
     if surface.file is None:

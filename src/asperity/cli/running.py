@@ -7,17 +7,17 @@ from pathlib import Path
 
 import click
 
-from asperity.config import BallOnBeamCase
+from asperity.config import Case
 from asperity.errors import InputError
 from asperity.progress import progress_bar
 
 
-def run_into(case: BallOnBeamCase, directory: Path, *, report: bool = True, overwrite: bool = False) -> None:
+def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: bool = False) -> None:
     """Compute a case and write its results.
 
     Parameters
     ----------
-    case : BallOnBeamCase
+    case : BallOnBeamCase or WheelOnRailCase
         The case.
     directory : Path
         Where ``run.nc``, ``report.html`` and the CSVs go.
@@ -57,7 +57,7 @@ def run_into(case: BallOnBeamCase, directory: Path, *, report: bool = True, over
         click.echo(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
 
 
-def _refuse_to_overwrite(case: BallOnBeamCase, directory: Path) -> None:
+def _refuse_to_overwrite(case: Case, directory: Path) -> None:
     """Let a case replace its own run; anything else of that name in the folder stays."""
     allowed = "a new folder, or the folder of an earlier run of the same case"
     remedy = "Choose another folder with -o, or replace it with --overwrite."
