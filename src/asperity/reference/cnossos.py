@@ -47,8 +47,8 @@ RAIL_ROUGHNESS: dict[str, tuple[float, ...]] = {
 by the directive beyond 400 mm and below 3.15 mm) and average network."""
 
 WHEEL_WAVELENGTHS_MM = WAVELENGTHS_MM[3:]
-"""Wavelengths of the wheel roughness, 1 m to 0.8 mm; printed as 120, 12, 3.2 and 1.2 mm where the nominal bands
-are 125, 12.5, 3.15 and 1.25 mm."""
+"""Wavelengths of the wheel roughness, 1 m to 0.8 mm; table G-1a prints 120, 12, 3.2 and 1.2 mm for the bands
+of 125, 12.5, 3.15 and 1.25 mm."""
 
 WHEEL_ROUGHNESS: dict[str, tuple[float, ...]] = {
     "cast-iron": (

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy import fft
 
 from asperity.errors import InputError
-from asperity.spectra import third_octave_bands
-from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.bands import from_bands, strip_from_bands
+from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.translation import gaussian_correlation, height_transform
+
+__all__ = ["from_bands", "from_map", "self_affine", "strip_from_bands"]
 
 
 def self_affine(
@@ -117,90 +119,6 @@ def _gaussian_field(
     del noise
     spectrum *= np.sqrt(power * (rms**2 * grid[0] * grid[1] / doubled))
     return np.asarray(fft.irfft2(spectrum, s=tuple(grid), overwrite_x=True))
-
-
-def from_bands(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayLike, seed: int) -> Profile:
-    """Line with given one-third-octave levels in wavelength.
-
-    Amplitudes are fixed and phases random, so every realisation has the levels asked for. The
-    density is constant inside a band; bands that are not given hold nothing.
-
-    Parameters
-    ----------
-    n : int
-        Points.
-    spacing : float
-        Spacing, m.
-    wavelengths : array_like, shape (b,)
-        Band centres, m, in any order; nominal values (0.63 m) or exact ones (10^(n/10) m).
-    levels_db : array_like, shape (b,)
-        Levels, dB re 1 µm rms.
-    seed : int
-        Seed of the random phases.
-
-    Returns
-    -------
-    Profile
-        Heights, m; the line closes on itself, as around a wheel.
-
-    Raises
-    ------
-    InputError
-        If the line is shorter than the longest band's edge, the spacing too coarse for the
-        shortest, or the wavelengths are no distinct one-third octaves.
-
-    References
-    ----------
-    Levels as in ISO 3095:2013 and EN 15610:2019 (reference 1 µm).
-    """
-    centres, low, high, levels = _wavenumber_bands(wavelengths, levels_db)
-    if not (n >= 2 and spacing > 0.0):
-        raise InputError("line", f"{n} points at {spacing} m", "2 points or more at a positive spacing")
-    length = n * spacing
-    if low.min() * length < 1.0:
-        allowed = f"at least the longest band's edge, {1.0 / low.min():.4g} m"
-        raise InputError(
-            "length of the line", f"{n * spacing:.4g} m", allowed, "Leave out the longest bands."
-        )
-    if high.max() > 0.5 / spacing * (1.0 + 1e-9):
-        allowed = f"at most half the shortest band's edge, {0.5 / high.max():.4g} m"
-        raise InputError("spacing", f"{spacing:.4g} m", allowed, "Leave out the shortest bands.")
-    step = 1.0 / (n * spacing)
-    lines = np.arange(n // 2 + 1) * step
-    edges = np.clip(np.stack([lines - step / 2.0, lines + step / 2.0]), 0.0, None)
-    energy = np.zeros(lines.size)
-    for one_low, one_high, one_level in zip(low, high, levels, strict=True):
-        overlap = np.clip(np.minimum(edges[1], one_high) - np.maximum(edges[0], one_low), 0.0, None)
-        energy += 1e-12 * 10.0 ** (one_level / 10.0) * overlap / overlap.sum()
-    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, lines.size)
-    spectrum = n * np.sqrt(energy / 2.0) * np.exp(1j * phases)
-    if n % 2 == 0:
-        spectrum[-1] = n * np.sqrt(energy[-1])
-    source = f"one-third octaves {1.0 / centres.max():.4g} to {1.0 / centres.min():.4g} m, seed {seed}"
-    return Profile(fft.irfft(spectrum, n), spacing, source)
-
-
-def _wavenumber_bands(
-    wavelengths: ArrayLike, levels_db: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    given = np.atleast_1d(np.asarray(wavelengths, dtype=np.float64))
-    levels = np.atleast_1d(np.asarray(levels_db, dtype=np.float64))
-    if (
-        given.ndim != 1
-        or given.shape != levels.shape
-        or not (np.isfinite(levels) | np.isneginf(levels)).all()
-    ):
-        received = f"shapes {given.shape} and {levels.shape}"
-        raise InputError("wavelengths and levels", received, "two lists of equal length, levels not NaN")
-    if not ((given > 0.0) & np.isfinite(given)).all():
-        raise InputError("wavelengths", given, "positive and finite, m")
-    bands = [third_octave_bands(1.0 / w, 1.0 / w) for w in given]
-    centres, low, high = (np.array([b[k][0] for b in bands]) for k in range(3))
-    nominal = np.abs(given * centres - 1.0) < 0.03  # nominal values lie within 2.4 % of the exact ones
-    if not nominal.all() or np.unique(centres).size != centres.size:
-        remedy = "Give each band once by its centre, as 0.1, 0.125, 0.16 m."
-        raise InputError("wavelengths", given, "distinct centres of base-10 one-third octaves", remedy)
-    return centres, low, high, levels
 
 
 def from_map(
