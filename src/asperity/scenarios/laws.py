@@ -87,13 +87,8 @@ class Workshop:
         return Hertz(self.shape.hertz.stiffness_constant, texture, damping, name)
 
     def _linear(self, texture: StateTexture, damping: float, name: str) -> Law:
-        load = self.shape.load
-        if self.contact.linearise == "rough" and self.reduction is not None:
-            curve = self.reduction.ensemble.curve
-            approach = float(curve.inverse(load))
-            return Linear(load, float(curve.stiffness(approach)), approach, texture, damping, name)
-        approach = self.shape.hertz.approach(load)
-        return Linear(load, self.shape.hertz.tangent_stiffness(approach), approach, texture, damping, name)
+        approach, stiffness = working_point(self.contact, self.shape, self.reduction)
+        return Linear(self.shape.load, stiffness, approach, texture, damping, name)
 
     def _line(self) -> StateTexture:
         return StateTexture.unfiltered(-self.textures.followed, self.shape.spacing[0], self.textures.start)
@@ -178,6 +173,31 @@ class Workshop:
             self.rtol,
             damping,
         )
+
+
+def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | None) -> tuple[float, float]:
+    """Approach and tangent stiffness under the working load, of the smooth or the rough contact.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of the case, which says of which.
+    shape : Geometry
+        What presses on what.
+    reduction : Reduction or None
+        State functions of the rough contact.
+
+    Returns
+    -------
+    approach, stiffness : float
+        m and N/m.
+    """
+    if contact.linearise == "rough" and reduction is not None:
+        curve = reduction.ensemble.curve
+        approach = float(curve.inverse(shape.load))
+        return approach, float(curve.stiffness(approach))
+    approach = shape.hertz.approach(shape.load)
+    return approach, shape.hertz.tangent_stiffness(approach)
 
 
 def punch_taps(hertz: HertzContact, load: float, spacing: float) -> NDArray[np.float64]:

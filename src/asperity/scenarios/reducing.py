@@ -16,10 +16,12 @@ from asperity.progress import Progress
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
 from asperity.reduction.filter import (
+    FLOOR,
     ContactFilter,
     design_fir,
     estimate_filter,
     mean_filter,
+    punch_filter,
     tap_count,
 )
 from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
@@ -30,6 +32,8 @@ STATES = 14
 """States chosen where the case names no approaches."""
 LIGHTEST_STATE = 0.02
 """Least mean force of a state that has a filter, in working loads."""
+SMOOTH_WAVENUMBERS = 120
+"""Wavenumbers of the closed-form filter where a case has no texture."""
 LONG_WAVE = 0.5
 """k a below which a filter is taken to be at its asymptote: sin q/q is 0.96 there."""
 
@@ -215,6 +219,8 @@ def _filters(
     tangent = curve.stiffness(approaches) if contact.normalise == "tangent" else None
     across = min(middle, int(b / dy))
     axes = [shape.axes(f)[0] for f in ensemble.mean_force[loaded]]
+    if not any(np.ptp(strip.heights) for strip in textures.strips):
+        return _closed_form(approaches, np.array(axes), curve.stiffness(approaches)), []
     asymptote = LONG_WAVE / (2 * np.pi * np.array(axes))
     estimates, scans = [], []
     for i, strip in enumerate(textures.strips):
@@ -234,3 +240,15 @@ def _filters(
     warn_of_scans(scans, "the filters")
     degree, normalise = contact.filter_degree, contact.normalise
     return mean_filter(estimates, approaches, degree=degree, normalise=normalise), scans  # type: ignore[arg-type]
+
+
+def _closed_form(
+    approaches: NDArray[np.float64], semi_axes: NDArray[np.float64], stiffness: NDArray[np.float64]
+) -> ContactFilter:
+    """Filter of surfaces without texture: that of small roughness, uniform across."""
+    wavenumber = np.geomspace(0.01, 2.0, SMOOTH_WAVENUMBERS) / semi_axes.max()
+    signed = punch_filter(wavenumber[None, :], semi_axes[:, None])
+    magnitude = np.clip(np.abs(signed), FLOOR, 1.0)
+    return ContactFilter(
+        approaches, wavenumber, magnitude, np.zeros_like(signed), signed, stiffness, "low-wavenumber"
+    )

@@ -32,7 +32,7 @@ def verdict(runs: Mapping[str, Run], spectra: xarray.Dataset, body: str) -> str:
     """
     main, run = next(iter(runs.items()))
     dynamic = float(np.std(run.contact_force))
-    parts = [f"{_contact(run, body)} ({main}); the contact force varies by {dynamic:.3g} N rms"]
+    parts = [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
     bands = (spectra["band"] >= COMPARED[0] * 0.9) & (spectra["band"] <= COMPARED[1] * 1.1)
     if "force_level_difference" in spectra and main != "linear" and bool(bands.any()):
         difference = spectra["force_level_difference"].sel(law=main).where(bands, drop=True)
@@ -43,7 +43,15 @@ def verdict(runs: Mapping[str, Run], spectra: xarray.Dataset, body: str) -> str:
         if reference != main:
             distance = float(abs(difference.sel(law=main).where(bands, drop=True)).max())
             parts.append(f"and at most {distance:.1f} dB from {reference}")
+    if "sound_power_level_a" in spectra and "linear" in spectra["law"].values and main != "linear":
+        level = spectra["sound_power_level_a"].sel(source="total")
+        louder = float(level.sel(law=main) - level.sel(law="linear"))
+        parts.append(f"which makes the A-weighted sound power {louder:+.1f} dB".replace("-", "−"))
     return ", ".join(parts) + "."
+
+
+def _force(newtons: float) -> str:
+    return f"{newtons:.3g} N" if newtons < 1e3 else f"{newtons / 1e3:.3g} kN"
 
 
 def _contact(run: Run, body: str) -> str:

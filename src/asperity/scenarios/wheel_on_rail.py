@@ -1,0 +1,158 @@
+"""A wheel rolls on an infinite track: the whole chain from texture to sound power."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config import WheelOnRailCase
+from asperity.config.tables import read_modes, read_receptance
+from asperity.errors import TruncatedContactWarning
+from asperity.pointforce import Law
+from asperity.progress import Progress
+from asperity.rolling.passing import passed_points
+from asperity.rolling.wheel_on_rail import WheelRolling, roll
+from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
+from asperity.scenarios.compiling import compile_kernels
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.rail_defects import NEED_GEOMETRY
+from asperity.scenarios.rail_geometry import rail_geometry
+from asperity.scenarios.rail_textures import gather
+from asperity.scenarios.textures import Textures
+from asperity.store import Store, content_key
+from asperity.structures.moving_kernel import MovingKernel, moving_kernel
+from asperity.structures.rail_poles import RailPoles, rail_poles
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+
+@dataclass(frozen=True, eq=False)
+class Computed:
+    """Everything that was computed for a case, before it is laid out as a result.
+
+    Attributes
+    ----------
+    case : WheelOnRailCase
+        The case.
+    chain : Chain
+        Textures, state functions, laws and runs.
+    wheel, track
+        What was rolled.
+    kernel : MovingKernel
+        Response of the rail under the moving contact.
+    rail : RailPoles or MovingKernel
+        How it was carried on in time.
+    points : dict of (ndarray, ndarray)
+        Displacement, m, and velocity, m/s, of the passed points by law, each of shape (points, n).
+    """
+
+    case: WheelOnRailCase
+    chain: Chain[WheelRolling]
+    wheel: Wheel
+    track: Track
+    kernel: MovingKernel
+    rail: RailPoles | MovingKernel
+    points: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+
+
+def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
+    """Gather, reduce and roll.
+
+    Parameters
+    ----------
+    case : WheelOnRailCase
+        The case.
+    progress : Progress
+        Called during long work.
+
+    Returns
+    -------
+    Computed
+        All that was computed.
+    """
+    compile_kernels(progress)
+    store, watch = Store(), Stopwatch()
+    track, wheel = case.track_model(), wheel_of(case)
+    shape = rail_geometry(case)
+    textures = gather(case)
+    _warn_of_defects(case, textures, shape)
+    watch.lap("textures")
+    kernel = moving_kernel(track, case.speed, case.time_step, cache=store)
+    rail: RailPoles | MovingKernel = kernel
+    if case.numerics.kernel == "poles":
+        found = rail_poles(kernel, count=case.numerics.poles, cache=store)
+        rail = found if found.accepted else kernel
+    watch.lap("track")
+    checkpoint = Checkpoint(store, _run_key(case, textures)) if "direct" in case.laws else None
+
+    def roll_law(law: Law) -> WheelRolling:
+        return roll(
+            rail,
+            wheel,
+            law,
+            speed=case.speed,
+            start=case.start,
+            duration=case.duration,
+            settling=case.settling,
+            highest_frequency=case.numerics.highest_frequency,
+            progress=progress,
+            checkpoint=checkpoint if law.name == "direct" else None,
+        )
+
+    chain = reduce_and_roll(case, textures, shape, roll_law, store, progress, watch)
+    points = {n: passed_points(track, run, case.point_positions) for n, run in chain.runs.items()}
+    watch.lap("passed points")
+    return Computed(case, chain, wheel, track, kernel, rail, points)
+
+
+def wheel_of(case: WheelOnRailCase) -> Wheel:
+    """Build the wheel of a case.
+
+    Parameters
+    ----------
+    case : WheelOnRailCase
+        The case.
+
+    Returns
+    -------
+    Wheel
+        Rigid, or with the modes or the receptance that the case names.
+    """
+    section = case.wheel
+    if section.modes is not None:
+        return Wheel.from_modes(section.mass, section.load, *read_modes(section.modes))
+    if section.receptance is not None:
+        highest = case.numerics.highest_frequency
+        measured = read_receptance(section.receptance)
+        return Wheel.from_receptance(section.mass, section.load, *measured, highest_frequency=highest)
+    return Wheel.rigid(section.mass, section.load)
+
+
+def _warn_of_defects(case: WheelOnRailCase, textures: Textures, shape: Geometry) -> None:
+    """Say so where the window is too short for what a law shall see of a defect."""
+    seen = [law for law in case.laws if law in NEED_GEOMETRY]
+    if not seen or textures.defects is None or case.wheel.flat_depth is None:
+        return
+    length = 2.0 * np.sqrt(2.0 * case.wheel.radius * case.wheel.flat_depth)
+    window, a = case.contact.window, shape.semi_axes[0]
+    if length + 2 * a > window:
+        warnings.warn(
+            f"the flat is {length * 1e3:.3g} mm long and the contact {2e3 * a:.3g} mm, together more than "
+            f"contact.window = {window * 1e3:.3g} mm: where the wheel stands on the flat's ends, "
+            f"{' and '.join(seen)} cut the contact off. Enlarge the window.",
+            TruncatedContactWarning,
+            stacklevel=2,
+        )
+
+
+def _run_key(case: WheelOnRailCase, textures: Textures) -> str:
+    """Name of a direct run: everything that its motion depends on."""
+    scalars = [case.speed, case.start, case.duration, case.settling, case.time_step, case.numerics.rtol]
+    contact = [case.contact.hardness, case.contact.damping, case.contact.spacing]
+    sections = [s.model_dump(mode="json") for s in (case.wheel, case.track, case.numerics)]
+    files = [case.wheel.profile, case.track.rail_profile, case.wheel.modes, case.wheel.receptance]
+    content = [path.read_bytes().hex() for path in files if path is not None]
+    return content_key("direct-rail", textures.surface, scalars, contact, sections, content)
