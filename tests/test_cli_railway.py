@@ -48,6 +48,15 @@ def test_check_shows_the_track_and_the_run_in():
         assert text in shown
 
 
+def test_check_reads_the_measured_lines():
+    np.save("wheel.npy", np.zeros((2890, 10)))
+    keys = '[wheel]\nline = "wheel.npy"\nline_unit = "um"\n'
+    Path("measured.toml").write_text(f"{RAIL}{keys}line_spacing = '1 mm'\nline_distance = '5 mm'\n")
+    assert "a map of 2890 × 10 points, 2890 × 10 mm" in call("check", "measured.toml").stdout
+    Path("measured.toml").write_text(RAIL + keys)
+    assert "pixel" in call("check", "measured.toml", code=2).stderr
+
+
 @pytest.fixture
 def swept(monkeypatch):
     """Replace the sweep; returns the speeds and loads that were asked for."""

@@ -25,7 +25,7 @@ def show_plan(case: Case, source: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    measured = _measured(case)
+    measured = [*_measured(case), *_measured_lines(case)]
     console = Console(file=sys.stdout)
     if not console.is_terminal:
         console.width = 120
@@ -127,3 +127,18 @@ def _measured(case: Case) -> list[tuple[str, str]]:
             "contact.window", f"{case.contact.window * 1e6:g} um", allowed, "Choose a smaller window."
         )
     return [("samples", described(maps))]
+
+
+def _measured_lines(case: Case) -> list[tuple[str, str]]:
+    """Read the measured lines of rail and wheel, so that their errors come before the work."""
+    from asperity.cli.inspecting import described, read
+
+    if not isinstance(case, WheelOnRailCase):
+        return []
+    found = []
+    for name, section in (("lines of the rail", case.surface), ("lines of the wheel", case.wheel)):
+        if section.line is not None:
+            array, unit, spacing = section.line_array, section.line_unit, section.line_spacing
+            lines = read(section.line, array=array, height_unit=unit, pixel=spacing)
+            found.append((name, described(lines)))
+    return found

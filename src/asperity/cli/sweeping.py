@@ -146,8 +146,8 @@ def _table(found: xarray.Dataset, *, bands: bool = True) -> tuple[list[str], lis
         here = dict(zip(axes, places, strict=True))
         row: list[object] = list(places)
         for name, others in chosen.items():
-            values = found[name].sel({axis: here[axis] for axis in axes if axis in found[name].dims}).values
-            row += values.tolist() if others else [values.item()]
+            one = found[name].sel({axis: here[axis] for axis in axes if axis in found[name].dims}).values
+            row += one.tolist() if others else [one.item()]
         rows.append(row)
     return heading, rows
 
