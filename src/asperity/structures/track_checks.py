@@ -1,0 +1,71 @@
+"""What values the parameters of a track may take."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from asperity.errors import InputError
+
+if TYPE_CHECKING:
+    from asperity.structures.track import Track
+
+
+def check_track(track: Track) -> None:
+    """Refuse parameters that no track has.
+
+    Parameters
+    ----------
+    track : Track
+        With any values.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, one element has both viscous damping and a loss factor, or only one
+        of shear stiffness and rotary inertia is given.
+    """
+    for what, value in (
+        ("bending stiffness of the rail (N m^2)", track.bending_stiffness),
+        ("mass per length of the rail (kg/m)", track.mass_per_length),
+        ("pad stiffness (N/m)", track.pad_stiffness),
+        ("ballast stiffness (N/m)", track.ballast_stiffness),
+        ("sleeper spacing (m)", track.sleeper_spacing),
+        ("shear stiffness of the rail (N)", track.shear_stiffness),
+        ("rotary inertia of the rail (kg m)", track.rotary_inertia),
+    ):
+        if value is not None and not (np.isfinite(value) and value > 0.0):
+            raise InputError(what, value, "a finite positive number")
+    for what, value in (
+        ("sleeper mass (kg)", track.sleeper_mass),
+        ("rail loss factor", track.rail_loss_factor),
+        ("pad damping (N s/m)", track.pad_damping),
+        ("pad loss factor", track.pad_loss_factor),
+        ("ballast damping (N s/m)", track.ballast_damping),
+        ("ballast loss factor", track.ballast_loss_factor),
+    ):
+        if value is not None and not (np.isfinite(value) and value >= 0.0):
+            raise InputError(what, value, "a finite number, zero or more")
+    _refuse_doubles(track)
+
+
+def _refuse_doubles(track: Track) -> None:
+    for element, viscous, factor in (
+        ("pad", track.pad_damping, track.pad_loss_factor),
+        ("ballast", track.ballast_damping, track.ballast_loss_factor),
+    ):
+        if viscous is not None and factor is not None:
+            raise InputError(
+                f"damping of the {element}",
+                f"{element}_damping = {viscous:g} N s/m and {element}_loss_factor = {factor:g}",
+                "one of them",
+                "Remove one: an element is either viscous or has a loss factor.",
+            )
+    if (track.shear_stiffness is None) != (track.rotary_inertia is None):
+        missing = "rotary_inertia" if track.rotary_inertia is None else "shear_stiffness"
+        raise InputError(
+            "Timoshenko rail",
+            f"no {missing}",
+            "shear_stiffness and rotary_inertia together, or neither (Euler-Bernoulli)",
+        )
