@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,6 +104,16 @@ def _feed(digest: Any, part: object) -> None:
     else:
         value = part.item() if isinstance(part, np.generic) else part
         digest.update(b"\0" + json.dumps(value, ensure_ascii=False).encode() + b"\0")
+
+
+class Cache(Protocol):
+    """Where finished work is kept: `Store` is one."""
+
+    def get(self, key: str) -> dict[str, NDArray[Any]] | None:
+        """Return what was put under the key, or None."""
+
+    def put(self, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Keep arrays under the key."""
 
 
 @dataclass(frozen=True)

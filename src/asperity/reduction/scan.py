@@ -7,14 +7,14 @@ import warnings
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.contact.halfspace import HalfSpace
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
-from asperity.store import content_key
+from asperity.store import Cache, content_key
 
 if TYPE_CHECKING:
     import xarray
@@ -25,16 +25,6 @@ BLOCK = 256
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
-
-
-class Cache(Protocol):
-    """Where finished blocks are kept: `asperity.store.Store` is one."""
-
-    def get(self, key: str) -> dict[str, NDArray] | None:
-        """Return what was put under the key, or None."""
-
-    def put(self, key: str, arrays: dict[str, NDArray]) -> None:
-        """Keep arrays under the key."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,11 +25,12 @@ from asperity.kernels.modal import (
 )
 from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all
 from asperity.pointforce.base import Law, SteppedLaw
+from asperity.progress import Progress
 from asperity.rolling.beam_stepper import BeamStepper
 from asperity.rolling.energy import EnergyBalance, balance, beam_energy
 from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.events import ContactLoss, contact_losses
-from asperity.rolling.stepping import Checkpoint, Progress, restore, run
+from asperity.rolling.stepping import Checkpoint, restore, run
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,13 +12,13 @@ from asperity.errors import ComputationError, InputError
 from asperity.kernels.modal import refine, tolerance
 from asperity.kernels.pointforce import Prepared, with_damping
 from asperity.pointforce.base import SteppedLaw
+from asperity.progress import Progress
 
 STEPPED_BLOCK = 8  # steps between looks at the clock when the law is evaluated from Python
 SAVE_EVERY = 10.0  # s
 STEPPED_TOLERANCE = 1e-6  # of the force plus the load; a law stepped from Python iterates itself
 STEPPED_ITERATIONS = 40
 
-Progress = Callable[[int, int, str], None]
 Free = tuple[float, float, float, float]
 
 

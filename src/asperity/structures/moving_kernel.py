@@ -1,0 +1,303 @@
+"""The moving kernel: how a rail answers at a contact that moves on, after a push where it was."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+from scipy.optimize import brentq
+
+from asperity.errors import CoarseSamplingWarning, InputError
+from asperity.progress import Progress
+from asperity.store import Cache, content_key
+from asperity.structures.periodic_rail import PeriodicWaves
+from asperity.structures.track import Track
+
+STARTS = 24
+"""Start positions in one sleeper bay, by default."""
+SHORTEST, LONGEST = 0.12, 0.6
+"""Between these lengths, s, the kernel grows until it has died away."""
+DIED_AWAY = 5e-4
+"""Largest value in the last tenth of a kernel, relative to its largest of all, by which it has died away."""
+ZONES = 4
+"""Multiples of half the sampling frequency up to which the receptance near the contact is folded."""
+LOWEST, HIGHEST = 50.0, 5000.0
+"""Frequencies, Hz, between which the kernel's receptance is compared with that of the track."""
+SHIFT = 8.0
+"""Exponential window over the period of the transform, neper, for tracks with viscous damping alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class MovingKernel:
+    """Response of the rail at the moving contact to one hat of force.
+
+    Parameters
+    ----------
+    track : Track
+        The track.
+    speed : float
+        Of the contact, m/s.
+    time_step : float
+        s.
+    weights : ndarray (positions, taps)
+        Row s, column k: displacement at x_s + k v Δt, k steps after a force that rises to 1 N and falls
+        again, linearly, within a step each, at x_s = s L/positions; m/N. Column 0 stands for the rising
+        half alone. A force that is linear over each step displaces the rail by the sum of its values
+        times these weights.
+    causality_error : float
+        Largest departure of the kernel's receptance under a force at rest from that of the track, 50 Hz to
+        5 kHz or a quarter of the sampling frequency, dB. Loss factors are not causal: the kernel is the
+        causal signal with the imaginary part of the receptance, faded out below some ten hertz so that
+        the static deflection is exact.
+    """
+
+    track: Track
+    speed: float
+    time_step: float
+    weights: NDArray[np.float64]
+    causality_error: float
+
+    @property
+    def spacing(self) -> float:
+        """Distance of the sleepers, m."""
+        return self.track.sleeper_spacing
+
+    @property
+    def lag(self) -> NDArray[np.float64]:
+        """Times of the columns, s."""
+        return np.asarray(np.arange(self.weights.shape[1]) * self.time_step)
+
+
+def moving_kernel(
+    track: Track,
+    speed: float,
+    time_step: float,
+    *,
+    duration: float | None = None,
+    positions: int = STARTS,
+    cache: Cache | None = None,
+    progress: Progress | None = None,
+) -> MovingKernel:
+    """Compute the moving kernel of a track for a contact at constant speed.
+
+    Parameters
+    ----------
+    track : Track
+        The track; it must dissipate.
+    speed : float
+        m/s, below the critical speed; zero for a contact at rest.
+    time_step : float
+        s.
+    duration : float, optional
+        Length of the kernel, s; by default until it has died away.
+    positions : int
+        Start positions in one bay, equally spaced; between them kernels are interpolated.
+    cache : Cache, optional
+        Keeps kernels by their content.
+    progress : callable, optional
+        Called with start positions done, in all, and a message.
+
+    Returns
+    -------
+    MovingKernel
+
+    Raises
+    ------
+    InputError
+        If the speed is critical, the track undamped, or the time step not positive.
+
+    Warns
+    -----
+    CoarseSamplingWarning
+        If the kernel has not died away at 0.6 s.
+
+    Notes
+    -----
+    Inverse Fourier transform of the exact receptance G(x_s + vτ | x_s) times that of the hat,
+    sin²(ωΔt/2)/(ωΔt/2)², folded at half the sampling frequency; between the nodes of a bay the
+    response is interpolated by a cubic. For viscous damping alone the transform runs along ω − iσ.
+    """
+    if not (np.isfinite(time_step) and time_step > 0.0):
+        raise InputError("time step (s)", time_step, "a finite positive number")
+    if not (np.isfinite(speed) and speed >= 0.0):
+        raise InputError("speed (m/s)", speed, "zero or a finite positive number")
+    if not track.is_damped:
+        remedy = "Give the rail a loss factor, or damping to pads or ballast."
+        raise InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
+    if speed > 0.0:
+        track.refuse_speed(speed)
+    parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
+    key = content_key("moving-kernel", parameters, speed, time_step, duration, positions, ZONES, SHIFT)
+    kept = cache.get(key) if cache is not None else None
+    if kept is None:
+        kept = {"weights": _until_it_dies(track, speed, time_step, duration, positions, progress)}
+        kept["causality_error"] = np.array(_causality_error(track, time_step, kept["weights"].shape[1]))
+        if cache is not None:
+            cache.put(key, kept)
+    weights = kept["weights"]
+    left = _left_over(weights)
+    if duration is None and left > DIED_AWAY:
+        warnings.warn(
+            f"the moving kernel still has {100 * left:.2g} % of its largest value after {LONGEST:g} s, more "
+            f"than {100 * DIED_AWAY:g} %: what comes later is cut off. Give the rail more damping.",
+            CoarseSamplingWarning,
+            stacklevel=2,
+        )
+    return MovingKernel(track, speed, time_step, weights, float(kept["causality_error"]))
+
+
+def _until_it_dies(
+    track: Track,
+    speed: float,
+    time_step: float,
+    duration: float | None,
+    positions: int,
+    progress: Progress | None,
+) -> NDArray[np.float64]:
+    length = SHORTEST if duration is None else duration
+    while True:
+        taps = max(8, round(length / time_step))
+        weights = _weights(track, speed, time_step, taps, positions, progress)
+        if duration is not None or length >= LONGEST or _left_over(weights) <= DIED_AWAY:
+            return weights
+        length = min(1.6 * length, LONGEST)
+
+
+def _left_over(weights: NDArray[np.float64]) -> float:
+    last = weights[:, -max(1, weights.shape[1] // 10) :]
+    return float(np.abs(last).max() / np.abs(weights).max())
+
+
+class _Transform:
+    """From receptances to responses in time, on one grid of frequencies."""
+
+    def __init__(self, track: Track, time_step: float, taps: int, zones: int) -> None:
+        self.taps, self.time_step = taps, time_step
+        self.causal = track.is_viscous and not track.rail_loss_factor
+        step = np.pi / (taps * time_step)  # the period is twice the kernel
+        self.shift = SHIFT / (2 * taps * time_step) if self.causal else 0.0
+        self.omega = step * np.arange(0 if self.causal else 1, zones * taps + 1) - 1j * self.shift
+        half = 0.5 * self.omega * time_step
+        self.hat = (np.sin(half) / half) ** 2
+        self.waves: PeriodicWaves = track.waves(self.omega)
+        self.fade: NDArray[np.float64] | None = None
+        if not self.causal:
+            self.fade = _fade(self.omega.real, _fading_frequency(track, self.omega.real))
+
+    def response(self, spectra: NDArray) -> NDArray[np.float64]:
+        """Response to the hat at lags 0 … taps − 1 from receptances times the hat, (k, f) → (k, taps)."""
+        n = self.taps
+        if self.fade is None:
+            response = fft.irfft(_folded(spectra, n), 2 * n, axis=1)[:, :n]
+            return np.asarray(response * np.exp(self.shift * self.time_step * np.arange(n)))
+        odd = np.zeros((len(spectra), spectra.shape[1] + 1), dtype=complex)
+        odd[:, 1:] = 2j * self.fade * spectra.imag
+        response = fft.irfft(_folded(odd, n), 2 * n, axis=1)[:, :n]
+        # an odd signal says nothing about the rising half of the hat, an even one does
+        static = (4.0 * spectra[:, 0].real - spectra[:, 1].real) / 3.0
+        response[:, 0] = (static + 2.0 * spectra.real.sum(axis=1)) / (2 * n)
+        return np.asarray(response)
+
+
+def _folded(spectra: NDArray, n: int) -> NDArray:
+    """Sum over all frequencies that look alike at the time steps, up to half the sampling frequency."""
+    folded = spectra[:, : n + 1].copy()
+    folded[:, n] = 2.0 * folded[:, n].real
+    for first in range(n, spectra.shape[1] - 1, n):
+        zone = spectra[:, first : first + n + 1]
+        if (first // n) % 2:
+            folded[:, 1:n] += np.conj(zone[:, n - 1 : 0 : -1])
+            folded[:, 0] += 2.0 * zone[:, n].real
+        else:
+            folded[:, 1:n] += zone[:, 1:n]
+            folded[:, n] += 2.0 * zone[:, n].real
+    return folded
+
+
+def _fade(omega: NDArray, corner: float) -> NDArray[np.float64]:
+    return np.asarray(omega**2 / (omega**2 + corner**2))
+
+
+def _fading_frequency(track: Track, omega: NDArray) -> float:
+    """Corner below which dissipation fades out so that the static deflection is exact, rad/s.
+
+    By Kramers and Kronig the static receptance is −2/π ∫ Im G/ω dω; with loss factors that hold down to
+    zero frequency, it would be too large.
+    """
+    middle = 0.5 * track.sleeper_spacing
+    dissipative = -track.receptance(omega / (2.0 * np.pi), middle, middle).imag
+    static, step = track.static_deflection(1.0, middle), omega[1] - omega[0]
+
+    def excess(corner: float) -> float:
+        return float(2.0 / np.pi * step * np.sum(dissipative * _fade(omega, corner) / omega) - static)
+
+    if excess(step) <= 0.0:
+        return float(step)
+    return float(brentq(excess, step, omega[-1]))
+
+
+def _weights(track: Track, speed: float, time_step: float, taps: int, positions: int) -> NDArray[np.float64]:
+    """All rows of the kernel."""
+    spacing = track.sleeper_spacing / positions
+    lag = np.arange(taps)
+    near, far = (_Transform(track, time_step, taps, zones) for zones in (ZONES, 1))
+    nodes = spacing * np.arange(positions)
+    shapes = {
+        grid: [np.array([shape(x) for x in nodes]) for shape in (grid.waves.outgoing, grid.waves.incoming)]
+        for grid in (near, far)
+    }
+    weights = np.zeros((positions, taps))
+
+    def fill(s: int) -> None:
+        at = s + lag * (speed * time_step / spacing)  # in nodes
+        base = np.floor(at).astype(int)
+        share = at - base
+        cubic = np.stack(
+            [
+                -share * (share - 1.0) * (share - 2.0) / 6.0,
+                (share + 1.0) * (share - 1.0) * (share - 2.0) / 2.0,
+                -(share + 1.0) * share * (share - 2.0) / 2.0,
+                (share + 1.0) * share * (share - 1.0) / 6.0,
+            ]
+        )
+        for bay in range(int(base[-1] + 2) // positions + 1):
+            grid = near if bay == 0 else far
+            outgoing, incoming = shapes[grid]
+            amplitude = grid.hat * grid.waves.coefficients
+            spectra = (amplitude * grid.waves.multipliers**bay * incoming[s] * outgoing).sum(axis=1)
+            if bay == 0:  # behind the source: by reciprocity
+                spectra[:s] = (amplitude * outgoing[s] * incoming[:s]).sum(axis=1)
+            response = grid.response(spectra)
+            for offset in range(-1, 3):
+                node = base + offset - bay * positions
+                if bay == 0 and s == 0:
+                    node = np.abs(node)  # the track is symmetric about a sleeper
+                here = np.flatnonzero((node >= 0) & (node < positions))
+                weights[s, here] += cubic[offset + 1, here] * response[node[here], here]
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for done, _ in enumerate(pool.map(fill, range(positions)), 1):
+            if progress is not None:
+                progress(done, positions, f"moving kernel of {taps * time_step:.2g} s")
+    return weights
+
+
+def _causality_error(track: Track, time_step: float, taps: int) -> float:
+    """Largest difference of levels between the causal kernel and the receptance, at mid-span, dB."""
+    grid = _Transform(track, time_step, taps, ZONES)
+    middle = 0.5 * track.sleeper_spacing
+    amplitude = grid.hat * grid.waves.coefficients
+    receptance = (amplitude * grid.waves.outgoing(middle) * grid.waves.incoming(middle)).sum(axis=0)
+    weights = grid.response(receptance[None])[0]
+    frequency = np.geomspace(LOWEST, min(HIGHEST, 0.25 / time_step), 60)
+    lines = np.unique(np.searchsorted(grid.omega.real, 2.0 * np.pi * frequency))
+    omega = grid.omega.real[lines]
+    found = np.exp(-1j * omega[:, None] * time_step * np.arange(taps)) @ weights
+    half = 0.5 * omega * time_step
+    expected = (np.sin(half) / half) ** 2 * track.receptance(omega / (2.0 * np.pi), middle, middle)
+    return float(np.abs(20.0 * np.log10(np.abs(found / expected))).max())
