@@ -241,50 +241,58 @@ def _fading_frequency(track: Track, omega: NDArray) -> float:
     return float(brentq(excess, step, omega[-1]))
 
 
-def _weights(track: Track, speed: float, time_step: float, taps: int, positions: int) -> NDArray[np.float64]:
+def _weights(
+    track: Track, speed: float, time_step: float, taps: int, positions: int, progress: Progress | None
+) -> NDArray[np.float64]:
     """All rows of the kernel."""
     spacing = track.sleeper_spacing / positions
-    lag = np.arange(taps)
-    near, far = (_Transform(track, time_step, taps, zones) for zones in (ZONES, 1))
     nodes = spacing * np.arange(positions)
+    near, far = (_Transform(track, time_step, taps, zones) for zones in (ZONES, 1))
     shapes = {
         grid: [np.array([shape(x) for x in nodes]) for shape in (grid.waves.outgoing, grid.waves.incoming)]
         for grid in (near, far)
     }
-    weights = np.zeros((positions, taps))
 
-    def fill(s: int) -> None:
-        at = s + lag * (speed * time_step / spacing)  # in nodes
+    def row(start: int) -> NDArray[np.float64]:
+        at = start + np.arange(taps) * (speed * time_step / spacing)  # in nodes
         base = np.floor(at).astype(int)
-        share = at - base
-        cubic = np.stack(
-            [
-                -share * (share - 1.0) * (share - 2.0) / 6.0,
-                (share + 1.0) * (share - 1.0) * (share - 2.0) / 2.0,
-                -(share + 1.0) * share * (share - 2.0) / 2.0,
-                (share + 1.0) * share * (share - 1.0) / 6.0,
-            ]
-        )
+        cubic, result = _cubic(at - base), np.zeros(taps)
         for bay in range(int(base[-1] + 2) // positions + 1):
             grid = near if bay == 0 else far
             outgoing, incoming = shapes[grid]
-            amplitude = grid.hat * grid.waves.coefficients
-            spectra = (amplitude * grid.waves.multipliers**bay * incoming[s] * outgoing).sum(axis=1)
+            amplitude = grid.hat * grid.waves.coefficients * grid.waves.multipliers**bay
+            spectra = (amplitude * incoming[start] * outgoing).sum(axis=1)
             if bay == 0:  # behind the source: by reciprocity
-                spectra[:s] = (amplitude * outgoing[s] * incoming[:s]).sum(axis=1)
+                spectra[:start] = (amplitude * outgoing[start] * incoming[:start]).sum(axis=1)
             response = grid.response(spectra)
-            for offset in range(-1, 3):
+            for weight, offset in zip(cubic, range(-1, 3), strict=True):
                 node = base + offset - bay * positions
-                if bay == 0 and s == 0:
+                if bay == 0 and start == 0:
                     node = np.abs(node)  # the track is symmetric about a sleeper
                 here = np.flatnonzero((node >= 0) & (node < positions))
-                weights[s, here] += cubic[offset + 1, here] * response[node[here], here]
+                result[here] += weight[here] * response[node[here], here]
+        return result
 
+    weights = np.zeros((positions, taps))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for done, _ in enumerate(pool.map(fill, range(positions)), 1):
+        for done, found in enumerate(pool.map(row, range(positions))):
+            weights[done] = found
             if progress is not None:
-                progress(done, positions, f"moving kernel of {taps * time_step:.2g} s")
+                progress(done + 1, positions, f"moving kernel of {taps * time_step:.2g} s")
     return weights
+
+
+def _cubic(share: NDArray) -> NDArray:
+    """Weights of the nodes −1, 0, 1, 2 for places between 0 and 1 (Lagrange)."""
+    before, after, beyond = share + 1.0, share - 1.0, share - 2.0
+    return np.stack(
+        [
+            -share * after * beyond / 6.0,
+            before * after * beyond / 2.0,
+            -before * share * beyond / 2.0,
+            before * share * after / 6.0,
+        ]
+    )
 
 
 def _causality_error(track: Track, time_step: float, taps: int) -> float:
