@@ -171,10 +171,9 @@ def _blocks(lines: _Lines) -> list[slice]:
 
 def _lateral_factor(distance: NDArray[np.float64]) -> NDArray[np.float64]:
     """Matrix that mixes independent numbers into lines with coherence z K1(z) at `distance` z."""
-    coherence = np.ones(distance.size)
+    coherence = np.full(distance.size, 1.0 + 1e-10)  # keeps nearly equal lines factorable
     coherence[1:] = distance[1:] * k1(distance[1:])
-    values, vectors = linalg.eigh(linalg.toeplitz(coherence))
-    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
+    return np.asarray(linalg.cholesky(linalg.toeplitz(coherence), lower=True))
 
 
 def _correction(lines: _Lines, energies: NDArray[np.float64]) -> NDArray[np.float64]:
