@@ -37,7 +37,7 @@ _RATES = {
     "decay_rate_en15461": ("EN 15461, sum over distances", _ORANGE, (0, (6, 1.5)), 1.2),
     "decay_rate_limit": ("lower limit, ISO 3095", INK, (0, (4, 2)), 1.4),
 }
-KERNELS = 4
+KERNELS = 6
 """Start positions of the moving kernel that are drawn, at most."""
 
 
