@@ -212,6 +212,18 @@ def test_speed_and_sleepers_follow_from_the_run(tree):
     assert sleeper_spacing(tree) == pytest.approx(SLEEPERS, rel=1e-9)
 
 
+def test_bands_without_roughness_are_not_drawn():
+    tree = small()
+    level = tree["spectra"]["roughness_level"].values
+    level[:, :5] = -130.0
+    level[1, 12] = -100.0
+    axes = PARTS["roughness"].draw(tree).axes[0]
+    rail, wheel = (next(x for x in axes.lines if x.get_label() == name) for name in ("rail", "wheel"))
+    assert np.array_equal(rail.get_ydata(), level[0, 5:])
+    assert np.isnan(wheel.get_ydata()[7])
+    assert len(PARTS["roughness"].columns(tree)["wavelength [m]"]) == level.shape[1]
+
+
 def test_force_spectrum_carries_the_marks_of_the_track(tree):
     axes = PARTS["force_psd"].draw(tree).axes[0]
     assert lines_at(axes) == pytest.approx([PINNED - SPEED / 1.2, PINNED + SPEED / 1.2])

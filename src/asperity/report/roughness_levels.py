@@ -15,6 +15,8 @@ from asperity.report.part import Columns, Part
 from asperity.report.style import INK, LAW_STYLES, MUTED, legend_above, level_limits, new_figure, styled
 
 ROUGHNESS, BAND = "spectra/roughness_level", "spectra/surface_band"
+SPAN = 60.0
+"""Levels, dB, that are drawn below the highest: a texture without waves leaves rounding errors."""
 _LOOK = {
     "rail": (LAW_STYLES["areal"].colour, "-", "o"),
     "wheel": (LAW_STYLES["shifted"].colour, (0, (6, 1.5)), "s"),
@@ -31,20 +33,28 @@ def _parts(tree: DataTree) -> dict[str, NDArray[np.float64]]:
     return {name: row for name, row in zip(names, rows, strict=True) if np.isfinite(row).any()}
 
 
+def _drawn(tree: DataTree) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
+    """Wavelengths and levels that are drawn: bands in which some part reaches into the span."""
+    levels = _parts(tree)
+    lowest = max(np.nanmax(level) for level in levels.values()) - SPAN
+    drawn = {name: np.where(level >= lowest, level, np.nan) for name, level in levels.items()}
+    kept = np.isfinite(np.stack(list(drawn.values()))).any(axis=0)
+    return values(tree, BAND)[kept], {name: level[kept] for name, level in drawn.items()}
+
+
 @styled()
 def roughness_figure(tree: DataTree) -> Figure:
     """Roughness levels per one-third octave of wavelength, long waves on the left."""
     figure = new_figure(4.2)
     axes = figure.subplots()
-    wavelength = values(tree, BAND)
-    levels = _parts(tree)
+    wavelength, levels = _drawn(tree)
     for name, level in levels.items():
         colour, dashes, marker = _LOOK.get(name, (MUTED, "-", "^"))
         thick = 1.8 if name == "combined" else 1.4
         axes.plot(
             wavelength, level, color=colour, linestyle=dashes, marker=marker, label=name, linewidth=thick
         )
-    level_limits(axes, levels.values(), span=100.0)
+    level_limits(axes, levels.values(), span=100.0, step=5.0)
     axes.set_ylabel("roughness level / dB re 1 µm")
     _wavelength_axis(axes, wavelength)
     pace = speed(tree)
@@ -106,7 +116,8 @@ def _caption(tree: DataTree) -> str:
     combined = " Combined: rail and wheel as they meet in the contact." if "combined" in _parts(tree) else ""
     return (
         "Roughness levels per one-third octave of wavelength, re 1 µm, of the textures that were rolled, "
-        f"before any contact filter.{combined} Gaps: bands that the texture does not hold."
+        f"before any contact filter.{combined} Left out: bands that the texture "
+        f"does not hold, and levels more than {SPAN:.0f} dB below the highest."
     )
 
 
