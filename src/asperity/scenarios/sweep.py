@@ -48,8 +48,8 @@ def sweep(
     -------
     xarray.Dataset, dims (speed, load, law, band)
         `force_level`, `force_level_difference` (to the linear law), `rms_force`, `contact_loss_share`,
-        `contact_loss_events`, `sound_power_level_a` (by source), `verdict`; NaN where a run has no such
-        value, as force levels in bands that only other runs have. Attributes: case, seed and version.
+        `contact_loss_events`, `sound_power_level_a` (by source); NaN where a run has no such value, as
+        force levels in bands that only other runs have. Attributes: case, seed and version.
 
     Raises
     ------
@@ -76,6 +76,7 @@ def sweep(
         [changed(loaded, speed=f"{v!r} m/s", wheel={"load": f"{p!r} N"}) for p in map(float, loads)]
         for v in map(float, speeds)
     ]
+    by_load = _coordinate("load", loads, "N", "static contact force")
     rows = []
     for i, (speed, row) in enumerate(zip(speeds, cases, strict=True)):
         found = []
@@ -84,7 +85,7 @@ def sweep(
             report(i * len(loads) + j, len(speeds) * len(loads), f"sweep: {where}")
             found.append(_tabulated(run(one, progress)))
         rows.append(
-            xarray.concat(found, _coordinate("load", loads, "N", "static contact force"), join="outer")
+            xarray.concat(found, by_load, join="outer")
         )
     report(len(speeds) * len(loads), len(speeds) * len(loads), "sweep")
     table = xarray.concat(rows, _coordinate("speed", speeds, "m/s", "rolling speed"), join="outer")
@@ -93,15 +94,13 @@ def sweep(
 
 def _tabulated(tree: xarray.DataTree) -> xarray.Dataset:
     """What a sweep keeps of one run."""
-    from asperity.results import variable
+    import xarray
 
     kept = {n: tree[g][n].reset_coords(drop=True) for n, g in TABULATED.items() if n in tree[g]}
     force = tree["rolling/contact_force"]
     kept["rms_force"] = force.std("time").reset_coords(drop=True)
     kept["rms_force"].attrs = {"units": "N", "long_name": "rms of the contact force about its mean"}
-    table = force.to_dataset().drop_dims("time").merge(kept)
-    table["verdict"] = variable((), np.array(tree.attrs["verdict"]), "1", "what the run says")
-    return table
+    return xarray.Dataset(kept)
 
 
 def _coordinate(name: str, values: Sequence[float], units: str, long_name: str) -> xarray.DataArray:

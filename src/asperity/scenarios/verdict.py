@@ -46,7 +46,8 @@ def verdict(runs: Mapping[str, Run], spectra: xarray.Dataset, body: str) -> str:
     if "sound_power_level_a" in spectra and "linear" in spectra["law"].values and main != "linear":
         level = spectra["sound_power_level_a"].sel(source="total")
         louder = float(level.sel(law=main) - level.sel(law="linear"))
-        parts.append(f"which makes the A-weighted sound power {louder:+.1f} dB".replace("-", "−"))
+        change = f"{louder:+.1f} dB".replace("-", "−")
+        parts.append(f"which changes the A-weighted sound power by {change}")
     return ", ".join(parts) + "."
 
 
