@@ -1,0 +1,246 @@
+"""Defects of wheel and rail as lines: corrugation, wheel flat, dipped joint. Heights positive out of the body."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import fft
+
+from asperity.errors import InputError
+from asperity.surfaces.heightmap import Profile
+
+FlatShape = Literal["fresh", "worn"]
+
+TABLE_POINTS = 1001
+"""Points over half a worn flat at which its envelope is found."""
+
+
+def corrugation(
+    n: int,
+    spacing: float,
+    *,
+    wavelength: float,
+    amplitude: float | None = None,
+    rms: float | None = None,
+    bandwidth: float | None = None,
+    seed: int = 0,
+) -> Profile:
+    """Corrugation of a rail: a sine, or a band of waves about one wavelength.
+
+    Parameters
+    ----------
+    n : int
+        Points.
+    spacing : float
+        Spacing, m.
+    wavelength : float
+        Wavelength of the sine, or geometric centre of the band, m.
+    amplitude, rms : float, optional
+        Exactly one of them, m: half the height between peak and trough, or the root mean square. The
+        amplitude of a band is √2 times its rms.
+    bandwidth : float, optional
+        Width of the band, octaves; a sine if left out. The density is constant in the band, phases are
+        random.
+    seed : int, optional
+        Seed of the random phases of a band.
+
+    Returns
+    -------
+    Profile
+        Heights about zero, m. A sine starts at zero rising; a band has the exact rms over the line, and
+        closes on itself.
+
+    Raises
+    ------
+    InputError
+        If not exactly one size is given, a size is negative, the spacing is too coarse or the line too short
+        for the band.
+
+    Notes
+    -----
+    No standard gives a spectrum of corrugation; an amplitude of 25 µm at the wavelength v/f_pp of the
+    pinned-pinned frequency is used in the literature.
+    """
+    if (amplitude is None) == (rms is None):
+        received = "both" if rms is not None else "neither"
+        raise InputError("size of the corrugation", received, "exactly one of amplitude and rms")
+    size = rms if rms is not None else amplitude / math.sqrt(2.0) if amplitude is not None else 0.0
+    if not 0.0 <= size < math.inf:
+        raise InputError("size of the corrugation", size, "zero or more, m")
+    half = 2.0 ** (0.0 if bandwidth is None else bandwidth / 2.0)
+    if not 1.0 <= half < math.inf:
+        raise InputError("bandwidth of the corrugation", bandwidth, "zero or more octaves, finite")
+    if not 2.0 * spacing <= wavelength / half < math.inf:
+        received = f"{wavelength / half:.4g} m as the shortest wavelength"
+        raise InputError("corrugation", received, f"at least two samples, {2.0 * spacing:.4g} m")
+    if bandwidth is None:
+        x = np.arange(n) * spacing
+        heights = math.sqrt(2.0) * size * np.sin(2.0 * np.pi * x / wavelength)
+        return Profile(heights, spacing, f"corrugation of {wavelength:.4g} m")
+    wavenumber = fft.rfftfreq(n, spacing)
+    inside = (wavenumber >= 1.0 / (wavelength * half)) & (wavenumber <= half / wavelength)
+    if not inside.any():
+        remedy = "Lengthen the line or widen the band."
+        raise InputError(
+            "corrugation", f"a line of {n * spacing:.4g} m", "a line that resolves the band", remedy
+        )
+    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, wavenumber.size)
+    heights = fft.irfft(inside * np.exp(1j * phases), n)
+    heights *= size / math.sqrt(np.mean(heights**2))
+    return Profile(heights, spacing, f"corrugation of {wavelength:.4g} m, {bandwidth:g} octaves, seed {seed}")
+
+
+def flat_length(depth: float, radius: float) -> float:
+    """Length of a fresh wheel flat.
+
+    Parameters
+    ----------
+    depth : float
+        Depth at its middle below the round wheel, m.
+    radius : float
+        Of the wheel, m.
+
+    Returns
+    -------
+    float
+        Chord l = √(8 R d), m, for d much smaller than R.
+
+    Raises
+    ------
+    InputError
+        If the depth is not between zero and a twentieth of the radius.
+    """
+    if not 0.0 < depth <= radius / 20.0:
+        raise InputError(
+            "depth of the wheel flat", f"{depth} m", f"above zero, up to {radius / 20.0:.4g} m (R/20)"
+        )
+    return math.sqrt(8.0 * radius * depth)
+
+
+def flat_geometry(
+    x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh"
+) -> NDArray[np.float64]:
+    """Height of a flatted wheel against the round one.
+
+    Parameters
+    ----------
+    x : array_like
+        Distance along the circumference from the middle of the flat, m.
+    depth : float
+        Depth d at the middle, m.
+    radius : float
+        Of the wheel, m.
+    shape : {"fresh", "worn"}, optional
+        Fresh: a chord, -(d - x²/2R) for |x| <= l/2. Worn: rounded, -d/2 (1 + cos 2πx/l). Both have the length
+        l = √(8 R d) of the chord.
+
+    Returns
+    -------
+    ndarray
+        Heights, m, zero or negative, shape of `x`.
+
+    Raises
+    ------
+    InputError
+        If the depth or the shape is wrong.
+
+    References
+    ----------
+    S. G. Newton and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287-297 (chord and rounded flat).
+    """
+    length = flat_length(depth, radius)
+    distance = np.asarray(x, dtype=np.float64)
+    inside = np.abs(distance) <= length / 2.0
+    return np.where(inside, _flat_shape(distance, depth, radius, length, shape), 0.0)
+
+
+def _flat_shape(
+    x: NDArray[np.float64], depth: float, radius: float, length: float, shape: str
+) -> NDArray[np.float64]:
+    if shape == "fresh":
+        return -(depth - x**2 / (2.0 * radius))
+    if shape == "worn":
+        return np.asarray(-0.5 * depth * (1.0 + np.cos(2.0 * np.pi * x / length)))
+    raise InputError("shape of the wheel flat", repr(shape), "'fresh' or 'worn'")
+
+
+def flat_trajectory(
+    x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh"
+) -> NDArray[np.float64]:
+    """Height of the centre of a rigid flatted wheel that rolls on a rigid flat rail.
+
+    Parameters
+    ----------
+    x : array_like
+        Position of the wheel's centre from where the middle of the flat is below it, m.
+    depth : float
+        Depth d at the middle, m.
+    radius : float
+        Of the wheel, m.
+    shape : {"fresh", "worn"}, optional
+        See `flat_geometry`. Over a fresh flat the wheel turns about the ends of the chord in turn:
+        -(l/2 - |x|)²/2R, with a kink of slope ±l/2R at the middle. For a worn flat z(s) the envelope
+        max over s of z(s) - (s - x)²/2R is tabulated.
+
+    Returns
+    -------
+    ndarray
+        Heights, m, zero or negative, shape of `x`.
+
+    Raises
+    ------
+    InputError
+        If the depth or the shape is wrong.
+
+    References
+    ----------
+    T. X. Wu and D. J. Thompson, J. Sound Vib. 251 (2002) 115-139 (wheel flats).
+    """
+    length = flat_length(depth, radius)
+    distance = np.abs(np.asarray(x, dtype=np.float64))
+    if shape == "fresh":
+        return np.where(distance <= length / 2.0, -((length / 2.0 - distance) ** 2) / (2.0 * radius), 0.0)
+    touching = np.linspace(-length / 2.0, length / 2.0, 2 * TABLE_POINTS - 1)
+    height = flat_geometry(touching, depth, radius, shape)
+    at = touching[TABLE_POINTS - 1 :]
+    envelope = np.max(height - (touching - at[:, None]) ** 2 / (2.0 * radius), axis=1)
+    return np.interp(distance, at, envelope, right=0.0)
+
+
+def dipped_joint(x: ArrayLike, depth: float, length: float) -> NDArray[np.float64]:
+    """Height of a rail with a dipped joint: two parabolas that meet in a kink.
+
+    Parameters
+    ----------
+    x : array_like
+        Distance from the joint along the rail, m.
+    depth : float
+        Depth at the joint, m.
+    length : float
+        Length of the whole dip, m.
+
+    Returns
+    -------
+    ndarray
+        Heights -depth (1 - 2|x|/length)² for |x| <= length/2, else zero, m, shape of `x`. The rail turns by
+        8 depth/length at the joint and joins the straight rail without a kink.
+
+    Raises
+    ------
+    InputError
+        If depth or length is not positive, or the dip is not shallow.
+
+    References
+    ----------
+    T. X. Wu and D. J. Thompson, J. Sound Vib. 267 (2003) 485-496 (rail joints with quadratic dips).
+    """
+    if not 0.0 < length < math.inf:
+        raise InputError("length of the dipped joint", length, "a finite positive length, m")
+    if not 0.0 < depth <= length / 20.0:
+        allowed = f"above zero, up to {length / 20.0:.4g} m (a twentieth of its length)"
+        raise InputError("depth of the dipped joint", f"{depth} m", allowed)
+    remaining = np.clip(1.0 - 2.0 * np.abs(np.asarray(x, dtype=np.float64)) / length, 0.0, None)
+    return np.asarray(-depth * remaining**2)
