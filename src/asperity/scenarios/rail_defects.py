@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,24 +29,20 @@ def corrugated(case: WheelOnRailCase, rows: int, seed: int) -> NDArray[np.float6
     Returns
     -------
     ndarray, shape (rows,)
-        Heights, m, the same all across; zero without a corrugation. One with a bandwidth has the mean
-        square of the sine of the amplitude given.
+        Heights, m, the same all across; zero without a corrugation.
     """
     surface = case.surface
     if surface.corrugation is None or surface.corrugation_wavelength is None:
         return np.zeros(rows)
-    size = {"amplitude": surface.corrugation}
-    if surface.corrugation_bandwidth is not None:
-        size = {"rms": surface.corrugation / math.sqrt(2.0)}
     made = corrugation(
         rows,
         case.contact.spacing,
         wavelength=surface.corrugation_wavelength,
+        amplitude=surface.corrugation,
         bandwidth=surface.corrugation_bandwidth,
         seed=seed,
-        **size,
     )
-    return np.asarray(getattr(made, "heights", made))
+    return made.heights
 
 
 def defects(

@@ -17,6 +17,7 @@ from asperity.scenarios.track_group import track_group
 from asperity.scenarios.tree import assembled, law_coordinate, loss_variables
 from asperity.scenarios.verdict import verdict
 from asperity.scenarios.wheel_on_rail import Computed
+from asperity.structures.rail_poles import RailPoles
 
 
 def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
@@ -58,11 +59,11 @@ def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:
     yield "start positions of the moving kernel", f"{kernel.weights.shape[0]} in a bay"
     yield "length of the moving kernel", f"{kernel.lag[-1]:.3g} s, {kernel.weights.shape[1]} steps"
     yield "error of the moving kernel from non-causal losses", f"{kernel.causality_error:.2g} dB"
-    if rail is kernel:
-        yield "track in time", "scattered from the moving kernel"
-    else:
-        yield "track in time", f"{computed.case.numerics.poles} poles"
+    if isinstance(rail, RailPoles):
+        yield "track in time", f"{len(rail.poles)} poles"
         yield "error of the fitted poles, relative", f"{rail.fit_error:.1e}"
+    else:
+        yield "track in time", "scattered from the moving kernel"
 
 
 def _rolling(computed: Computed) -> xarray.Dataset:

@@ -84,9 +84,7 @@ def sweep(
             where = f"{speed:.4g} m/s, {load / 1e3:.4g} kN"
             report(i * len(loads) + j, len(speeds) * len(loads), f"sweep: {where}")
             found.append(_tabulated(run(one, progress)))
-        rows.append(
-            xarray.concat(found, by_load, join="outer")
-        )
+        rows.append(xarray.concat(found, by_load, join="outer"))
     report(len(speeds) * len(loads), len(speeds) * len(loads), "sweep")
     table = xarray.concat(rows, _coordinate("speed", speeds, "m/s", "rolling speed"), join="outer")
     return table.assign_attrs(_provenance(loaded))

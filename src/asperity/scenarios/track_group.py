@@ -11,6 +11,7 @@ from asperity.results import variable
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.wheel_on_rail import Computed
 from asperity.structures.decay_rate import decay_rate, decay_rate_en15461
+from asperity.structures.rail_poles import RailPoles
 
 LOWEST_FREQUENCY = 20.0
 FREQUENCIES = 600
@@ -87,8 +88,8 @@ def _attributes(computed: Computed) -> dict[str, float | int | str]:
         "critical_speed": track.critical_speed,
         "static_deflection": track.static_deflection(case.wheel.load, 0.5 * track.sleeper_spacing),
         "kernel_causality_error": computed.kernel.causality_error,
-        "kernel_method": "scatter" if computed.rail is computed.kernel else "poles",
+        "kernel_method": "poles" if isinstance(computed.rail, RailPoles) else "scatter",
     }
-    if computed.rail is not computed.kernel:
-        attrs |= {"kernel_fit_error": computed.rail.fit_error, "kernel_poles": case.numerics.poles}
+    if isinstance(computed.rail, RailPoles):
+        attrs |= {"kernel_fit_error": computed.rail.fit_error, "kernel_poles": len(computed.rail.poles)}
     return attrs

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.config import WheelOnRailCase
 from asperity.config.tables import read_modes, read_receptance
-from asperity.errors import TruncatedContactWarning
+from asperity.errors import TruncatedContactWarning, UnconvergedWarning
 from asperity.pointforce import Law
 from asperity.progress import Progress
 from asperity.rolling.passing import passed_points
@@ -84,7 +84,15 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
     rail: RailPoles | MovingKernel = kernel
     if case.numerics.kernel == "poles":
         found = rail_poles(kernel, count=case.numerics.poles, cache=store)
-        rail = found if found.accepted else kernel
+        if found.accepted:
+            rail = found
+        else:
+            warnings.warn(
+                f"{case.numerics.poles} poles miss the moving kernel by {100 * found.fit_error:.2g} %: the "
+                "track is scattered from the kernel itself, which is slower. Take more poles.",
+                UnconvergedWarning,
+                stacklevel=2,
+            )
     watch.lap("track")
     checkpoint = Checkpoint(store, _run_key(case, textures)) if "direct" in case.laws else None
 
