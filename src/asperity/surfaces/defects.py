@@ -1,4 +1,4 @@
-"""Defects of wheel and rail as lines: corrugation, wheel flat, dipped joint. Heights positive out of the body."""
+"""Defects of wheel and rail as lines, heights positive out of the body: corrugation, wheel flat, dipped joint."""
 
 from __future__ import annotations
 

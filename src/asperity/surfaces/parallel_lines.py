@@ -139,8 +139,8 @@ def strip_from_lines(
 
     Notes
     -----
-    Between lines that have little in common the interpolated texture is smoother than a measured one: its mean
-    square falls to about half, midway between uncorrelated lines.
+    Between lines that have little in common the interpolated texture is smoother than a measured one: its
+    mean square falls to about half, midway between uncorrelated lines.
     """
     heights = np.asarray(lines, dtype=np.float64)
     if heights.ndim != 2 or heights.size == 0 or not np.isfinite(heights).all():
