@@ -26,7 +26,7 @@ from asperity.config.tables import read_levels
 from asperity.errors import InputError
 
 RAIL_SPECTRA = ("iso3095", "cnossos-average")
-PROCESSING = ("spikes", "curvature")
+PROCESSING = ("fill", "spikes", "curvature")
 TABLE_OF_LEVELS = "a table of wavelengths and levels"
 
 Spectrum = Annotated[str | Path, BeforeValidator(ChoiceOrFile(RAIL_SPECTRA, TABLE_OF_LEVELS))]

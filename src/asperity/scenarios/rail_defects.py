@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config import WheelOnRailCase
-from asperity.surfaces.defects import corrugation, dipped_joint, flat_geometry, flat_trajectory
+from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.en15610 import roll_over
 from asperity.surfaces.heightmap import Profile
 
@@ -76,6 +78,7 @@ def defects(
     if wheel.flat_depth is not None:
         around = turn * spacing
         along = np.mod(position - case.start - wheel.flat_position + 0.5 * around, around) - 0.5 * around
-        geometry += flat_geometry(along, wheel.flat_depth, wheel.radius, wheel.flat_shape)
-        trajectory += flat_trajectory(along, wheel.flat_depth, wheel.radius, wheel.flat_shape)
+        shape = cast(FlatShape, wheel.flat_shape)
+        geometry += flat_geometry(along, wheel.flat_depth, wheel.radius, shape)
+        trajectory += flat_trajectory(along, wheel.flat_depth, wheel.radius, shape)
     return (geometry, trajectory) if geometry.any() else (None, None)

@@ -69,7 +69,8 @@ def gather(case: WheelOnRailCase) -> Textures:
     path = HeightMap(rough + on_rail[:, None], (contact.spacing, contact.spacing))
     middle = margin // 2
     start = case.start - before * contact.spacing
-    geometry, trajectory = defects(case, start + contact.spacing * np.arange(rows), len(turn.heights))
+    at = start + contact.spacing * np.arange(rows, dtype=np.float64)
+    geometry, trajectory = defects(case, at, len(turn.heights))
     parts = {
         "rail": rail.heights[:, middle] + on_rail,
         "wheel": turn.heights[around, middle],
