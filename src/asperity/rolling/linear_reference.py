@@ -1,0 +1,165 @@
+"""The linear reference in the frequency domain: roughness moved between a wheel and a rail at rest.
+
+The force is F = −h/(α_W + α_C + α_R) with the receptances of wheel, contact spring and rail, and the texture
+h positive away from contact: F = z/(α_W + α_C + α_R) of heights z. P. J. Remington, J. Sound Vib. 46 (1976)
+359-379; D. J. Thompson, Railway Noise and Vibration (Elsevier, 2009).
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError
+
+
+class WheelReceptance(Protocol):
+    """A wheel, as far as the linear reference knows it."""
+
+    def receptance(self, frequency: ArrayLike, /) -> NDArray:
+        """Displacement per force at the contact point, m/N."""
+
+
+class RailReceptance(Protocol):
+    """A rail on equal supports, as far as the linear reference knows it."""
+
+    @property
+    def sleeper_spacing(self) -> float:
+        """Length of a bay, m."""
+
+    def receptance(self, frequency: ArrayLike, x: float, x0: float, /) -> NDArray:
+        """Displacement at `x` per force at `x0`, m/N."""
+
+
+def force_transfer(
+    frequency: ArrayLike, wheel: WheelReceptance, track: RailReceptance, stiffness: float, x: ArrayLike
+) -> NDArray[np.complex128]:
+    """Contact force per height of the texture, the wheel at given positions on the rail.
+
+    Parameters
+    ----------
+    frequency : array_like (f,)
+        Hz, zero or above; at zero the force is zero, since the wheel is free.
+    wheel : WheelReceptance
+        The wheel.
+    track : RailReceptance
+        The rail.
+    stiffness : float
+        Tangent stiffness of the contact at the static load, N/m; infinite for a rigid contact.
+    x : array_like (n,)
+        Positions, m from a sleeper.
+
+    Returns
+    -------
+    ndarray (n, f) of complex
+        F/z = 1/(α_W + α_C + α_R), N/m; force compressive, height out of the material; e^{+iωt}.
+
+    Raises
+    ------
+    InputError
+        If a frequency is negative or the stiffness not positive.
+    """
+    f = np.atleast_1d(np.asarray(frequency, dtype=float))
+    if not (f >= 0.0).all():
+        raise InputError("frequency (Hz)", float(np.min(f)), "zero or above")
+    if not stiffness > 0.0:
+        raise InputError("contact stiffness (N/m)", stiffness, "a positive number")
+    positions, moving = np.atleast_1d(np.asarray(x, dtype=float)), f > 0.0
+    transfer = np.zeros((positions.size, f.size), dtype=complex)
+    carried = wheel.receptance(f[moving]) + 1.0 / stiffness
+    for row, position in zip(transfer, positions, strict=True):
+        row[moving] = 1.0 / (carried + track.receptance(f[moving], position, position))
+    return transfer
+
+
+def mean_square_transfer(
+    frequency: ArrayLike,
+    wheel: WheelReceptance,
+    track: RailReceptance,
+    stiffness: float,
+    positions: int = 12,
+) -> NDArray[np.float64]:
+    """Mean square over a bay of the contact force per height of the texture.
+
+    Parameters
+    ----------
+    frequency : array_like (f,)
+        Hz, zero or above.
+    wheel : WheelReceptance
+        The wheel.
+    track : RailReceptance
+        The rail; a bay is its own mirror image, so the positions cover half of it.
+    stiffness : float
+        Tangent stiffness of the contact at the static load, N/m.
+    positions : int
+        Midpoints of as many equal parts of half a bay.
+
+    Returns
+    -------
+    ndarray (f,)
+        Mean of |F/z|², (N/m)².
+
+    Raises
+    ------
+    InputError
+        As `force_transfer`, or if there are no positions.
+    """
+    if positions < 1:
+        raise InputError("positions in a bay", positions, "one or more")
+    x = (np.arange(positions) + 0.5) * 0.5 * track.sleeper_spacing / positions
+    return np.mean(np.abs(force_transfer(frequency, wheel, track, stiffness, x)) ** 2, axis=0)
+
+
+def linear_force_psd(
+    frequency: ArrayLike,
+    texture_psd: ArrayLike,
+    speed: float,
+    wheel: WheelReceptance,
+    track: RailReceptance,
+    stiffness: float,
+    positions: int = 12,
+) -> NDArray[np.float64]:
+    """Power spectral density of the linear contact force.
+
+    Parameters
+    ----------
+    frequency : array_like (f,)
+        Hz, zero or above.
+    texture_psd : array_like (f,)
+        One-sided PSD per cycle/m of the texture that the contact feels (wheel and rail added, filtered
+        where a filter belongs), m³, at the wavenumbers frequency/speed.
+    speed : float
+        m/s.
+    wheel : WheelReceptance
+        The wheel.
+    track : RailReceptance
+        The rail.
+    stiffness : float
+        Tangent stiffness of the contact at the static load, N/m.
+    positions : int
+        As `mean_square_transfer`.
+
+    Returns
+    -------
+    ndarray (f,)
+        One-sided, N²/Hz: mean of |F/z|² times W(f/v)/v.
+
+    Raises
+    ------
+    InputError
+        If the speed is not positive or the lengths differ; or as `mean_square_transfer`.
+
+    Notes
+    -----
+    Without motion: at each position the structures answer as if the wheel stood there. Valid while the
+    speed is far below that of waves in the rail, and away from the pinned-pinned frequency, whose peak
+    motion splits and lowers; without the tones of the sleepers.
+    """
+    f, texture = np.atleast_1d(np.asarray(frequency, dtype=float)), np.atleast_1d(np.asarray(texture_psd))
+    if not (np.isfinite(speed) and speed > 0.0):
+        raise InputError("speed (m/s)", speed, "a finite positive number")
+    if f.shape != texture.shape:
+        raise InputError("texture_psd", f"shape {texture.shape}", f"one value per frequency, {f.shape}")
+    return mean_square_transfer(f, wheel, track, stiffness, positions) * texture / speed
