@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
+from scipy.optimize import minimize_scalar
 
 from asperity.config import WheelOnRailCase
 from asperity.contact import Hertz
@@ -96,7 +97,15 @@ def _lowest_in_the_middle(tread: _Section, head: _Section, y: NDArray[np.float64
     middle = 0.0
     if np.isfinite(reach) and reach > y[-1]:
         fine = np.linspace(y[-1] - reach, reach - y[-1], _FINE * len(y))
-        middle = float(fine[np.argmin(tread.at(fine) + head.at(fine))])
+        lowest = int(np.argmin(tread.at(fine) + head.at(fine)))
+        around = (float(fine[max(lowest - 1, 0)]), float(fine[min(lowest + 1, len(fine) - 1)]))
+        found = minimize_scalar(
+            lambda at: float((tread.at(np.array([at])) + head.at(np.array([at])))[0]),
+            bounds=around,
+            method="bounded",
+            options={"xatol": 1e-7},
+        )
+        middle = float(found.x)
     gap = tread.at(y + middle) + head.at(y + middle)
     gap = gap - gap[len(y) // 2]
     if gap.min() < -1e-9:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from typing import cast
 
 import numpy as np
@@ -13,7 +14,7 @@ from asperity.config.wheel import WheelCase
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.scenarios.rail_records import Grid, Record
 from asperity.surfaces.continuation import Continuation, close, extend
-from asperity.surfaces.en15610 import process
+from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.levels import check_levels
@@ -25,7 +26,7 @@ FULL_TURN = 0.02
 JOIN = 10e-3
 """Length on either side over which the ends of a turn are made to meet, m."""
 SAME_TEXTURE = 0.5
-"""Correlation of neighbouring lines from which they are brought into register."""
+"""Median correlation of neighbouring lines from which they are brought into register."""
 
 
 def rail_lines(surface: RailSurface, grid: Grid) -> Record:
@@ -106,7 +107,7 @@ def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
         )
     found = register(profiles)
     lines = found.lines
-    if len(lines) > 1 and min(found.correlations) > SAME_TEXTURE:
+    if len(lines) > 1 and np.median(found.correlations[1:]) > SAME_TEXTURE:
         moved = sum(bool(s) or r for s, r in zip(found.shifts, found.reversed, strict=True))
         origin += f", {moved} brought into register ({sum(found.reversed)} turned round)"
     else:
@@ -141,9 +142,24 @@ def _measured(section: MeasuredLines, name: str) -> tuple[list[Profile], str]:
         )
     steps = {step: step in section.processing for step in ("spikes", "curvature")}
     done = [process(line, fill_gaps="fill" in section.processing, **steps) for line in raw]
-    notes = dict.fromkeys(str(how) for _, how in done)
-    text = f"{len(raw)} measured, {section.line.name}; " + " | ".join(notes)
-    return [level(line) for line, _ in done], text
+    return [level(line) for line, _ in done], f"{section.line.name}, {_done([how for _, how in done])}"
+
+
+def _done(steps: Sequence[Processing]) -> str:
+    """What processing did to all lines together."""
+    together = Processing(
+        trimmed=(sum(s.trimmed[0] for s in steps), sum(s.trimmed[1] for s in steps)),
+        fill=steps[0].fill,
+        filled=sum(s.filled for s in steps),
+        spikes=steps[0].spikes,
+        spikes_removed=sum(s.spikes_removed for s in steps),
+        spike_points=sum(s.spike_points for s in steps),
+        curvature=steps[0].curvature,
+        radius=steps[0].radius,
+        lifted=sum(s.lifted for s in steps) / len(steps),
+        largest_lift=max(s.largest_lift for s in steps),
+    )
+    return f"{len(steps)} line{'s' if len(steps) > 1 else ''} measured, {together}"
 
 
 def _check(lines: NDArray[np.float64], grid: Grid, what: str) -> None:

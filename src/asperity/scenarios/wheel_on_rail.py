@@ -101,7 +101,6 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
             rail,
             wheel,
             law,
-            speed=case.speed,
             start=case.start,
             duration=case.duration,
             settling=case.settling,
