@@ -67,10 +67,10 @@ def extend(
         folded = np.mod(index, 2 * (n - 1))
         return np.asarray(values[np.where(folded < n, folded, 2 * (n - 1) - folded)])
     if start < 0 or start + rows > n:
-        received = (
-            f"{n * spacing:.4g} m from {-start * spacing + 0.0:.4g} m" if start else f"{n * spacing:.4g} m"
-        )
+        received = f"{n * spacing:.4g} m"
         allowed = f"at least the run with its margins, {rows * spacing:.4g} m"
+        if start:
+            allowed += f", from {start * spacing:.4g} m on"
         remedy = "Set continuation to 'mirror' or 'repeat', or shorten the run."
         raise InputError(f"length of the {what}", received, allowed, remedy)
     return np.asarray(values[start : start + rows])

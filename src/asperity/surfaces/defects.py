@@ -1,4 +1,4 @@
-"""Defects of wheel and rail as lines, heights positive out of the body: corrugation, wheel flat, dipped joint."""
+"""Defects of wheel and rail as lines, heights positive out of the body: corrugation, flat, dipped joint."""
 
 from __future__ import annotations
 

@@ -130,13 +130,13 @@ def process(
     Notes
     -----
     Pits narrower than the patch that the circle bridges are no longer in the line: a contact filter or a
-    contact geometry applied after it counts that effect twice in part. Leave `curvature` out for laws that solve
-    the contact on the heights themselves.
+    contact geometry applied after it counts that effect twice in part. Leave `curvature` out for laws that
+    solve the contact on the heights themselves.
     """
     if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
         message = (
-            f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610: spikes and short waves are "
-            "not resolved; measure more finely or leave the processing out"
+            f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610: spikes and short waves "
+            "are not resolved; measure more finely or leave the processing out"
         )
         warnings.warn(message, CoarseSamplingWarning, stacklevel=2)
     line, trimmed = trim(profile)
@@ -185,9 +185,9 @@ def trim(profile: Profile) -> tuple[Profile, tuple[int, int]]:
 def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
     """Remove narrow upward spikes, as dust and grains leave them.
 
-    A spike lies between two neighbouring minima, holds a point with a second derivative below -10⁷ µm/m² and
-    is higher above the straight line between the minima than w²/3 m, w their distance. It is replaced by
-    that line.
+    A spike holds a point with a second derivative below -10⁷ µm/m², ends at the nearest feet on either side
+    (where a positive second derivative is largest) and is higher above the straight line between its feet
+    than w²/3 m, w their distance. It is replaced by that line.
 
     Parameters
     ----------
@@ -205,19 +205,17 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
 
     Notes
     -----
-    EN 15610:2009 (spike removal). One pass; of a spike at an end of the record the end counts as a minimum.
+    EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of where
+    a spike ends. One pass; the ends of the record count as feet.
     """
     heights = np.array(_complete(profile))
-    slope = np.diff(heights)
-    falling_then_rising = np.flatnonzero(
-        (slope[:-1] <= 0.0) & (slope[1:] > 0.0) | (slope[:-1] < 0.0) & (slope[1:] >= 0.0)
-    )
-    minima = np.concatenate([[0], falling_then_rising + 1, [len(heights) - 1]])
-    sharp = np.flatnonzero(np.diff(heights, 2) < SPIKE_CURVATURE * profile.spacing**2) + 1
-    right = np.unique(np.searchsorted(minima, sharp, side="right"))
+    bend = np.diff(heights, 2)
+    foot = (bend > 0.0) & (bend >= np.append(0.0, bend[:-1])) & (bend >= np.append(bend[1:], 0.0))
+    feet = np.concatenate([[0], np.flatnonzero(foot) + 1, [len(heights) - 1]])
+    sharp = np.flatnonzero(bend < SPIKE_CURVATURE * profile.spacing**2) + 1
     spikes = points = 0
-    for k in right[(right > 0) & (right < len(minima))]:
-        first, last = int(minima[k - 1]), int(minima[k])
+    for k in np.unique(np.searchsorted(feet, sharp)):
+        first, last = int(feet[k - 1]), int(feet[k])
         width = (last - first) * profile.spacing
         chord = np.linspace(heights[first], heights[last], last - first + 1)
         if np.max(heights[first : last + 1] - chord) > width**2 / SPIKE_SCALE:

@@ -1,0 +1,122 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from asperity.errors import InputError
+from asperity.surfaces.defects import corrugation, dipped_joint, flat_geometry, flat_length, flat_trajectory
+from asperity.surfaces.en15610 import roll_over
+from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.levels import band_levels_of
+
+MM, UM = 1e-3, 1e-6
+RADIUS, DEPTH = 0.46, 0.4 * MM
+X = np.arange(-200, 201) * 0.5 * MM
+
+
+def test_corrugation_is_a_sine():
+    line = corrugation(20000, 0.5 * MM, wavelength=0.04, amplitude=25 * UM)
+    assert_allclose(line.heights.max(), 25 * UM, rtol=1e-6)
+    assert_allclose(line.heights.std(), 25 * UM / np.sqrt(2), rtol=1e-6)
+    assert_allclose(line.heights, 25 * UM * np.sin(2 * np.pi * line.x / 0.04))
+    same = corrugation(20000, 0.5 * MM, wavelength=0.04, rms=25 * UM / np.sqrt(2))
+    assert_allclose(same.heights, line.heights)
+
+
+def test_band_of_corrugation_lies_about_its_wavelength():
+    line = corrugation(40000, MM, wavelength=0.04, rms=10 * UM, bandwidth=0.33, seed=3)
+    assert_allclose(line.heights.std(), 10 * UM, rtol=1e-9)
+    wavelength, level = band_levels_of(line, segment=4.0)
+    assert_allclose(level[np.argmin(np.abs(wavelength - 0.04))], 20.0, atol=0.5)
+    assert (level[(wavelength < 0.03) | (wavelength > 0.06)] < -20).all()
+    amplitude = corrugation(40000, MM, wavelength=0.04, amplitude=10 * UM, bandwidth=0.33, seed=3)
+    assert_allclose(amplitude.heights.std(), 10 * UM / np.sqrt(2), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"rms": UM, "amplitude": UM}, "size of the corrugation: received both"),
+        ({"amplitude": None}, "size of the corrugation: received neither"),
+        ({"amplitude": -UM}, "zero or more"),
+        ({"amplitude": np.nan}, "zero or more"),
+        ({"wavelength": 1.5 * MM}, "at least two samples, 0.002 m"),
+        ({"wavelength": 2.1 * MM, "bandwidth": 1.0}, "at least two samples"),
+        ({"bandwidth": -1.0}, "bandwidth of the corrugation: received -1.0"),
+        ({"bandwidth": 0.01}, "resolves the band"),
+    ],
+)
+def test_corrugation_says_what_is_wrong(change, text):
+    with pytest.raises(InputError, match=text):
+        corrugation(**{"n": 1001, "spacing": MM, "wavelength": 0.033, "amplitude": UM, **change})
+
+
+def test_fresh_flat_is_the_chord_of_the_wheel():
+    length = flat_length(DEPTH, RADIUS)
+    assert_allclose(length, 2 * np.sqrt(RADIUS**2 - (RADIUS - DEPTH) ** 2), rtol=1e-3)
+    geometry = flat_geometry(X, DEPTH, RADIUS)
+    chord = (RADIUS - DEPTH) / np.cos(X / RADIUS) - RADIUS  # exact, in polar coordinates
+    assert_allclose(geometry, np.minimum(chord, 0.0), atol=0.002 * DEPTH)
+    assert_allclose(geometry.min(), -DEPTH)
+    assert_array_equal(geometry[np.abs(X) > length / 2], 0.0)
+
+
+def test_centre_over_a_fresh_flat_turns_about_its_ends():
+    length = flat_length(DEPTH, RADIUS)
+    centre = flat_trajectory(X, DEPTH, RADIUS)
+    assert_allclose(centre[200], -DEPTH)
+    exact = np.sqrt(RADIUS**2 - (length / 2 - np.abs(X)) ** 2) - RADIUS  # a point on the rim as pivot
+    inside = np.abs(X) <= length / 2
+    assert_allclose(centre[inside], exact[inside], atol=0.002 * DEPTH)
+    assert_array_equal(centre[~inside], 0.0)
+    slope = np.diff(centre) / np.diff(X)
+    assert_allclose(slope[200] - slope[199], length / RADIUS, rtol=0.03)  # the kink is the impact
+
+
+@pytest.mark.parametrize("shape", ["fresh", "worn"])
+def test_trajectory_is_the_wheel_rolled_over_the_flat(shape):
+    x = np.arange(-1250, 1251) * 0.02 * MM
+    rolled = roll_over(Profile(flat_geometry(x, DEPTH, RADIUS, shape), 0.02 * MM), RADIUS).heights
+    assert_allclose(flat_trajectory(x, DEPTH, RADIUS, shape), rolled, atol=0.3 * UM)
+
+
+def test_worn_flat_is_rounded_and_shallower_to_the_wheel():
+    length = flat_length(DEPTH, RADIUS)
+    geometry = flat_geometry(X, DEPTH, RADIUS, "worn")
+    assert_allclose(geometry[200], -DEPTH)
+    assert_allclose(
+        flat_geometry([length / 2, length / 4], DEPTH, RADIUS, "worn"), [0, -DEPTH / 2], atol=1e-12
+    )
+    centre = flat_trajectory(X, DEPTH, RADIUS, "worn")
+    assert (centre >= geometry - 1e-9).all()
+    assert -DEPTH < centre.min() < -0.3 * DEPTH
+
+
+@pytest.mark.parametrize("depth", [0.0, -MM, np.nan, 0.1])
+def test_depth_of_a_flat_is_checked(depth):
+    with pytest.raises(InputError, match="depth of the wheel flat"):
+        flat_geometry(X, depth, RADIUS)
+
+
+def test_unknown_shape_of_a_flat():
+    for function in (flat_geometry, flat_trajectory):
+        with pytest.raises(InputError, match="'fresh' or 'worn'"):
+            function(X, DEPTH, RADIUS, "square")
+
+
+def test_dipped_joint_has_its_depth_angle_and_length():
+    x = np.linspace(-1.0, 1.0, 20001)
+    dip = dipped_joint(x, 2 * MM, 1.0)
+    assert_allclose(dip[10000], -2 * MM)
+    slope = np.gradient(dip, x)
+    assert_allclose(slope[10010] - slope[9990], 8 * 2 * MM / 1.0, rtol=0.01)
+    assert_array_equal(dip[np.abs(x) >= 0.5], 0.0)
+    assert np.abs(np.diff(slope[x > 0.3])).max() < 1e-5 + 8 * 2 * MM * 1e-4
+    assert_allclose(dip, dip[::-1], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("depth", "length", "text"), [(0.0, 1.0, "depth"), (0.1, 1.0, "depth"), (MM, -1.0, "length")]
+)
+def test_dipped_joint_says_what_is_wrong(depth, length, text):
+    with pytest.raises(InputError, match=f"{text} of the dipped joint"):
+        dipped_joint(X, depth, length)

@@ -1,0 +1,101 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from asperity.errors import InputError
+from asperity.reference import cnossos
+from asperity.surfaces.en15610 import trim
+from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.parallel_lines import common_length, register, strip_from_lines
+from asperity.surfaces.synthesis import strip_from_bands
+
+MM, UM = 1e-3, 1e-6
+WHEELS = Path(__file__).parents[3] / "shared" / "data" / "wheel_lines_um_1mm.npz"
+
+
+def wheel_strip(lines=6):
+    wavelengths, levels = (v[3:20] for v in cnossos.wheel_roughness("cast-iron"))
+    return strip_from_bands((2880, lines), (MM, 5 * MM), wavelengths, levels, lateral=50.0, seed=7).heights
+
+
+def test_lines_measured_to_and_fro_come_into_register():
+    lines = wheel_strip().T
+    shifts = [0, 12, -7, 100, 3, 55]
+    measured = [
+        Profile(np.roll(z[::-1] if k % 2 else z, shift), MM)
+        for k, (z, shift) in enumerate(zip(lines, shifts, strict=True))
+    ]
+    found = register(measured)
+    assert_array_equal(found.lines, lines)
+    assert found.reversed == (False, True) * 3
+    assert min(found.correlations) > 0.5
+
+
+def test_lines_are_cut_to_the_shortest():
+    lines = [Profile(np.arange(n, dtype=float), MM) for n in (7, 5, 6)]
+    assert_array_equal(common_length(lines), np.broadcast_to(np.arange(5.0), (3, 5)))
+
+
+def test_strip_passes_through_its_lines_and_holds_beyond():
+    lines = np.random.default_rng(1).standard_normal((5, 50))
+    strip = strip_from_lines(lines, MM, 4 * MM, 41, MM)  # 20 mm to either side, lines to 8 mm
+    assert strip.shape == (50, 41)
+    assert_allclose(strip[:, 12:29:4], lines.T, atol=1e-12)
+    assert_allclose(strip[:, :12], np.repeat(lines[:1].T, 12, axis=1), atol=1e-12)
+    assert_allclose(strip[:, 29:], np.repeat(lines[-1:].T, 12, axis=1), atol=1e-12)
+
+
+def test_interpolation_across_is_exact_for_its_polynomials():
+    y = (np.arange(6) - 2.5) * 4 * MM
+    cubic = strip_from_lines(np.repeat((y**3)[:, None], 3, axis=1), MM, 4 * MM, 21, MM)
+    assert_allclose(cubic[0], ((np.arange(21) - 10) * MM) ** 3, atol=1e-12)
+    linear = strip_from_lines(np.array([[0.0, 0.0], [1.0, 2.0]]), MM, 4 * MM, 5, MM)
+    assert_allclose(linear, np.linspace(0, 1, 5) * np.array([[1.0], [2.0]]))
+
+
+def test_one_line_is_laid_out_constant_across():
+    line = np.arange(4.0)
+    assert_array_equal(strip_from_lines([line], MM, MM, 3, MM), np.repeat(line[:, None], 3, axis=1))
+
+
+@pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
+def test_flats_of_measured_wheels_come_to_lie_beside_each_other():
+    with np.load(WHEELS) as archive:
+        raw = np.asarray(archive["flat0p2mm"], float) * UM
+    found = register([trim(Profile(z, MM))[0] for z in raw])
+    assert found.reversed[:7] == (False, True, False, True, False, True, False)
+    flat = np.argmin(found.lines[:7], axis=1)  # the flat covers seven of the ten lines
+    assert np.ptp(flat) < 60  # mm, of a flat 2√(2 · 0.46 · 0.0002) = 27 mm long
+    strip = strip_from_lines(found.lines, MM, 5 * MM, 91, 0.5 * MM)
+    assert strip.shape == (found.lines.shape[1], 91)
+    assert np.isfinite(strip).all()
+
+
+@pytest.mark.parametrize(
+    ("profiles", "text"),
+    [
+        ([], "parallel lines: received none"),
+        ([Profile([0.0, np.nan, 1.0], MM)], "33.33% missing points"),
+        ([Profile([0.0, 1.0], MM), Profile([0.0, 1.0], 2 * MM)], "one spacing for all"),
+    ],
+)
+def test_wrong_lines_are_refused(profiles, text):
+    with pytest.raises(InputError, match=text):
+        register(profiles)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"lines": [[0.0, np.nan]]}, "parallel lines"),
+        ({"lines": [0.0, 1.0]}, "parallel lines"),
+        ({"distance_across": 0.0}, "spacings of the lines"),
+        ({"shape_y": 0}, "spacings of the lines"),
+    ],
+)
+def test_strip_from_lines_says_what_is_wrong(change, text):
+    arguments = {"lines": [[0.0, 1.0]], "spacing": MM, "distance_across": MM, "shape_y": 3, "spacing_y": MM}
+    with pytest.raises(InputError, match=text):
+        strip_from_lines(**{**arguments, **change})
