@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,10 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import (
     CoarseSamplingWarning,
-    ExtrapolationWarning,
     InputError,
     Outcome,
-    UnconvergedWarning,
 )
 from asperity.kernels.modal import (
     Motion,
@@ -23,18 +20,17 @@ from asperity.kernels.modal import (
     modal_coefficients,
     observe,
 )
-from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all
-from asperity.pointforce.base import Law, SteppedLaw
+from asperity.kernels.pointforce import Prepared
+from asperity.pointforce.base import Law
 from asperity.progress import Progress
 from asperity.rolling.beam_stepper import BeamStepper
 from asperity.rolling.energy import EnergyBalance, balance, beam_energy
 from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.events import ContactLoss, contact_losses
+from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
 from asperity.rolling.stepping import Checkpoint, restore, run
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
-
-STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itself solved to a tolerance
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,15 +157,15 @@ def roll(
     prepared = law.prepare(positions)
     system = _system(beam, ball, at, speed, time_step)
     relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
-    approach, stiffness = static_approach(_evaluation(prepared, 0), ball.static_load, relative)
+    approach, stiffness = static_approach(evaluation(prepared, 0), ball.static_load, relative)
     _warn_if_coarse(time_step, stiffness, ball.mass, beam, highest_frequency)
     motion, record = _at_rest(system, beam, start, approach, len(positions))
     beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])
     stepper = BeamStepper(system, motion, record, beam, positions)
     restore(checkpoint, stepper, prepared)
     run(stepper, prepared, law.damping, progress, checkpoint)
-    flying = _flying(prepared, record)
-    _warn_after(law.name, motion, prepared, record)
+    apart = flying(prepared, record.force, record.approach)
+    warn_after(law.name, motion.counts, prepared, record.approach)
     return Rolling(
         time=time_step * np.arange(len(positions)),
         position=positions,
@@ -178,8 +174,8 @@ def roll(
         ball_displacement=record.ball,
         beam_displacement=record.beam,
         acceleration=record.acceleration,
-        in_contact=~flying,
-        contact_loss=contact_losses(flying, time_step),
+        in_contact=~apart,
+        contact_loss=contact_losses(apart, time_step),
         energy=balance(
             system,
             motion,
@@ -259,23 +255,6 @@ def _at_rest(
     return motion, record
 
 
-def _evaluation(prepared: Prepared | SteppedLaw, step: int) -> Callable[[float], tuple[float, float]]:
-    if isinstance(prepared, Prepared):
-        return lambda approach: evaluate(prepared, step, float(approach))
-    return lambda approach: prepared.evaluate(step, float(approach))
-
-
-def _flying(prepared: Prepared | SteppedLaw, record: Record) -> NDArray:
-    """Whether the bodies are apart at each step; never for a contact that can pull."""
-    if not isinstance(prepared, Prepared):
-        return record.force <= 0.0
-    if prepared.bilateral:
-        return np.zeros(record.force.shape, dtype=bool)
-    if prepared.damped_in_flight:
-        return evaluate_all(prepared, record.approach)[0] <= 0.0
-    return record.force <= 0.0
-
-
 def _warn_if_coarse(
     time_step: float, stiffness: float, mass: float, beam: Beam, highest_frequency: float | None
 ) -> None:
@@ -294,25 +273,3 @@ def _warn_if_coarse(
                 CoarseSamplingWarning,
                 stacklevel=3,
             )
-
-
-def _warn_after(name: str, motion: Motion, prepared: Prepared | SteppedLaw, record: Record) -> None:
-    steps = max(int(motion.counts[0]), 1)
-    if motion.counts[1]:
-        warnings.warn(
-            f"{name}: {motion.counts[1]} of {steps} time steps missed the tolerance on the contact force: "
-            "their force is uncertain; take a smaller time step",
-            UnconvergedWarning,
-            stacklevel=3,
-        )
-    if not isinstance(prepared, Prepared):
-        prepared.warn_of_flaws()
-        return
-    beyond = count_beyond(prepared, record.approach)
-    if beyond:
-        warnings.warn(
-            f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
-            "steps: the force there is a continuation; compute larger approaches",
-            ExtrapolationWarning,
-            stacklevel=3,
-        )

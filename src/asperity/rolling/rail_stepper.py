@@ -1,0 +1,51 @@
+"""A wheel on a rail, advanced step by step."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.kernels.pointforce import Prepared
+from asperity.kernels.rail import Motion, Record, Vehicle, complete_step, free_step, roll_steps
+from asperity.rolling.stepping import Free
+
+CHUNK = 16384  # steps between reports of progress
+
+
+class RailStepper:
+    """Wheel and rail behind the protocol of `asperity.rolling.stepping.Stepper`.
+
+    Parameters
+    ----------
+    vehicle, motion, record
+        Constants, state and histories.
+    positions : ndarray (n,)
+        Of the contact, m.
+    """
+
+    def __init__(
+        self, vehicle: Vehicle, motion: Motion, record: Record, positions: NDArray[np.float64]
+    ) -> None:
+        self.vehicle, self.motion, self.record, self.positions = vehicle, motion, record, positions
+        self.load, self.total = vehicle.load, len(positions) - 1
+
+    def bound(self) -> int:
+        """Step up to which it is advanced in one go."""
+        return min(int(self.motion.counts[0]) + CHUNK, self.total)
+
+    def roll(self, law: Prepared, stop: int) -> bool:
+        """Advance to a step under a compiled law."""
+        return bool(roll_steps(self.vehicle, self.motion, self.record, law, stop))
+
+    def free(self, step: int) -> Free:
+        """Advance all but the last force of a step."""
+        result: Free = free_step(self.vehicle, self.motion, step)
+        return result
+
+    def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:
+        """Apply the force at the end of the step."""
+        complete_step(self.vehicle, self.motion, self.record, step, force, evaluations, converged)
+
+    def where(self, step: int) -> str:
+        """Time and position of a step."""
+        return f"time {step * self.vehicle.time_step:.6g} s, position {self.positions[step]:.6g} m"

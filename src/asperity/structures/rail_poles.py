@@ -1,0 +1,177 @@
+"""The rail as a bank of poles: the moving kernel in a form that costs the same at any length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from asperity.errors import ComputationError, InputError
+from asperity.store import Cache, content_key
+from asperity.structures.moving_kernel import MovingKernel
+from asperity.structures.rational_fit import paired, vector_fit
+
+CELLS = 192
+"""Places in one bay at which residues are tabulated; between them they are linear."""
+LOWEST = 2.0
+"""Lowest frequency of the fit, Hz."""
+LINES = 300
+"""Frequencies of the fit in each of its two grids, logarithmic and linear."""
+ITERATIONS = 8
+TOLERANCE = 5e-3
+"""Largest error of a fitted kernel that is accepted, relative (see `RailPoles`)."""
+
+
+@dataclass(frozen=True, eq=False)
+class RailPoles:
+    """A moving kernel as a sum of decaying oscillations.
+
+    For lags k >= 1 the weights of a start position x are Re Σ_p c_p(x) z_p^(k−1), so that the displacement
+    of the next step follows from states q_p ← z_p q_p + c_p(x) F.
+
+    Parameters
+    ----------
+    kernel : MovingKernel
+        What was fitted.
+    poles : ndarray (p,) of complex
+        z_p per time step, |z_p| < 1.
+    residues : ndarray (positions, p) of complex
+        c_p at the start positions of the kernel, m/N.
+    fit_error : float
+        Root mean square error of the weights of lags >= 1 over all start positions, relative to theirs.
+    static_error : float
+        Largest error of the sum of the weights, relative: of the deflection under a constant force.
+    """
+
+    kernel: MovingKernel
+    poles: NDArray[np.complex128]
+    residues: NDArray[np.complex128]
+    fit_error: float
+    static_error: float
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the fit is good enough to stand for the kernel."""
+        return max(self.fit_error, self.static_error) <= TOLERANCE
+
+    def weights(self) -> NDArray[np.float64]:
+        """The fitted kernel, in the shape of the kernel's weights, m/N."""
+        result = self.kernel.weights.copy()
+        result[:, 1:] = self.residues.real @ _decays(self.poles, result.shape[1] - 1).real
+        result[:, 1:] -= self.residues.imag @ _decays(self.poles, result.shape[1] - 1).imag
+        return result
+
+
+def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = None) -> RailPoles:
+    """Fit a moving kernel by common poles with residues for every start position.
+
+    Parameters
+    ----------
+    kernel : MovingKernel
+        The kernel.
+    count : int
+        Poles, both of each conjugate pair counted.
+    cache : Cache, optional
+        Keeps fits by their content.
+
+    Returns
+    -------
+    RailPoles
+        The fit and its error.
+
+    Raises
+    ------
+    InputError
+        If `count` is odd or not between 4 and a tenth of the number of lags.
+    ComputationError
+        If the fit breaks down.
+
+    Notes
+    -----
+    Poles by vector fitting of the transform on the unit circle, with weights between absolute and relative
+    error; residues by least squares in time, of the weights, of their running sums (the response to a force
+    that stays) and of the static sum together.
+    """
+    taps = kernel.weights.shape[1]
+    if count % 2 or not 4 <= count <= taps // 10:
+        allowed = f"an even number from 4 to {taps // 10}, a tenth of the kernel's lags"
+        raise InputError("number of poles", count, allowed)
+    key = content_key("rail-poles", kernel.weights, kernel.time_step, count, ITERATIONS, LINES)
+    kept = cache.get(key) if cache is not None else None
+    if kept is None:
+        poles = _poles(kernel, count)
+        kept = {"poles": poles, "residues": _residues(kernel.weights[:, 1:], poles)}
+        if cache is not None:
+            cache.put(key, kept)
+    fit = RailPoles(kernel, kept["poles"], kept["residues"], 0.0, 0.0)
+    left = fit.weights()[:, 1:] - kernel.weights[:, 1:]
+    error = float(np.linalg.norm(left) / np.linalg.norm(kernel.weights[:, 1:]))
+    static = float(np.abs(left.sum(axis=1) / kernel.weights.sum(axis=1)).max())
+    if not np.isfinite(error):
+        raise ComputationError("the fit of the moving kernel by poles broke down", "fewer poles")
+    return RailPoles(kernel, fit.poles, fit.residues, error, static)
+
+
+def _poles(kernel: MovingKernel, count: int) -> NDArray[np.complex128]:
+    """Common poles, by vector fitting on the unit circle."""
+    half = 0.5 / kernel.time_step
+    frequency = np.union1d(
+        np.geomspace(LOWEST, 0.995 * half, LINES), np.linspace(LOWEST, min(0.2 * half, 5000.0), LINES)
+    )
+    angle = 2.0 * np.pi * frequency * kernel.time_step
+    lag = np.arange(1, kernel.weights.shape[1])
+    transform = kernel.weights[:, 1:] @ np.exp(-1j * lag[:, None] * angle)
+    size = np.sqrt(np.mean(np.abs(transform) ** 2, axis=0))
+    start = 2.0 * np.pi * np.geomspace(2.0 * LOWEST, 0.9 * half, count // 2) * kernel.time_step
+    fit = vector_fit(
+        np.exp(1j * angle),
+        transform,
+        np.exp(start * (1j - 0.02)),
+        weights=1.0 / np.sqrt(size),
+        iterations=ITERATIONS,
+        domain="disc",
+    )
+    return fit.poles
+
+
+def _decays(poles: NDArray, lags: int) -> NDArray[np.complex128]:
+    with np.errstate(divide="ignore"):
+        rates = np.log(np.where(poles == 0.0, 1e-300, poles))
+    return np.asarray(np.exp(rates[:, None] * np.arange(lags)))
+
+
+def _residues(weights: NDArray[np.float64], poles: NDArray) -> NDArray[np.complex128]:
+    """Least squares in time, of the weights, their running sums and their sum."""
+    decays = _decays(poles, weights.shape[1])
+    columns = []
+    for pole, decay in zip(poles, decays, strict=True):
+        columns.append(decay.real)
+        if pole.imag != 0.0:
+            columns.append(-decay.imag)
+    basis, right = np.array(columns).T, weights.T
+    slow = 1.0 / np.sqrt(len(basis))  # running sums weigh like the weights of one step
+    matrix = np.vstack([basis, slow * np.cumsum(basis, axis=0)])
+    right = np.vstack([right, slow * np.cumsum(right, axis=0)])
+    size = np.linalg.norm(matrix, axis=0)
+    solution = np.linalg.lstsq(matrix / size, right, rcond=1e-13)[0] / size[:, None]
+    return paired(solution, poles)
+
+
+def over_the_bay(values: NDArray) -> NDArray:
+    """Values at the start positions of a kernel, tabulated finely over a bay.
+
+    Parameters
+    ----------
+    values : ndarray (positions, ...)
+        Periodic over the bay.
+
+    Returns
+    -------
+    ndarray (CELLS + 1, ...)
+        At equal places, both ends of the bay included, by a periodic cubic spline.
+    """
+    closed = np.concatenate([values, values[:1]])
+    spline = CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic")
+    return np.asarray(spline(np.linspace(0.0, 1.0, CELLS + 1)))
