@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from asperity.errors import InputError
+from asperity.errors import InputError, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.surfaces.en15610 import trim
 from asperity.surfaces.heightmap import Profile
@@ -28,9 +28,22 @@ def test_lines_measured_to_and_fro_come_into_register():
         for k, (z, shift) in enumerate(zip(lines, shifts, strict=True))
     ]
     found = register(measured)
-    assert_array_equal(found.lines, lines)
+    assert_allclose(found.lines, lines, atol=1e-15)
+    assert found.replaced == ()
     assert found.reversed == (False, True) * 3
     assert min(found.correlations) > 0.5
+
+
+def test_short_lines_are_replaced_by_their_neighbours():
+    lines = wheel_strip(4).T
+    measured = [Profile(z[:2000] if k in (1, 3) else z, MM) for k, z in enumerate(lines)]
+    with pytest.warns(ShortRecordWarning, match=r"2 of 4 parallel lines are shorter than 95%"):
+        found = register(measured)
+    assert found.replaced == (1, 3)
+    assert_allclose(found.lines[[0, 2]], lines[[0, 2]])
+    assert_allclose(found.lines[1], (lines[0] + lines[2]) / 2)
+    assert_allclose(found.lines[3], lines[2])
+    assert register(measured[:1]).lines.shape == (1, 2880)
 
 
 def test_lines_are_cut_to_the_shortest():
@@ -60,17 +73,28 @@ def test_one_line_is_laid_out_constant_across():
     assert_array_equal(strip_from_lines([line], MM, MM, 3, MM), np.repeat(line[:, None], 3, axis=1))
 
 
+def measured_wheel(name):
+    with np.load(WHEELS) as archive:
+        return [trim(Profile(z * UM, MM))[0] for z in np.asarray(archive[name], float)]
+
+
 @pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
 def test_flats_of_measured_wheels_come_to_lie_beside_each_other():
-    with np.load(WHEELS) as archive:
-        raw = np.asarray(archive["flat0p2mm"], float) * UM
-    found = register([trim(Profile(z, MM))[0] for z in raw])
+    found = register(measured_wheel("flat0p2mm"))
     assert found.reversed[:7] == (False, True, False, True, False, True, False)
-    flat = np.argmin(found.lines[:7], axis=1)  # the flat covers seven of the ten lines
-    assert np.ptp(flat) < 60  # mm, of a flat 2√(2 · 0.46 · 0.0002) = 27 mm long
+    assert np.ptp(np.argmin(found.lines[:7], axis=1)) <= 5  # the flat covers seven of the ten lines
     strip = strip_from_lines(found.lines, MM, 5 * MM, 91, 0.5 * MM)
     assert strip.shape == (found.lines.shape[1], 91)
     assert np.isfinite(strip).all()
+
+
+@pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
+def test_a_short_line_of_a_measured_wheel_does_not_spoil_the_others():
+    with pytest.warns(ShortRecordWarning, match="1 of 10"):
+        found = register(measured_wheel("flat0p6mm"))
+    assert found.replaced == (4,)
+    assert np.ptp(np.argmin(found.lines[:9], axis=1)) <= 10
+    assert min(found.correlations[:9]) > 0.75
 
 
 @pytest.mark.parametrize(

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft, interpolate
 
-from asperity.errors import InputError
+from asperity.errors import InputError, ShortRecordWarning
 from asperity.surfaces.heightmap import Profile
+
+FULL_LINE = 0.95
+"""Share of the longest line from which a line counts as a full turn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,19 +25,22 @@ class Register:
     Attributes
     ----------
     lines : ndarray, shape (k, n)
-        Heights, m, cut to the shortest.
+        Heights, m, cut to the shortest full line.
     reversed : tuple of bool
         Whether each line was turned round.
     shifts : tuple of int
         Points by which each line was moved on, around its length.
     correlations : tuple of float
         Correlation coefficient of each line with the one before it; 1 for the first.
+    replaced : tuple of int
+        Lines too short for a full turn, replaced by their neighbours, linearly in between.
     """
 
     lines: NDArray[np.float64]
     reversed: tuple[bool, ...]
     shifts: tuple[int, ...]
     correlations: tuple[float, ...]
+    replaced: tuple[int, ...]
 
 
 def register(profiles: Sequence[Profile]) -> Register:
@@ -55,26 +63,49 @@ def register(profiles: Sequence[Profile]) -> Register:
     ------
     InputError
         If there is none, points are missing or the spacings differ.
+
+    Warns
+    -----
+    ShortRecordWarning
+        If a line is shorter than 95 % of the longest.
     """
-    lines = common_length(profiles)
-    done, turned, shifts, correlations = [lines[0]], [False], [0], [1.0]
-    for line in lines[1:]:
-        before = fft.rfft(done[-1] - done[-1].mean())
-        best = (-np.inf, False, 0)
-        for backwards in (False, True):
-            tried = line[::-1] if backwards else line
-            scale = len(line) * np.std(done[-1]) * np.std(tried)
-            agreement = fft.irfft(before * np.conj(fft.rfft(tried - tried.mean())), len(line)) / (
-                scale or 1.0
-            )
-            shift = int(np.argmax(agreement))
-            best = max(best, (float(agreement[shift]), backwards, shift))
-        correlation, backwards, shift = best
-        done.append(np.roll(line[::-1] if backwards else line, shift))
-        turned.append(backwards)
-        shifts.append(shift)
-        correlations.append(correlation)
-    return Register(np.array(done), tuple(turned), tuple(shifts), tuple(correlations))
+    longest = max((len(p.heights) for p in profiles), default=0)
+    full = [k for k, p in enumerate(profiles) if len(p.heights) >= FULL_LINE * longest]
+    lines = common_length([profiles[k] for k in full])
+    turned, shifts = [False] * len(profiles), [0] * len(profiles)
+    done = [lines[0]]
+    for k, line in zip(full[1:], lines[1:], strict=True):
+        turned[k], shifts[k] = _best_match(done[-1], line)
+        done.append(np.roll(line[::-1] if turned[k] else line, shifts[k]))
+    replaced = tuple(k for k in range(len(profiles)) if k not in full)
+    if replaced:
+        message = (
+            f"{len(replaced)} of {len(profiles)} parallel lines are shorter than {FULL_LINE:.0%} of the longest "
+            f"({longest} points): they are replaced by their neighbours; measure them again or leave them out"
+        )
+        warnings.warn(message, ShortRecordWarning, stacklevel=2)
+    everywhere = np.clip(np.arange(len(profiles)), full[0], full[-1])
+    between = interpolate.make_interp_spline(full, np.array(done), k=1) if len(done) > 1 else None
+    result = np.repeat(done, len(profiles), axis=0) if between is None else between(everywhere)
+    pairs = (_correlation(one, other) for one, other in pairwise(result))
+    return Register(result, tuple(turned), tuple(shifts), (1.0, *pairs), replaced)
+
+
+def _best_match(reference: NDArray[np.float64], line: NDArray[np.float64]) -> tuple[bool, int]:
+    """Whether to turn a periodic line round, and how far to move it on, to follow a reference."""
+    wanted = fft.rfft(reference - reference.mean())
+    matches = []
+    for backwards in (False, True):
+        tried = line[::-1] if backwards else line
+        agreement = fft.irfft(wanted * np.conj(fft.rfft(tried - tried.mean())), len(line))
+        shift = int(np.argmax(agreement))
+        matches.append((float(agreement[shift]), backwards, shift))
+    return max(matches)[1:]
+
+
+def _correlation(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    scale = float(one.std() * other.std())
+    return float(np.mean((one - one.mean()) * (other - other.mean()))) / scale if scale else 0.0
 
 
 def common_length(profiles: Sequence[Profile]) -> NDArray[np.float64]:
