@@ -301,3 +301,40 @@ def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-d
         if not np.isfinite(force):
             return False
     return True
+
+
+@njit(cache=True, fastmath=REASSOCIATE)
+def add_passing(displacement, forces, responses, places, begin):  # type: ignore[no-untyped-def]
+    """Add to the displacement of a fixed point what forces moving through one bay do.
+
+    Parameters
+    ----------
+    displacement : ndarray (runs, n)
+        Displacement of the point, m; written.
+    forces : ndarray (runs, n)
+        Contact forces, N.
+    responses : ndarray (nodes + 3, taps)
+        Response of the point to hats of unit force at the nodes −1 … nodes + 1 of the bay, m/N; lag 0 is the
+        rising half.
+    places : ndarray (k,)
+        Places of the force in the bay, in nodes, 0 to nodes.
+    begin : int
+        Step of the first place.
+    """
+    runs, samples = forces.shape
+    taps = responses.shape[1]
+    mixed = np.empty(taps)
+    for i in range(places.shape[0]):
+        node = min(int(places[i]), responses.shape[0] - 4)
+        t = places[i] - node
+        w0, w1 = -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0
+        w2, w3 = -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0
+        for k in range(taps):
+            mixed[k] = w0 * responses[node, k] + w1 * responses[node + 1, k]
+            mixed[k] += w2 * responses[node + 2, k] + w3 * responses[node + 3, k]
+        step = begin + i
+        length = min(taps, samples - step)
+        for run in range(runs):
+            force = forces[run, step]
+            for k in range(length):
+                displacement[run, step + k] += force * mixed[k]

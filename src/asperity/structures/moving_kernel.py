@@ -9,27 +9,21 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft
-from scipy.optimize import brentq
 
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
 from asperity.store import Cache, content_key
-from asperity.structures.periodic_rail import PeriodicWaves
+from asperity.structures.hat_response import SHIFT, ZONES, HatResponse
 from asperity.structures.track import Track
 
 STARTS = 24
 """Start positions in one sleeper bay, by default."""
 SHORTEST, LONGEST = 0.12, 0.6
 """Between these lengths, s, the kernel grows until it has died away."""
-DIED_AWAY = 5e-4
+DIED_AWAY = 1e-3
 """Largest value in the last tenth of a kernel, relative to its largest of all, by which it has died away."""
-ZONES = 4
-"""Multiples of half the sampling frequency up to which the receptance near the contact is folded."""
 LOWEST, HIGHEST = 50.0, 5000.0
 """Frequencies, Hz, between which the kernel's receptance is compared with that of the track."""
-SHIFT = 8.0
-"""Exponential window over the period of the transform, neper, for tracks with viscous damping alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,81 +167,13 @@ def _left_over(weights: NDArray[np.float64]) -> float:
     return float(np.abs(last).max() / np.abs(weights).max())
 
 
-class _Transform:
-    """From receptances to responses in time, on one grid of frequencies."""
-
-    def __init__(self, track: Track, time_step: float, taps: int, zones: int) -> None:
-        self.taps, self.time_step = taps, time_step
-        self.causal = track.is_viscous and not track.rail_loss_factor
-        step = np.pi / (taps * time_step)  # the period is twice the kernel
-        self.shift = SHIFT / (2 * taps * time_step) if self.causal else 0.0
-        self.omega = step * np.arange(0 if self.causal else 1, zones * taps + 1) - 1j * self.shift
-        half = 0.5 * self.omega * time_step
-        self.hat = (np.sin(half) / half) ** 2
-        self.waves: PeriodicWaves = track.waves(self.omega)
-        self.fade: NDArray[np.float64] | None = None
-        if not self.causal:
-            self.fade = _fade(self.omega.real, _fading_frequency(track, self.omega.real))
-
-    def response(self, spectra: NDArray) -> NDArray[np.float64]:
-        """Response to the hat at lags 0 … taps − 1 from receptances times the hat, (k, f) → (k, taps)."""
-        n = self.taps
-        if self.fade is None:
-            response = fft.irfft(_folded(spectra, n), 2 * n, axis=1)[:, :n]
-            return np.asarray(response * np.exp(self.shift * self.time_step * np.arange(n)))
-        odd = np.zeros((len(spectra), spectra.shape[1] + 1), dtype=complex)
-        odd[:, 1:] = 2j * self.fade * spectra.imag
-        response = fft.irfft(_folded(odd, n), 2 * n, axis=1)[:, :n]
-        # an odd signal says nothing about the rising half of the hat, an even one does
-        static = (4.0 * spectra[:, 0].real - spectra[:, 1].real) / 3.0
-        response[:, 0] = (static + 2.0 * spectra.real.sum(axis=1)) / (2 * n)
-        return np.asarray(response)
-
-
-def _folded(spectra: NDArray, n: int) -> NDArray:
-    """Sum over all frequencies that look alike at the time steps, up to half the sampling frequency."""
-    folded = spectra[:, : n + 1].copy()
-    folded[:, n] = 2.0 * folded[:, n].real
-    for first in range(n, spectra.shape[1] - 1, n):
-        zone = spectra[:, first : first + n + 1]
-        if (first // n) % 2:
-            folded[:, 1:n] += np.conj(zone[:, n - 1 : 0 : -1])
-            folded[:, 0] += 2.0 * zone[:, n].real
-        else:
-            folded[:, 1:n] += zone[:, 1:n]
-            folded[:, n] += 2.0 * zone[:, n].real
-    return folded
-
-
-def _fade(omega: NDArray, corner: float) -> NDArray[np.float64]:
-    return np.asarray(omega**2 / (omega**2 + corner**2))
-
-
-def _fading_frequency(track: Track, omega: NDArray) -> float:
-    """Corner below which dissipation fades out so that the static deflection is exact, rad/s.
-
-    By Kramers and Kronig the static receptance is −2/π ∫ Im G/ω dω; with loss factors that hold down to
-    zero frequency, it would be too large.
-    """
-    middle = 0.5 * track.sleeper_spacing
-    dissipative = -track.receptance(omega / (2.0 * np.pi), middle, middle).imag
-    static, step = track.static_deflection(1.0, middle), omega[1] - omega[0]
-
-    def excess(corner: float) -> float:
-        return float(2.0 / np.pi * step * np.sum(dissipative * _fade(omega, corner) / omega) - static)
-
-    if excess(step) <= 0.0:
-        return float(step)
-    return float(brentq(excess, step, omega[-1]))
-
-
 def _weights(
     track: Track, speed: float, time_step: float, taps: int, positions: int, progress: Progress | None
 ) -> NDArray[np.float64]:
     """All rows of the kernel."""
     spacing = track.sleeper_spacing / positions
     nodes = spacing * np.arange(positions)
-    near, far = (_Transform(track, time_step, taps, zones) for zones in (ZONES, 1))
+    near, far = (HatResponse(track, time_step, taps, zones) for zones in (ZONES, 1))
     shapes = {
         grid: [np.array([shape(x) for x in nodes]) for shape in (grid.waves.outgoing, grid.waves.incoming)]
         for grid in (near, far)
@@ -297,7 +223,7 @@ def _cubic(share: NDArray) -> NDArray:
 
 def _causality_error(track: Track, time_step: float, taps: int) -> float:
     """Largest difference of levels between the causal kernel and the receptance, at mid-span, dB."""
-    grid = _Transform(track, time_step, taps, ZONES)
+    grid = HatResponse(track, time_step, taps, ZONES)
     middle = 0.5 * track.sleeper_spacing
     amplitude = grid.hat * grid.waves.coefficients
     receptance = (amplitude * grid.waves.outgoing(middle) * grid.waves.incoming(middle)).sum(axis=0)

@@ -133,7 +133,7 @@ def _spanning(weighted: NDArray) -> NDArray:
     """Few real combinations of the responses that span all of them, by singular values."""
     joined = np.concatenate([weighted.real, weighted.imag], axis=1)
     _, size, rows = np.linalg.svd(joined, full_matrices=False)
-    large = size > 1e-5 * size[0]
+    large = size > 1e-4 * size[0]
     real, imaginary = np.hsplit(size[large, None] * rows[large], 2)
     return np.asarray(real + 1j * imaginary)
 
