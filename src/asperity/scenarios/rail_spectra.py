@@ -107,7 +107,7 @@ def linear_reference(
 
 def _points(computed: Computed, segment: int) -> dict[str, xarray.Variable]:
     step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
-    velocity = np.stack([velocity for _, velocity in computed.points.values()])
+    _, velocity = computed.points
     frequency, density = psd(velocity, step, segment=segment)
     shown = (frequency > 0.0) & (frequency <= 1.13 * highest)
     _, level = band_levels(frequency, density, VELOCITY_REFERENCE, high=highest)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable
 
-import numpy as np
 import xarray
 
 from asperity.reference.cnossos import CITATION
@@ -70,7 +69,7 @@ def _rolling(computed: Computed) -> xarray.Dataset:
     chain, stack = computed.chain, computed.chain.stacked
     run = next(iter(chain.runs.values()))
     by_time, by_point = ("law", "time"), ("law", "point", "time")
-    moved, velocity = (np.stack([found[i] for found in computed.points.values()]) for i in (0, 1))
+    moved, velocity = computed.points
     variables = {
         "law": law_coordinate(chain),
         "point": point_coordinate(computed),

@@ -45,8 +45,8 @@ class Computed:
         Response of the rail under the moving contact.
     rail : RailPoles or MovingKernel
         How it was carried on in time.
-    points : dict of (ndarray, ndarray)
-        Displacement, m, and velocity, m/s, of the passed points by law, each of shape (points, n).
+    points : tuple of ndarray (laws, points, n)
+        Displacement, m, and velocity, m/s, of the passed points.
     """
 
     case: WheelOnRailCase
@@ -55,7 +55,7 @@ class Computed:
     track: Track
     kernel: MovingKernel
     rail: RailPoles | MovingKernel
-    points: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+    points: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
@@ -80,7 +80,7 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
     textures = gather(case)
     _warn_of_defects(case, textures, shape)
     watch.lap("textures")
-    kernel = moving_kernel(track, case.speed, case.time_step, cache=store)
+    kernel = moving_kernel(track, case.speed, case.time_step, cache=store, progress=progress)
     rail: RailPoles | MovingKernel = kernel
     if case.numerics.kernel == "poles":
         found = rail_poles(kernel, count=case.numerics.poles, cache=store)
@@ -110,7 +110,7 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
         )
 
     chain = reduce_and_roll(case, textures, shape, roll_law, store, progress, watch)
-    points = {n: passed_points(track, run, case.point_positions) for n, run in chain.runs.items()}
+    points = passed_points(kernel, list(chain.runs.values()), case.point_positions, progress)
     watch.lap("passed points")
     return Computed(case, chain, wheel, track, kernel, rail, points)
 
