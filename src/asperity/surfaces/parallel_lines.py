@@ -80,8 +80,8 @@ def register(profiles: Sequence[Profile]) -> Register:
     replaced = tuple(k for k in range(len(profiles)) if k not in full)
     if replaced:
         message = (
-            f"{len(replaced)} of {len(profiles)} parallel lines are shorter than {FULL_LINE:.0%} of the longest "
-            f"({longest} points): they are replaced by their neighbours; measure them again or leave them out"
+            f"{len(replaced)} of {len(profiles)} parallel lines are shorter than {FULL_LINE:.0%} of the "
+            f"longest, {longest} points: they are replaced by their neighbours; measure them again or leave them out"
         )
         warnings.warn(message, ShortRecordWarning, stacklevel=2)
     everywhere = np.clip(np.arange(len(profiles)), full[0], full[-1])
