@@ -81,7 +81,7 @@ def register(profiles: Sequence[Profile]) -> Register:
     if replaced:
         message = (
             f"{len(replaced)} of {len(profiles)} parallel lines are shorter than {FULL_LINE:.0%} of the "
-            f"longest, {longest} points: they are replaced by their neighbours; measure them again or leave them out"
+            f"longest, {longest} points: their neighbours replace them; measure again or leave them out"
         )
         warnings.warn(message, ShortRecordWarning, stacklevel=2)
     everywhere = np.clip(np.arange(len(profiles)), full[0], full[-1])
