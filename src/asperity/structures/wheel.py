@@ -272,12 +272,13 @@ def _check_receptance(frequency: NDArray, receptance: NDArray) -> None:
         raise InputError(what, "frequencies in disorder", "frequencies above 0 Hz and rising")
     if not np.abs(receptance).all():
         raise InputError(what, "a value of zero", "values other than zero", "Leave such points out.")
-    if np.sum(receptance.imag / np.abs(receptance)) > 0.0:
+    sine = receptance.imag / np.abs(receptance)
+    if np.sum(sine) > 3.0 * np.linalg.norm(sine):  # more than noise of random sign
         raise InputError(
             what,
             "an imaginary part that is mostly positive",
             "the time factor e^{+iωt}, whose imaginary part is negative in a damped wheel",
-            "Conjugate the values.",
+            "Conjugate the values; divide a mobility by iω first.",
         )
 
 
