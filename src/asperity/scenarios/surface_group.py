@@ -42,7 +42,7 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
             "y": variable("y", np.arange(first.shape[1]) * dx, "m", "across"),
             "sample_heights": variable(("x", "y"), first.heights, "m", "height of the first sample"),
         }
-        statistics += _listed(areal_statistics(first), "samples")
+        statistics += _areal(first, "samples")
     if textures.path is not None:
         piece = textures.surface[textures.recorded][:PATH_ROWS]
         variables |= {
@@ -50,7 +50,7 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
             "path_y": variable("path_y", np.arange(piece.shape[1]) * dx, "m", "across"),
             "path_heights": variable(("path_x", "path_y"), piece, "m", "height of the path"),
         }
-        statistics += _listed(areal_statistics(HeightMap(piece, textures.path.spacing)), "path")
+        statistics += _areal(HeightMap(piece, textures.path.spacing), "path")
     else:
         statistics += _listed(profile_statistics(Profile(textures.line, dx)), "path")
     line = textures.followed[textures.recorded][:LINE_POINTS]
@@ -63,6 +63,11 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
         "missing_share": textures.missing_share,
     }
     return xarray.Dataset(variables, attrs=attrs)
+
+
+def _areal(surface: HeightMap, where: str) -> list[dict[str, Any]]:
+    """Statistics of a surface; a smooth one has none."""
+    return _listed(areal_statistics(surface), where) if np.ptp(surface.heights) else []
 
 
 def _listed(statistics: list[Statistic], where: str) -> list[dict[str, Any]]:

@@ -1,0 +1,262 @@
+"""The whole chain of a wheel on a rail on small cases: result, textures, geometry, defects."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+
+import asperity
+from asperity.config import parse_case
+from asperity.contact import Hertz
+from asperity.errors import InputError
+from asperity.reference.cnossos import rail_roughness
+from asperity.reference.decay_rate_limit import iso_3095_decay_rate
+from asperity.scenarios import run
+from asperity.scenarios.rail_geometry import rail_geometry
+from asperity.scenarios.rail_textures import gather
+from asperity.scenarios.sweep import sweep
+from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.levels import band_levels_of
+
+CASE = """
+kind = "wheel-on-rail"
+laws = {laws}
+duration = "40 ms"
+settling = "20 ms"
+[surface]
+{surface}
+[wheel]
+{wheel}
+[track]
+{track}
+[contact]
+spacing = "{spacing}"
+samples = 2
+sample_length = "60 mm"
+[numerics]
+highest_frequency = "4 kHz"
+poles = 60
+"""
+ALL = ["areal", "shifted", "printed", "table", "hertz", "linear", "hertz-filtered", "linear-filtered"]
+
+
+def case(
+    surface='spectrum = "iso3095"',
+    wheel='roughness = "disc"',
+    track="",
+    laws=ALL,
+    source="case.toml",
+    spacing="1 mm",
+):
+    values = {"surface": surface, "wheel": wheel, "track": track, "spacing": spacing}
+    text = CASE.format(laws=json.dumps(laws), **values)
+    return parse_case(text, source)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return run(case())
+
+
+class TestResult:
+    def test_groups_and_fixed_variables(self, tree):
+        assert set(tree.children) == {"scenario", "surface", "track", "contact", "rolling", "spectra"}
+        assert tree["contact/filter"].dims == ("approach", "wavenumber")
+        for name in ("contact_force", "relative_displacement", "rail_displacement", "wheel_displacement"):
+            assert tree[f"rolling/{name}"].dims == ("law", "time")
+        assert tree["rolling/point_velocity"].dims == ("law", "point", "time")
+        assert tree["track/moving_kernel"].dims == ("start_position", "lag")
+        assert tree["spectra/force_psd"].dims == ("law", "frequency")
+        assert tree["spectra/roughness_level"].dims == ("part", "surface_band")
+        assert tree["spectra/sound_power_level"].dims == ("law", "source", "noise_band")
+        assert tree["scenario"].attrs["kind"] == "wheel-on-rail"
+        assert "wheel" in tree.attrs["verdict"]
+
+    def test_file_round_trip(self, tree, tmp_path):
+        from asperity.results import save
+
+        again = asperity.load(save(tree, tmp_path / "run.nc"))
+        xarray.testing.assert_identical(again["spectra"].to_dataset(), tree["spectra"].to_dataset())
+
+    def test_mean_force_is_the_load(self, tree):
+        mean = tree["rolling/contact_force"].mean("time")
+        np.testing.assert_allclose(mean, 65e3, rtol=0.1)
+
+    def test_approach_closes_the_geometry(self, tree):
+        """Without texture the wheel sinks into the rail by the approach: δ = w_wheel − w_rail."""
+        rolling = tree["rolling"]
+        sunk = rolling["wheel_displacement"] - rolling["rail_displacement"]
+        np.testing.assert_allclose(sunk, rolling["relative_displacement"], atol=1e-9)
+
+    def test_difference_to_the_linear_law(self, tree):
+        level, difference = tree["spectra/force_level"], tree["spectra/force_level_difference"]
+        np.testing.assert_allclose(difference.values, (level - level.sel(law="linear")).values)
+        assert tree["spectra/force_level_difference_to_reference"].attrs["reference"] == "table"
+
+    def test_areal_explains_table_better_than_a_bare_line(self, tree):
+        correlation = tree["rolling/contact_force"].to_pandas().T.corr()["table"]
+        assert correlation["areal"] > 0.95
+        assert correlation["areal"] > correlation["hertz"]
+
+    def test_sound_power_differs_by_the_force(self, tree):
+        spectra = tree["spectra"]
+        change = spectra["sound_power_level"] - spectra["sound_power_level"].sel(law="linear")
+        force = spectra["force_level_difference"].interp(band=spectra["noise_band"].values)
+        track = change.sel(source="track").values
+        inside = np.isfinite(force.values)
+        assert inside.sum() > 50
+        np.testing.assert_allclose(track[inside], force.values[inside], atol=1e-6)
+
+    def test_marks(self, tree):
+        spectra, spacing = tree["spectra"].attrs, 0.6
+        assert spectra["sleeper_passing_frequency"] == pytest.approx(56 / spacing)
+        middle = 0.5 * (spectra["pinned_pinned_low"] + spectra["pinned_pinned_high"])
+        assert middle == pytest.approx(tree["track"].attrs["pinned_pinned_frequency"])
+        assert spectra["wheel_revolution_frequency"] == pytest.approx(56 / (2 * np.pi * 0.46))
+
+
+class TestTextures:
+    def test_wheel_repeats_with_its_circumference_from_the_start(self):
+        small = case(surface="smooth = true")
+        found = gather(small)
+        turn = round(2 * np.pi * 0.46 / 1e-3)
+        wheel = found.parts["wheel"]
+        assert len(wheel) > turn
+        np.testing.assert_array_equal(wheel[turn:], wheel[:-turn])
+        assert found.start + found.before * 1e-3 == pytest.approx(small.start)
+        assert not found.parts["rail"].any()
+
+    def test_rail_and_wheel_add_up(self):
+        found = gather(case())
+        np.testing.assert_allclose(found.line, found.parts["rail"] + found.parts["wheel"], atol=1e-12)
+        np.testing.assert_array_equal(found.line, found.path.heights[:, found.path.shape[1] // 2])
+
+    def test_levels_of_the_rail_are_those_of_its_spectrum(self):
+        long = parse_case(case(wheel="").text.replace('"40 ms"', '"0.8 s"'), "case.toml")
+        rail = gather(long).parts["rail"]
+        wavelength, level = band_levels_of(Profile(rail, 1e-3), shortest=4e-3, longest=0.1)
+        given, wanted = rail_roughness("iso3095")
+        expected = np.interp(-np.log(wavelength), -np.log(given), wanted)
+        np.testing.assert_allclose(level, expected, atol=1.5)  # one line of a strip scatters
+
+    def test_samples_are_flat_where_nothing_is_rough(self):
+        found = gather(case(surface="smooth = true", wheel='flat_depth = "0.2 mm"'))
+        assert len(found.maps) == 1
+        assert not np.ptp(found.maps[0].heights)
+
+    def test_path_shorter_than_the_strips_is_refused(self):
+        long = parse_case(case().text.replace('"60 mm"', '"9 m"'), "case.toml")
+        with pytest.raises(InputError, match=r"duration: received 0\.04 s, a path of"):
+            gather(long)
+
+
+class TestDefects:
+    def test_flat_lies_where_it_is_said_and_returns_each_turn(self):
+        found = gather(case(surface="smooth = true", wheel='flat_depth = "0.3 mm"\nflat_position = "1 m"'))
+        at = found.start + 1e-3 * np.arange(len(found.line))
+        assert found.trajectory.min() == pytest.approx(-0.3e-3, rel=1e-2)
+        assert at[np.argmin(found.trajectory)] == pytest.approx(1.0, abs=2e-3)
+        assert not found.line.any()
+
+    def test_corrugation_is_texture_and_no_defect(self):
+        found = gather(case(surface='corrugation = "20 um"\ncorrugation_wavelength = "50 mm"', wheel=""))
+        assert found.defects is None
+        assert np.ptp(found.line) == pytest.approx(40e-6, rel=1e-2)
+        assert not np.ptp(found.strips[0].heights)
+
+    def test_wheel_does_not_fall_as_deep_into_a_joint_as_it_dips(self):
+        found = gather(case(surface='joint_depth = "2 mm"\njoint_position = "1 m"', wheel=""))
+        assert np.all(found.trajectory >= found.defects - 1e-12)
+        assert found.defects.min() < found.trajectory.min() < 0.0
+
+    def test_flat_strikes_every_law(self):
+        laws = ["areal", "shifted", "linear"]
+        quiet = run(case(surface="smooth = true", wheel="", laws=laws))["rolling/contact_force"].std("time")
+        wheel = 'flat_depth = "0.3 mm"\nflat_position = "1 m"'
+        struck = run(case(surface="smooth = true", wheel=wheel, laws=laws))
+        force = struck["rolling/contact_force"]
+        assert np.all(force.std("time") > 5 * quiet)
+        assert np.all(force.max("time") > 1.5 * 65e3)
+        hit = struck["rolling/position"][int(force.sel(law="areal").argmax("time"))]
+        assert float(hit) == pytest.approx(1.0, abs=0.15)
+
+    def test_table_in_a_window_shorter_than_the_flat_warns(self):
+        wheel = 'flat_depth = "0.3 mm"'
+        found = run(case(surface="smooth = true", wheel=wheel, laws=["table"]))
+        messages = [w["message"] for w in json.loads(found.attrs["warnings"])]
+        assert any("the flat is 33.2 mm long" in m for m in messages)
+
+
+def fine(**keys):
+    return case(spacing="0.4 mm", **keys)
+
+
+class TestGeometry:
+    def test_radii_make_hertz(self):
+        shape = rail_geometry(fine(wheel='transverse_radius = "0.5 m"'))
+        assert shape.hertz.radius_x == 0.46
+        assert shape.hertz.radius_y == pytest.approx(1 / (1 / 0.3 + 1 / 0.5))
+        assert shape.largest_force < 8 * 65e3  # what the window holds
+
+    def test_measured_section_of_a_circle_is_its_radius(self, tmp_path):
+        y = np.linspace(-30e-3, 30e-3, 121)
+        rows = "\n".join(f"{a * 1e3:.4f}\t{-(a**2) / 0.6 * 1e6:.6f}" for a in y)
+        (tmp_path / "head.txt").write_text("y [mm]\tz [um]\n" + rows + "\n")
+        measured = fine(track='rail_profile = "head.txt"', source=tmp_path / "case.toml")
+        shape, round_head = rail_geometry(measured), rail_geometry(fine())
+        assert shape.hertz.radius_y == pytest.approx(0.3, rel=1e-3)
+        np.testing.assert_allclose(shape.body, round_head.body, atol=1e-9)
+
+    def test_section_narrower_than_the_window_is_refused(self, tmp_path):
+        rows = "\n".join(f"{a:.4f}\t{-(a**2):.6f}" for a in np.linspace(-5, 5, 41))
+        (tmp_path / "head.txt").write_text("y [mm]\tz [um]\n" + rows + "\n")
+        with pytest.raises(InputError, match=r"track\.rail_profile: received a section 10 mm wide"):
+            rail_geometry(fine(track='rail_profile = "head.txt"', source=tmp_path / "case.toml"))
+
+    def test_bodies_that_fit_each_other_are_refused(self, tmp_path):
+        rows = "\n".join(f"{a:.4f}\t{a**2 * 10:.6f}" for a in np.linspace(-30, 30, 121))
+        (tmp_path / "tread.txt").write_text("y [mm]\tz [um]\n" + rows + "\n")
+        with pytest.raises(InputError, match="bodies that"):
+            rail_geometry(fine(wheel='profile = "tread.txt"', source=tmp_path / "case.toml"))
+
+    def test_wheel_and_rail_under_their_load(self):
+        shape = rail_geometry(fine())
+        expected = Hertz(shape.modulus, 0.46, 0.3)
+        assert expected.stiffness_constant == pytest.approx(9.413e10, rel=1e-3)
+        assert shape.semi_axes == pytest.approx((6.20e-3, 4.67e-3), rel=1e-3)
+
+
+class TestSweep:
+    def test_dimensions_and_what_they_hold(self):
+        small = case(laws=["areal", "linear"])
+        table = sweep(small, [40.0, 56.0], [50e3, 65e3])
+        assert table["force_level"].dims == ("speed", "load", "law", "band")
+        assert dict(table.sizes) | {"speed": 2, "load": 2, "law": 2} == dict(table.sizes)
+        for name in ("force_level_difference", "rms_force", "contact_loss_share", "contact_loss_events"):
+            assert {"speed", "load", "law"} <= set(table[name].dims)
+        assert table["sound_power_level_a"].dims == ("speed", "load", "law", "source")
+        for values in table.variables.values():
+            assert {"units", "long_name"} <= values.attrs.keys()
+        one = run(case(laws=["areal", "linear"]))["rolling/contact_force"].std("time")
+        np.testing.assert_allclose(table["rms_force"].sel(speed=56.0, load=65e3), one)
+
+    def test_empty_and_repeated_values_are_refused(self):
+        with pytest.raises(InputError, match="loads: received"):
+            sweep(case(), [56.0], [])
+        with pytest.raises(InputError, match="speeds: received"):
+            sweep(case(), [56.0, 56.0], [65e3])
+
+
+def test_decay_rate_limit():
+    np.testing.assert_array_equal(
+        iso_3095_decay_rate([100.0, 250.0, 500.0, 800.0, 2000.0, 9000.0]),
+        [np.nan, 2.0, 6.0, 2.19, 0.8, np.nan],
+    )
