@@ -26,7 +26,7 @@ def test_levels_by_hand_where_bands_match():
     power = rolling_sound_power(MATCHED, RAIL, DISC, TRACK, WHEEL, contact_filter=FILTER, axles=4)
     # 10^-0.11 + 10^-0.16 = 0.77625 + 0.69183 = 1.46808, 1.667 dB; −1.1 dB; 10 lg 4 = 6.021 dB: 6.588 dB
     assert_allclose(band(power, 1000.0)[:2], [6.588 + 104.4, 6.588 + 94.9], atol=1e-3)
-    # 0.89 % … 10 lg(1 + 10^-0.95) = 0.462 dB for the wheel beside the track
+    # the wheel, 9.5 dB below the track, adds 10 lg(1 + 10^-0.95) = 0.462 dB
     assert_allclose(band(power, 1000.0)[2], 6.588 + 104.4 + 0.462, atol=1e-3)
     assert SOURCES == ("track", "wheel", "total")
 

@@ -179,7 +179,7 @@ def test_a_receptance_in_another_unit_is_refused(factor):
 
 def test_the_other_time_factor_is_refused():
     f = np.arange(20.0, 3001.0, 2.0)
-    with pytest.raises(InputError, match="mostly positive.*Conjugate"):
+    with pytest.raises(InputError, match=r"mostly positive.*Conjugate"):
         Wheel.from_receptance(MASS, LOAD, f, modal_wheel().receptance(f).conj())
 
 
