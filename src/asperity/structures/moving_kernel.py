@@ -225,13 +225,13 @@ def _causality_error(track: Track, time_step: float, taps: int) -> float:
     """Largest difference of levels between the causal kernel and the receptance, at mid-span, dB."""
     grid = HatResponse(track, time_step, taps, ZONES)
     middle = 0.5 * track.sleeper_spacing
-    amplitude = grid.hat * grid.waves.coefficients
-    receptance = (amplitude * grid.waves.outgoing(middle) * grid.waves.incoming(middle)).sum(axis=0)
-    weights = grid.response(receptance[None])[0]
-    frequency = np.geomspace(LOWEST, min(HIGHEST, 0.25 / time_step), 60)
-    lines = np.unique(np.searchsorted(grid.omega.real, 2.0 * np.pi * frequency))
-    omega = grid.omega.real[lines]
+    weights = grid.response((grid.hat * grid.waves.receptance(middle, middle))[None])[0]
+    omega = 2.0 * np.pi * np.geomspace(LOWEST, min(HIGHEST, 0.25 / time_step), 60)
     found = np.exp(-1j * omega[:, None] * time_step * np.arange(taps)) @ weights
-    half = 0.5 * omega * time_step
-    expected = (np.sin(half) / half) ** 2 * track.receptance(omega / (2.0 * np.pi), middle, middle)
+    expected = np.zeros(omega.size, dtype=complex)
+    for alias in range(-ZONES // 2, ZONES // 2 + 1):
+        shifted = omega + 2.0 * np.pi * alias / time_step
+        receptance = track.receptance(np.abs(shifted) / (2.0 * np.pi), middle, middle)
+        hat = (np.sin(0.5 * shifted * time_step) / (0.5 * shifted * time_step)) ** 2
+        expected += hat * np.where(shifted < 0.0, np.conj(receptance), receptance)
     return float(np.abs(20.0 * np.log10(np.abs(found / expected))).max())
