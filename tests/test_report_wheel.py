@@ -212,6 +212,14 @@ def test_speed_and_sleepers_follow_from_the_run(tree):
     assert sleeper_spacing(tree) == pytest.approx(SLEEPERS, rel=1e-9)
 
 
+def test_smooth_surface_has_no_map_and_no_spectrum():
+    tree = small()
+    for name in ("sample_heights", "psd_sample", "psd_path"):
+        tree["surface"][name].values[:] = 0.0
+    drawn = {part.name for part in drawable_parts(tree)}
+    assert set(PARTS) - drawn == {"texture_sample", "texture_psd"}
+
+
 def test_bands_without_roughness_are_not_drawn():
     tree = small()
     level = tree["spectra"]["roughness_level"].values
@@ -266,6 +274,13 @@ def test_piece_around_the_peak_holds_it(tree):
     assert part.start < peak < part.stop
     assert (part.stop - part.start) * 2.5e-5 == pytest.approx(AROUND_PEAK, rel=1e-3)
     assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].caption(tree)
+
+
+@pytest.mark.parametrize("flat", [True, False])
+def test_bars_of_lost_contact_are_drawn_where_it_is_lost(flat):
+    part, tree = PARTS["force_peak"], wheel_tree(["areal", "linear"], steps=4000, flat=flat)
+    assert len(part.draw(tree).axes) == 1 + flat
+    assert ("Bars below" in part.caption(tree)) == flat
 
 
 @pytest.mark.parametrize("peak", [0, 3999])

@@ -205,7 +205,7 @@ def velocity_psd_figure(tree: DataTree) -> Figure:
     frequency_axis(panels[-1], *frequency_range(tree))
     level_limits(panels[0], levels)
     for axes in panels:
-        draw_marks(axes, natural_frequencies(tree), labelled=axes is panels[0])
+        draw_marks(axes, natural_frequencies(tree), labelled=False)
     legend_above(panels[0], columns=5)
     return figure
 
@@ -220,11 +220,10 @@ def velocity_psd_columns(tree: DataTree) -> Columns:
     return columns
 
 
-def _velocity_psd_caption(_: DataTree) -> str:
-    return (
-        f"Velocity of the rail at fixed points over the whole run, {DRAWN}. Dotted lines: frequencies of the "
-        "resting track."
-    )
+def _velocity_psd_caption(tree: DataTree) -> str:
+    named = ", ".join(f"{mark.label} {mark.frequency:.0f} Hz" for mark in natural_frequencies(tree))
+    dotted = f" Dotted: {named}." if named else ""
+    return f"Velocity of the rail at fixed points over the whole run, {DRAWN}.{dotted}"
 
 
 MOTION = (

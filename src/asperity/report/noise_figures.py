@@ -89,9 +89,11 @@ def band_columns(tree: DataTree) -> Columns:
 def _band_caption(tree: DataTree) -> str:
     share = _share_law(tree)
     return (
-        "A-weighted one-third octaves by the transfer functions of CNOSSOS-EU. The linear law stands for "
-        "CNOSSOS-EU itself; the others add their difference of the contact force level to linear, band by "
-        f"band. Grey: the shares of track and wheel by {share}."
+        "A-weighted one-third octaves. The linear law: the roughness that was rolled and the transfer "
+        "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare texture. "
+        "The other laws add their difference of the contact force level to linear, band by band, which holds "
+        "what the contact filters. "
+        f"Grey: the shares of track and wheel by {share}."
     )
 
 
@@ -152,8 +154,8 @@ NOISE = (
         total_figure,
         total_columns,
         lambda _: (
-            "Sum of the A-weighted bands. The axis does not start at zero: compare the ends of the bars, not "
-            "their lengths."
+            "Sum of the A-weighted bands below. The axis does not start at zero: compare the ends of the "
+            "bars, not their lengths."
         ),
     ),
     Part(

@@ -35,6 +35,8 @@ class Part:
         Says, from a result tree, what is drawn and with which conventions.
     any_of : tuple of str, optional
         Variables of which it needs at least one.
+    worth : callable, optional
+        Whether these variables have anything to show: a smooth surface has no spectrum.
     """
 
     name: str
@@ -44,8 +46,9 @@ class Part:
     columns: Callable[[DataTree], Columns]
     caption: Callable[[DataTree], str]
     any_of: tuple[str, ...] = ()
+    worth: Callable[[DataTree], bool] = lambda _: True
 
     def drawable(self, tree: DataTree) -> bool:
         """Whether `tree` holds what the figure needs."""
         some = not self.any_of or any(present(tree, path) for path in self.any_of)
-        return some and present(tree, *self.needs)
+        return some and present(tree, *self.needs) and self.worth(tree)

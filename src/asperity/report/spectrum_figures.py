@@ -37,8 +37,8 @@ _SENSOR_DASHES = ("-", (0, (6, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (3, 1.5)), (0
 
 REFERENCE_STYLE: dict[str, Any] = {
     "color": INK,
-    "linestyle": (0, (4, 2)),
-    "linewidth": 1.1,
+    "linestyle": (0, (3, 3)),
+    "linewidth": 1.0,
     "zorder": 5,
     "label": "linear, frequency domain",
 }

@@ -200,7 +200,7 @@ def sound_power_table(tree: DataTree) -> Table | None:
         if "linear" in names:
             row += [Cell(_signed(d) if law != "linear" else "–", "number") for d in level - levels["linear"]]
         rows.append(row)
-    note = "Re 1 pW. Positive differences: the linear contact underestimates."
+    note = "Re 1 pW, over the bands that were computed. Positive differences: linear contact underestimates."
     return Table("sound_power_table", "A-weighted sound power", head, rows, note)
 
 

@@ -247,6 +247,8 @@ def _sample_caption(tree: DataTree) -> str:
     )
 
 
+_SPECTRUM_PATHS = tuple(f"surface/{name}" for name in _SPECTRA)
+
 TEXTURE = (
     Part(
         "texture_sample",
@@ -255,6 +257,7 @@ TEXTURE = (
         sample_figure,
         sample_columns,
         _sample_caption,
+        worth=lambda tree: bool(np.nanmax(np.abs(values(tree, "surface/sample_heights"))) > 0),
     ),
     Part(
         "texture_path",
@@ -278,7 +281,10 @@ TEXTURE = (
             "Power spectral density of the lines in rolling direction, mean over the lines, one-sided "
             "per cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that."
         ),
-        any_of=tuple(f"surface/{name}" for name in _SPECTRA),
+        any_of=_SPECTRUM_PATHS,
+        worth=lambda tree: any(
+            (values(tree, path) > 0).any() for path in _SPECTRUM_PATHS if present(tree, path)
+        ),
     ),
 )
 

@@ -107,41 +107,51 @@ def envelope_columns(tree: DataTree) -> Columns:
 @styled()
 def piece_figure(tree: DataTree) -> Figure:
     """Contact force of all laws over a short piece of the run, and below it where each has lost contact."""
-    return draw_piece(tree, piece(tree))
+    part, names = piece(tree), laws(tree, FORCE)
+    figure = new_figure(3.9 + 0.16 * len(names))
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1, 0.06 * len(names) + 0.04])
+    draw_forces(upper, tree, part)
+    upper.set_xlabel("")
+    draw_flights(lower, tree, part)
+    return figure
 
 
-def draw_piece(tree: DataTree, part: slice) -> Figure:
-    """Contact force of all laws over the time steps `part`, and below it where each has lost contact."""
+def draw_forces(axes: Axes, tree: DataTree, part: slice) -> None:
+    """Draw the contact force of all laws over the time steps `part`."""
     names = laws(tree, FORCE)
     time = values(tree, "rolling/time")[part]
     unit, symbol = time_unit(time[-1])
     size, force_symbol = _force_unit(tree)
-    figure = new_figure(3.9 + 0.16 * len(names))
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[1, 0.06 * len(names) + 0.04])
     for law in names:
         force = of_law(tree, FORCE, law, "time")[part] / size
-        upper.plot(time / unit, force, label=law, **law_style(law, names[0]))
-    upper.axhline(0, color=MUTED, linewidth=0.8)
-    upper.set_ylabel(f"contact force / {force_symbol}")
-    upper.set_xlim(time[0] / unit, time[-1] / unit)
-    legend_above(upper)
+        axes.plot(time / unit, force, label=law, **law_style(law, names[0]))
+    axes.axhline(0, color=MUTED, linewidth=0.8)
+    axes.set_xlabel(f"time / {symbol}")
+    axes.set_ylabel(f"contact force / {force_symbol}")
+    axes.set_xlim(time[0] / unit, time[-1] / unit)
+    legend_above(axes)
+
+
+def draw_flights(axes: Axes, tree: DataTree, part: slice) -> None:
+    """Draw a bar per law where it has lost contact, over the time steps `part`."""
+    names = laws(tree, FORCE)
+    time = values(tree, "rolling/time")[part]
+    unit, symbol = time_unit(time[-1])
     for row, law in enumerate(names):
-        flight = lost(tree, law)[part]
-        lower.fill_between(
+        axes.fill_between(
             time / unit,
             row - 0.35,
             row + 0.35,
-            where=flight,
+            where=lost(tree, law)[part],
             color=law_style(law, "")["color"],
             step="mid",
             linewidth=0.8,
         )
-    lower.set_ylim(len(names) - 0.4, -0.6)
-    lower.set_yticks(range(len(names)), names)
-    lower.grid(visible=False, axis="y")
-    lower.set_xlabel(f"time / {symbol}")
-    lower.set_ylabel("no contact", fontsize=8.5)
-    return figure
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.set_yticks(range(len(names)), names)
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel(f"time / {symbol}")
+    axes.set_ylabel("no contact", fontsize=8.5)
 
 
 def piece_columns(tree: DataTree) -> Columns:
