@@ -17,6 +17,7 @@ _HOME = {
     "scan": "reduction.scan",
     "run": "scenarios",
     "load": "results",
+    "sweep": "scenarios.sweep",
 }
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "read_surface",
     "run",
     "scan",
+    "sweep",
 ]
 
 

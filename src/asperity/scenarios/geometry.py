@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass, replace
 
@@ -36,6 +37,8 @@ class Geometry:
         Working load, N.
     largest_force : float
         Largest force that chosen states cover, N.
+    lowest_approach : float
+        Lowest approach that chosen states cover, m.
     """
 
     body: NDArray[np.float64]
@@ -44,6 +47,7 @@ class Geometry:
     hertz: Hertz
     load: float
     largest_force: float
+    lowest_approach: float = -math.inf
 
     @property
     def semi_axes(self) -> tuple[float, float]:
@@ -66,16 +70,18 @@ class Geometry:
         return self.hertz.semi_axes(self.hertz.approach(force))
 
     def within_window(self) -> Geometry:
-        """Lower the largest force to what makes a contact that the window holds.
+        """Bound the states: above by a contact that the window holds, below by the working approach.
 
         Returns
         -------
         Geometry
-            The same gap.
+            The same gap. States below minus the working approach, which a hollow deeper than it asks for,
+            would take those away that carry load.
         """
         sides = [n * d for n, d in zip(self.body.shape, self.spacing, strict=True)]
         room = min(FILLED * side / (2 * a) for side, a in zip(sides, self.semi_axes, strict=True))
-        return replace(self, largest_force=min(self.largest_force, self.load * max(room, 1.0) ** 3))
+        largest = min(self.largest_force, self.load * max(room, 1.0) ** 3)
+        return replace(self, largest_force=largest, lowest_approach=-self.hertz.approach(self.load))
 
 
 def window_cells(contact: ContactCase) -> int:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from asperity.config.railway_textures import MeasuredLines, RailSurface
 from asperity.config.wheel import WheelCase
-from asperity.errors import InputError, ShortRecordWarning
+from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.scenarios.rail_records import Grid, Record
 from asperity.surfaces.continuation import Continuation, close, extend
 from asperity.surfaces.en15610 import Processing, process
@@ -126,7 +126,10 @@ def _measured(section: MeasuredLines, name: str) -> tuple[list[Profile], str]:
     assert section.line is not None
     hints = {"array": section.line_array, "height_unit": section.line_unit, "pixel": section.line_spacing}
     given = {key: value for key, value in hints.items() if value is not None}
-    measured = read_surface(section.line, **given)  # type: ignore[arg-type]
+    with warnings.catch_warnings():
+        # ends are trimmed and gaps refused below
+        warnings.simplefilter("ignore", MissingPointsWarning)
+        measured = read_surface(section.line, **given)  # type: ignore[arg-type]
     if isinstance(measured, Profile):
         raw = [measured]
     else:  # lines lie along the longer side

@@ -32,6 +32,8 @@ STATES = 14
 """States chosen where the case names no approaches."""
 LIGHTEST_STATE = 0.02
 """Least mean force of a state that has a filter, in working loads."""
+LEAST_DATUM = 1e-12
+"""Least datum, m: above the rounding of a touch at zero, between smooth bodies."""
 SMOOTH_WAVENUMBERS = 120
 """Wavenumbers of the closed-form filter where a case has no texture."""
 LONG_WAVE = 0.5
@@ -131,7 +133,8 @@ def reduce(
     half_space = HalfSpace(cells, shape.spacing, shape.modulus, hardness)
     contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=rtol) for s in samples]
     approaches = _approaches(contact, textures, shape, planes, samples, half_space)
-    datum = -min(float(approaches[0]), _lowest_touch(textures, shape, planes, samples))
+    lowest = min(float(approaches[0]), _lowest_touch(textures, shape, planes, samples))
+    datum = max(-lowest, LEAST_DATUM)
     ensemble = stiffness_ensemble(
         samples, shape.spacing, shape.body, shape.modulus, approaches, datum, hardness,
         rtol=rtol, progress=progress,
@@ -192,7 +195,7 @@ def _approaches(
     """States as given, or from the first touch to a high force, denser where contact begins."""
     if contact.approaches is not None:
         return np.array(contact.approaches)
-    low = _lowest_touch(textures, shape, planes, samples)
+    low = max(_lowest_touch(textures, shape, planes, samples), shape.lowest_approach)
     high = max(
         half_space.solve(shape.body - s, load=shape.largest_force, rtol=1e-3).approach for s in samples
     )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import warnings
 from typing import Any
 
 import numpy as np
 import xarray
 from numpy.typing import NDArray
 
+from asperity.errors import ShortRecordWarning
 from asperity.results import variable
 from asperity.scenarios.chain import Chain
 from asperity.spectra import psd
@@ -66,8 +68,14 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
 
 
 def _areal(surface: HeightMap, where: str) -> list[dict[str, Any]]:
-    """Statistics of a surface; a smooth one has none."""
-    return _listed(areal_statistics(surface), where) if np.ptp(surface.heights) else []
+    """Statistics of a surface; a smooth one has none, one narrower than its waves no texture ratio."""
+    if not np.ptp(surface.heights):
+        return []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ShortRecordWarning)
+        found = areal_statistics(surface)
+    bounds = {"Str"} if any(issubclass(w.category, ShortRecordWarning) for w in caught) else set()
+    return _listed([s for s in found if s.symbol not in bounds], where)
 
 
 def _listed(statistics: list[Statistic], where: str) -> list[dict[str, Any]]:

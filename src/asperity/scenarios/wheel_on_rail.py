@@ -16,7 +16,7 @@ from asperity.progress import Progress
 from asperity.rolling.passing import passed_points
 from asperity.rolling.wheel_on_rail import WheelRolling, roll
 from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
-from asperity.scenarios.compiling import compile_kernels
+from asperity.scenarios.compiling import compile_rail_kernels
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.rail_defects import NEED_GEOMETRY
 from asperity.scenarios.rail_geometry import rail_geometry
@@ -73,7 +73,7 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
     Computed
         All that was computed.
     """
-    compile_kernels(progress)
+    compile_rail_kernels(progress)
     store, watch = Store(), Stopwatch()
     track, wheel = case.track_model(), wheel_of(case)
     shape = rail_geometry(case)
