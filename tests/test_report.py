@@ -340,7 +340,7 @@ def test_picture_of_a_surface(heights, spacing):
 @pytest.mark.parametrize(
     ("value", "unit", "shown"),
     [(3.1e-7, "m", "310 nm"), (1.5e-6, "m", "1.50 µm"), (-0.41, "1", "−0.41"), (2.4e8, "Pa", "240 MPa"),
-     (0.0, "J", "0 J"), (3.1e-8, "m²", "31000 µm²"),
+     (0.0, "J", "0 J"), (-0.0, "m", "0 m"), (3.1e-8, "m²", "31000 µm²"),
      (float("nan"), "m", "–"), (0.05, "m", "50.0 mm"), (5.04, "N", "5.04 N")],
 )  # fmt: skip
 def test_numbers_are_written_with_prefixes(value, unit, shown):

@@ -137,7 +137,7 @@ def force_figure(tree: DataTree) -> Figure:
     figure = new_figure(4.2)
     panels = figure.subplots(1, 2)
     approach = values(tree, "contact/approach")
-    rough = present(tree, "contact/force_std")
+    rough = present(tree, "contact/force_std") and bool(np.nanmax(values(tree, "contact/force_std")) > 0)
     size, symbol = force_unit(float(np.nanmax(values(tree, "contact/force"))))
     forces = (
         (

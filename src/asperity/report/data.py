@@ -104,6 +104,7 @@ def engineering(value: float, unit: str, digits: int = 3) -> str:
     if unit in ("", "1"):
         return plain(value, digits)
     power = 2 if unit == "m²" else 1  # a prefix on a squared unit is squared with it
+    value += 0.0  # no minus before zero
     exponent = 0 if value == 0 else 3 * math.floor(math.floor(math.log10(abs(value))) / (3 * power))
     exponent = min(max(exponent, -12 if power == 1 else -9), 0 if power == 2 else 12)
     scaled = value / 10.0 ** (exponent * power)

@@ -12,7 +12,7 @@ from xarray import DataTree
 from asperity.report.data import engineering, nominal_band, number, values, variable
 from asperity.report.marks import speed
 from asperity.report.part import Columns, Part
-from asperity.report.style import INK, LAW_STYLES, MUTED, legend_above, level_limits, new_figure, styled
+from asperity.report.style import INK, LAW_STYLES, MUTED, level_limits, new_figure, styled
 
 ROUGHNESS, BAND = "spectra/roughness_level", "spectra/surface_band"
 SPAN = 60.0
@@ -55,13 +55,15 @@ def roughness_figure(tree: DataTree) -> Figure:
             wavelength, level, color=colour, linestyle=dashes, marker=marker, label=name, linewidth=thick
         )
     level_limits(axes, levels.values(), span=100.0, step=5.0)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.1 * (high - low))  # room for a note
     axes.set_ylabel("roughness level / dB re 1 µm")
     _wavelength_axis(axes, wavelength)
     pace = speed(tree)
     if pace:
         _frequency_on_top(axes, wavelength, pace)
     _mark_contact(axes, tree)
-    axes.legend(loc="lower left") if pace else legend_above(axes)
+    axes.legend(loc="best")
     return figure
 
 
