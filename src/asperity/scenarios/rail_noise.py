@@ -10,8 +10,12 @@ from asperity.reference import cnossos
 from asperity.results import variable
 from asperity.rolling.noise import SOURCES, SoundPower, rolling_sound_power
 from asperity.scenarios.wheel_on_rail import Computed
+from asperity.spectra import HALF_BAND
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
+
+EMPTY = -200.0
+"""Level of a band without texture, dB re 1 µm."""
 
 
 def noise_variables(
@@ -40,12 +44,9 @@ def noise_variables(
     force is not computed are left out of all totals.
     """
     laws = list(computed.chain.runs)
-    linear = _linear(computed)
-    if linear is None or "linear" not in laws:
+    if "linear" not in laws or not np.ptp(computed.chain.textures.line):
         return {}
-    computed_bands = (linear.band > band[0] / 1.05) & (linear.band < band[-1] * 1.05)
-    shown = computed_bands & ~np.isnan(linear.levels).any(axis=0)
-    linear = SoundPower(linear.band[shown], linear.levels[:, shown])
+    linear, filtered = (_within(_linear(computed, name), band) for name in (None, _filter_of(computed)))
     difference = force_level - force_level[laws.index("linear")]
     powers = [linear.with_difference(band, np.where(np.isfinite(d), d, np.nan)) for d in difference]
     return {
@@ -63,31 +64,51 @@ def noise_variables(
             "dB(A) re 1 pW",
             "A-weighted sound power level of rolling, over the bands computed",
         ),
+        "cnossos_sound_power_level_a": variable(
+            "source",
+            filtered.a_weighted,
+            "dB(A) re 1 pW",
+            "A-weighted sound power level by CNOSSOS-EU with its contact filter, over the bands computed",
+            contact_filter=_filter_of(computed),
+        ),
     }
 
 
-def _linear(computed: Computed) -> SoundPower | None:
-    """Sound power of CNOSSOS-EU without contact filter; None where nothing is rough."""
+def _filter_of(computed: Computed) -> str:
+    wheel = computed.case.wheel
+    return cnossos.nearest_contact_filter(wheel.load, 2.0 * wheel.radius)
+
+
+def _linear(computed: Computed, contact_filter: str | None) -> SoundPower:
+    """Sound power of CNOSSOS-EU, with or without a contact filter."""
     case, textures = computed.case, computed.chain.textures
     rail, wheel = (_levels(textures.parts[part], case.contact.spacing) for part in ("rail", "wheel"))
-    if rail is None and wheel is None:
-        return None
     return rolling_sound_power(
         case.speed,
         rail,
         wheel,
         cnossos.track_transfer(case.noise.track_pad),
         cnossos.wheel_transfer(case.noise.wheel_transfer),
+        contact_filter=None if contact_filter is None else cnossos.contact_filter(contact_filter),
         axles=case.noise.axles,
     )
+
+
+def _within(power: SoundPower, band: NDArray[np.float64]) -> SoundPower:
+    """Keep the bands for which there are roughness and force."""
+    shown = (power.band > band[0] / 1.05) & (power.band < band[-1] * 1.05)
+    shown &= ~np.isnan(power.levels).any(axis=0)
+    return SoundPower(power.band[shown], power.levels[:, shown])
 
 
 def _levels(
     line: NDArray[np.float64], spacing: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Band levels of the line that is rolled over, where it is rough at all."""
+    """Band levels of the line that is rolled over, at the wavelengths of CNOSSOS-EU, where it is rough."""
     if not np.ptp(line):
         return None
+    known = cnossos.wavelengths()
+    shortest, longest = max(known.min(), 2.0 * spacing * HALF_BAND), known.max()
     wavelength, level = band_levels_of(Profile(line, spacing))
-    lowest = np.where(np.isfinite(level), level, -200.0)
-    return wavelength, lowest
+    inside = (wavelength > shortest / 1.05) & (wavelength < longest * 1.05)
+    return wavelength[inside], np.where(np.isfinite(level), level, EMPTY)[inside]
