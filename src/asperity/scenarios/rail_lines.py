@@ -49,7 +49,7 @@ def rail_lines(surface: RailSurface, grid: Grid) -> Record:
     InputError
         If the record is shorter than the path and is not to be continued, or its levels are unlikely.
     """
-    profiles, origin = _measured(surface, "surface")
+    profiles, origin = _measured(surface, "surface", degree=1)
     lines = common_length([resample(profile, grid.spacing) for profile in profiles])
     if not surface.accept_levels:
         _check(lines, grid, "rail's lines")
@@ -87,7 +87,7 @@ def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
     ShortRecordWarning
         If lines are left out because they do not.
     """
-    measured, origin = _measured(wheel, "wheel")
+    measured, origin = _measured(wheel, "wheel", degree=0)
     whole = grid.rows * grid.spacing
     profiles = [p for p in measured if len(p.heights) * p.spacing >= (1.0 - FULL_TURN) * whole]
     if not profiles:
@@ -121,8 +121,11 @@ def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
     return Record(_across(close(fine.T, round(JOIN / grid.spacing)).T, wheel, grid), origin)
 
 
-def _measured(section: MeasuredLines, name: str) -> tuple[list[Profile], str]:
-    """Complete, levelled lines of a file, processed as the section says, and what was done."""
+def _measured(section: MeasuredLines, name: str, *, degree: int) -> tuple[list[Profile], str]:
+    """Complete lines of a file, processed as the section says, and what was done.
+
+    A line that goes round keeps its slope: it has none, but what noise gives it.
+    """
     assert section.line is not None
     hints = {"array": section.line_array, "height_unit": section.line_unit, "pixel": section.line_spacing}
     given = {key: value for key, value in hints.items() if value is not None}
@@ -145,7 +148,9 @@ def _measured(section: MeasuredLines, name: str) -> tuple[list[Profile], str]:
         )
     steps = {step: step in section.processing for step in ("spikes", "curvature")}
     done = [process(line, fill_gaps="fill" in section.processing, **steps) for line in raw]
-    return [level(line) for line, _ in done], f"{section.line.name}, {_done([how for _, how in done])}"
+    return [
+        level(line, degree) for line, _ in done
+    ], f"{section.line.name}, {_done([how for _, how in done])}"
 
 
 def _done(steps: Sequence[Processing]) -> str:
