@@ -14,6 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from asperity.kernels.options import INNER, LOOP
 from asperity.kernels.pointforce import evaluate, with_damping
 
 FORCE_TOLERANCE = 1e-10  # of the force plus the load, at the end of each step
@@ -137,7 +138,7 @@ def modal_coefficients(natural: NDArray, damping_ratio: NDArray, time_step: floa
     return step
 
 
-@njit(cache=True)
+@njit(**INNER)
 def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no-untyped-def]
     """Advance all but the last force of a step.
 
@@ -181,7 +182,7 @@ def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no
     )
 
 
-@njit(cache=True)
+@njit(**INNER)
 def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-untyped-def]
     """Newton step inside a bracket that it narrows; bisection where Newton fails or dawdles.
 
@@ -211,13 +212,13 @@ def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-
     return low, high, trial
 
 
-@njit(cache=True)
+@njit(**INNER)
 def tolerance(approach, compliance, force, load, relative):  # type: ignore[no-untyped-def]
     """Largest residual of the approach that counts as solved, m."""
     return relative * compliance * (abs(force) + load) + 1e-15 * abs(approach)
 
 
-@njit(cache=True)
+@njit(**INNER)
 def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
     """Contact force at the end of a step.
 
@@ -261,7 +262,7 @@ def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
     return (free_approach - approach) / compliance, ITERATIONS, False
 
 
-@njit(cache=True)
+@njit(**INNER)
 def observe(system, motion, record, step, shape, slope):  # type: ignore[no-untyped-def]
     """Write the records of a step and the powers of its energy ledger.
 
@@ -298,7 +299,7 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
     motion.power[THROUGHPUT] = abs(force * beam_rate) + abs(force * motion.ball[1])
 
 
-@njit(cache=True)
+@njit(**INNER)
 def complete_step(system, motion, record, step, shape, slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
     """Apply the force at the end of a step, advance the state and keep the books.
 
@@ -336,7 +337,7 @@ def complete_step(system, motion, record, step, shape, slope, force, evaluations
     motion.counts[2] += evaluations
 
 
-@njit(cache=True)
+@njit(**LOOP)
 def roll_steps(system, motion, record, law, shapes, slopes, offset, stop):  # type: ignore[no-untyped-def]
     """Roll a compiled law from the state's step to another.
 

@@ -8,6 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from asperity.kernels.options import INNER
+
 SHIFTED = 0  # F = f(approach - h)
 SECANT = 1  # F = f(approach)/r (r - h), r = approach + datum: Eq. 2.1 as printed
 TABLE = 2  # F = g(approach)^1.5, g interpolated at every position
@@ -58,13 +60,12 @@ class Prepared(NamedTuple):
     upper: float
 
 
-@njit(cache=True)
+@njit(**INNER)
 def curve_force(knots, coefficients, exponent, bilateral, s):  # type: ignore[no-untyped-def]
     """Force and slope of a force curve at the approach `s`."""
     if s <= knots[0] and not bilateral:
         return 0.0, 0.0
-    last = coefficients.shape[0] - 1
-    i = 0 if last == 0 else min(max(np.searchsorted(knots, s) - 1, 0), last)
+    i = interval(knots, s)
     u = s - knots[i]
     within = min(max(u, 0.0), knots[i + 1] - knots[i])
     c3, c2, c1, c0 = coefficients[i, 0], coefficients[i, 1], coefficients[i, 2], coefficients[i, 3]
@@ -73,7 +74,7 @@ def curve_force(knots, coefficients, exponent, bilateral, s):  # type: ignore[no
     return power(g, slope, exponent)
 
 
-@njit(cache=True)
+@njit(**INNER)
 def power(g, slope, exponent):  # type: ignore[no-untyped-def]
     """Force g**exponent and its slope."""
     if exponent == 1.0:
@@ -84,29 +85,42 @@ def power(g, slope, exponent):  # type: ignore[no-untyped-def]
     return root * g, exponent * root * slope
 
 
-@njit(cache=True)
-def texture_at(states, heights, approach):  # type: ignore[no-untyped-def]
-    """Texture between the states, linear in the approach, and its slope; constant outside."""
+@njit(**INNER)
+def interval(points, x):  # type: ignore[no-untyped-def]
+    """Index i with points[i] < x <= points[i + 1], for x above the first and not above the last."""
+    low, high = 0, points.shape[0] - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if points[middle] < x:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@njit(**INNER)
+def texture_at(states, heights, step, approach):  # type: ignore[no-untyped-def]
+    """Texture at a step between the states, linear in the approach, and its slope; constant outside."""
     last = states.shape[0] - 1
     if approach <= states[0]:
-        return heights[0], 0.0
+        return heights[step, 0], 0.0
     if not approach < states[last]:  # not a number included
-        return heights[last], 0.0
-    i = np.searchsorted(states, approach) - 1
-    slope = (heights[i + 1] - heights[i]) / (states[i + 1] - states[i])
-    return heights[i] + slope * (approach - states[i]), slope
+        return heights[step, last], 0.0
+    i = interval(states, approach)
+    slope = (heights[step, i + 1] - heights[step, i]) / (states[i + 1] - states[i])
+    return heights[step, i] + slope * (approach - states[i]), slope
 
 
-@njit(cache=True)
-def table_root(states, values, slopes, touch, approach):  # type: ignore[no-untyped-def]
-    """Monotone cubic g between the states, from the first touch on, straight beyond; and its slope."""
+@njit(**INNER)
+def table_root(states, values, slopes, step, touch, approach):  # type: ignore[no-untyped-def]
+    """Monotone cubic g at a step between the states, from first touch on, straight beyond; and its slope."""
     last = states.shape[0] - 1
     if approach <= touch:
         return 0.0, 0.0
     if not approach < states[last]:
-        return values[last] + slopes[last] * (approach - states[last]), slopes[last]
-    i = max(np.searchsorted(states, approach) - 1, 0)
-    low, value = states[i], values[i]
+        return values[step, last] + slopes[step, last] * (approach - states[last]), slopes[step, last]
+    i = interval(states, approach)
+    low, value = states[i], values[step, i]
     if touch > low:
         low, value = touch, 0.0
     elif approach < low:
@@ -114,18 +128,18 @@ def table_root(states, values, slopes, touch, approach):  # type: ignore[no-unty
         i = -1
     width = states[i + 1] - low
     t = (approach - low) / width
-    secant = (values[i + 1] - value) / width
+    secant = (values[step, i + 1] - value) / width
     if low == touch:  # convex from the touch on, as asperities join in
-        start = min(max(2.0 * secant - slopes[i + 1], 0.25 * secant), 2.0 * secant) - secant
+        start = min(max(2.0 * secant - slopes[step, i + 1], 0.25 * secant), 2.0 * secant) - secant
     else:
-        start = slopes[i] - secant
-    end = slopes[i + 1] - secant
+        start = slopes[step, i] - secant
+    end = slopes[step, i + 1] - secant
     g = value + width * t * (secant + (1.0 - t) * (start * (1.0 - t) - end * t))
     slope = secant + start * (1.0 - t) * (1.0 - 3.0 * t) + end * t * (3.0 * t - 2.0)
     return g, slope
 
 
-@njit(cache=True)
+@njit(**INNER)
 def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     """Elastic force of a prepared law and its derivative with respect to the approach.
 
@@ -145,9 +159,9 @@ def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     """
     approach -= law.planes[step]
     if law.form == TABLE:
-        g, slope = table_root(law.states, law.values[step], law.slopes[step], law.touches[step], approach)
+        g, slope = table_root(law.states, law.values, law.slopes, step, law.touches[step], approach)
         return power(g, slope, 1.5)
-    height, height_slope = texture_at(law.states, law.values[step], approach)
+    height, height_slope = texture_at(law.states, law.values, step, approach)
     if law.form == SHIFTED:
         force, slope = curve_force(
             law.knots, law.coefficients, law.exponent, law.bilateral, approach - height
@@ -161,7 +175,7 @@ def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     return secant * (r - height), (slope - secant) / r * (r - height) + secant * (1.0 - height_slope)
 
 
-@njit(cache=True)
+@njit(**INNER)
 def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # type: ignore[no-untyped-def]
     """Contact force with damping, when the approach rate itself falls with the force.
 
@@ -238,6 +252,6 @@ def count_beyond(law, approach):  # type: ignore[no-untyped-def]
     for i in range(approach.size):
         argument = approach[i] - law.planes[i]
         if law.form == SHIFTED:
-            argument -= texture_at(law.states, law.values[i], argument)[0]
+            argument -= texture_at(law.states, law.values, i, argument)[0]
         count += argument > law.upper
     return count

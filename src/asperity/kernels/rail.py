@@ -14,8 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.modal import solve_contact
-
-REASSOCIATE = {"reassoc", "contract", "nsz"}  # lets sums over poles be vectorised; NaN stays NaN
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE
 
 
 class Vehicle(NamedTuple):
@@ -23,10 +22,10 @@ class Vehicle(NamedTuple):
 
     Attributes
     ----------
-    decay_real, decay_imag : ndarray (p,)
-        Poles of the rail, per step.
-    residue_real, residue_imag : ndarray (cells + 1, p)
-        Residues at equal places over one sleeper bay, both ends included, m/N.
+    decay : ndarray (2 p,)
+        Poles of the rail, per step: real parts, then imaginary parts.
+    residue : ndarray (cells + 1, 2 p)
+        Residues at equal places over one sleeper bay, both ends included, m/N, in the same order.
     direct : ndarray (cells + 1,)
         Displacement at the end of a step for unit force at the end, m/N, at the same places.
     scattered : ndarray (positions, taps)
@@ -41,10 +40,8 @@ class Vehicle(NamedTuple):
         Position at step zero and distance rolled in a step, in sleeper bays.
     """
 
-    decay_real: NDArray
-    decay_imag: NDArray
-    residue_real: NDArray
-    residue_imag: NDArray
+    decay: NDArray
+    residue: NDArray
     direct: NDArray
     scattered: NDArray
     flexible_decay: NDArray
@@ -63,8 +60,8 @@ class Motion(NamedTuple):
 
     Attributes
     ----------
-    rail_real, rail_imag : ndarray (p,)
-        States of the poles.
+    rail : ndarray (2 p,)
+        States of the poles: real parts, then imaginary parts, m.
     ring : ndarray (taps,)
         Displacement to come where the rail is scattered, m.
     flexible : ndarray (w,) of complex
@@ -79,8 +76,7 @@ class Motion(NamedTuple):
         Steps done, steps not converged, evaluations of the law.
     """
 
-    rail_real: NDArray
-    rail_imag: NDArray
+    rail: NDArray
     ring: NDArray
     flexible: NDArray
     wheel: NDArray
@@ -105,7 +101,7 @@ class Record(NamedTuple):
     rail: NDArray
 
 
-@njit(cache=True)
+@njit(**INNER)
 def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
     """Cell of the bay in which the contact is at a step, and the share of the cell behind it."""
     bays = vehicle.first + vehicle.stride * step
@@ -114,7 +110,7 @@ def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
     return cell, at - cell
 
 
-@njit(cache=True, fastmath=REASSOCIATE)
+@njit(**INNER, **REASSOCIATE)
 def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     """Advance the rail by one step under the force at its start.
 
@@ -133,22 +129,22 @@ def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
         Displacement at the end without the force there, m.
     """
     cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
-    real, imag = motion.rail_real, motion.rail_imag
-    decay_real, decay_imag = vehicle.decay_real, vehicle.decay_imag
-    low_real, high_real = vehicle.residue_real[cell], vehicle.residue_real[cell + 1]
-    low_imag, high_imag = vehicle.residue_imag[cell], vehicle.residue_imag[cell + 1]
+    state, decay = motion.rail, vehicle.decay
+    residue = vehicle.residue
     low, high = force * (1.0 - share), force * share
+    poles = state.shape[0] // 2
     total = 0.0
-    for p in range(real.shape[0]):
-        a, b = real[p], imag[p]
-        c = decay_real[p] * a - decay_imag[p] * b + low * low_real[p] + high * high_real[p]
-        imag[p] = decay_real[p] * b + decay_imag[p] * a + low * low_imag[p] + high * high_imag[p]
-        real[p] = c
-        total += c
+    for p in range(poles):
+        a, b, c, d = state[p], state[poles + p], decay[p], decay[poles + p]
+        real = c * a - d * b + low * residue[cell, p] + high * residue[cell + 1, p]
+        q = poles + p
+        state[q] = c * b + d * a + low * residue[cell, q] + high * residue[cell + 1, q]
+        state[p] = real
+        total += real
     return total
 
 
-@njit(cache=True, fastmath=REASSOCIATE)
+@njit(**INNER, **REASSOCIATE)
 def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     """Add to the ring what a force at a step will do, and read the displacement of the next step.
 
@@ -172,7 +168,7 @@ def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     return ring[(step + 1) % taps]
 
 
-@njit(cache=True)
+@njit(**INNER)
 def advance_rail(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     """Advance the rail by poles or by scattering; see `advance_poles`."""
     if vehicle.scattered.shape[0] > 0:
@@ -180,7 +176,7 @@ def advance_rail(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     return advance_poles(vehicle, motion, step, force)
 
 
-@njit(cache=True)
+@njit(**LOOP)
 def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
     """Let a constant force roll up to step zero; rail displacement there and one step before.
 
@@ -205,7 +201,7 @@ def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
     return now, before
 
 
-@njit(cache=True)
+@njit(**INNER)
 def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
     """Advance all but the last force of the step that ends at `step`.
 
@@ -239,7 +235,7 @@ def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
     return approach, rate, compliance, 1.5 * compliance / h
 
 
-@njit(cache=True)
+@njit(**INNER)
 def complete_step(vehicle, motion, record, step, force, evaluations, converged):  # type: ignore[no-untyped-def]
     """Apply the force at the end of a step, advance the state and write the records.
 
@@ -275,7 +271,7 @@ def complete_step(vehicle, motion, record, step, force, evaluations, converged):
     motion.counts[2] += evaluations
 
 
-@njit(cache=True)
+@njit(**LOOP)
 def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-def]
     """Roll a compiled law from the state's step to another.
 
@@ -303,7 +299,7 @@ def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-d
     return True
 
 
-@njit(cache=True, fastmath=REASSOCIATE)
+@njit(cache=True, **REASSOCIATE)
 def add_passing(displacement, forces, responses, places, begin):  # type: ignore[no-untyped-def]
     """Add to the displacement of a fixed point what forces moving through one bay do.
 

@@ -198,10 +198,8 @@ def _vehicle(rail: RailPoles | MovingKernel, wheel: Wheel, origin: float) -> Veh
     now = wheel.residues * (growth - phase) / (wheel.poles * phase)
     before = wheel.residues * growth / wheel.poles - now
     return Vehicle(
-        np.ascontiguousarray(poles.real),
-        np.ascontiguousarray(poles.imag),
-        np.ascontiguousarray(residues.real),
-        np.ascontiguousarray(residues.imag),
+        np.concatenate([poles.real, poles.imag]),
+        np.concatenate([residues.real, residues.imag], axis=1),
         over_the_bay(kernel.weights[:, 0]),
         np.ascontiguousarray(scattered),
         np.exp(phase).astype(complex),
@@ -222,10 +220,9 @@ def _at_rest(
     """Constants, state and records with the load rolling steadily on a smooth rail."""
     vehicle = _vehicle(rail, wheel, origin)
     kernel = rail.kernel if isinstance(rail, RailPoles) else rail
-    states, taps = len(vehicle.decay_real), vehicle.scattered.shape[1]
+    states, taps = len(vehicle.decay), vehicle.scattered.shape[1]
     flexible = -wheel.load * (-wheel.residues / wheel.poles)
     motion = Motion(
-        np.zeros(states),
         np.zeros(states),
         np.zeros(taps),
         np.asarray(flexible, dtype=complex),
