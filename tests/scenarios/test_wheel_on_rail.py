@@ -123,6 +123,30 @@ class TestResult:
         assert spectra["wheel_revolution_frequency"] == pytest.approx(56 / (2 * np.pi * 0.46))
 
 
+@pytest.fixture(scope="module")
+def short():
+    text = case(laws=["direct", "table", "areal", "linear"]).text
+    return run(parse_case(text.replace('"40 ms"', '"12 ms"').replace('"20 ms"', '"5 ms"'), "case.toml"))
+
+
+class TestAgainstDirect:
+    def test_table_and_areal_follow_the_solved_contact(self, short):
+        force = short["rolling/contact_force"]
+        direct = force.sel(law="direct")
+        spread = (force - direct).std("time") / direct.std()
+        assert float(spread.sel(law="table")) < 0.01
+        assert float(spread.sel(law="areal")) < 0.03
+        assert float(spread.sel(law="linear")) > 0.1
+
+    def test_poles_follow_the_scattered_kernel(self):
+        poles = run(case(laws=["shifted"]))["rolling/contact_force"]
+        text = case(laws=["shifted"]).text.replace("poles = 60", 'kernel = "scatter"')
+        scattered = run(parse_case(text, "case.toml"))
+        assert scattered["track"].attrs["kernel_method"] == "scatter"
+        difference = np.abs(poles.values - scattered["rolling/contact_force"].values).max()
+        assert difference < 0.005 * float(poles.std())
+
+
 class TestTextures:
     def test_wheel_repeats_with_its_circumference_from_the_start(self):
         small = case(surface="smooth = true")
