@@ -48,7 +48,7 @@ def sweep(
     -------
     xarray.Dataset, dims (speed, load, law, band)
         `force_level`, `force_level_difference` (to the linear law), `rms_force`, `contact_loss_share`,
-        `contact_loss_events`, `sound_power_level_a` (by source); NaN where a run has no such value, as
+        `contact_loss_events`, `sound_power_level_a` (total); NaN where a run has no such value, as
         force levels in bands that only other runs have. Attributes: case, seed and version.
 
     Raises
@@ -95,6 +95,8 @@ def _tabulated(tree: xarray.DataTree) -> xarray.Dataset:
     import xarray
 
     kept = {n: tree[g][n].reset_coords(drop=True) for n, g in TABULATED.items() if n in tree[g]}
+    if "sound_power_level_a" in kept:
+        kept["sound_power_level_a"] = kept["sound_power_level_a"].sel(source="total", drop=True)
     force = tree["rolling/contact_force"]
     kept["rms_force"] = force.std("time").reset_coords(drop=True)
     kept["rms_force"].attrs = {"units": "N", "long_name": "rms of the contact force about its mean"}
