@@ -116,7 +116,7 @@ def on_curve(
         form,
         planes,
         np.ascontiguousarray(states, dtype=float),
-        np.ascontiguousarray(values - planes[:, None], dtype=float),
+        values if plane is None else np.ascontiguousarray(values - planes[:, None], dtype=float),
         np.zeros((0, len(states))),
         np.zeros(0),
         np.ascontiguousarray(curve.knots, dtype=float),

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
+from asperity.kernels.along import splines_along
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +117,7 @@ def check_states(what: str, values: NDArray, approaches: NDArray, spacing: float
 
 
 def along_path(what: str, values: NDArray, start: float, spacing: float, positions: ArrayLike) -> NDArray:
-    """Cubic spline interpolation of rows along a path.
+    """Natural cubic splines of rows along a path.
 
     Parameters
     ----------
@@ -139,8 +140,6 @@ def along_path(what: str, values: NDArray, start: float, spacing: float, positio
     InputError
         If a position lies outside the rows.
     """
-    from scipy.interpolate import make_interp_spline
-
     index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
     last = values.shape[1] - 1
     slack = 1e-6  # of a spacing: rounding of the positions
@@ -151,5 +150,5 @@ def along_path(what: str, values: NDArray, start: float, spacing: float, positio
             f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known",
             "Shorten the duration or provide a longer texture.",
         )
-    spline = make_interp_spline(np.arange(last + 1.0), values.T, k=3)
-    return spline(np.clip(index, 0.0, last))
+    rows = np.ascontiguousarray(values, dtype=float)
+    return np.asarray(splines_along(rows, np.clip(index, 0.0, last)))

@@ -1,0 +1,92 @@
+"""Natural cubic splines of many rows along a path, at many places, compiled."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+BLOCK = 512
+OVERLAP = 24
+
+
+@njit(cache=True, nogil=True)
+def spline_coefficients(values):  # type: ignore[no-untyped-def]
+    """B-spline coefficients of natural cubic splines on a uniform grid.
+
+    Parameters
+    ----------
+    values : ndarray (m, s)
+        Samples of s rows, m >= 2.
+
+    Returns
+    -------
+    ndarray (m + 2, s)
+        Coefficients, one beyond each end.
+
+    Notes
+    -----
+    c[i−1] + 4 c[i] + c[i+1] = 6 f[i], and c = f at both ends, where the curvature is zero.
+    """
+    m, s = values.shape
+    coefficients = np.empty((m + 2, s))
+    factor = np.zeros(m)
+    for j in range(s):
+        coefficients[1, j] = values[0, j]
+    for i in range(1, m - 1):
+        factor[i] = 1.0 / (4.0 - factor[i - 1])
+        for j in range(s):
+            coefficients[i + 1, j] = (6.0 * values[i, j] - coefficients[i, j]) * factor[i]
+    for j in range(s):
+        coefficients[m, j] = values[m - 1, j]
+    for i in range(m - 2, 0, -1):
+        for j in range(s):
+            coefficients[i + 1, j] -= factor[i] * coefficients[i + 2, j]
+    for j in range(s):
+        coefficients[0, j] = 2.0 * coefficients[1, j] - coefficients[2, j]
+        coefficients[m + 1, j] = 2.0 * coefficients[m, j] - coefficients[m - 1, j]
+    return coefficients
+
+
+@njit(cache=True, nogil=True)
+def splines_along(values, index):  # type: ignore[no-untyped-def]
+    """Natural cubic splines of rows at places on their grid.
+
+    The rows are worked off in blocks that stay in the processor's cache; a block overlaps its neighbours by
+    as many points as make the cut at its ends felt by less than 1e-13.
+
+    Parameters
+    ----------
+    values : ndarray (s, m)
+        Samples of s rows, m >= 2.
+    index : ndarray (n,)
+        Places in units of the grid, 0 to m − 1; rising places are fastest.
+
+    Returns
+    -------
+    ndarray (n, s)
+        Values of all rows.
+    """
+    s, m = values.shape
+    result = np.empty((index.shape[0], s))
+    first, end, origin = 0, 0, 0
+    coefficients = np.empty((0, s))
+    for k in range(index.shape[0]):
+        i = min(int(index[k]), m - 2)
+        if not first <= i < end:
+            first, end = i, min(i + BLOCK, m - 1)
+            origin = max(0, first - OVERLAP)
+            piece = np.ascontiguousarray(values[:, origin : min(m, end + 1 + OVERLAP)].T)
+            coefficients = spline_coefficients(piece)
+        t = index[k] - i
+        u = 1.0 - t
+        w0, w3 = u * u * u / 6.0, t * t * t / 6.0
+        w1, w2 = 2.0 / 3.0 - 0.5 * t * t * (1.0 + u), 2.0 / 3.0 - 0.5 * u * u * (1.0 + t)
+        row = i - origin
+        for j in range(s):
+            result[k, j] = (
+                w0 * coefficients[row, j]
+                + w1 * coefficients[row + 1, j]
+                + w2 * coefficients[row + 2, j]
+                + w3 * coefficients[row + 3, j]
+            )
+    return result
