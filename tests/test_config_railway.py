@@ -494,3 +494,14 @@ def test_a_table_in_si_needs_no_heading(tmp_path):
 def test_a_case_is_read_from_its_file(folder):
     (folder / "case.toml").write_text(case_with("", 'spectrum = "levels.csv"'), encoding="utf-8-sig")
     assert load_case(folder / "case.toml").surface.spectrum == folder / "levels.csv"
+
+
+def test_the_parameters_show_the_values_of_the_named_track():
+    listed = {item["key"]: item for item in parse_case(case_with()).parameters()}
+    assert listed["track.sleeper_spacing"]["value"] == "0.6 m"
+    assert listed["track.pad_stiffness"]["value"].endswith(" MN/m")
+    assert listed["track.rail_loss_factor"]["value"] == "0.02"
+    assert listed["track.pad_stiffness"]["is_default"]
+    assert "track.pad_loss_factor" not in listed  # x2000 has viscous pads
+    own = parse_case(case_with(track='pad_stiffness = "123 MN/m"'))
+    assert {item["key"]: item["value"] for item in own.parameters()}["track.pad_stiffness"] == "123 MN/m"

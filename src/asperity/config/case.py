@@ -57,6 +57,16 @@ class Case(Section):
         """The TOML text that this case was read from."""
         return self._text
 
+    @property
+    def given(self) -> dict[str, Any]:
+        """The keys that its file holds, as TOML gives them."""
+        return self._given
+
+    @property
+    def source(self) -> str:
+        """The file that this case was read from; relative paths in it start at its folder."""
+        return self._source
+
     def parameters(self) -> list[dict[str, Any]]:
         """List the keys that matter in this case, for people.
 

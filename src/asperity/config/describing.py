@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from asperity.config.keys import allowed_in, extra_of, is_active, kind_of
+from asperity.config.keys import Quantity, allowed_in, extra_of, is_active, kind_of
+from asperity.units import factor
 
 
 class Entry(NamedTuple):
@@ -48,7 +49,7 @@ def parameters(case: BaseModel, given: Mapping[str, Any]) -> list[dict[str, Any]
         ``note`` (what the key is).
     """
     listed = []
-    for entry in _entries(type(case)):
+    for entry in entries(type(case)):
         title, _, _ = entry.dotted.rpartition(".")
         section = getattr(case, title) if title else case
         written = given.get(title, {}) if title else given
@@ -62,6 +63,29 @@ def parameters(case: BaseModel, given: Mapping[str, Any]) -> list[dict[str, Any]
             item = {"key": entry.dotted, "value": value, "default": default, "is_default": same}
             listed.append({**item, "note": entry.field.description})
     return listed
+
+
+def with_unit(value: float, field: FieldInfo) -> str:
+    """Write a value in the unit that the example of its key has.
+
+    Parameters
+    ----------
+    value : float
+        In SI.
+    field : pydantic field
+        The key.
+
+    Returns
+    -------
+    str
+        As ``"300 MN/m"``, or the number alone where the key has no unit.
+    """
+    kind = kind_of(field.annotation, field.metadata)
+    example = str(extra_of(field)["example"]).strip('"')
+    if not isinstance(kind, Quantity):
+        return f"{value:.6g}"
+    unit = example.split(" ", 1)[1]
+    return f"{value / factor(unit, kind.dimension):.6g} {unit}"
 
 
 def commented(model: type[BaseModel], written_out: Mapping[str, str]) -> str:
@@ -82,7 +106,7 @@ def commented(model: type[BaseModel], written_out: Mapping[str, str]) -> str:
     """
     lines: list[str] = []
     title = ""
-    for entry in _entries(model):
+    for entry in entries(model):
         home, _, _ = entry.dotted.rpartition(".")
         if home != title:
             title = home
@@ -115,7 +139,8 @@ def _line(entry: Entry, written_out: Mapping[str, str]) -> str:
     return f"{code:{_COLUMN - 2}}  # {entry.field.description} ({allowed}; {default})"
 
 
-def _entries(model: type[BaseModel], title: str = "") -> Iterator[Entry]:
+def entries(model: type[BaseModel], title: str = "") -> Iterator[Entry]:
+    """List all keys of a kind of case, those of its sections after those at the top."""
     sections = []
     for name, field in model.model_fields.items():
         if isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
@@ -123,7 +148,7 @@ def _entries(model: type[BaseModel], title: str = "") -> Iterator[Entry]:
         else:
             yield Entry(f"{title}.{name}".lstrip("."), name, field, model)
     for name, section in sections:
-        yield from _entries(section, name)
+        yield from entries(section, name)
 
 
 def _is_default(entry: Entry, value: object) -> bool:

@@ -39,20 +39,73 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     CaseError
         With all errors at once, if the keys are wrong.
     """
+    remedy = "Check the path, or write a case with 'asperity new ball-on-beam > case.toml'."
+    return parse_case(read_text(path, "case", remedy), path)
+
+
+def read_text(path: str | os.PathLike[str], what: str, remedy: str) -> str:
+    """Read a small text file that a person has written.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    what : str
+        What it holds, for messages.
+    remedy : str
+        What to do if it is missing.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large or no text.
+    """
     path = Path(path)
-    allowed = "the path of a case file (TOML)"
+    allowed = f"the path of a {what} file (TOML)"
     if not path.is_file():
-        remedy = "Check the path, or write a case with 'asperity new ball-on-beam > case.toml'."
         raise InputError(str(path), "no such file", allowed, remedy)
     with open(path, "rb") as file:
         content = file.read(LARGEST_CASE + 1)
     if len(content) > LARGEST_CASE:
         raise InputError(str(path), "more than 1 MiB", allowed, "Keep heights in a file of their own.")
     try:
-        text = content.decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(str(path), f"a byte that is no UTF-8 at {error.start}", allowed) from None
-    return parse_case(text, path)
+
+
+def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read TOML.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    what : str
+        What it is, for messages.
+    source : str or path
+        Where it comes from, for messages.
+
+    Returns
+    -------
+    dict
+        Keys and values.
+
+    Raises
+    ------
+    InputError
+        If the text is no TOML.
+    """
+    try:
+        return tomllib.loads(text.replace("\r\n", "\n"))
+    except (ValueError, RecursionError) as error:  # TOML errors, and numbers too long to read
+        remedy = 'Strings and quantities stand in double quotes: speed = "1 m/s".'
+        raise InputError(str(source), f"no TOML ({error})", f"a {what} in TOML", remedy) from None
 
 
 def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
@@ -77,42 +130,31 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    try:
-        data = tomllib.loads(text.replace("\r\n", "\n"))
-    except (ValueError, RecursionError) as error:  # TOML errors, and numbers too long to read
-        remedy = 'Strings and quantities stand in double quotes: speed = "1 m/s".'
-        raise InputError(str(source), f"no TOML ({error})", "a case in TOML", remedy) from None
-    return _validated(data, text, source)
+    return case_of(read_toml(text, "case", source), text, source)
 
 
-def changed(case: Case, **values: Any) -> Case:
-    """Return a case with other values for some keys.
+def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> Case:
+    """Make a case of keys and values.
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
-        As `parse_case` or `load_case` returned it.
-    **values
-        New values as they stand in TOML, as ``speed="20 m/s"``; a dict of keys for a section, as
-        ``wheel={"load": "50 kN"}``.
+    data : dict
+        Keys and values as TOML gives them, sections as dicts.
+    text : str
+        The TOML text they come from.
+    source : str or path
+        Where that comes from, for messages; relative paths start at its folder.
 
     Returns
     -------
     BallOnBeamCase or WheelOnRailCase
-        The new case; its text is the old one below a comment that names the changes.
+        The case, in SI.
 
     Raises
     ------
     CaseError
-        If the new values are wrong.
+        With all errors at once, if the keys are wrong.
     """
-    data = dict(case._given)
-    for name, value in values.items():
-        data[name] = {**data.get(name, {}), **value} if isinstance(value, dict) else value
-    return _validated(data, f"# changed: {values}\n{case.text}", case._source)
-
-
-def _validated(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> Case:
     kind = data.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         raise CaseError(str(source), [str(not_a_kind(kind))])

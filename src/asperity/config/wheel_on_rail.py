@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import BeforeValidator
@@ -17,8 +17,9 @@ from asperity.config.case import (
     problems_of_sampling,
     time_step_on_grid,
 )
+from asperity.config.describing import with_unit
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed, key
-from asperity.config.railway import NoiseCase, RailContact, RailNumerics, TrackCase
+from asperity.config.railway import OVERRIDES, NoiseCase, RailContact, RailNumerics, TrackCase
 from asperity.config.railway_textures import RailSurface
 from asperity.config.tables import check_levels, read_levels
 from asperity.config.wheel import WheelCase
@@ -101,6 +102,27 @@ class WheelOnRailCase(Case):
         from asperity.structures.track import Track
 
         return Track.named(self.track.name, **self.track.overrides)
+
+    def parameters(self) -> list[dict[str, Any]]:
+        """List the keys that matter in this case, for people, with the values of the named track.
+
+        Returns
+        -------
+        list of dict
+            As `Case.parameters`.
+        """
+        track, own = self.track_model(), self.track.overrides
+        listed = []
+        for item in super().parameters():
+            section, _, name = item["key"].partition(".")
+            if section == "track" and name in OVERRIDES and name not in own:
+                value = getattr(track, name)
+                if value is None:
+                    continue
+                text = with_unit(value, type(self.track).model_fields[name])
+                item = item | {"value": text, "default": text}
+            listed.append(item)
+        return listed
 
     def problems(self) -> Iterator[InputError]:
         """What must fit together across the sections."""

@@ -59,7 +59,7 @@ def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:
     yield "length of the moving kernel", f"{kernel.lag[-1]:.3g} s, {kernel.weights.shape[1]} steps"
     yield "error of the moving kernel from non-causal losses", f"{kernel.causality_error:.2g} dB"
     if isinstance(rail, RailPoles):
-        yield "track in time", f"{len(rail.poles)} poles"
+        yield "track in time", f"{rail.count} poles"
         yield "error of the fitted poles, relative", f"{rail.fit_error:.1e}"
     else:
         yield "track in time", "scattered from the moving kernel"

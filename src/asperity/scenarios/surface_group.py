@@ -93,6 +93,8 @@ def _listed(statistics: list[Statistic], where: str) -> list[dict[str, Any]]:
 
 
 def _length(metres: float) -> str:
+    if metres >= 1.0:
+        return f"{metres:.3g} m"
     return f"{metres * 1e3:.3g} mm" if metres >= 1e-3 else f"{metres * 1e6:.3g} µm"
 
 

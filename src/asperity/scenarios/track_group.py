@@ -91,5 +91,5 @@ def _attributes(computed: Computed) -> dict[str, float | int | str]:
         "kernel_method": "poles" if isinstance(computed.rail, RailPoles) else "scatter",
     }
     if isinstance(computed.rail, RailPoles):
-        attrs |= {"kernel_fit_error": computed.rail.fit_error, "kernel_poles": len(computed.rail.poles)}
+        attrs |= {"kernel_fit_error": computed.rail.fit_error, "kernel_poles": computed.rail.count}
     return attrs

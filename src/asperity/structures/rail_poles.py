@@ -52,6 +52,11 @@ class RailPoles:
     static_error: float
 
     @property
+    def count(self) -> int:
+        """Number of poles, both of each conjugate pair counted."""
+        return int(np.sum(np.where(self.poles.imag == 0.0, 1, 2)))
+
+    @property
     def accepted(self) -> bool:
         """Whether the fit is good enough to stand for the kernel."""
         return max(self.fit_error, self.static_error) <= TOLERANCE
