@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 
 from asperity.kernels.modal import (
     Motion,
@@ -152,3 +153,18 @@ def test_force_that_is_not_finite_stops_the_run():
     motion, record = motion_at(3, np.nan, 0.0, np.zeros(3)), records(11)
     shapes = np.ones((11, 3))
     assert not roll_steps(system, motion, record, Hertz(1e9).prepare(np.zeros(11)), shapes, shapes, 0, 10)
+
+
+@pytest.mark.parametrize("phase", [0.01, 1.0, 20.0])
+def test_the_exact_step_is_the_matrix_exponential(phase):
+    # another program's exponential of the oscillator extended by a force linear over the step
+    step, ratio, omega = 1e-4, 0.3, phase / 1e-4
+    generator = np.zeros((4, 4))
+    generator[0, 1] = generator[1, 2] = generator[2, 3] = 1.0
+    generator[1, :2] = -(phase**2), -2.0 * ratio * phase
+    expected = expm(generator)
+    found = modal_coefficients(np.array([omega]), np.array([ratio]), step)[0]
+    assert found[0, 0] == pytest.approx(expected[0, 0], rel=1e-11)
+    assert found[1, 1] == pytest.approx(expected[1, 1], rel=1e-11)
+    assert found[0, 3] == pytest.approx(expected[0, 3] * step**2, rel=1e-11)
+    assert found[0, 2] == pytest.approx((expected[0, 2] - expected[0, 3]) * step**2, rel=1e-11)
