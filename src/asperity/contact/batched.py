@@ -1,0 +1,219 @@
+"""Contacts at many positions and increasing approaches, solved in batches on a device."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.contact.device import Device
+from asperity.contact.halfspace import MAX_ITERATIONS, HalfSpace
+from asperity.errors import ComputationError
+from asperity.kernels.batched_cg import first_guess, solve
+from asperity.kernels.padded import padded_length, padded_spectrum
+
+Array = Any
+"""An array of the device."""
+
+MEMORY_SHARE = 0.6
+"""Share of the free memory that a batch may take."""
+LARGEST_TRANSFORM = 2**30
+"""Points of one batch of transforms: the index of a point must fit into 31 bits."""
+SMALLEST_BOX = 8
+"""Cells along a box, at least: smaller transforms take no less time."""
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedContacts:
+    """Contacts by approach and position, all of shape (n_approaches, n_positions).
+
+    Attributes
+    ----------
+    force : ndarray
+        Resultants, N; zero without contact.
+    iterations : ndarray of int
+        Conjugate-gradient iterations.
+    converged : ndarray of bool
+        Whether the tolerance was met; true without contact.
+    edge_share : ndarray
+        Share of the force on the window's outermost cells.
+    """
+
+    force: NDArray[np.float64]
+    iterations: NDArray[np.int64]
+    converged: NDArray[np.bool_]
+    edge_share: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class _Boxes:
+    """Bounding boxes of the overlaps: one size per approach, an origin for each position."""
+
+    sizes: NDArray[np.int64]  # (k, 2)
+    origins: NDArray[np.int64]  # (k, n, 2)
+    touching: NDArray[np.bool_]  # (k, n)
+
+
+def solve_batched(
+    half_space: HalfSpace,
+    gaps: Callable[[int, int], Array],
+    count: int,
+    approaches: NDArray[np.float64],
+    rtol: float,
+    device: Device,
+) -> SolvedContacts:
+    """Solve many contacts at increasing approaches, each from the pressure at the approach before.
+
+    Parameters
+    ----------
+    half_space : HalfSpace
+        Grid, modulus and hardness.
+    gaps : callable
+        ``gaps(first, last)`` gives the gaps at zero approach of these positions, on the device, m,
+        shape (last − first, nx, ny).
+    count : int
+        Number of positions.
+    approaches : ndarray, shape (k,)
+        Increasing approaches, m.
+    rtol : float
+        Tolerance of each solution, as in `HalfSpace.solve`.
+    device : Device
+        Where to solve.
+
+    Returns
+    -------
+    SolvedContacts
+        Forces, and how well the solutions went.
+
+    Raises
+    ------
+    ComputationError
+        If a single contact does not fit into the device's memory.
+
+    Notes
+    -----
+    All positions share the size of the box they are solved on, the largest of them; as nothing outside of
+    an overlap can carry pressure, the solution does not depend on it, nor on how many fit into a batch.
+    """
+    boxes = _bounding_boxes(half_space.shape, gaps, count, approaches, device)
+    k = len(approaches)
+    found = SolvedContacts(
+        np.zeros((k, count)), np.zeros((k, count), np.int64), np.ones((k, count), bool), np.zeros((k, count))
+    )
+
+    def solve_some(first: int, last: int) -> None:
+        _solve_batch(half_space, gaps(first, last), approaches, boxes, (first, last), rtol, device, found)
+
+    cells, points = half_space.shape[0] * half_space.shape[1], _padded_points(boxes.sizes[-1])
+    box_cells = int(boxes.sizes[-1].prod())
+    # the window's gap and pressure; some fifteen fields on the box; padded fields, spectra and work areas
+    _in_batches(solve_some, count, 8 * (2 * cells + 15 * box_cells + 8 * points), points, device)
+    return found
+
+
+def _padded_points(size: NDArray[np.int64]) -> int:
+    return padded_length(int(size[0])) * padded_length(int(size[1]))
+
+
+def _in_batches(
+    task: Callable[[int, int], None], count: int, bytes_each: int, points_each: int, device: Device
+) -> None:
+    """Do a task for all positions, as many at once as fit; fewer, if memory runs out all the same."""
+    size = max(1, int(MEMORY_SHARE * device.free_memory()) // bytes_each)
+    size = min(count, size, max(1, LARGEST_TRANSFORM // points_each))
+    first = 0
+    while first < count:
+        last = min(first + size, count)
+        try:
+            task(first, last)
+        except device.exhausted as error:
+            if size == 1:
+                raise ComputationError(
+                    f"one contact of {bytes_each / 2**20:.0f} MiB on {device.name} ran out of memory",
+                    "a smaller window, a coarser grid or the device cpu",
+                ) from error
+        else:
+            first = last
+            continue
+        # outside of the handler, whose traceback keeps the arrays of the failed batch
+        device.release()
+        size = (size + 1) // 2
+
+
+def _bounding_boxes(
+    shape: tuple[int, int],
+    gaps: Callable[[int, int], Array],
+    count: int,
+    approaches: NDArray[np.float64],
+    device: Device,
+) -> _Boxes:
+    """Bounding boxes of the overlaps of all positions, moved into the window."""
+    k = len(approaches)
+    low, high = np.zeros((k, count, 2), np.int64), np.zeros((k, count, 2), np.int64)
+    touching = np.zeros((k, count), bool)
+
+    def measure(first: int, last: int) -> None:
+        gap = gaps(first, last)
+        for i, approach in enumerate(approaches):
+            overlapping = gap < float(approach)
+            for axis in (0, 1):
+                reached = overlapping.any(axis=2 - axis)
+                low[i, first:last, axis] = device.to_host(reached.argmax(axis=1))
+                high[i, first:last, axis] = shape[axis] - device.to_host(reached[:, ::-1].argmax(axis=1))
+                touching[i, first:last] = device.to_host(reached.any(axis=1))
+
+    _in_batches(measure, count, 32 * shape[0] * shape[1], shape[0] * shape[1], device)
+    extent = np.where(touching[..., None], high - low, 1)
+    sizes = np.maximum(extent.max(axis=1), np.minimum(shape, SMALLEST_BOX))
+    origins = np.minimum(np.where(touching[..., None], low, 0), np.array(shape) - sizes[:, None])
+    return _Boxes(sizes, origins, touching)
+
+
+def _solve_batch(
+    half_space: HalfSpace,
+    gap: Array,
+    approaches: NDArray[np.float64],
+    boxes: _Boxes,
+    span: tuple[int, int],
+    rtol: float,
+    device: Device,
+    found: SolvedContacts,
+) -> None:
+    """Solve positions first … last at all approaches, and write what was found."""
+    xp, cap, taps = device.xp, half_space._cap, tuple(half_space._taps.tolist())
+    pressure = xp.zeros_like(gap)
+    for i, approach in enumerate(approaches):
+        members = np.flatnonzero(boxes.touching[i, span[0] : span[1]])
+        if not len(members):
+            continue
+        nx, ny = (int(n) for n in boxes.sizes[i])
+        rows, columns = _box_cells(boxes.origins[i, span[0] + members], nx, ny, xp)
+        cells = (xp.asarray(members)[:, None, None], rows, columns)
+        overlap = float(approach) - gap[cells]
+        largest = overlap.max(axis=(1, 2))
+        p = pressure[cells]
+        spectrum, my = xp.asarray(padded_spectrum(half_space._table, nx, ny)), padded_length(ny)
+        fresh = ~p.any(axis=(1, 2))
+        if bool(fresh.any()):
+            guess = first_guess(overlap, spectrum, my, cap, xp)
+            p = xp.where(fresh[:, None, None], guess, p)
+        iterations, worst = solve(overlap, spectrum, my, taps, p, cap, rtol * largest, MAX_ITERATIONS, xp)
+        pressure[cells] = p
+        at = span[0] + members
+        force = p.sum(axis=(1, 2))
+        on_edge = (rows == 0) | (rows == gap.shape[1] - 1) | (columns == 0) | (columns == gap.shape[2] - 1)
+        edge = (p * on_edge).sum(axis=(1, 2)) / xp.where(force > 0.0, force, 1.0)
+        found.force[i, at] = device.to_host(force) * half_space.cell_area
+        found.iterations[i, at] = device.to_host(iterations)
+        found.converged[i, at] = device.to_host(worst <= rtol * largest)
+        found.edge_share[i, at] = device.to_host(edge)
+
+
+def _box_cells(origins: NDArray[np.int64], nx: int, ny: int, xp: Any) -> tuple[Array, Array]:
+    """Rows (b, nx, 1) and columns (b, 1, ny) of the window's cells in each box."""
+    corner = xp.asarray(origins)
+    rows = corner[:, 0, None, None] + xp.arange(nx)[None, :, None]
+    return rows, corner[:, 1, None, None] + xp.arange(ny)[None, None, :]

@@ -1,0 +1,220 @@
+"""Many contacts of one grid at once: the projected conjugate gradients of `projected_cg` on whole batches.
+
+Written on an array module `xp` (numpy or CuPy): positions are the first axis of every array, nothing is
+compiled and nothing leaves the device but a few counts. The iteration of each member is that of
+`projected_cg.solve`; members that have converged are frozen, and left out as soon as half of a batch has.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from asperity.kernels.padded import convolve
+
+Array = Any
+"""An array of the module `xp`."""
+
+SMALLEST = 16
+"""Batches do not shrink below this: a smaller transform takes no less time on a device."""
+
+
+class _Members(NamedTuple):
+    """Contacts being solved; each is a row of every array."""
+
+    index: Array
+    overlap: Array
+    tolerance: Array
+    pressure: Array
+    residual: Array
+    previous: Array
+    direction: Array
+    rho: Array
+    iterations: Array
+    worst: Array
+    active: Array
+
+
+def first_guess(overlap: Array, spectrum: Array, my: int, hardness: float, xp: Any) -> Array:
+    """Pressures of Hertzian form over the deeper half of each overlap, scaled to least energy.
+
+    Parameters
+    ----------
+    overlap : array, shape (b, nx, ny)
+        Overlaps of the undeformed bodies, m, each positive somewhere.
+    spectrum, my, hardness, xp
+        As in `solve`.
+
+    Returns
+    -------
+    array, shape (b, nx, ny)
+        Pressures within the bounds, Pa.
+    """
+    p = xp.sqrt(xp.maximum(overlap - 0.5 * overlap.max(axis=(1, 2))[:, None, None], 0.0))
+    scale = _dot(p, overlap) / _dot(p, convolve(p, spectrum, my, xp))
+    return xp.minimum(p * scale[:, None, None], hardness)
+
+
+def solve(
+    overlap: Array,
+    spectrum: Array,
+    my: int,
+    taps: tuple[float, ...],
+    pressure: Array,
+    hardness: float,
+    tolerance: Array,
+    max_iterations: int,
+    xp: Any,
+) -> tuple[Array, Array]:
+    """Solve 0 ≤ p ≤ hardness ⟂ K p − overlap for many overlaps, from `pressure`, which is overwritten.
+
+    Parameters
+    ----------
+    overlap : array, shape (b, nx, ny)
+        Overlaps of the undeformed bodies, m.
+    spectrum : array, shape (mx, my // 2 + 1)
+        Kernel on the box, from `padded.padded_spectrum`, m/Pa.
+    my : int
+        ``padded_length(ny)``.
+    taps : tuple of float
+        The six of `projected_cg.inverse_stencil`, Pa/m.
+    pressure : array, shape (b, nx, ny)
+        Starts within the bounds; on return the solutions, Pa.
+    hardness : float
+        Upper bound of the pressure, Pa (may be infinite).
+    tolerance : array, shape (b,)
+        Largest complementarity residual of each, m.
+    max_iterations : int
+        Iterations allowed.
+    xp : module
+        numpy or CuPy.
+
+    Returns
+    -------
+    iterations : array of int, shape (b,)
+        Iterations done.
+    residual : array, shape (b,)
+        Largest complementarity residual reached, m; above its tolerance a solution did not converge.
+    """
+    count = overlap.shape[0]
+    iterations, reached = xp.zeros(count, dtype=xp.int64), xp.zeros(count)
+    residual = convolve(pressure, spectrum, my, xp) - overlap
+    worst = _complementarity(pressure, residual, hardness, xp)
+    members = _Members(
+        xp.arange(count), overlap, tolerance, pressure.copy(), residual, xp.zeros_like(residual),
+        xp.zeros_like(residual), xp.zeros(count), iterations.copy(), worst, worst > tolerance,
+    )  # fmt: skip
+    for _ in range(max_iterations):
+        running = int(members.active.sum())
+        if not running:
+            break
+        if _capacity(running) < len(members.active):
+            _record(members, pressure, iterations, reached)
+            members = _compacted(members, _capacity(running), xp)
+        members = _iterate(members, spectrum, my, taps, hardness, xp)
+    _record(members, pressure, iterations, reached)
+    return iterations, reached
+
+
+def _record(members: _Members, pressure: Array, iterations: Array, reached: Array) -> None:
+    """Write the state of the members to their places."""
+    pressure[members.index] = members.pressure
+    iterations[members.index] = members.iterations
+    reached[members.index] = members.worst
+
+
+def _capacity(count: int) -> int:
+    """Batch that holds `count` members: few different sizes, as each needs its own plan of transforms."""
+    return max(SMALLEST, 1 << (count - 1).bit_length())
+
+
+def _compacted(members: _Members, size: int, xp: Any) -> _Members:
+    """Keep the active members, and as many others as fill the batch."""
+    kept = xp.concatenate([xp.nonzero(members.active)[0], xp.nonzero(~members.active)[0]])[:size]
+    return _Members(*(values[kept] for values in members))
+
+
+def _iterate(
+    members: _Members, spectrum: Array, my: int, taps: tuple[float, ...], hardness: float, xp: Any
+) -> _Members:
+    """One iteration of every active member."""
+    m = members
+    z = _precondition(m.pressure, m.residual, hardness, taps, xp)
+    direction, rho, slope = _direction(m, z, xp)
+    response = convolve(direction, spectrum, my, xp)
+    curvature = _dot(direction, response)
+    moving = m.active & (curvature > 0.0)
+    step = xp.where(moving, -slope / xp.where(curvature > 0.0, curvature, 1.0), 0.0)[:, None, None]
+    raised = m.pressure + step * direction
+    pressure = xp.minimum(xp.maximum(raised, 0.0), hardness)
+    clipped = (pressure != raised).any(axis=(1, 2))
+    residual = m.residual + step * response
+    worst = _complementarity(pressure, residual, hardness, xp)
+    # where a bound was hit the recurrence is wrong; where it says converged, the true residual is to confirm
+    doubtful = moving & (clipped | (worst <= m.tolerance))
+    residual = _confirmed(doubtful, pressure, m.overlap, residual, spectrum, my, xp)
+    worst = xp.where(moving, _complementarity(pressure, residual, hardness, xp), m.worst)
+    return m._replace(
+        pressure=pressure, residual=residual, previous=m.residual, direction=direction, rho=rho,
+        iterations=m.iterations + m.active, worst=worst, active=moving & (worst > m.tolerance),
+    )  # fmt: skip
+
+
+def _precondition(
+    pressure: Array, residual: Array, hardness: float, taps: tuple[float, ...], xp: Any
+) -> Array:
+    """Apply the stencil to the residual on the free set; zero elsewhere."""
+    free = ((pressure > 0.0) | (residual < 0.0)) & ((pressure < hardness) | (residual > 0.0))
+    count, nx, ny = residual.shape
+    masked = xp.zeros((count, nx + 4, ny + 4))
+    masked[:, 2:-2, 2:-2] = residual * free
+
+    def at(i: int, j: int) -> Array:
+        return masked[:, 2 + i : 2 + i + nx, 2 + j : 2 + j + ny]
+
+    z = taps[0] * at(0, 0)
+    z += taps[1] * (at(-1, 0) + at(1, 0))
+    z += taps[2] * (at(0, -1) + at(0, 1))
+    z += taps[3] * (at(-1, -1) + at(-1, 1) + at(1, -1) + at(1, 1))
+    z += taps[4] * (at(-2, 0) + at(2, 0))
+    z += taps[5] * (at(0, -2) + at(0, 2))
+    z *= free
+    return z
+
+
+def _direction(m: _Members, z: Array, xp: Any) -> tuple[Array, Array, Array]:
+    """Search direction (Polak–Ribière), residual·z and residual·direction."""
+    rho = _dot(m.residual, z)
+    change = rho - _dot(m.previous, z)
+    known = m.rho > 0.0
+    beta = xp.where(known, xp.maximum(change / xp.where(known, m.rho, 1.0), 0.0), 0.0)
+    direction = (beta[:, None, None] * m.direction - z) * (z != 0.0)
+    slope = _dot(m.residual, direction)
+    # not a descent direction any more: restart from the preconditioned gradient
+    restart = slope >= 0.0
+    return xp.where(restart[:, None, None], -z, direction), rho, xp.where(restart, -rho, slope)
+
+
+def _confirmed(
+    doubtful: Array, pressure: Array, overlap: Array, residual: Array, spectrum: Array, my: int, xp: Any
+) -> Array:
+    """Replace the doubtful members' residuals by the true ones."""
+    chosen = xp.nonzero(doubtful)[0]
+    count = len(chosen)
+    if not count:
+        return residual
+    if _capacity(count) >= len(doubtful):
+        return xp.where(doubtful[:, None, None], convolve(pressure, spectrum, my, xp) - overlap, residual)
+    padded = xp.concatenate([chosen, xp.zeros(_capacity(count) - count, dtype=chosen.dtype)])
+    true = convolve(pressure[padded], spectrum, my, xp)[:count]
+    residual[chosen] = true - overlap[chosen]
+    return residual
+
+
+def _complementarity(pressure: Array, residual: Array, hardness: float, xp: Any) -> Array:
+    """Largest violation of the complementarity conditions of each member, in the unit of the residual."""
+    capped = xp.where(pressure < hardness, xp.abs(residual), residual)
+    return xp.maximum(xp.where(pressure > 0.0, capped, -residual).max(axis=(1, 2)), 0.0)
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return (a * b).sum(axis=(1, 2))
