@@ -51,3 +51,10 @@ def test_quick_start_carries_its_load_on_part_of_the_hertz_circle(tmp_path):
     numbers = run("quick_start", tmp_path)
     assert numbers["force"] == pytest.approx(30.0, rel=1e-5)
     assert 0.2 < numbers["share_of_hertz_circle"] < 1.0
+
+
+def test_wheel_on_rail_filters_more_the_harder_it_is_pressed(tmp_path):
+    numbers = run("wheel_contact", tmp_path)
+    assert numbers["wavenumber_at_3_db"][-1] < 0.5 * numbers["wavenumber_at_3_db"][0]
+    # half of K_H √σ with K_H of the wheel of 0.46 m on a rail head of 0.30 m, over 1 µm
+    assert numbers["steepest_rise_rough"] < 0.5 * 9.413e10 * np.sqrt(1e-6)
