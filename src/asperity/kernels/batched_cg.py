@@ -148,11 +148,13 @@ def _iterate(
     pressure = xp.minimum(xp.maximum(raised, 0.0), hardness)
     clipped = (pressure != raised).any(axis=(1, 2))
     residual = m.residual + step * response
+    residual = _true_residual(moving & clipped, pressure, m.overlap, residual, spectrum, my, xp)
     worst = _complementarity(pressure, residual, hardness, xp)
-    # where a bound was hit the recurrence is wrong; where it says converged, the true residual is to confirm
-    doubtful = moving & (clipped | (worst <= m.tolerance))
-    residual = _confirmed(doubtful, pressure, m.overlap, residual, spectrum, my, xp)
-    worst = xp.where(moving, _complementarity(pressure, residual, hardness, xp), m.worst)
+    claiming = moving & ~clipped & (worst <= m.tolerance)
+    if bool(claiming.any()):  # the recurrence says converged: let the true residual confirm it
+        residual = _true_residual(claiming, pressure, m.overlap, residual, spectrum, my, xp)
+        worst = _complementarity(pressure, residual, hardness, xp)
+    worst = xp.where(moving, worst, m.worst)
     return m._replace(
         pressure=pressure, residual=residual, previous=m.residual, direction=direction, rho=rho,
         iterations=m.iterations + m.active, worst=worst, active=moving & (worst > m.tolerance),
@@ -194,16 +196,16 @@ def _direction(m: _Members, z: Array, xp: Any) -> tuple[Array, Array, Array]:
     return xp.where(restart[:, None, None], -z, direction), rho, xp.where(restart, -rho, slope)
 
 
-def _confirmed(
-    doubtful: Array, pressure: Array, overlap: Array, residual: Array, spectrum: Array, my: int, xp: Any
+def _true_residual(
+    wanted: Array, pressure: Array, overlap: Array, residual: Array, spectrum: Array, my: int, xp: Any
 ) -> Array:
-    """Replace the doubtful members' residuals by the true ones."""
-    chosen = xp.nonzero(doubtful)[0]
+    """Replace the residuals of the wanted members, carried on by recurrence, by the true ones."""
+    chosen = xp.nonzero(wanted)[0]
     count = len(chosen)
     if not count:
         return residual
-    if _capacity(count) >= len(doubtful):
-        return xp.where(doubtful[:, None, None], convolve(pressure, spectrum, my, xp) - overlap, residual)
+    if _capacity(count) >= len(wanted):
+        return xp.where(wanted[:, None, None], convolve(pressure, spectrum, my, xp) - overlap, residual)
     padded = xp.concatenate([chosen, xp.zeros(_capacity(count) - count, dtype=chosen.dtype)])
     true = convolve(pressure[padded], spectrum, my, xp)[:count]
     residual[chosen] = true - overlap[chosen]
