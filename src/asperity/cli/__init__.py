@@ -14,6 +14,20 @@ _overwrite = click.option("--overwrite", is_flag=True, help="Replace the run of 
 _report = click.option(
     "--report/--no-report", default=True, show_default=True, help="Write the HTML page and CSVs."
 )
+_device = click.option(
+    "--device",
+    type=click.Choice(["cpu", "gpu"]),
+    help="Where contacts are solved; gpu needs CuPy. [default: $ASPERITY_DEVICE, else cpu]",
+    callback=lambda context, option, name: _choose(name),
+    expose_value=False,
+)
+
+
+def _choose(device: str | None) -> None:
+    if device is not None:
+        from asperity.contact.device import choose_device
+
+        choose_device(device)
 
 
 @click.group(cls=Door, context_settings={"help_option_names": ["-h", "--help"]})
@@ -75,6 +89,7 @@ def check(case: Path) -> None:
     help="Folder of the results. [default: runs/NAME]",
 )
 @_report
+@_device
 @_overwrite
 def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> None:
     """Compute a case: writes run.nc, report.html and the CSV of every figure."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,8 @@ from asperity.errors import InputError
 
 DEVICES = ("cpu", "gpu")
 """What `device` may be."""
+CHOSEN = "ASPERITY_DEVICE"
+"""The environment's choice, which the processes of a study inherit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,13 +109,13 @@ def _cuda_device(cupy: Any, name: str) -> Device:
     return Device(name, cupy, free_memory, cupy.asnumpy, release, exhausted)
 
 
-def find_device(name: str) -> Device | None:
+def find_device(name: str | None = None) -> Device | None:
     """Find a device by its name.
 
     Parameters
     ----------
-    name : str
-        ``"cpu"`` or ``"gpu"``.
+    name : str, optional
+        ``"cpu"`` or ``"gpu"``; by default what ``$ASPERITY_DEVICE`` says, else ``"cpu"``.
 
     Returns
     -------
@@ -124,6 +127,25 @@ def find_device(name: str) -> Device | None:
     InputError
         If there is no such name, or no such device.
     """
+    what = "device" if name is not None else f"${CHOSEN}"
+    name = name or os.environ.get(CHOSEN) or "cpu"
     if name not in DEVICES:
-        raise InputError("device", repr(name), " or ".join(map(repr, DEVICES)))
+        raise InputError(what, repr(name), " or ".join(map(repr, DEVICES)))
     return gpu() if name == "gpu" else None
+
+
+def choose_device(name: str) -> None:
+    """Choose the device of all scans of this process, and of those that it starts.
+
+    Parameters
+    ----------
+    name : str
+        ``"cpu"`` or ``"gpu"``.
+
+    Raises
+    ------
+    InputError
+        If there is no such name, or no such device.
+    """
+    find_device(name)
+    os.environ[CHOSEN] = name

@@ -166,7 +166,11 @@ def stiffness_ensemble(
     scans = []
     for i, sample in enumerate(samples):
         report(i, len(samples), "loading the samples")
-        scans.append(scan_forces(sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1))
+        scans.append(
+            scan_forces(
+                sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1, device="cpu"
+            )
+        )
     report(len(samples), len(samples), "loading the samples")
     warn_of_scans(scans, "the loading curves")
     forces = np.array([scanned.forces[:, 0] for scanned in scans])

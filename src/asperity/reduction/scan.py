@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.contact.device import find_device
 from asperity.contact.halfspace import HalfSpace
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
+from asperity.reduction import batched_scan
 from asperity.store import Cache, content_key
 
 if TYPE_CHECKING:
@@ -62,6 +64,7 @@ def scan(
     workers: int | None = None,
     cache: Cache | None = None,
     progress: Callable[[int, int, str], None] | None = None,
+    device: str | None = None,
 ) -> xarray.DataArray:
     """Move a body along a surface and record the contact force at fixed approaches.
 
@@ -89,6 +92,9 @@ def scan(
         Keeps finished blocks, so that an interrupted scan goes on where it was.
     progress : callable, optional
         ``progress(done, total, message)``.
+    device : str, optional
+        ``"cpu"``, or ``"gpu"`` to solve in batches through CuPy; by default what ``$ASPERITY_DEVICE`` says,
+        else ``"cpu"``. Forces agree within the tolerance.
 
     Returns
     -------
@@ -110,7 +116,7 @@ def scan(
     delta = np.asarray(approaches, dtype=np.float64)
     result = scan_forces(
         z - z.mean(), spacing, body, modulus, delta, hardness,
-        stride=stride, rtol=rtol, workers=workers, cache=cache, progress=progress,
+        stride=stride, rtol=rtol, workers=workers, cache=cache, progress=progress, device=device,
     )  # fmt: skip
     warn_of_scans([result], "the scan")
     position = np.arange(result.forces.shape[1]) * stride * spacing[0]
@@ -147,12 +153,13 @@ def scan_forces(
     progress: Callable[[int, int, str], None] | None = None,
     planes: ArrayLike | None = None,
     message: str = "scanning the contact",
+    device: str | None = None,
 ) -> ScannedForces:
     """Scan as in `scan`, with approaches from given planes instead of the mean plane.
 
     Parameters
     ----------
-    heights, spacing, body, modulus, approaches, hardness, stride, rtol, workers, cache, progress
+    heights, spacing, body, modulus, approaches, hardness, stride, rtol, workers, cache, progress, device
         As in `scan`.
     planes : array_like, shape (n_positions,), optional
         Height of the plane from which approaches count at each position, m; zero by default.
@@ -174,24 +181,33 @@ def scan_forces(
     _check(heights, shape, delta, stride)
     positions = np.arange(0, heights.shape[0] - shape.shape[0] + 1, stride)
     plane = np.broadcast_to(np.asarray(0.0 if planes is None else planes, dtype=np.float64), positions.shape)
+    batches = find_device(device)
+    length = BLOCK if batches is None else batched_scan.BLOCK
 
     def solve_block(first: int) -> NDArray[np.float64]:
-        block = positions[first : first + BLOCK]
+        block = positions[first : first + length]
         rows = np.ascontiguousarray(heights[block[0] : block[-1] + shape.shape[0]])
-        parameters = [list(spacing), modulus, hardness, stride, rtol]
-        planes = np.ascontiguousarray(plane[first : first + BLOCK])
+        parameters = [list(spacing), modulus, hardness, stride, rtol, *(["batched"] if batches else [])]
+        planes = np.ascontiguousarray(plane[first : first + length])
         key = content_key("scan", rows, shape, delta, planes, parameters) if cache is not None else ""
         kept = cache.get(key) if cache is not None else None
         if kept is not None:
             return kept["block"]
         half_space = HalfSpace((shape.shape[0], shape.shape[1]), spacing, modulus, hardness)
-        solved = _solve_block(half_space, rows, shape, delta, planes, stride, rtol)
+        if batches is None:
+            solved = _solve_block(half_space, rows, shape, delta, planes, stride, rtol)
+        else:
+            solved = batched_scan.solve_rows(
+                half_space, rows, shape, delta, planes, stride, rtol, batches, TRUNCATED
+            )
         if cache is not None:
             cache.put(key, {"block": solved})
         return solved
 
-    firsts = range(0, len(positions), BLOCK)
-    blocks = _in_threads(solve_block, firsts, len(positions), workers, progress, message)
+    firsts = range(0, len(positions), length)
+    # a device is filled by one block
+    threads = workers if batches is None else 1
+    blocks = _in_threads(solve_block, firsts, len(positions), threads, progress, message)
     stacked = np.concatenate(blocks, axis=2)
     forces, iterations, unconverged, truncated = stacked
     return ScannedForces(
