@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -12,12 +12,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError, Outcome, UnconvergedWarning
-from asperity.kernels.convolution import convolve, even_spectrum, padded_length
+from asperity.kernels.convolution import Convolution, convolution, convolve, pitch, workspace
+from asperity.kernels.fourier import smooth_length
 from asperity.kernels.love import influence_table
-from asperity.kernels.projected_cg import inverse_stencil, solve, unit_indentation
+from asperity.kernels.overlap import box_of_positive, overlap_box
+from asperity.kernels.projected_cg import (
+    Box,
+    empty_box,
+    enter,
+    inverse_stencil,
+    solve,
+    survey,
+    unit_indentation,
+)
 
 MAX_ITERATIONS = 2000
-_SPECTRA_KEPT = 64
+MARGIN = 3
+"""Cells left around pressure and overlap of what a solution starts from."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,10 +127,11 @@ class HalfSpace:
         self.spacing = (float(spacing[0]), float(spacing[1]))
         self.modulus = float(modulus)
         self.hardness = None if hardness is None else float(hardness)
-        reach = max(*self.shape, 32)
+        reach = smooth_length(max(*self.shape, 32))
         self._table = influence_table(reach, reach, *self.spacing) / (math.pi * self.modulus)
+        self._mirrored = np.concatenate([self._table[:, :0:-1], self._table], axis=1)
         self._taps = inverse_stencil(self._table)
-        self._spectra: OrderedDict[tuple[int, int], NDArray[np.float64]] = OrderedDict()
+        self._convolutions: dict[tuple[int, int], Convolution] = {}
 
     @property
     def cell_area(self) -> float:
@@ -140,7 +152,7 @@ class HalfSpace:
             Displacement, m.
         """
         p = self._field("pressure", pressure)
-        return convolve(p, self._spectrum(*self.shape), padded_length(self.shape[1]))
+        return self._convolved(p)
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
@@ -161,13 +173,14 @@ class HalfSpace:
         free = (p > 0.0) & (p < self._cap)
         if not free.any():
             return 0.0
-        box = _bounding_box(free)
-        inside = np.ascontiguousarray(free[box])
-        spectrum, my = self._spectrum(*inside.shape), padded_length(inside.shape[1])
-        unit, converged = unit_indentation(inside, spectrum, my, self._taps, rtol, MAX_ITERATIONS)
+        inside = free[_slices(box_of_positive(free.astype(np.float64)))]
+        box = self._empty_box(*inside.shape)
+        box.overlap[:, : inside.shape[1]] = inside
+        c = self._convolution(*inside.shape)
+        converged = unit_indentation(c, self._taps, box, inside.shape[1], rtol, MAX_ITERATIONS)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
-        return float(unit.sum()) * self.cell_area
+        return float(box.pressure.sum()) * self.cell_area
 
     def solve(
         self,
@@ -250,16 +263,24 @@ class HalfSpace:
             )
         return a
 
-    def _spectrum(self, nx: int, ny: int) -> NDArray[np.float64]:
-        """Kernel spectrum of an (nx, ny) box; boxes recur along a path, so the last ones are kept."""
-        key = (nx, ny)
-        if key in self._spectra:
-            self._spectra.move_to_end(key)
-        else:
-            self._spectra[key] = even_spectrum(self._table, nx, ny)
-            if len(self._spectra) > _SPECTRA_KEPT:
-                self._spectra.popitem(last=False)
-        return self._spectra[key]
+    def _convolution(self, nx: int, ny: int) -> Convolution:
+        """Convolution on a box; those of all boxes of a path are few, as few lengths transform fast."""
+        key = (smooth_length(nx), smooth_length(ny))
+        if key not in self._convolutions:
+            self._convolutions[key] = convolution(self._table, *key)
+        return self._convolutions[key]
+
+    def _empty_box(self, nx: int, ny: int) -> Box:
+        return empty_box(nx, ny, self._convolution(nx, ny))
+
+    def _convolved(self, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Displacement on a box under a pressure on that box, m."""
+        nx, ny = pressure.shape
+        c = self._convolution(nx, ny)
+        fields = np.zeros((2, nx, pitch(ny)))
+        fields[0, :, :ny] = pressure
+        convolve(c, fields[0], ny, workspace(c), fields[1])
+        return fields[1, :, :ny].copy()
 
     def at_approach(
         self, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64] | None, rtol: float
@@ -276,39 +297,51 @@ class HalfSpace:
         Contact
             The solution; look at `converged`.
         """
+        largest, *limits = overlap_box(gap, approach)
         pressure = np.zeros(self.shape)
-        overlap = approach - gap
-        largest = float(overlap.max())
         if largest <= 0.0:
             return Contact(pressure, 0.0, approach, 0.0, 0, 0.0, Outcome.NO_CONTACT, self, gap)
-        box = _bounding_box(overlap > 0.0)
-        inside = np.ascontiguousarray(overlap[box])
-        spectrum = self._spectrum(*inside.shape)
-        p = self._first_guess(inside, spectrum) if start is None else np.ascontiguousarray(start[box])
-        if p is start or p.base is not None:
-            p = p.copy()
+        outer = _slices(limits)
+        p = pressure[outer] if start is None else start[outer]
         if not p.any():
-            p = self._first_guess(inside, spectrum)
-        tolerance = rtol * largest
-        my = padded_length(inside.shape[1])
-        iterations, worst = solve(inside, spectrum, my, self._taps, p, self._cap, tolerance, MAX_ITERATIONS)
-        if worst <= tolerance:
+            p = self._first_guess(approach - gap[outer])
+        box = self._empty_box(*p.shape)
+        enter(box, p.shape[1], gap[outer], approach, p)
+        iterations, worst = self._solve_box(box, p.shape[1], rtol * largest)
+        if worst <= rtol * largest:
             outcome = Outcome.CONVERGED
         else:
             outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.SINGULAR
-        pressure[box] = p
+        pressure[outer] = p = box.pressure[:, : p.shape[1]]
         force = float(p.sum()) * self.cell_area
         area = int(np.count_nonzero(p)) * self.cell_area
         return Contact(pressure, force, approach, area, iterations, worst / largest, outcome, self, gap)
 
-    def _first_guess(
-        self, overlap: NDArray[np.float64], spectrum: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _solve_box(self, outer: Box, columns: int, tolerance: float) -> tuple[int, float]:
+        """Solve on smaller boxes around pressure and overlap until the whole box holds no violation.
+
+        The box's pressure is the start and becomes the solution. Returned: iterations, largest residual.
+        """
+        iterations, shape = 0, (outer.overlap.shape[0], columns)
+        whole = self._convolution(*shape)
+        while True:
+            worst, *limits = survey(whole, outer, columns, self._cap)
+            if worst <= tolerance or iterations >= MAX_ITERATIONS:
+                return iterations, worst
+            first, end, left, right = _grown(limits, shape)
+            nx, ny = end - first, right - left
+            done, definite = solve(
+                self._convolution(nx, ny), self._mirrored, self._taps, outer, first, left,
+                self._empty_box(nx, ny), ny, self._cap, tolerance, MAX_ITERATIONS - iterations,
+            )  # fmt: skip
+            iterations += done
+            if not definite:
+                return iterations, worst
+
+    def _first_guess(self, overlap: NDArray[np.float64]) -> NDArray[np.float64]:
         """Pressure of Hertzian form over the deeper half of the overlap, scaled to least energy."""
         p = np.sqrt(np.maximum(overlap - 0.5 * overlap.max(), 0.0))
-        scale = float(np.vdot(p, overlap)) / float(
-            np.vdot(p, convolve(p, spectrum, padded_length(p.shape[1])))
-        )
+        scale = float(np.vdot(p, overlap)) / float(np.vdot(p, self._convolved(p)))
         return np.minimum(p * scale, self._cap)
 
     def _at_load(
@@ -360,9 +393,18 @@ class HalfSpace:
         return float(mean_gap[i] + load / foundation[i])
 
 
-def _bounding_box(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    return slice(int(rows[0]), int(rows[-1]) + 1), slice(int(columns[0]), int(columns[-1]) + 1)
+def _slices(limits: Sequence[int]) -> tuple[slice, slice]:
+    return slice(limits[0], limits[1]), slice(limits[2], limits[3])
+
+
+def _grown(limits: Sequence[int], shape: tuple[int, int]) -> list[int]:
+    """Box with a margin, and with what transforms at the same cost, inside of a larger one."""
+    grown: list[int] = []
+    for first, end, n in zip(limits[::2], limits[1::2], shape, strict=True):
+        length = min(smooth_length(end - first + 2 * MARGIN), n)
+        begin = min(max(0, first - (length - (end - first)) // 2), n - length)
+        grown += [begin, begin + length]
+    return grown
 
 
 def _warn_unconverged(what: str, outcome: Outcome) -> None:

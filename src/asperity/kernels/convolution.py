@@ -1,77 +1,238 @@
-"""Free-boundary convolution with an even kernel, by zero-padded real FFTs that skip the zeros.
+"""Free-boundary convolution with an even kernel, without padding a box of n cells to 2n.
 
-Compiled code calls `scipy.fft` through rocket-fft, which registers itself with numba when installed.
+A real record of n values, turned by exp(−iπj/2n), can be convolved circularly in n places: what wraps around
+comes back turned by a right angle and leaves the real part alone (right-angle convolution). Across, where the
+values are complex, the mean of both senses of turning removes what wraps around. The kernel is even, so that
+its spectrum is real, and the same in both senses but for the order.
 """
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.fft
 from numba import njit
 from numpy.typing import NDArray
 
+from asperity.kernels.fourier import factors, roots, transform
+from asperity.kernels.lanes import lanes, load, store, transpose
+from asperity.kernels.options import INNER, LOOP
 
-def padded_length(n: int) -> int:
-    """Length at which a circular convolution of two records of `n` cells does not wrap.
+
+class Convolution(NamedTuple):
+    """A kernel on boxes of up to (mx, my) cells, ready to be convolved with.
+
+    Attributes
+    ----------
+    radices_x, radices_y : ndarray of int
+        Of the lengths mx and my.
+    roots_x, roots_y : ndarray, shape (m, 2)
+        From `fourier.roots`.
+    turn_x, turn_y : ndarray, shape (m, 2)
+        exp(−iπj/2m).
+    spectrum : ndarray, shape (⌈mx / lanes⌉ my lanes,)
+        Spectrum at the frequencies (k + ¼)/m, a quarter of 1/(mx my) of it.
+    lanes : int
+        Numbers in a vector of this precision.
+    """
+
+    radices_x: NDArray[np.int64]
+    radices_y: NDArray[np.int64]
+    roots_x: NDArray
+    roots_y: NDArray
+    turn_x: NDArray
+    turn_y: NDArray
+    spectrum: NDArray
+    lanes: int
+
+
+def convolution(table: NDArray[np.float64], mx: int, my: int, dtype: Any = np.float64) -> Convolution:
+    """Prepare the convolution with an even kernel.
 
     Parameters
     ----------
-    n : int
-        Number of cells.
+    table : ndarray, shape (≥ mx, ≥ my)
+        Kernel at non-negative separations.
+    mx, my : int
+        Largest box, cells, from `fourier.smooth_length`.
+    dtype : dtype
+        float32 or float64: the precision of the convolution.
+
+    Returns
+    -------
+    Convolution
+        For `convolve`.
+    """
+    width = lanes(dtype)
+    quarter = quarter_spectrum(quarter_spectrum(table[:mx, :my], 1), 0) / (2.0 * mx * my)
+    blocks = np.zeros((-(-mx // width) * width, my))
+    blocks[:mx] = quarter
+    spectrum = blocks.reshape(-1, width, my).transpose(0, 2, 1).astype(dtype).ravel()
+    return Convolution(
+        np.array(factors(mx)), np.array(factors(my)), roots(mx, dtype), roots(my, dtype),
+        _turn(mx, dtype), _turn(my, dtype), spectrum, width,
+    )  # fmt: skip
+
+
+def _turn(m: int, dtype: Any) -> NDArray:
+    return np.ascontiguousarray(roots(4 * m, dtype)[:m])
+
+
+def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    """Spectrum of an even kernel along an axis, at the frequencies (k + ¼)/m; it is real.
+
+    Parameters
+    ----------
+    table : ndarray, two-dimensional
+        Kernel at non-negative separations, m of them along the axis.
+    axis : int
+        0 or 1.
+
+    Returns
+    -------
+    ndarray
+        Spectrum, of the table's shape.
+    """
+    m = table.shape[axis]
+    turn = np.exp(-0.5j * np.pi * np.arange(m) / m)
+    turned = table * (turn if axis else turn[:, None])
+    return 2.0 * scipy.fft.fft(turned, axis=axis).real - table.take([0], axis)
+
+
+def pitch(ny: int, dtype: Any = np.float64) -> int:
+    """Length of the rows of a field of `ny` columns, filled up to whole vectors.
+
+    Parameters
+    ----------
+    ny : int
+        Columns.
+    dtype : dtype
+        float32 or float64.
 
     Returns
     -------
     int
-        A length ≥ 2n − 1 that transforms fast.
+        Columns with those that stay zero.
     """
-    return int(scipy.fft.next_fast_len(2 * n - 1, real=True))
+    return -(-ny // lanes(dtype)) * lanes(dtype)
 
 
-def even_spectrum(table: NDArray[np.float64], nx: int, ny: int) -> NDArray[np.float64]:
-    """Spectrum of an even kernel on the padded grid of an (nx, ny) box; it is real.
+def workspace(c: Convolution) -> NDArray:
+    """Room that a convolution needs, for one thread.
 
     Parameters
     ----------
-    table : ndarray, shape (≥ nx, ≥ ny)
-        Kernel at non-negative separations.
-    nx, ny : int
-        Box size, cells.
+    c : Convolution
+        The convolution.
 
     Returns
     -------
-    ndarray, shape (mx, my // 2 + 1)
-        Real spectrum, mx and my from `padded_length`.
+    ndarray
+        For `convolve`, as often as liked.
     """
-    mx, my = padded_length(nx), padded_length(ny)
-    circulant = np.zeros((mx, my))
-    circulant[:nx, :ny] = table[:nx, :ny]
-    circulant[mx - nx + 1 :, :ny] = table[nx - 1 : 0 : -1, :ny]
-    circulant[:, my - ny + 1 :] = circulant[:, ny - 1 : 0 : -1]
-    return np.ascontiguousarray(scipy.fft.rfft2(circulant).real)
+    mx, my = (-(-len(turn) // c.lanes) * c.lanes for turn in (c.turn_x, c.turn_y))
+    return np.zeros(2 * mx * my + 6 * max(mx, my) * c.lanes, dtype=c.spectrum.dtype)
 
 
-@njit(cache=True, nogil=True)
-def convolve(field: NDArray[np.float64], spectrum: NDArray[np.float64], my: int) -> NDArray[np.float64]:
+@njit(**INNER)
+def _clear(buffer: NDArray, first: int, end: int) -> None:
+    for i in range(first, end):
+        buffer[i] = 0.0
+
+
+@njit(**LOOP)
+def _turn_in(c: Convolution, field: NDArray, row: int, first: int, nx: int, buffer: NDArray) -> None:
+    """Turn a block of real columns into the buffer, zero behind the box."""
+    for i in range(nx):
+        re, o = load(field, i * row + first), 2 * i * c.lanes
+        store(buffer, o, c.turn_x[i, 0] * re)
+        store(buffer, o + c.lanes, c.turn_x[i, 1] * re)
+    _clear(buffer, 2 * nx * c.lanes, 2 * len(c.turn_x) * c.lanes)
+
+
+@njit(**LOOP)
+def _turn_out(c: Convolution, buffer: NDArray, row: int, first: int, nx: int, out: NDArray) -> None:
+    """Turn a block back and keep its real part."""
+    for i in range(nx):
+        o = 2 * i * c.lanes
+        re, im = load(buffer, o), load(buffer, o + c.lanes)
+        store(out, i * row + first, c.turn_x[i, 0] * re - c.turn_x[i, 1] * im)
+
+
+@njit(**INNER)
+def _turned(re: Any, im: Any, cosine: Any, sine: Any) -> Any:
+    return cosine * re - sine * im, cosine * im + sine * re
+
+
+@njit(**LOOP)
+def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: NDArray, s: NDArray) -> None:
+    """Convolve across in both senses of turning; the conjugate of the sum replaces the rows."""
+    width, my, minus = c.lanes, len(c.turn_y), c.turn_y.dtype.type(-1.0)
+    for sense in range(2):
+        sign = c.turn_y.dtype.type(1 - 2 * sense)
+        for j in range(ny):
+            o = 2 * j * width
+            re, im = _turned(load(rows, o), load(rows, o + width), c.turn_y[j, 0], sign * c.turn_y[j, 1])
+            store(a, o, re)
+            store(a, o + width, im)
+        _clear(a, 2 * ny * width, 2 * my * width)
+        swapped = transform(a, b, c.radices_y, c.roots_y, width)
+        x, y = (b, a) if swapped else (a, b)
+        for k in range(my):
+            factor = load(c.spectrum, (block * my + (k if sense == 0 or k == 0 else my - k)) * width)
+            o = 2 * k * width
+            store(x, o, factor * load(x, o))
+            store(x, o + width, minus * (factor * load(x, o + width)))
+        if transform(x, y, c.radices_y, c.roots_y, width):
+            x = y
+        for j in range(ny):
+            o = 2 * j * width
+            re, im = _turned(load(x, o), load(x, o + width), c.turn_y[j, 0], sign * c.turn_y[j, 1])
+            if sense == 0:
+                store(s, o, re)
+                store(s, o + width, im)
+            else:
+                store(rows, o, re + load(s, o))
+                store(rows, o + width, im + load(s, o + width))
+
+
+@njit(**LOOP, nogil=True)
+def convolve(c: Convolution, field: NDArray, ny: int, work: NDArray, out: NDArray) -> None:
     """Convolve a field on a box with an even kernel, with nothing outside the box.
 
     Parameters
     ----------
-    field : ndarray, shape (nx, ny)
-        Field on the box.
-    spectrum : ndarray, shape (mx, my // 2 + 1)
-        From `even_spectrum` for this box.
-    my : int
-        ``padded_length(ny)``.
-
-    Returns
-    -------
-    ndarray, shape (nx, ny)
-        Convolution on the box.
+    c : Convolution
+        From `convolution`; the box has at most its cells.
+    field : ndarray, shape (nx, pitch)
+        Field on the box; zero in the columns from `ny` on. Of the convolution's precision.
+    ny : int
+        Columns of the box.
+    work : ndarray
+        From `workspace`.
+    out : ndarray, shape (nx, pitch)
+        Receives the convolution; columns from `ny` on have no meaning.
     """
-    nx, ny = field.shape
-    mx = spectrum.shape[0]
-    # transforming y first and cutting x first leaves the zero rows out of half of the work
-    full = scipy.fft.fft(scipy.fft.rfft(field, my, 1), mx, 0)
-    full *= spectrum
-    rows = scipy.fft.ifft(full, mx, 0)[:nx]
-    return scipy.fft.irfft(rows, my, 1)[:, :ny].copy()
+    width, mx = c.lanes, len(c.turn_x)
+    nx, row = field.shape
+    blocks = -(-mx // width)
+    size = 2 * max(blocks * width, -(-len(c.turn_y) // width) * width) * width
+    a, b, s = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
+    rows, line = work[3 * size :], 2 * row * width
+    for first in range(0, row, width):
+        _turn_in(c, field, row, first, nx, a)
+        x = b if transform(a, b, c.radices_x, c.roots_x, width) else a
+        for k in range(blocks):
+            for part in range(0, 2 * width, width):
+                o = k * line + 2 * first * width + part
+                transpose(x, 2 * k * width * width + part, 2 * width, rows, o, 2 * width)
+    for k in range(blocks):
+        _across(c, k, rows[k * line : (k + 1) * line], ny, a, b, s)
+    for first in range(0, row, width):
+        for k in range(blocks):
+            for part in range(0, 2 * width, width):
+                o = k * line + 2 * first * width + part
+                transpose(rows, o, 2 * width, a, 2 * k * width * width + part, 2 * width)
+        x = b if transform(a, b, c.radices_x, c.roots_x, width) else a
+        _turn_out(c, x, row, first, nx, out)

@@ -2,19 +2,79 @@
 
 Conjugate gradients with bound projection after I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206; the
 preconditioner applies an approximate inverse of K as a short stencil on the free set, so that an iteration
-needs one convolution, and a second one only when a bound was hit.
+needs one convolution. What cells that hit a bound did not take of a step is convolved cell by cell where they
+are few.
+
+Fields lie on a box of `ny` columns in arrays whose rows are filled up to whole vectors.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.convolution import convolve, even_spectrum
+from asperity.kernels.convolution import Convolution, convolve, pitch, quarter_spectrum, workspace
+from asperity.kernels.options import LOOP, REASSOCIATE
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
+FEW = 24
+"""Clipped cells up to which it is faster to convolve them one by one."""
+
+
+class Box(NamedTuple):
+    """Fields of a solution on a box, shape (nx, pitch).
+
+    Attributes
+    ----------
+    overlap : ndarray
+        Overlap of the undeformed bodies, m.
+    pressure : ndarray
+        Pressure, Pa.
+    residual, previous : ndarray
+        K p − overlap, m, now and one iteration ago.
+    direction, response : ndarray
+        Search direction, Pa, and what it displaces, m.
+    z : ndarray
+        Preconditioned residual, Pa.
+    masked : ndarray, shape (nx + 2 REACH, pitch + 2 REACH)
+        Residual on the free set, within a border of zeros.
+    work : ndarray
+        Room for convolutions.
+    """
+
+    overlap: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    previous: NDArray[np.float64]
+    direction: NDArray[np.float64]
+    response: NDArray[np.float64]
+    z: NDArray[np.float64]
+    masked: NDArray[np.float64]
+    work: NDArray[np.float64]
+
+
+def empty_box(nx: int, ny: int, c: Convolution) -> Box:
+    """Make the fields of a box.
+
+    Parameters
+    ----------
+    nx, ny : int
+        Cells.
+    c : Convolution
+        That the solution will use.
+
+    Returns
+    -------
+    Box
+        Zeros.
+    """
+    row = pitch(ny)
+    a, b, c_, d, e, f, g = np.zeros((7, nx, row))
+    return Box(a, b, c_, d, e, f, g, np.zeros((nx + 2 * REACH, row + 2 * REACH)), workspace(c))
 
 
 def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -32,9 +92,9 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
         is positive, so the stencil restricted to any set of cells is positive definite.
     """
     n = 32
-    symbol = even_spectrum(table, n, n)
-    qx = 2.0 * np.pi * np.fft.fftfreq(symbol.shape[0])[:, None]
-    qy = np.pi * np.linspace(0.0, 1.0, symbol.shape[1])[None, :]
+    symbol = quarter_spectrum(quarter_spectrum(table[:n, :n], 1), 0)
+    q = 2.0 * np.pi * (np.arange(n) + 0.25) / n
+    qx, qy = q[:, None], q[None, :]
     cx, cy = np.cos(qx), np.cos(qy)
     one = np.ones_like(symbol)
     taps = [one, 2 * cx * one, 2 * cy * one, 4 * cx * cy, 2 * np.cos(2 * qx) * one, 2 * np.cos(2 * qy) * one]
@@ -46,152 +106,213 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(coefficients)
 
 
-@njit(cache=True, nogil=True)
+@njit(**LOOP, **REASSOCIATE)
 def _precondition(
-    pressure: NDArray[np.float64],
-    residual: NDArray[np.float64],
-    hardness: float,
-    taps: NDArray[np.float64],
-    masked: NDArray[np.float64],
-    z: NDArray[np.float64],
-) -> int:
-    """Apply the stencil to the residual on the free set; return the size of that set.
-
-    `masked` has a border of REACH zeros and receives the residual on the free set; `z` is zero elsewhere.
-    """
-    nx, ny = pressure.shape
-    count = 0
-    for i in range(nx):
-        for j in range(ny):
-            p, g = pressure[i, j], residual[i, j]
-            free = (p > 0.0 or g < 0.0) and (p < hardness or g > 0.0)
-            masked[i + 2, j + 2] = g if free else 0.0
-            z[i, j] = 1.0 if free else 0.0
-            count += free
-    c0, c1, c2, c3, c4, c5 = taps
-    for i in range(nx):
-        a, b, m, d, e = masked[i], masked[i + 1], masked[i + 2], masked[i + 3], masked[i + 4]
-        for j in range(ny):
-            k = j + 2
-            z[i, j] *= (
-                c0 * m[k]
-                + c1 * (b[k] + d[k])
-                + c2 * (m[k - 1] + m[k + 1])
-                + c3 * (b[k - 1] + b[k + 1] + d[k - 1] + d[k + 1])
-                + c4 * (a[k] + e[k])
-                + c5 * (m[k - 2] + m[k + 2])
-            )
-    return count
-
-
-@njit(cache=True, nogil=True)
-def _direction(
-    residual: NDArray[np.float64],
-    previous: NDArray[np.float64],
-    z: NDArray[np.float64],
-    direction: NDArray[np.float64],
-    rho_previous: float,
+    pressure: NDArray[np.float64], b: Box, ny: int, hardness: float, taps: NDArray[np.float64]
 ) -> tuple[float, float]:
-    """Update the search direction in place (Polak–Ribière); return residual·z and residual·direction."""
-    nx, ny = residual.shape
+    """Apply the stencil to the residual on the free set; return residual·z and (residual − previous)·z."""
+    nx = pressure.shape[0]
+    for i in range(nx):
+        p, g, m = pressure[i], b.residual[i], b.masked[i + REACH]
+        for j in range(ny):
+            free = (p[j] > 0.0 or g[j] < 0.0) and (p[j] < hardness or g[j] > 0.0)
+            m[j + REACH] = g[j] if free else 0.0
+    c0, c1, c2, c3, c4, c5 = taps[0], taps[1], taps[2], taps[3], taps[4], taps[5]
     rho, change = 0.0, 0.0
     for i in range(nx):
+        k, l, m, n, o = b.masked[i], b.masked[i + 1], b.masked[i + 2], b.masked[i + 3], b.masked[i + 4]
+        old, z = b.previous[i], b.z[i]
         for j in range(ny):
-            rho += residual[i, j] * z[i, j]
-            change += (residual[i, j] - previous[i, j]) * z[i, j]
-    beta = max(0.0, change / rho_previous) if rho_previous > 0.0 else 0.0
+            g = m[j + 2]
+            s = c0 * g + c1 * (l[j + 2] + n[j + 2]) + c2 * (m[j + 1] + m[j + 3])
+            s += c3 * (l[j + 1] + l[j + 3] + n[j + 1] + n[j + 3])
+            s += c4 * (k[j + 2] + o[j + 2]) + c5 * (m[j] + m[j + 4])
+            s = s if g != 0.0 else 0.0
+            z[j] = s
+            rho += g * s
+            change += (g - old[j]) * s
+    return rho, change
+
+
+@njit(**LOOP, **REASSOCIATE)
+def _turn(b: Box, ny: int, beta: float) -> float:
+    """Set the search direction from z and the one before; return residual·direction."""
     slope = 0.0
-    for i in range(nx):
+    for i in range(b.z.shape[0]):
+        z, d, g = b.z[i], b.direction[i], b.residual[i]
         for j in range(ny):
-            t = beta * direction[i, j] - z[i, j] if z[i, j] != 0.0 else 0.0
-            direction[i, j] = t
-            slope += residual[i, j] * t
-    return rho, slope
+            t = beta * d[j] - z[j] if z[j] != 0.0 else 0.0
+            d[j] = t
+            slope += g[j] * t
+    return slope
 
 
-@njit(cache=True, nogil=True)
-def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+@njit(**LOOP, **REASSOCIATE)
+def _dot(left: NDArray[np.float64], right: NDArray[np.float64], ny: int) -> float:
     total = 0.0
-    for i in range(a.shape[0]):
-        for j in range(a.shape[1]):
-            total += a[i, j] * b[i, j]
+    for i in range(left.shape[0]):
+        x, y = left[i], right[i]
+        for j in range(ny):
+            total += x[j] * y[j]
     return total
 
 
-@njit(cache=True, nogil=True)
-def _advance(
-    pressure: NDArray[np.float64],
-    direction: NDArray[np.float64],
-    step: float,
-    hardness: float,
-) -> int:
-    """Step along the direction and project on the bounds; return how many cells were clipped."""
+@njit(**LOOP)
+def _advance(b: Box, ny: int, step: float, hardness: float) -> int:
+    """Step along the direction and project on the bounds; return how many cells were clipped.
+
+    The residual becomes the previous one, `z` what the bounds took off the step.
+    """
     clipped = 0
-    for i in range(pressure.shape[0]):
-        for j in range(pressure.shape[1]):
-            p = pressure[i, j] + step * direction[i, j]
-            if p < 0.0:
-                clipped += 1
-                p = 0.0
-            elif p > hardness:
-                clipped += 1
-                p = hardness
-            pressure[i, j] = p
+    for i in range(b.pressure.shape[0]):
+        p, d, z = b.pressure[i], b.direction[i], b.z[i]
+        g, old, u = b.residual[i], b.previous[i], b.response[i]
+        for j in range(ny):
+            wanted = p[j] + step * d[j]
+            kept = min(max(wanted, 0.0), hardness)
+            clipped += kept != wanted
+            z[j] = kept - wanted
+            p[j] = kept
+        for j in range(ny):
+            old[j] = g[j]
+            g[j] += step * u[j]
     return clipped
 
 
-@njit(cache=True, nogil=True)
-def _complementarity(pressure: NDArray[np.float64], residual: NDArray[np.float64], hardness: float) -> float:
+@njit(**LOOP)
+def _correct(b: Box, ny: int, mirrored: NDArray[np.float64]) -> None:
+    """Add to the residual what the cells in `z` displace, one by one."""
+    nx, middle = b.z.shape[0], mirrored.shape[1] // 2
+    for k in range(nx):
+        for l in range(ny):
+            amount = b.z[k, l]
+            if amount != 0.0:
+                for i in range(nx):
+                    g, influence = b.residual[i], mirrored[abs(i - k), middle - l :]
+                    for j in range(ny):
+                        g[j] += amount * influence[j]
+
+
+@njit(**LOOP, **REASSOCIATE)
+def _complementarity(b: Box, ny: int, hardness: float) -> float:
     """Largest violation of the complementarity conditions, in the unit of the residual."""
     worst = 0.0
-    for i in range(pressure.shape[0]):
-        for j in range(pressure.shape[1]):
-            p, g = pressure[i, j], residual[i, j]
-            if p <= 0.0:
-                g = -g
-            elif p < hardness:
-                g = abs(g)
-            if g > worst:
-                worst = g
+    for i in range(b.pressure.shape[0]):
+        p, r = b.pressure[i], b.residual[i]
+        for j in range(ny):
+            g = -r[j] if p[j] <= 0.0 else (abs(r[j]) if p[j] < hardness else r[j])
+            worst = max(worst, g)
     return worst
 
 
-@njit(cache=True, nogil=True)
-def _add_scaled(a: NDArray[np.float64], factor: float, b: NDArray[np.float64]) -> None:
-    for i in range(a.shape[0]):
-        for j in range(a.shape[1]):
-            a[i, j] += factor * b[i, j]
+@njit(**LOOP)
+def _true_residual(c: Convolution, b: Box, ny: int) -> None:
+    convolve(c, b.pressure, ny, b.work, b.residual)
+    for i in range(b.residual.shape[0]):
+        for j in range(ny):
+            b.residual[i, j] -= b.overlap[i, j]
 
 
-@njit(cache=True, nogil=True)
-def solve(
-    overlap: NDArray[np.float64],
-    spectrum: NDArray[np.float64],
-    my: int,
-    taps: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    hardness: float,
-    tolerance: float,
-    max_iterations: int,
-) -> tuple[int, float]:
-    """Solve 0 ≤ p ≤ hardness ⟂ K p − overlap on a box, starting from `pressure`, which is overwritten.
+@njit(**LOOP, nogil=True)
+def enter(b: Box, ny: int, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64]) -> None:
+    """Set overlap and pressure of a box.
 
     Parameters
     ----------
-    overlap : ndarray, shape (nx, ny)
-        Overlap of the undeformed bodies, m.
-    spectrum : ndarray
-        Kernel on the box, from `even_spectrum`, m/Pa.
-    my : int
-        ``padded_length(ny)``.
+    b : Box
+        The box, of `ny` columns.
+    ny : int
+        Columns of the box.
+    gap : ndarray, shape (nx, ny)
+        Separation at zero approach, m.
+    approach : float
+        Approach, m.
+    start : ndarray, shape (nx, ny)
+        Pressure, Pa.
+    """
+    for i in range(gap.shape[0]):
+        for j in range(ny):
+            b.overlap[i, j] = approach - gap[i, j]
+            b.pressure[i, j] = start[i, j]
+
+
+@njit(**LOOP, nogil=True)
+def survey(c: Convolution, b: Box, ny: int, hardness: float) -> tuple[float, int, int, int, int]:
+    """Compute the residual of a pressure and where there is something left to solve.
+
+    Parameters
+    ----------
+    c : Convolution
+        With the kernel, m/Pa, for this box.
+    b : Box
+        Holds overlap and pressure, receives the residual.
+    ny : int
+        Columns of the box.
+    hardness : float
+        Upper bound of the pressure, Pa.
+
+    Returns
+    -------
+    worst : float
+        Largest complementarity residual, m.
+    first_row, end_row, first_column, end_column : int
+        The smallest box that holds all cells under pressure or in overlap; zeros if there are none.
+    """
+    _true_residual(c, b, ny)
+    first, end, left, right = b.pressure.shape[0], 0, ny, 0
+    for i in range(b.pressure.shape[0]):
+        for j in range(ny):
+            if b.pressure[i, j] > 0.0 or b.residual[i, j] < 0.0:
+                first, end = min(first, i), i + 1
+                left, right = min(left, j), max(right, j + 1)
+    worst = _complementarity(b, ny, hardness)
+    return (worst, first, end, left, right) if end else (worst, 0, 0, 0, 0)
+
+
+@njit(**LOOP)
+def _copy(outer: NDArray[np.float64], row: int, column: int, inner: NDArray[np.float64], ny: int) -> None:
+    for i in range(inner.shape[0]):
+        for j in range(ny):
+            inner[i, j] = outer[row + i, column + j]
+
+
+@njit(**LOOP, nogil=True)
+def solve(
+    c: Convolution,
+    mirrored: NDArray[np.float64],
+    taps: NDArray[np.float64],
+    outer: Box,
+    row: int,
+    column: int,
+    b: Box,
+    ny: int,
+    hardness: float,
+    tolerance: float,
+    max_iterations: int,
+) -> tuple[int, bool]:
+    """Solve 0 ≤ p ≤ hardness ⟂ K p − overlap on a box within another one that was surveyed.
+
+    Parameters
+    ----------
+    c : Convolution
+        With the kernel, m/Pa, for the inner box.
+    mirrored : ndarray, shape (≥ nx, ≥ 2 ny − 1)
+        The kernel at separations i ≥ 0 and, with zero in the middle column, j of both signs, m/Pa.
     taps : ndarray, shape (6,)
         From `inverse_stencil`, Pa/m.
-    pressure : ndarray, shape (nx, ny)
-        Start within the bounds; on return the solution, Pa.
+    outer : Box
+        Holds overlap, residual and a start within the bounds that is zero outside of the inner box; receives
+        the pressure.
+    row, column : int
+        Where the inner box begins.
+    b : Box
+        The inner box, empty.
+    ny : int
+        Columns of the inner box.
     hardness : float
         Upper bound of the pressure, Pa (may be infinite).
     tolerance : float
-        Largest complementarity residual, m.
+        Largest complementarity residual, m, as far as the recurrence knows it: survey the result.
     max_iterations : int
         Iterations allowed.
 
@@ -199,62 +320,49 @@ def solve(
     -------
     iterations : int
         Iterations done.
-    residual : float
-        Largest complementarity residual reached, m; above `tolerance` the solution did not converge.
+    definite : bool
+        Whether the kernel is: otherwise there is no going on.
     """
-    nx, ny = overlap.shape
-    masked = np.zeros((nx + 2 * REACH, ny + 2 * REACH))
-    z, direction, previous = np.empty((nx, ny)), np.zeros((nx, ny)), np.zeros((nx, ny))
-    residual = convolve(pressure, spectrum, my) - overlap
-    worst, rho, drifted = _complementarity(pressure, residual, hardness), 0.0, False
-    iteration = 0
-    while iteration < max_iterations:
-        if worst <= tolerance:
-            if not drifted:
-                break
-            # the recurrence says converged: let the true residual confirm it
-            residual = convolve(pressure, spectrum, my) - overlap
-            worst, drifted = _complementarity(pressure, residual, hardness), False
-            continue
+    _copy(outer.overlap, row, column, b.overlap, ny)
+    _copy(outer.pressure, row, column, b.pressure, ny)
+    _copy(outer.residual, row, column, b.residual, ny)
+    rho, iteration, definite = 0.0, 0, True
+    while iteration < max_iterations and _complementarity(b, ny, hardness) > tolerance:
         iteration += 1
-        _precondition(pressure, residual, hardness, taps, masked, z)
-        rho, slope = _direction(residual, previous, z, direction, rho)
+        before = rho
+        rho, change = _precondition(b.pressure, b, ny, hardness, taps)
+        slope = _turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
         if slope >= 0.0:  # not a descent direction any more: restart from the preconditioned gradient
-            direction[:] = -z
-            slope = -rho
-        response = convolve(direction, spectrum, my)
-        curvature = _dot(direction, response)
-        if not curvature > 0.0:
+            slope = _turn(b, ny, 0.0)
+        convolve(c, b.direction, ny, b.work, b.response)
+        curvature = _dot(b.direction, b.response, ny)
+        definite = curvature > 0.0
+        if not definite:
             break
-        step = -slope / curvature
-        previous[:] = residual
-        if _advance(pressure, direction, step, hardness):
-            residual = convolve(pressure, spectrum, my) - overlap
-            drifted = False
-        else:
-            _add_scaled(residual, step, response)
-            drifted = True
-        worst = _complementarity(pressure, residual, hardness)
-    return iteration, worst
+        clipped = _advance(b, ny, -slope / curvature, hardness)
+        if clipped > FEW:
+            _true_residual(c, b, ny)
+        elif clipped:
+            _correct(b, ny, mirrored)
+    for i in range(b.pressure.shape[0]):
+        for j in range(ny):
+            outer.pressure[row + i, column + j] = b.pressure[i, j]
+    return iteration, definite
 
 
-@njit(cache=True, nogil=True)
+@njit(**LOOP, nogil=True)
 def unit_indentation(
-    free: NDArray[np.bool_],
-    spectrum: NDArray[np.float64],
-    my: int,
-    taps: NDArray[np.float64],
-    rtol: float,
-    max_iterations: int,
-) -> tuple[NDArray[np.float64], bool]:
-    """Pressure that displaces a fixed set of cells by one: K p = 1 on the set, p = 0 elsewhere.
+    c: Convolution, taps: NDArray[np.float64], b: Box, ny: int, rtol: float, max_iterations: int
+) -> bool:
+    """Find the pressure that displaces a fixed set of cells by one: K p = 1 on the set, p = 0 elsewhere.
 
     Parameters
     ----------
-    free : ndarray of bool, shape (nx, ny)
-        The set.
-    spectrum, my, taps
+    c, taps, ny
         As in `solve`.
+    b : Box
+        `overlap` is one on the set and zero elsewhere, `pressure` zero. On return `pressure` is Pa per m of
+        indentation; its integral is the tangent stiffness.
     rtol : float
         Largest residual, relative to one.
     max_iterations : int
@@ -262,24 +370,26 @@ def unit_indentation(
 
     Returns
     -------
-    pressure : ndarray, shape (nx, ny)
-        Pa per m of indentation; its integral is the tangent stiffness.
-    converged : bool
+    bool
         Whether the residual fell below `rtol`.
     """
-    box = free.astype(np.float64)
-    masked = np.zeros((free.shape[0] + 2 * REACH, free.shape[1] + 2 * REACH))
-    pressure, z, direction = np.zeros_like(box), np.empty_like(box), np.zeros_like(box)
-    previous, residual, rho = np.zeros_like(box), -box, 0.0
+    nx, rho, worst = b.overlap.shape[0], 0.0, 1.0
+    for i in range(nx):
+        for j in range(ny):
+            b.residual[i, j] = -b.overlap[i, j]
     for _ in range(max_iterations):
-        if np.max(np.abs(residual)) <= rtol:
-            return pressure, True
-        # a positive "pressure" on the set marks it as free for the preconditioner
-        _precondition(box, residual, np.inf, taps, masked, z)
-        rho, slope = _direction(residual, previous, z, direction, rho)
-        response = convolve(direction, spectrum, my) * box
-        step = -slope / _dot(direction, response)
-        previous[:] = residual
-        _add_scaled(pressure, step, direction)
-        _add_scaled(residual, step, response)
-    return pressure, False
+        if worst <= rtol:
+            return True
+        before = rho
+        # a positive "pressure" on the set marks it as free
+        rho, change = _precondition(b.overlap, b, ny, np.inf, taps)
+        slope = _turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
+        convolve(c, b.direction, ny, b.work, b.response)
+        step, worst = -slope / _dot(b.direction, b.response, ny), 0.0
+        for i in range(nx):
+            for j in range(ny):
+                b.previous[i, j] = b.residual[i, j]
+                b.pressure[i, j] += step * b.direction[i, j]
+                b.residual[i, j] += step * b.response[i, j] * b.overlap[i, j]
+                worst = max(worst, abs(b.residual[i, j]))
+    return False
