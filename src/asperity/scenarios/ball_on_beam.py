@@ -60,7 +60,6 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
     Computed
         All that was computed.
     """
-    compile_kernels(progress)
     store, watch = Store(), Stopwatch()
     ball_material, beam_material = material(case.ball.material), material(case.beam.material)
     ball = Ball(case.ball.radius, ball_material, case.ball.load, case.ball.mass)
@@ -68,6 +67,8 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
     shape = ball_geometry(case, ball.static_load, contact_modulus(ball_material, beam_material))
     textures = gather(case, window_cells(case.contact))
     watch.lap("textures")
+    compile_kernels(progress)  # not before the files are known to be right
+    watch.lap("compiled functions")
     travel = (len(textures.line[textures.recorded]) - 1) * case.contact.spacing
     duration = min(case.rolled_time, travel / case.speed)
 

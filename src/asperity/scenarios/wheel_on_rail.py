@@ -73,13 +73,14 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
     Computed
         All that was computed.
     """
-    compile_rail_kernels(progress)
     store, watch = Store(), Stopwatch()
     track, wheel = case.track_model(), wheel_of(case)
     shape = rail_geometry(case)
     textures = gather(case)
     _warn_of_defects(case, textures, shape)
     watch.lap("textures")
+    compile_rail_kernels(progress)  # not before the files are known to be right
+    watch.lap("compiled functions")
     kernel = moving_kernel(track, case.speed, case.time_step, cache=store, progress=progress)
     rail: RailPoles | MovingKernel = kernel
     if case.numerics.kernel == "poles":

@@ -187,5 +187,10 @@ def _lateral(stated: float | None, hints: Hints, source: str) -> float:
     unit = hints.lateral_factor or stated
     if unit is None:
         allowed = "a unit of the coordinates"
-        raise InputError(source, "coordinates without a unit", allowed, 'Give it, as in pixel_unit="mm".')
+        raise InputError(
+            source,
+            "coordinates without a unit",
+            allowed,
+            'Write it into the heading, as "x (mm)", or give pixel_unit="mm".',
+        )
     return unit
