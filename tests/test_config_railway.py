@@ -6,7 +6,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from asperity.config import LAWS, WheelOnRailCase, changed, load_case, parse_case, template
+from asperity.config import LAWS, WheelOnRailCase, load_case, parse_case, template
 from asperity.config.tables import MODES, read_levels, read_modes, read_receptance, read_table
 from asperity.errors import CaseError, InputError
 
@@ -170,17 +170,6 @@ def test_the_default_time_step_is_on_the_grid_where_that_is_near(speed, spacing,
     cells = case.speed * case.time_step / case.contact.spacing
     assert 1 / 1.2 <= case.time_step / 25e-6 <= 1.2
     assert (cells == pytest.approx(round(cells)) or 1 / cells == pytest.approx(round(1 / cells))) is on_grid
-
-
-def test_a_case_is_changed_in_some_keys():
-    case = parse_case(case_with(wheel='radius = "0.4 m"'))
-    other = changed(case, speed="20 m/s", wheel={"load": "50 kN"})
-    assert (other.speed, other.wheel.load, other.wheel.radius) == (20.0, 50e3, 0.4)
-    assert (case.speed, case.wheel.load) == (56.0, 65e3)
-    assert other.text.endswith(case.text)
-    assert parse_case(other.text).speed == 56.0
-    with pytest.raises(CaseError, match="critical speed"):
-        changed(case, speed="500 m/s")
 
 
 # --- template

@@ -17,7 +17,7 @@ _HOME = {
     "scan": "reduction.scan",
     "run": "scenarios",
     "load": "results",
-    "sweep": "scenarios.sweep",
+    "study": "studies.running",
 }
 
 __all__ = [
@@ -31,7 +31,7 @@ __all__ = [
     "read_surface",
     "run",
     "scan",
-    "sweep",
+    "study",
 ]
 
 

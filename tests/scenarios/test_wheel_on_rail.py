@@ -1,6 +1,7 @@
 """The whole chain of a wheel on a rail on small cases: result, textures, geometry, defects."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.scenarios import run
 from asperity.scenarios.rail_geometry import rail_geometry
 from asperity.scenarios.rail_textures import gather
-from asperity.scenarios.sweep import sweep
+from asperity.studies.running import study
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
 
@@ -259,24 +260,25 @@ class TestGeometry:
 
 
 class TestSweep:
-    def test_dimensions_and_what_they_hold(self):
-        small = case(laws=["areal", "linear"])
-        table = sweep(small, [40.0, 56.0], [50e3, 65e3])
-        assert table["force_level"].dims == ("speed", "load", "law", "band")
-        assert dict(table.sizes) | {"speed": 2, "load": 2, "law": 2} == dict(table.sizes)
-        for name in ("force_level_difference", "rms_force", "contact_loss_share", "contact_loss_events"):
-            assert {"speed", "load", "law"} <= set(table[name].dims)
-        assert table["sound_power_level_a"].dims == ("speed", "load", "law")
+    def test_speed_and_load_in_one_call(self):
+        small, sweep = (
+            case(laws=["areal", "linear"]),
+            {"speed": ["40 m/s", "56 m/s"], "wheel.load": ["65 kN"]},
+        )
+        with ThreadPoolExecutor(1) as executor:
+            table = study(small, sweep, executor=executor)
+        assert table["force_level"].dims == ("speed", "wheel.load", "law", "band")
+        assert dict(table.sizes) | {"speed": 2, "wheel.load": 1, "law": 2, "point": 2} == dict(table.sizes)
+        assert table["sound_power_level_a"].dims == ("speed", "wheel.load", "law")
+        assert table["point_velocity_level"].dims == ("speed", "wheel.load", "law", "point", "band")
         for values in table.variables.values():
             assert {"units", "long_name"} <= values.attrs.keys()
-        one = run(case(laws=["areal", "linear"]))["rolling/contact_force"].std("time")
-        np.testing.assert_allclose(table["rms_force"].sel(speed=56.0, load=65e3), one)
-
-    def test_empty_and_repeated_values_are_refused(self):
-        with pytest.raises(InputError, match="loads: received"):
-            sweep(case(), [56.0], [])
-        with pytest.raises(InputError, match="speeds: received"):
-            sweep(case(), [56.0, 56.0], [65e3])
+        one, member = run(small), table.sel({"speed": 56.0, "wheel.load": 65e3})
+        np.testing.assert_array_equal(member["rms_force"], one["rolling/contact_force"].std("time"))
+        shown = member["force_level"].dropna("band")
+        np.testing.assert_array_equal(shown, one["spectra/force_level"].sel(band=shown.band))
+        total = one["spectra/sound_power_level_a"].sel(source="total")
+        np.testing.assert_array_equal(member["sound_power_level_a"], total)
 
 
 def test_decay_rate_limit():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -28,6 +29,25 @@ def _choose(device: str | None) -> None:
         from asperity.contact.device import choose_device
 
         choose_device(device)
+
+
+def _study_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Options of the commands that compute a study."""
+    for option in (
+        _device,
+        click.option("--overwrite", is_flag=True, help="Replace another study in the folder."),
+        click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler."),
+        click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]"),
+        click.option(
+            "-o",
+            "--output",
+            "directory",
+            type=click.Path(path_type=Path),
+            help="Folder of the results. [default: runs/NAME]",
+        ),
+    ):
+        command = option(command)
+    return command
 
 
 @click.group(cls=Door, context_settings={"help_option_names": ["-h", "--help"]})
@@ -61,9 +81,14 @@ def demo(directory: Path, overwrite: bool) -> None:
 
 
 @main.command()
-@click.argument("kind", metavar="ball-on-beam|wheel-on-rail")
+@click.argument("kind", metavar="ball-on-beam|wheel-on-rail|study")
 def new(kind: str) -> None:
-    """Write a commented case to standard output."""
+    """Write a commented case, or a study of one, to standard output."""
+    if kind == "study":
+        from asperity.studies.definition import TEMPLATE
+
+        click.echo(TEMPLATE, nl=False)
+        return
     from asperity.config import template
 
     click.echo(template(kind), nl=False)
@@ -100,23 +125,52 @@ def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> No
 
 
 @main.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@_study_options
+def study(
+    study: Path, directory: Path | None, workers: int | None, scheduler: str | None, overwrite: bool
+) -> None:
+    """Compute a case for every combination of the values of some keys: writes study.nc and study.csv.
+
+    'asperity new study' writes a commented study. Members that are finished are kept: the same command goes
+    on where it was, and tries members again that failed.
+    """
+    from asperity.cli.studying import study_into
+    from asperity.studies.definition import load_study
+
+    study_into(
+        load_study(study),
+        directory or Path("runs") / study.stem,
+        workers=workers,
+        scheduler=scheduler,
+        overwrite=overwrite,
+    )
+
+
+@main.command()
 @_case
 @click.option("--speed", "speeds", help="Speeds, as '20 m/s, 200 km/h'. [default: that of the case]")
-@click.option("--load", "loads", help="Loads of the wheel, as '50 kN, 65 kN'. [default: that of the case]")
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=click.Path(path_type=Path),
-    help="Folder of the results. [default: runs/NAME]",
-)
-@click.option("--overwrite", is_flag=True, help="Replace the sweep in the folder.")
-def sweep(case: Path, speeds: str | None, loads: str | None, directory: Path | None, overwrite: bool) -> None:
-    """Compute a wheel on a rail at several speeds and loads: writes sweep.nc and sweep.csv."""
-    from asperity.cli.sweeping import sweep_into
-    from asperity.config import load_case
+@click.option("--load", "loads", help="Loads, as '50 kN, 65 kN'. [default: that of the case]")
+@_study_options
+def sweep(
+    case: Path,
+    speeds: str | None,
+    loads: str | None,
+    directory: Path | None,
+    workers: int | None,
+    scheduler: str | None,
+    overwrite: bool,
+) -> None:
+    """Compute a case at several speeds and loads: a study without a file of its own."""
+    from asperity.cli.studying import speeds_and_loads, study_into
 
-    sweep_into(load_case(case), speeds, loads, directory or Path("runs") / case.stem, overwrite)
+    study_into(
+        speeds_and_loads(case, speeds, loads),
+        directory or Path("runs") / case.stem,
+        workers=workers,
+        scheduler=scheduler,
+        overwrite=overwrite,
+    )
 
 
 @main.command()

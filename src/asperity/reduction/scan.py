@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -17,6 +16,7 @@ from asperity.contact.halfspace import HalfSpace
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
 from asperity.reduction import batched_scan
 from asperity.store import Cache, content_key
+from asperity.threads import thread_count
 
 if TYPE_CHECKING:
     import xarray
@@ -87,7 +87,7 @@ def scan(
     rtol : float
         Tolerance of each solution, as in `HalfSpace.solve`.
     workers : int, optional
-        Threads; by default one per processor. The result does not depend on it.
+        Threads; by default as many as `asperity.threads` says. The result does not depend on it.
     cache : Cache, optional
         Keeps finished blocks, so that an interrupted scan goes on where it was.
     progress : callable, optional
@@ -284,7 +284,7 @@ def _in_threads(
     report = progress or (lambda done, total, message: None)
     report(0, total, message)
     done = 0
-    executor = ThreadPoolExecutor(workers or os.cpu_count() or 1)
+    executor = ThreadPoolExecutor(workers or thread_count())
     try:
         futures = [executor.submit(task, first) for first in firsts]
         pending: set[Future[NDArray]] = set(futures)

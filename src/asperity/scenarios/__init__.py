@@ -38,9 +38,10 @@ def run(case: str | os.PathLike[str] | Case, progress: Progress | None = None) -
     """
     from asperity.config import load_case
     from asperity.errors import PhysicsWarning
+    from asperity.threads import one_thread_in_linear_algebra
 
     loaded = load_case(case) if isinstance(case, str | os.PathLike) else case
-    with warnings.catch_warnings(record=True) as caught:
+    with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
         warnings.simplefilter("always", PhysicsWarning)
         result = _computed(loaded, progress or (lambda done, total, message: None), caught)
     for message in caught:

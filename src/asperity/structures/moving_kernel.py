@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
@@ -15,6 +14,7 @@ from asperity.progress import Progress
 from asperity.store import Cache, content_key
 from asperity.structures.hat_response import SHIFT, ZONES, HatResponse
 from asperity.structures.track import Track
+from asperity.threads import thread_count
 
 STARTS = 24
 """Start positions in one sleeper bay, by default."""
@@ -200,7 +200,7 @@ def _weights(
         return result
 
     weights = np.zeros((positions, taps))
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(thread_count()) as pool:
         for done, found in enumerate(pool.map(row, range(positions))):
             weights[done] = found
             if progress is not None:

@@ -1,0 +1,226 @@
+"""Compute a study into a folder: its table as netCDF and CSV, and what members met on the way."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import sys
+from contextlib import AbstractContextManager, nullcontext
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+import numpy as np
+
+from asperity.config import WheelOnRailCase, load_case
+from asperity.errors import InputError
+from asperity.progress import progress_bar
+from asperity.store import atomic_write
+from asperity.studies.definition import Study, study_of
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    import xarray
+
+MOST_ROWS = 60  # that are printed; the file has all of them
+MOST_NAMED = 6  # members of a group of failures that are printed
+
+
+def study_into(
+    study: Study,
+    directory: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    overwrite: bool = False,
+) -> None:
+    """Compute a study and write its table.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    directory : Path
+        Where ``study.nc`` and ``study.csv`` go.
+    workers : int, optional
+        Number of processes of this machine; one per processor by default.
+    scheduler : str, optional
+        Address of a Dask scheduler, whose workers compute instead.
+    overwrite : bool
+        Whether another study in `directory` may be replaced.
+
+    Raises
+    ------
+    InputError
+        If `directory` holds another study, or both `workers` and `scheduler` are given.
+    """
+    if scheduler is not None and workers is not None:
+        raise InputError("--workers", "a number beside --scheduler", "one of them")
+    if not overwrite:
+        _refuse_to_overwrite(study, directory)
+    from xarray import DataTree
+
+    from asperity.results import save
+    from asperity.studies.executors import cluster
+    from asperity.studies.running import study as computed
+
+    size = " × ".join(f"{len(axis.values)} {axis.name}" for axis in study.axes)
+    click.echo(f"Study of {size}", err=True)
+    place: AbstractContextManager[Executor | None] = nullcontext()
+    if scheduler is not None:
+        place = cluster(scheduler)
+    with place as executor, progress_bar() as progress:
+        table = computed(study, executor=executor, workers=workers, progress=progress)
+    _show(table)
+    _report(table)
+    written = save(DataTree(table), directory / "study.nc")
+    text = table_text(table)
+    rows = atomic_write(directory / "study.csv", lambda file: file.write(text.encode("utf-8")))
+    click.echo(f"Results: {written.resolve()}")
+    click.echo(f"Table:   {rows.resolve()}")
+
+
+def speeds_and_loads(case: Path, speeds: str | None, loads: str | None) -> Study:
+    """Make a study of speeds and loads from the words of the command line.
+
+    Parameters
+    ----------
+    case : Path
+        The case.
+    speeds, loads : str or None
+        Values with units, with commas between them; None for that of the case.
+
+    Returns
+    -------
+    Study
+        The study.
+
+    Raises
+    ------
+    InputError
+        If neither is given, or a value is wrong.
+    """
+    body = "wheel" if isinstance(load_case(case), WheelOnRailCase) else "ball"
+    given = {"speed": speeds, f"{body}.load": loads}
+    words = {name: text.split(",") for name, text in given.items() if text is not None}
+    sweep = {name: [word.strip() for word in values] for name, values in words.items()}
+    if not sweep:
+        raise InputError("sweep", "nothing", "--speed, --load or both", "Name what is swept.")
+    return study_of(case, sweep)
+
+
+def _refuse_to_overwrite(study: Study, directory: Path) -> None:
+    """Let a study replace its own table; another one in the folder stays."""
+    file = directory / "study.nc"
+    if directory.exists() and not directory.is_dir():
+        raise InputError(str(directory), "a file", "a folder", "Choose another folder with -o.")
+    if not file.exists():
+        return
+    import xarray
+
+    try:
+        with xarray.open_dataset(file, engine="h5netcdf") as found:
+            earlier = dict(found.attrs)
+    except Exception:  # h5py and xarray raise errors of many kinds on damaged files
+        earlier = {}
+    if earlier.get("case") != study.text or json.loads(earlier.get("sweep", "{}")) != study.sweep:
+        remedy = "Choose another folder with -o, or replace it with --overwrite."
+        allowed = "a new folder, or the folder of the same study"
+        raise InputError(str(directory), "the study.nc of another study", allowed, remedy)
+
+
+def table_text(found: xarray.Dataset) -> str:
+    """Write a study as comma-separated text.
+
+    Parameters
+    ----------
+    found : Dataset
+        What a study returned.
+
+    Returns
+    -------
+    str
+        One row per member and law; one column per quantity, and per band where there are bands.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    heading, rows = _table(found)
+    writer.writerow(heading)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def _table(found: xarray.Dataset, *, bands: bool = True) -> tuple[list[str], list[list[object]]]:
+    """Heading and rows of a study, with or without the quantities that have bands."""
+    axes = [*json.loads(found.attrs["sweep"]), *(["law"] if "law" in found.dims else [])]
+    heading = [_titled(found[axis]) for axis in axes]
+    chosen: dict[str, list[str]] = {}
+    for name, values in found.data_vars.items():
+        others = [str(dim) for dim in values.dims if dim not in axes]
+        if len(others) > (1 if bands else 0):
+            continue
+        chosen[str(name)] = others
+        if not others:
+            heading.append(_titled(values))
+        for place in found[others[0]].values.tolist() if others else ():
+            shown = place if isinstance(place, str) else f"{place:.6g} {_unit(found[others[0]])}".strip()
+            heading.append(f"{name} {shown} [{values.attrs['units']}]")
+    rows: list[list[object]] = []
+    for places in product(*(range(found.sizes[axis]) for axis in axes)):
+        here = dict(zip(axes, places, strict=True))
+        row: list[object] = [found[axis].values[place].item() for axis, place in here.items()]
+        for name in chosen:
+            one = found[name].isel({axis: here[axis] for axis in axes if axis in found[name].dims})
+            row += np.atleast_1d(one.values).tolist()
+        rows.append(row)
+    return heading, rows
+
+
+def _unit(values: xarray.DataArray) -> str:
+    return "" if values.attrs["units"] == "1" else str(values.attrs["units"])
+
+
+def _titled(values: xarray.DataArray) -> str:
+    words = values.dtype.kind == "U"
+    return str(values.name) if words else f"{values.name} [{values.attrs['units']}]"
+
+
+def _show(found: xarray.Dataset) -> None:
+    """Print the quantities of a study that have no bands."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(file=sys.stdout)
+    if not console.is_terminal:
+        console.width = 200
+    heading, rows = _table(found, bands=False)
+    table = Table(title="Study", title_justify="left")
+    for name in heading:
+        table.add_column(Text(name))  # units in brackets are no markup
+    for row in rows[:MOST_ROWS]:
+        table.add_row(*(Text(item) if isinstance(item, str) else _short(item) for item in row))
+    console.print(table)
+    if len(rows) > MOST_ROWS:
+        click.echo(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
+
+
+def _short(number: object) -> str:
+    return "–" if number != number else f"{number:.4g}"
+
+
+def _report(found: xarray.Dataset) -> None:
+    """Print what members met, each kind of warning and failure once."""
+    count = found["completed"].size
+    for warning in json.loads(found.attrs["warnings"]):
+        click.echo(f"Warning ({warning['members']} of {count} members): {warning['message']}", err=True)
+    for failure in json.loads(found.attrs["failures"]):
+        names = failure["members"]
+        click.echo(f"Failed ({len(names)} of {count} members): {failure['message']}", err=True)
+        for name in names[:MOST_NAMED]:
+            click.echo(f"  - {name}", err=True)
+        if len(names) > MOST_NAMED:
+            click.echo(f"  - and {len(names) - MOST_NAMED} more", err=True)

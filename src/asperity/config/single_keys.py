@@ -1,0 +1,89 @@
+"""One key of a case on its own: found by its dotted name, and its values read before there is a case."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from asperity.config.describing import Entry, entries
+from asperity.config.keys import Number, Quantity, allowed_in, kind_of, nearest, shown
+from asperity.config.parsing import KINDS, not_a_kind
+from asperity.errors import InputError
+
+
+def entry_of(kind: object, dotted: str) -> Entry:
+    """Find a key of a kind of case.
+
+    Parameters
+    ----------
+    kind : str
+        What rolls.
+    dotted : str
+        The key with its section, as ``"wheel.load"``.
+
+    Returns
+    -------
+    Entry
+        What the key is.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind, or it has no such key.
+    """
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise not_a_kind(kind)
+    found = {entry.dotted: entry for entry in entries(KINDS[kind])}
+    if dotted in found:
+        return found[dotted]
+    homes = [name for name in found if name.rpartition(".")[2] == dotted]
+    remedy = f'Write it with its section, "{homes[0]}".' if homes else nearest(dotted, list(found))
+    allowed = f'a key of a {kind} case, with its section, as "contact.spacing"'
+    raise InputError(dotted, "an unknown key", allowed, remedy)
+
+
+def value_of(entry: Entry, value: object, source: str | os.PathLike[str]) -> Any:
+    """Read one value of a key.
+
+    Parameters
+    ----------
+    entry : Entry
+        The key.
+    value : object
+        The value as it stands in TOML.
+    source : str or path
+        The case file; relative paths start at its folder.
+
+    Returns
+    -------
+    object
+        The value in SI.
+
+    Raises
+    ------
+    InputError
+        If the value is none that the key can have.
+    """
+    try:
+        kind: Any = entry.field.annotation
+        if entry.field.metadata:
+            kind = Annotated[(kind, *entry.field.metadata)]
+        return TypeAdapter(kind).validate_python(value, context={"folder": Path(source).parent})
+    except ValidationError as error:
+        cause = error.errors()[0].get("ctx", {}).get("error")
+        if isinstance(cause, InputError):
+            raise InputError(entry.dotted, cause.received, cause.allowed, cause.remedy) from None
+        raise InputError(entry.dotted, shown(value), allowed_in(entry.field)) from None
+
+
+def unit_of(entry: Entry) -> str | None:
+    """SI unit of a key whose values are single numbers; None of any other key."""
+    kind = kind_of(entry.field.annotation, entry.field.metadata)
+    if "tuple" in str(entry.field.annotation):
+        return None
+    if isinstance(kind, Quantity):
+        return kind.dimension
+    return "1" if isinstance(kind, Number) else None

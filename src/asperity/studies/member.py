@@ -1,0 +1,75 @@
+"""One member of a study, as it is computed wherever the executor puts it."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from asperity.errors import AsperityError, ComputationError
+
+_one_at_a_time = threading.Lock()
+"""Warnings and threads of linear algebra belong to the whole process; a member has it for itself."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a member has no result.
+
+    Attributes
+    ----------
+    error : str
+        Kind of error.
+    message : str
+        What failed, and what to try.
+    """
+
+    error: str
+    message: str
+
+    @classmethod
+    def of(cls, error: BaseException) -> Failure:
+        """Describe an error."""
+        if isinstance(error, MemoryError):
+            return cls("MemoryError", "The memory is too small. Try: fewer workers, or a smaller window.")
+        name = type(error).__name__
+        return cls(name, str(error) if isinstance(error, AsperityError) else f"{name}: {error}")
+
+
+def compute_member(key: str, data: dict[str, Any], source: str) -> dict[str, NDArray[Any]] | Failure:
+    """Compute a member, or take what an earlier study has kept of it.
+
+    Parameters
+    ----------
+    key : str
+        Names its result in the store.
+    data : dict
+        Keys and values of its case, as TOML gives them.
+    source : str
+        File from whose folder relative paths start.
+
+    Returns
+    -------
+    dict of str to ndarray, or Failure
+        What `asperity.studies.kept.packed` makes of its result; a failure where there is none.
+    """
+    from asperity.config import case_of
+    from asperity.scenarios import run
+    from asperity.store import Store
+    from asperity.studies.kept import kept, packed
+
+    store = Store()
+    with _one_at_a_time:
+        found = store.get(key)
+        if found is not None:
+            return found
+        try:
+            found = packed(kept(run(case_of(data, "", source))))
+        except Exception as error:  # whatever it is, it is the failure of this member alone
+            return Failure.of(error)
+        with suppress(ComputationError):  # a full disk here loses nothing: the result goes back
+            store.put(key, found)
+    return found
