@@ -58,3 +58,11 @@ def test_wheel_on_rail_filters_more_the_harder_it_is_pressed(tmp_path):
     assert numbers["wavenumber_at_3_db"][-1] < 0.5 * numbers["wavenumber_at_3_db"][0]
     # half of K_H √σ with K_H of the wheel of 0.46 m on a rail head of 0.30 m, over 1 µm
     assert numbers["steepest_rise_rough"] < 0.5 * 9.413e10 * np.sqrt(1e-6)
+
+
+def test_linear_contact_over_or_underestimates_by_its_stiffness(tmp_path):
+    numbers = run("wheel_on_rail", tmp_path)
+    # Hertz's k_t at 65 kN; the mean planes of these rough bodies meet 10 to 30 µm after the first touch
+    assert numbers["tangent_stiffness"] == pytest.approx(1.248e9, rel=0.02)
+    assert 65e3 / 108e-6 < numbers["secant_stiffness"] < 65e3 / 88e-6
+    assert numbers["shifted_over_k_t_a_weighted"] < 0.0 < numbers["printed_no_filter_over_k_c_a_weighted"]
