@@ -13,6 +13,7 @@ import numpy as np
 import xarray
 
 from asperity import __version__
+from asperity.contact.device import find_device
 from asperity.errors import PhysicsWarning
 from asperity.pointforce import LAWS
 from asperity.results import checked, variable
@@ -106,6 +107,8 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
     yield "time step", f"{case.time_step * 1e6:.4g} µs"
     yield "time steps", f"{max(len(r.time) for r in chain.runs.values()) - 1}"
     yield "contact window", f"{nx} × {ny} cells of {case.contact.spacing * 1e6:.4g} µm"
+    if (device := find_device()) is not None:
+        yield "scans solved on", device.name
     if chain.reduction is not None:
         solves, iterations = chain.reduction.solves, chain.reduction.iterations
         yield "contacts solved for the filters", f"{solves}"
