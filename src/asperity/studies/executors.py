@@ -198,7 +198,7 @@ def cluster(address: str) -> Iterator[Executor]:
         remedy = 'Install it: pip install "asperity[cluster]".'
         raise InputError("scheduler", "no package distributed", allowed, remedy) from None
     try:
-        client = Client(address, timeout=PATIENCE)
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
         remedy = "Start one with 'dask scheduler', and workers with 'dask worker'."
         raise InputError("scheduler", f"'{address}' ({error})", allowed, remedy) from None
