@@ -68,6 +68,21 @@ class HeightMap:
         """Share of the points without a height, 0 to 1."""
         return float(np.isnan(self.heights).mean())
 
+    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
+        """Return the heights of some rows across the rolling direction.
+
+        Parameters
+        ----------
+        first, stop : int
+            The rows first … stop − 1.
+
+        Returns
+        -------
+        (stop − first, ny) ndarray
+            Heights in m.
+        """
+        return self.heights[first:stop]
+
     def levelled(self, degree: int = 1) -> HeightMap:
         """Return the map less its least-squares polynomial form.
 

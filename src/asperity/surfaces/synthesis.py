@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,17 @@ from asperity.errors import InputError
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.strip import LongStrip
 from asperity.surfaces.translation import gaussian_correlation, height_transform
 
-__all__ = ["from_bands", "from_map", "self_affine", "strip_from_bands"]
+__all__ = ["from_bands", "from_map", "long_self_affine", "long_strip_like", "self_affine", "strip_from_bands"]
+
+PIECE_POINTS = 2**19
+"""Points of a piece of a long strip, at least: 4 MiB."""
+PIECE_REACHES = 16
+"""Length of a piece of a long strip in correlation lengths, at least."""
+BLEND_REACHES = 2
+"""Length of the blend of two pieces in correlation lengths."""
 
 
 def self_affine(
@@ -176,20 +185,129 @@ def from_map(
     M. Grigoriu, Applied Non-Gaussian Processes (1995) (translation).
     """
     _check_shape(shape)
+    like = _likeness(maps, spacing)
+    heights = like.transform(like.gaussian(shape, seed))
+    return HeightMap(heights, like.spacing, f"synthesised from {like.source}, seed {seed}")
+
+
+def long_self_affine(
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    *,
+    rms: float,
+    hurst: float,
+    longest: float,
+    shortest: float,
+    anisotropy: float = 1.0,
+    seed: int,
+) -> LongStrip:
+    """Self-affine strip of any length, generated where it is read.
+
+    Parameters
+    ----------
+    shape, spacing, rms, hurst, longest, shortest, anisotropy, seed
+        As in `self_affine`.
+
+    Returns
+    -------
+    LongStrip
+        Pieces of `self_affine` surfaces, blended over two roll-off wavelengths.
+
+    Raises
+    ------
+    InputError
+        If a parameter is out of range.
+    """
+    steps = (float(spacing[0]), float(spacing[1]))
+    _check_shape(shape)
+    _check_self_affine(steps, rms, hurst, longest, shortest, anisotropy)
+
+    def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
+        return self_affine(
+            (rows, shape[1]), steps, rms=rms, hurst=hurst, longest=longest, shortest=shortest,
+            anisotropy=anisotropy, seed=piece_seed,
+        ).heights  # fmt: skip
+
+    reach = int(np.ceil(longest * np.sqrt(anisotropy) / steps[0]))
+    source = f"self-affine: rms {rms:.4g} m, Hurst {hurst:g}, {shortest:.4g} to {longest:.4g} m, seed {seed}"
+    return _long_strip(shape, steps, piece, seed, reach, None, source)
+
+
+def long_strip_like(
+    maps: HeightMap | Sequence[HeightMap],
+    shape: tuple[int, int],
+    seed: int,
+    spacing: float | tuple[float, float] | None = None,
+) -> LongStrip:
+    """Strip of any length in the likeness of measured maps, generated where it is read.
+
+    Parameters
+    ----------
+    maps, shape, seed, spacing
+        As in `from_map`.
+
+    Returns
+    -------
+    LongStrip
+        Gaussian pieces of the kind that `from_map` makes, blended over two lengths of the maps, then
+        translated to the height distribution, which is exact in the blends too.
+
+    Raises
+    ------
+    InputError
+        If the maps have missing points or different spacings, or the shape is too small.
+    """
+    _check_shape(shape)
+    like = _likeness(maps, spacing)
+
+    def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
+        return like.gaussian((rows, shape[1]), piece_seed)
+
+    reach, source = like.correlation.shape[0] // 2, f"synthesised from {like.source}, seed {seed}"
+    return _long_strip(shape, like.spacing, piece, seed, reach, like.transform, source)
+
+
+def _long_strip(
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    piece: Callable[[int, int], NDArray[np.float64]],
+    seed: int,
+    reach: int,
+    transform: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None,
+    source: str,
+) -> LongStrip:
+    stride = max(PIECE_POINTS // shape[1], PIECE_REACHES * reach)
+    blend = max(1, BLEND_REACHES * reach)
+    return LongStrip(shape, spacing, piece, seed, stride, blend, transform, source)
+
+
+@dataclass(frozen=True, eq=False)
+class _Likeness:
+    """What a synthesised surface shares with measured maps."""
+
+    transform: Callable[[NDArray[np.float64]], NDArray[np.float64]]  # Gaussian to measured heights
+    correlation: NDArray[np.float64]  # of the Gaussian field, odd size, zero lag first (wrapped)
+    spacing: tuple[float, float]
+    source: str
+
+    def gaussian(self, shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
+        """Gaussian field of unit variance with this correlation, not periodic."""
+        lags = [(n + 1) // 2 for n in self.correlation.shape]
+        grid = [fft.next_fast_len(n + k, real=True) for n, k in zip(shape, lags, strict=True)]
+        power = fft.rfft2(_embedded(self.correlation, grid), overwrite_x=True).real
+        np.maximum(power, 0.0, out=power)
+        return _gaussian_field(power, grid, 1.0, seed)[: shape[0], : shape[1]]
+
+
+def _likeness(
+    maps: HeightMap | Sequence[HeightMap], spacing: float | tuple[float, float] | None
+) -> _Likeness:
     levelled = _prepared([maps] if isinstance(maps, HeightMap) else list(maps), spacing)
-    pooled = np.concatenate([m.heights.ravel() for m in levelled])
-    transform = height_transform(pooled)
+    transform = height_transform(np.concatenate([m.heights.ravel() for m in levelled]))
     target = _correlation([m.heights for m in levelled])
     needed = gaussian_correlation(transform, target)
-    lags = [(n + 1) // 2 for n in target.shape]
-    grid = [fft.next_fast_len(n + k, real=True) for n, k in zip(shape, lags, strict=True)]
-    power = fft.rfft2(_embedded(needed, grid), overwrite_x=True).real
-    np.maximum(power, 0.0, out=power)
-    field = _gaussian_field(power, grid, 1.0, seed)[: shape[0], : shape[1]]
     sources = ", ".join(dict.fromkeys(m.source for m in levelled if m.source))
-    return HeightMap(
-        transform(field), levelled[0].spacing, f"synthesised from {sources or 'maps'}, seed {seed}"
-    )
+    return _Likeness(transform, needed, levelled[0].spacing, sources or "maps")
 
 
 def _prepared(maps: list[HeightMap], spacing: float | tuple[float, float] | None) -> list[HeightMap]:
