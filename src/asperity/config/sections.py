@@ -215,5 +215,8 @@ class Numerics(Section):
         example='"8 us"',
     )
     rtol: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
-        1e-6, "tolerance of the contact solution, relative to the largest overlap"
+        1e-6, "tolerance of single contact solutions and of `direct`, relative to the largest overlap"
+    )
+    force_accuracy: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
+        1e-4, "relative accuracy of the forces of scans and loading curves; of scans for filters a tenth"
     )

@@ -11,7 +11,7 @@ from asperity.errors import InputError
 from asperity.kernels.monotone import continued_to_touch, monotone_slopes, zero_crossing
 from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import ForceTable
+from asperity.reduction.table import PIECE, ForceTable
 from asperity.reduction.texture import StateTexture
 
 
@@ -171,19 +171,18 @@ def on_table(
         at every position.
     """
     at = np.atleast_1d(np.asarray(positions, dtype=float))
-    root = np.cbrt(table.at(at)) ** 2
-    touches = table.touch_at(at)
-    if touches is None:
-        # ripples of the spline beside a place where contact is lost are no contact
-        touches = zero_crossing(table.approaches, continued_to_touch(table.approaches, root, least=0.05))
-    root = _straight_to_touch(table.approaches, root, touches)
+    root, slopes = np.empty((2, at.size, len(table.approaches)))
+    touches = np.empty(at.size)
+    for first in range(0, at.size, PIECE):
+        piece = slice(first, first + PIECE)
+        root[piece], slopes[piece], touches[piece] = _laid_out(table, at[piece])
     return Prepared(
         TABLE,
         plane_at(plane, at),
         np.ascontiguousarray(table.approaches, dtype=float),
-        np.ascontiguousarray(root),
-        monotone_slopes(table.approaches, root),
-        np.ascontiguousarray(touches),
+        root,
+        slopes,
+        touches,
         np.zeros(2),
         np.zeros((1, 4)),
         1.5,
@@ -193,6 +192,17 @@ def on_table(
         False,
         float(table.approaches[-1]),
     )
+
+
+def _laid_out(table: ForceTable, at: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """g = F^(2/3), its slopes and the first touch at some positions."""
+    root = np.cbrt(table.at(at)) ** 2
+    touches = table.touch_at(at)
+    if touches is None:
+        # ripples of the spline beside a place where contact is lost are no contact
+        touches = zero_crossing(table.approaches, continued_to_touch(table.approaches, root, least=0.05))
+    root = _straight_to_touch(table.approaches, root, touches)
+    return root, monotone_slopes(table.approaches, root), touches
 
 
 def _straight_to_touch(states: NDArray, root: NDArray, touches: NDArray) -> NDArray:

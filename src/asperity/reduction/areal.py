@@ -10,6 +10,10 @@ from scipy.signal import oaconvolve
 
 from asperity.errors import InputError
 from asperity.reduction.texture import StateTexture
+from asperity.surfaces.strip import Rows, Strip
+
+PIECE = 2**14
+"""Rows averaged in one go."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
@@ -50,7 +54,7 @@ def punch_weights(spacing: tuple[float, float], semi_axes: tuple[float, float]) 
 
 
 def areal_texture(
-    heights: NDArray[np.float64],
+    heights: NDArray[np.float64] | Strip,
     spacing: tuple[float, float],
     approaches: ArrayLike,
     semi_axes: ArrayLike,
@@ -60,7 +64,7 @@ def areal_texture(
 
     Parameters
     ----------
-    heights : ndarray, shape (n, ny)
+    heights : ndarray, shape (n, ny), or Strip
         Strip of the path, m, peaks positive; the contact runs along its middle, so ny is odd.
     spacing : tuple of float
         (dx, dy), m.
@@ -82,7 +86,8 @@ def areal_texture(
         If the strip is narrower than the widest patch, or its width is even.
     """
     axes = np.atleast_2d(np.asarray(semi_axes, dtype=np.float64))
-    n, ny = heights.shape
+    strip = Rows(heights) if isinstance(heights, np.ndarray) else heights
+    n, ny = strip.shape
     if ny % 2 == 0:
         raise InputError(
             "width of the texture strip", f"{ny} lines", "an odd number, so that one is the middle"
@@ -95,12 +100,21 @@ def areal_texture(
             "Enlarge the window.",
         )
     middle = ny // 2
-    folded = heights[:, middle:].copy()
-    folded[:, 1:] += heights[:, middle - 1 :: -1] if middle else 0.0  # the patch is symmetric across
+    halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]
+    reach = max(half.shape[0] // 2 for half in halves)
     result = np.empty((len(axes), n))
-    for i, (a, b) in enumerate(axes):
-        weights = punch_weights(spacing, (float(a), float(b)))
-        half = weights[:, weights.shape[1] // 2 :][:, : folded.shape[1]]
-        filtered = oaconvolve(folded[:, : half.shape[1]], half, mode="full", axes=0).sum(axis=1)
-        result[i] = -filtered[half.shape[0] // 2 :][:n]
+    for first in range(0, n, PIECE):
+        low, high = max(0, first - reach), min(n, first + PIECE + reach)
+        rows = strip.rows(low, high)
+        folded = rows[:, middle:].copy()
+        folded[:, 1:] += rows[:, middle - 1 :: -1] if middle else 0.0  # the patch is symmetric across
+        for i, half in enumerate(halves):
+            filtered = oaconvolve(folded[:, : half.shape[1]], half, mode="full", axes=0).sum(axis=1)
+            piece = result[i, first : first + PIECE]
+            piece[:] = -filtered[half.shape[0] // 2 + first - low :][: len(piece)]
     return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing[0])
+
+
+def _half(weights: NDArray[np.float64], middle: int) -> NDArray[np.float64]:
+    """Columns of the weights from the middle on, no more than half a strip has."""
+    return weights[:, weights.shape[1] // 2 :][:, : middle + 1]

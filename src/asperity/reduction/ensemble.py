@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import InputError
-from asperity.reduction.scan import scan_forces, warn_of_scans
+from asperity.reduction.pool import in_order
+from asperity.reduction.scan import ScannedForces, scan_forces, warn_of_scans
 from asperity.reduction.stiffness import ForceCurve
 
 
@@ -142,6 +143,7 @@ def stiffness_ensemble(
     hardness: float | None = None,
     *,
     rtol: float = 1e-6,
+    workers: int | None = None,
     progress: Callable[[int, int, str], None] | None = None,
 ) -> StiffnessEnsemble:
     """Press the body on each sample, stepping the approach up.
@@ -150,7 +152,7 @@ def stiffness_ensemble(
     ----------
     samples : sequence of ndarray, shape (nx, ny)
         Heights, m, from `patches`.
-    spacing, body, modulus, hardness, rtol, progress
+    spacing, body, modulus, hardness, rtol, workers, progress
         As in `asperity.reduction.scan.scan`.
     approaches : ndarray, shape (k,)
         Approaches, m, increasing.
@@ -163,15 +165,17 @@ def stiffness_ensemble(
         One loading curve a sample.
     """
     report = progress or (lambda done, total, message: None)
-    scans = []
-    for i, sample in enumerate(samples):
-        report(i, len(samples), "loading the samples")
-        scans.append(
-            scan_forces(
-                sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1, device="cpu"
-            )
+    report(0, len(samples), "loading the samples")
+
+    def load(sample: NDArray[np.float64]) -> ScannedForces[NDArray[np.float64]]:
+        return scan_forces(
+            sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1, device="cpu"
         )
-    report(len(samples), len(samples), "loading the samples")
+
+    scans = []
+    for scanned in in_order(load, samples, workers):
+        scans.append(scanned)
+        report(len(scans), len(samples), "loading the samples")
     warn_of_scans(scans, "the loading curves")
     forces = np.array([scanned.forces[:, 0] for scanned in scans])
     return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), forces, datum)

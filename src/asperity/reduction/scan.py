@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import threading
 import warnings
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.contact.device import find_device
+from asperity.contact.device import Device, find_device
 from asperity.contact.halfspace import HalfSpace
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
 from asperity.reduction import batched_scan
+from asperity.reduction.pool import in_order
+from asperity.reduction.stored import StoredForces
 from asperity.store import Cache, content_key
-from asperity.threads import thread_count
+from asperity.surfaces.strip import Rows, Strip
 
 if TYPE_CHECKING:
     import xarray
+
+F = TypeVar("F", NDArray[np.float64], StoredForces)
 
 BLOCK = 256
 """Positions solved in one go, from a cold start: the unit of parallel work and of what is kept on disk."""
@@ -30,13 +34,15 @@ TRUNCATED = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class ScannedForces:
+class ScannedForces(Generic[F]):
     """Forces of a scan, with how well the solutions went.
 
     Attributes
     ----------
-    forces : ndarray, shape (n_approaches, n_positions)
+    forces : ndarray, or StoredForces from `scan_into`, shape (n_approaches, n_positions)
         F_c(x_m, r_i), N.
+    solved : int
+        Solutions in contact.
     iterations : int
         Conjugate-gradient iterations of all solutions.
     unconverged : int
@@ -45,7 +51,8 @@ class ScannedForces:
         Solutions with a noticeable share of the force on the window's edge.
     """
 
-    forces: NDArray[np.float64]
+    forces: F
+    solved: int
     iterations: int
     unconverged: int
     truncated: int
@@ -139,7 +146,7 @@ def scan(
 
 
 def scan_forces(
-    heights: NDArray[np.float64],
+    heights: NDArray[np.float64] | Strip,
     spacing: tuple[float, float],
     body: ArrayLike,
     modulus: float,
@@ -154,12 +161,14 @@ def scan_forces(
     planes: ArrayLike | None = None,
     message: str = "scanning the contact",
     device: str | None = None,
-) -> ScannedForces:
+) -> ScannedForces[NDArray[np.float64]]:
     """Scan as in `scan`, with approaches from given planes instead of the mean plane.
 
     Parameters
     ----------
-    heights, spacing, body, modulus, approaches, hardness, stride, rtol, workers, cache, progress, device
+    heights : ndarray, shape (n, ny), or Strip
+        Heights of the surface, m, peaks positive.
+    spacing, body, modulus, approaches, hardness, stride, rtol, workers, cache, progress, device
         As in `scan`.
     planes : array_like, shape (n_positions,), optional
         Height of the plane from which approaches count at each position, m; zero by default.
@@ -176,52 +185,171 @@ def scan_forces(
     InputError
         For sizes that do not fit.
     """
+    job = _job(heights, spacing, body, modulus, approaches, hardness, stride, rtol, planes, device)
+    forces = np.empty((len(job.approaches), job.positions))
+    counts, done = np.zeros(4, dtype=np.int64), 0
+    for block in _blocks(job, workers, cache, progress, message):
+        forces[:, done : done + block.forces.shape[1]] = block.forces
+        done += block.forces.shape[1]
+        counts += block.counts
+    return ScannedForces(forces, *counts.tolist())
+
+
+def scan_into(
+    cache: Cache,
+    heights: NDArray[np.float64] | Strip,
+    spacing: tuple[float, float],
+    body: ArrayLike,
+    modulus: float,
+    approaches: ArrayLike,
+    hardness: float | None = None,
+    *,
+    stride: int = 1,
+    rtol: float = 1e-6,
+    workers: int | None = None,
+    progress: Callable[[int, int, str], None] | None = None,
+    planes: ArrayLike | None = None,
+    message: str = "scanning the contact",
+    device: str | None = None,
+) -> ScannedForces[StoredForces]:
+    """Scan a path of any length: its forces stay in the cache, block by block.
+
+    Parameters
+    ----------
+    cache : Cache
+        Receives the blocks. A scan that was interrupted, or killed, goes on after the last block kept.
+    heights, spacing, body, modulus, approaches, hardness
+        As in `scan_forces`.
+    stride, rtol, workers, progress, planes, message, device
+        As in `scan_forces`.
+
+    Returns
+    -------
+    ScannedForces
+        Its forces are `StoredForces`. Memory holds the blocks in work and eight bytes a position.
+
+    Raises
+    ------
+    InputError
+        For sizes that do not fit.
+    """
+    job = _job(heights, spacing, body, modulus, approaches, hardness, stride, rtol, planes, device)
+    keys, counts = [], np.zeros(4, dtype=np.int64)
+    for block in _blocks(job, workers, cache, progress, message):
+        keys.append(block.key)
+        counts += block.counts
+    forces = StoredForces(cache, tuple(keys), job.block, (len(job.approaches), job.positions))
+    return ScannedForces(forces, *counts.tolist())
+
+
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """A scan to be done: what every block of it needs."""
+
+    strip: Strip
+    spacing: tuple[float, float]
+    body: NDArray[np.float64]
+    modulus: float
+    approaches: NDArray[np.float64]
+    hardness: float | None
+    stride: int
+    rtol: float
+    planes: NDArray[np.float64]
+    device: Device | None
+
+    @property
+    def block(self) -> int:
+        return BLOCK if self.device is None else batched_scan.BLOCK
+
+    @property
+    def positions(self) -> int:
+        return len(self.planes)
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Solutions at the positions of a block: forces (k, positions), and the counts of `ScannedForces`."""
+
+    key: str
+    forces: NDArray[np.float64]
+    counts: NDArray[np.int64]
+
+
+def _job(
+    heights: NDArray[np.float64] | Strip,
+    spacing: tuple[float, float],
+    body: ArrayLike,
+    modulus: float,
+    approaches: ArrayLike,
+    hardness: float | None,
+    stride: int,
+    rtol: float,
+    planes: ArrayLike | None,
+    device: str | None,
+) -> _Job:
+    strip = Rows(heights) if isinstance(heights, np.ndarray) else heights
     shape = np.ascontiguousarray(body, dtype=np.float64)
     delta = np.atleast_1d(np.asarray(approaches, dtype=np.float64))
-    _check(heights, shape, delta, stride)
-    positions = np.arange(0, heights.shape[0] - shape.shape[0] + 1, stride)
-    plane = np.broadcast_to(np.asarray(0.0 if planes is None else planes, dtype=np.float64), positions.shape)
-    batches = find_device(device)
-    length = BLOCK if batches is None else batched_scan.BLOCK
-
-    def solve_block(first: int) -> NDArray[np.float64]:
-        block = positions[first : first + length]
-        rows = np.ascontiguousarray(heights[block[0] : block[-1] + shape.shape[0]])
-        parameters = [list(spacing), modulus, hardness, stride, rtol, *(["batched"] if batches else [])]
-        planes = np.ascontiguousarray(plane[first : first + length])
-        key = content_key("scan", rows, shape, delta, planes, parameters) if cache is not None else ""
-        kept = cache.get(key) if cache is not None else None
-        if kept is not None:
-            return kept["block"]
-        half_space = HalfSpace((shape.shape[0], shape.shape[1]), spacing, modulus, hardness)
-        if batches is None:
-            solved = _solve_block(half_space, rows, shape, delta, planes, stride, rtol)
-        else:
-            solved = batched_scan.solve_rows(
-                half_space, rows, shape, delta, planes, stride, rtol, batches, TRUNCATED
-            )
-        if cache is not None:
-            cache.put(key, {"block": solved})
-        return solved
-
-    firsts = range(0, len(positions), length)
-    # a device is filled by one block
-    threads = workers if batches is None else 1
-    blocks = _in_threads(solve_block, firsts, len(positions), threads, progress, message)
-    stacked = np.concatenate(blocks, axis=2)
-    forces, iterations, unconverged, truncated = stacked
-    return ScannedForces(
-        np.ascontiguousarray(forces), int(iterations.sum()), int(unconverged.sum()), int(truncated.sum())
-    )
+    _check(strip.shape, shape, delta, stride)
+    positions = len(range(0, strip.shape[0] - shape.shape[0] + 1, stride))
+    plane = np.broadcast_to(np.asarray(0.0 if planes is None else planes, dtype=np.float64), (positions,))
+    return _Job(strip, spacing, shape, modulus, delta, hardness, stride, rtol, plane, find_device(device))
 
 
-def _check(heights: NDArray, body: NDArray, approaches: NDArray, stride: int) -> None:
+def _blocks(
+    job: _Job,
+    workers: int | None,
+    cache: Cache | None,
+    progress: Callable[[int, int, str], None] | None,
+    message: str,
+) -> Iterator[_Block]:
+    """Blocks of a scan in order, from the cache or solved, each from a cold start of its own."""
+    report = progress or (lambda done, total, message: None)
+    of_thread, (nx, ny) = threading.local(), job.body.shape
+    parameters = [list(job.spacing), job.modulus, job.hardness, job.stride, job.rtol]
+    parameters += ["batched"] if job.device else []
+
+    def block(first: int) -> _Block:
+        planes = np.ascontiguousarray(job.planes[first : first + job.block])
+        stop = (first + len(planes) - 1) * job.stride + nx
+        rows = np.ascontiguousarray(job.strip.rows(first * job.stride, stop))
+        if cache is None:
+            return _Block("", *solve(rows, planes))
+        key = content_key("scan", rows, job.body, job.approaches, planes, parameters)
+        kept = cache.get(key)
+        if kept is None:
+            forces, counts = solve(rows, planes)
+            kept = {"forces": forces, "counts": counts}
+            cache.put(key, kept)
+        return _Block(key, kept["forces"], kept["counts"])
+
+    def solve(rows: NDArray, planes: NDArray) -> tuple[NDArray, NDArray]:
+        if not hasattr(of_thread, "half_space"):
+            of_thread.half_space = HalfSpace((nx, ny), job.spacing, job.modulus, job.hardness)
+        if job.device is None:
+            return _solve_block(of_thread.half_space, rows, job, planes)
+        found = batched_scan.solve_rows(
+            of_thread.half_space, rows, job.body, job.approaches, planes, job.stride, job.rtol, job.device,
+            TRUNCATED,
+        )  # fmt: skip
+        flaws = found[1:].sum(axis=(1, 2)).astype(np.int64)
+        return found[0], np.concatenate([[np.count_nonzero(found[0])], flaws])
+
+    report(0, job.positions, message)
+    done = 0
+    for found in in_order(block, range(0, job.positions, job.block), workers if job.device is None else 1):
+        done += found.forces.shape[1]
+        report(done, job.positions, message)
+        yield found
+
+
+def _check(surface: tuple[int, int], body: NDArray, approaches: NDArray, stride: int) -> None:
     if body.ndim != 2 or not np.isfinite(body).all():
         raise InputError("body of the scan", f"shape {body.shape}", "a finite (nx, ny) array")
-    if heights.shape[1] != body.shape[1] or heights.shape[0] < body.shape[0]:
+    if surface[1] != body.shape[1] or surface[0] < body.shape[0]:
         raise InputError(
             "window of the scan",
-            f"{_cells(body)} on a surface of {_cells(heights)}",
+            f"{_cells(body.shape)} on a surface of {_cells(surface)}",
             "a window as wide as the surface and not longer",
             "Choose a smaller window or provide a larger map.",
         )
@@ -231,28 +359,23 @@ def _check(heights: NDArray, body: NDArray, approaches: NDArray, stride: int) ->
         raise InputError("stride of the scan", stride, "a whole number ≥ 1")
 
 
-def _cells(field: NDArray) -> str:
-    return f"{field.shape[0]} × {field.shape[1]} cells"
+def _cells(shape: tuple[int, ...]) -> str:
+    return f"{shape[0]} × {shape[1]} cells"
 
 
 def _solve_block(
-    half_space: HalfSpace,
-    rows: NDArray,
-    body: NDArray,
-    approaches: NDArray,
-    planes: NDArray,
-    stride: int,
-    rtol: float,
-) -> NDArray[np.float64]:
-    """Forces, iterations, unconverged and truncated of each approach and position, (4, k, positions)."""
-    nx = body.shape[0]
-    result = np.zeros((4, len(approaches), len(planes)))
-    previous: list[NDArray | None] = [None] * len(approaches)
+    half_space: HalfSpace, rows: NDArray, job: _Job, planes: NDArray
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Forces (k, positions), and how many solutions, iterations, unconverged and truncated solutions."""
+    nx, stride = job.body.shape[0], job.stride
+    forces = np.zeros((len(job.approaches), len(planes)))
+    counts = np.zeros(4, dtype=np.int64)
+    previous: list[NDArray | None] = [None] * len(job.approaches)
     for m, plane in enumerate(planes):
-        gap = body + plane - rows[m * stride : m * stride + nx]
+        gap = job.body + plane - rows[m * stride : m * stride + nx]
         touch = gap.min()
         below: NDArray | None = None
-        for i, approach in enumerate(approaches):
+        for i, approach in enumerate(job.approaches):
             if approach <= touch:
                 previous[i] = None
                 continue
@@ -261,44 +384,14 @@ def _solve_block(
                 start = below
             elif stride < nx:  # the surface moved against the body: so did the pressure on its asperities
                 start = np.vstack([start[stride:], np.zeros((stride, start.shape[1]))])
-            contact = half_space.at_approach(gap, float(approach), start, rtol)
+            contact = half_space.at_approach(gap, float(approach), start, job.rtol)
             previous[i] = below = contact.pressure
-            result[:, i, m] = (
-                contact.force,
-                contact.iterations,
-                not contact.converged,
-                contact.edge_share > TRUNCATED,
-            )
-    return result
+            forces[i, m] = contact.force
+            counts += (1, contact.iterations, not contact.converged, contact.edge_share > TRUNCATED)
+    return forces, counts
 
 
-def _in_threads(
-    task: Callable[[int], NDArray],
-    firsts: Iterable[int],
-    total: int,
-    workers: int | None,
-    progress: Callable[[int, int, str], None] | None,
-    message: str,
-) -> list[NDArray]:
-    """Run independent blocks on threads (transforms and kernels release the interpreter)."""
-    report = progress or (lambda done, total, message: None)
-    report(0, total, message)
-    done = 0
-    executor = ThreadPoolExecutor(workers or thread_count())
-    try:
-        futures = [executor.submit(task, first) for first in firsts]
-        pending: set[Future[NDArray]] = set(futures)
-        while pending:
-            finished, pending = wait(pending, return_when=FIRST_COMPLETED)
-            done += sum(future.result().shape[2] for future in finished)
-            report(done, total, message)
-        return [future.result() for future in futures]
-    finally:
-        # on an interrupt: blocks that run are finished and kept, the others are not begun
-        executor.shutdown(wait=True, cancel_futures=True)
-
-
-def warn_of_scans(scans: Sequence[ScannedForces], what: str) -> None:
+def warn_of_scans(scans: Sequence[ScannedForces[Any]], what: str) -> None:
     """Warn, once for all of them, of solutions that did not converge or were cut off.
 
     Parameters
@@ -308,7 +401,7 @@ def warn_of_scans(scans: Sequence[ScannedForces], what: str) -> None:
     what : str
         What they were made for, as ``"the scan"``.
     """
-    solved = sum(int(np.count_nonzero(s.forces)) for s in scans)
+    solved = sum(s.solved for s in scans)
     warn_of_flaws(solved, sum(s.unconverged for s in scans), sum(s.truncated for s in scans), what)
 
 
@@ -340,13 +433,13 @@ def warn_of_flaws(solved: int, unconverged: int, truncated: int, what: str) -> N
 
 
 def first_touch(
-    heights: NDArray[np.float64], body: NDArray[np.float64], stride: int = 1
+    heights: NDArray[np.float64] | Strip, body: NDArray[np.float64], stride: int = 1
 ) -> NDArray[np.float64]:
     """Find the approach at which the body first touches the surface, at each position.
 
     Parameters
     ----------
-    heights : ndarray, shape (n, ny)
+    heights : ndarray, shape (n, ny), or Strip
         Heights from the plane z = 0, m.
     body : ndarray, shape (nx, ny)
         Shape of the body, m, zero at its lowest point.
@@ -358,6 +451,13 @@ def first_touch(
     ndarray, shape (n_positions,)
         Approaches from that plane, m; usually negative: peaks touch before the planes meet.
     """
-    nx = body.shape[0]
-    starts = range(0, heights.shape[0] - nx + 1, stride)
-    return np.array([float((body - heights[m : m + nx]).min()) for m in starts])
+    strip, nx = Rows(heights) if isinstance(heights, np.ndarray) else heights, body.shape[0]
+    starts = range(0, strip.shape[0] - nx + 1, stride)
+    result = np.empty(len(starts))
+    for first in range(0, len(starts), BLOCK):
+        block = starts[first : first + BLOCK]
+        rows = strip.rows(block[0], block[-1] + nx)
+        for m, start in enumerate(block):
+            at = start - block[0]
+            result[first + m] = (body - rows[at : at + nx]).min()
+    return result

@@ -8,7 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
-from asperity.reduction.texture import along_path, check_states
+from asperity.kernels.along import OVERLAP, splines_along
+from asperity.reduction.accuracy import FORCE_ACCURACY
+from asperity.reduction.stored import StoredForces, columns
+from asperity.reduction.texture import check_states, grid_index
+
+FALL = 2.0 * FORCE_ACCURACY
+"""Fall of the force from state to state, relative to the largest, that an iterative solver may leave."""
+PIECE = 8192
+"""Positions worked on in one go."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,8 +25,9 @@ class ForceTable:
 
     Parameters
     ----------
-    forces : ndarray (s, m)
-        Force at state i and position m, N, not negative and not falling with the approach.
+    forces : ndarray (s, m), or StoredForces
+        Force at state i and position m, N, not negative, and not falling with the approach by more than the
+        accuracy of scanned forces.
     approaches : ndarray (s,)
         Approaches of the states, m, increasing; at least two.
     start : float
@@ -35,27 +44,18 @@ class ForceTable:
         If shapes, spacing or values do not fit.
     """
 
-    forces: NDArray
+    forces: NDArray | StoredForces
     approaches: NDArray
     start: float
     spacing: float
     touches: NDArray | None = None
 
     def __post_init__(self) -> None:
-        forces = np.asarray(self.forces, dtype=float)
+        forces = self.forces
+        if not isinstance(forces, StoredForces):
+            forces = np.asarray(forces, dtype=float)
         approaches = np.asarray(self.approaches, dtype=float)
-        check_states("force table", forces, approaches, self.spacing)
-        if len(approaches) < 2:
-            raise InputError("force table", "one state", "at least two states", "Scan at more approaches.")
-        if forces.min() < 0.0:
-            raise InputError("force table (N)", forces.min(), "forces of zero or more")
-        # what an iterative contact solver leaves of a plateau is no fall
-        if np.diff(forces, axis=0).min() < -1e-6 * forces.max():
-            raise InputError(
-                "force table",
-                "forces that fall while the approach grows",
-                "forces that rise with the approach",
-            )
+        _check_forces(forces, approaches, self.spacing)
         if self.touches is not None and (
             np.shape(self.touches) != forces.shape[1:] or not np.all(np.isfinite(self.touches))
         ):
@@ -82,9 +82,17 @@ class ForceTable:
         InputError
             If a position lies outside the table.
         """
-        forces = along_path("force table", self.forces, self.start, self.spacing, positions)
+        count = self.forces.shape[1]
+        index = grid_index("force table", count, self.start, self.spacing, positions)
+        result = np.empty((index.size, len(self.approaches)))
+        for i in range(0, index.size, PIECE):
+            piece = index[i : i + PIECE]
+            first = max(0, int(piece.min()) - OVERLAP)
+            stop = min(count, int(piece.max()) + 2 + OVERLAP)
+            known = np.ascontiguousarray(columns(self.forces, first, stop))
+            result[i : i + PIECE] = splines_along(known, piece - first)
         # a spline may undershoot beside a place where contact is lost
-        return np.maximum.accumulate(np.maximum(forces, 0.0), axis=1)
+        return np.maximum.accumulate(np.maximum(result, 0.0, out=result), axis=1)
 
     def touch_at(self, positions: ArrayLike) -> NDArray | None:
         """Approach at first touch at given positions, interpolated linearly.
@@ -103,3 +111,22 @@ class ForceTable:
             return None
         at = self.start + self.spacing * np.arange(self.forces.shape[1])
         return np.interp(np.asarray(positions, dtype=float), at, self.touches)
+
+
+def _check_forces(forces: NDArray | StoredForces, approaches: NDArray, spacing: float) -> None:
+    """Refuse forces that no contact has, piece by piece."""
+    lowest, largest, fall = 0.0, 0.0, 0.0
+    for first in range(0, forces.shape[-1], PIECE):
+        # the last four points again where fewer are left
+        piece = columns(forces, min(first, max(0, forces.shape[-1] - 4)), first + PIECE)
+        check_states("force table", piece, approaches, spacing)
+        lowest, largest = min(lowest, piece.min()), max(largest, piece.max())
+        fall = min(fall, np.diff(piece, axis=0).min(initial=0.0))
+    if len(approaches) < 2:
+        raise InputError("force table", "one state", "at least two states", "Scan at more approaches.")
+    if lowest < 0.0:
+        raise InputError("force table (N)", lowest, "forces of zero or more")
+    if fall < -FALL * largest:
+        raise InputError(
+            "force table", "forces that fall while the approach grows", "forces that rise with the approach"
+        )

@@ -140,8 +140,36 @@ def along_path(what: str, values: NDArray, start: float, spacing: float, positio
     InputError
         If a position lies outside the rows.
     """
+    index = grid_index(what, values.shape[1], start, spacing, positions)
+    return np.asarray(splines_along(np.ascontiguousarray(values, dtype=float), index))
+
+
+def grid_index(what: str, points: int, start: float, spacing: float, positions: ArrayLike) -> NDArray:
+    """Places on the grid of a state function along a path.
+
+    Parameters
+    ----------
+    what : str
+        What is known there, for the message.
+    points : int
+        Number of points.
+    start, spacing : float
+        Sampling, m.
+    positions : array_like (n,)
+        Positions on the path, m.
+
+    Returns
+    -------
+    ndarray (n,)
+        Places in units of the grid, 0 to points − 1.
+
+    Raises
+    ------
+    InputError
+        If a position lies outside.
+    """
     index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
-    last = values.shape[1] - 1
+    last = points - 1
     slack = 1e-6  # of a spacing: rounding of the positions
     if index.min() < -slack or index.max() > last + slack:
         raise InputError(
@@ -150,5 +178,4 @@ def along_path(what: str, values: NDArray, start: float, spacing: float, positio
             f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known",
             "Shorten the duration or provide a longer texture.",
         )
-    rows = np.ascontiguousarray(values, dtype=float)
-    return np.asarray(splines_along(rows, np.clip(index, 0.0, last)))
+    return np.clip(index, 0.0, last)

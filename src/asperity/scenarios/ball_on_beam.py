@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from asperity.config import BallOnBeamCase
 from asperity.contact import Hertz
 from asperity.pointforce import Law
@@ -137,4 +135,4 @@ def _run_key(case: BallOnBeamCase, textures: Textures, duration: float) -> str:
         list(case.beam.sensor_positions),
     ]  # fmt: skip
     sections = [case.ball.model_dump(mode="json"), case.beam.model_dump(mode="json")]
-    return content_key("direct", np.asarray(textures.path.heights), scalars, sections)
+    return content_key("direct", textures.path.rows(0, textures.path.shape[0]), scalars, sections)

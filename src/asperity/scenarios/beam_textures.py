@@ -14,14 +14,17 @@ from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.textures import (
     Textures,
     measured_maps,
+    middle_line,
     path_of,
     strip_rows,
     strips_of,
     synthesised,
+    synthesised_path,
 )
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.readers import read_surface
+from asperity.surfaces.strip import Strip
 from asperity.surfaces.synthesis import from_bands
 
 
@@ -51,7 +54,7 @@ def gather(case: BallOnBeamCase, margin: int) -> Textures:
     missing, origin = 0.0, ""
     maps: tuple[HeightMap, ...] = ()
     strips: tuple[HeightMap, ...] = ()
-    path = None
+    path: Strip | None = None
     if case.surface.file is not None:
         maps, missing = measured_maps(case.surface, spacing)
         strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
@@ -60,13 +63,13 @@ def gather(case: BallOnBeamCase, margin: int) -> Textures:
     elif case.surface.rms is not None:
         size = (strip_rows(case.contact), ny)
         strips = tuple(synthesised(case.surface, spacing, size, seed) for seed in seeds[1:])
-        maps, path = strips, synthesised(case.surface, spacing, (rows, ny), seeds[0])
+        maps, path = strips, synthesised_path(case.surface, spacing, (rows, ny), seeds[0])
         origin = "samples and path synthesised: self-affine, Gaussian"
     if case.surface.has_line:
         line, line_origin = _line(case, rows, 2 * margin + 2, seeds[0])
         path, origin = None, "; ".join(filter(None, [origin, line_origin]))
     elif path is not None:
-        line = path.heights[:, ny // 2]
+        line = middle_line(path)
     start = case.start - margin * spacing
     return Textures(maps, strips, path, line, start, margin, margin, missing, origin)
 

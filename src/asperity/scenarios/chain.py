@@ -152,13 +152,14 @@ def reduce_and_roll(
     Chain
         All that was computed.
     """
-    rtol = case.numerics.rtol
-    planes = None if textures.path is None else patch_planes(textures.path.heights, shape)
+    planes = None if textures.path is None else patch_planes(textures.path, shape)
     reduction = (
-        reduce(case.contact, rtol, textures, shape, planes, store, progress) if textures.maps else None
+        reduce(case.contact, case.numerics, textures, shape, planes, store, progress)
+        if textures.maps
+        else None
     )
     watch.lap("reduction")
-    workshop = Workshop(case.contact, rtol, textures, shape, reduction, planes, store, progress)
+    workshop = Workshop(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
     laws: dict[str, Law] = {}
     runs: dict[str, R] = {}
     scan = None

@@ -8,13 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.sections import ContactCase
+from asperity.config.sections import ContactCase, Numerics
 from asperity.contact import Hertz as HertzContact
 from asperity.pointforce import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
 from asperity.progress import Progress
+from asperity.reduction.accuracy import rtol_for
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.filter import filtered_texture
-from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
+from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_into, warn_of_scans
+from asperity.reduction.stored import StoredForces
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.geometry import Geometry
@@ -30,8 +32,8 @@ class Workshop:
     ----------
     contact : ContactCase
         The contact section of the case.
-    rtol : float
-        Tolerance of each contact solution.
+    numerics : Numerics
+        The numerics section of the case: how accurately contacts are solved.
     textures, shape
         Textures and geometry of the case.
     reduction : Reduction or None
@@ -43,15 +45,15 @@ class Workshop:
     """
 
     contact: ContactCase
-    rtol: float
+    numerics: Numerics
     textures: Textures
     shape: Geometry
     reduction: Reduction | None
     planes: NDArray[np.float64] | None
-    cache: Cache | None
+    cache: Cache
     progress: Progress
 
-    def build(self, name: str) -> tuple[Law, ScannedForces | None]:
+    def build(self, name: str) -> tuple[Law, ScannedForces[StoredForces] | None]:
         """Build one law, and return the scan that it needed, if any.
 
         Parameters
@@ -124,7 +126,7 @@ class Workshop:
         loaded = self.reduction.semi_axes[:, 0] > 0.0
         return self._over_defects(
             areal_texture(
-                self.textures.path.heights,
+                self.textures.path,
                 self.shape.spacing,
                 self.reduction.approaches[loaded],
                 np.minimum(self.reduction.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
@@ -132,47 +134,55 @@ class Workshop:
             )
         )
 
-    def _table(self, damping: float) -> tuple[Law, ScannedForces]:
+    def _table(self, damping: float) -> tuple[Law, ScannedForces[StoredForces]]:
         assert self.reduction is not None
         assert self.planes is not None
         plane = self._plane()
         assert plane is not None
         dx, half = self.shape.spacing[0], self.shape.body.shape[0] // 2
-        stride = max(1, math.floor(self.shape.semi_axes[0] / 8 / dx))
-        heights = self.textures.surface
+        stride, surface = table_stride(self.shape), self.textures.surface
         planes = -plane.heights[0, half : len(self.planes) - half : stride]
-        scanned = scan_forces(
-            heights,
-            self.shape.spacing,
-            self.shape.body,
-            self.shape.modulus,
-            self.reduction.approaches,
-            self.contact.hardness,
-            stride=stride,
-            rtol=self.rtol,
-            planes=planes,
-            cache=self.cache,
-            progress=self.progress,
-            message="scanning the path",
-        )
+        scanned = scan_into(
+            self.cache, surface, self.shape.spacing, self.shape.body, self.shape.modulus,
+            self.reduction.approaches, self.contact.hardness,
+            stride=stride, rtol=rtol_for(self.numerics.force_accuracy), planes=planes,
+            progress=self.progress, message="scanning the path",
+        )  # fmt: skip
         warn_of_scans([scanned], "the path")
-        touches = first_touch(heights, self.shape.body, stride) + planes
+        touches = first_touch(surface, self.shape.body, stride) + planes
         table = ForceTable(
             scanned.forces, self.reduction.approaches, self.textures.start + half * dx, stride * dx, touches
         )
         return Table(table, damping, plane=plane), scanned
 
     def _direct(self, damping: float) -> Law:
+        surface = self.textures.surface
         return Direct(
-            self.textures.surface,
+            surface.rows(0, surface.shape[0]),
             self.shape.body,
             self.shape.spacing,
             self.shape.modulus,
             self.textures.start,
             self.contact.hardness,
-            self.rtol,
+            self.numerics.rtol,
             damping,
         )
+
+
+def table_stride(shape: Geometry) -> int:
+    """Rows between the positions of a table: an eighth of the patch.
+
+    Parameters
+    ----------
+    shape : Geometry
+        What presses on what.
+
+    Returns
+    -------
+    int
+        Rows of the contact grid.
+    """
+    return max(1, math.floor(shape.semi_axes[0] / 8 / shape.spacing[0]))
 
 
 def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | None) -> tuple[float, float]:

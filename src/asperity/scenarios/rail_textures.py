@@ -121,7 +121,7 @@ def _rail(case: WheelOnRailCase, grid: Grid, maps: tuple[HeightMap, ...], seed: 
         return Record(synthesised(surface, grid.spacing, shape, seed).heights, "self-affine, Gaussian")
     if maps:
         path, origin = path_of(maps, shape, seed)
-        return Record(path.heights, origin)
+        return Record(path.rows(0, path.shape[0]), origin)
     return Record(np.zeros(shape), "smooth")
 
 

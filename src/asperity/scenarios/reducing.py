@@ -9,10 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.sections import ContactCase
+from asperity.config.sections import ContactCase, Numerics
 from asperity.contact import Contact, HalfSpace
+from asperity.contact.device import find_device
 from asperity.errors import InputError
 from asperity.progress import Progress
+from asperity.reduction.accuracy import FILTER_SHARE, rtol_for
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
 from asperity.reduction.filter import (
@@ -24,9 +26,13 @@ from asperity.reduction.filter import (
     punch_filter,
     tap_count,
 )
+from asperity.reduction.pool import in_order
 from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
+from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.strip import Strip
+from asperity.threads import thread_count
 
 STATES = 14
 """States chosen where the case names no approaches."""
@@ -75,12 +81,12 @@ class Reduction:
     iterations: int
 
 
-def patch_planes(path: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64]:
+def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
     """Height of the plane that the nominal patch feels at each row of a path, m.
 
     Parameters
     ----------
-    path : ndarray, shape (rows, ny)
+    path : Strip, shape (rows, ny)
         Texture of the path, m.
     shape : Geometry
         Its patch under the working load is the weight.
@@ -95,7 +101,7 @@ def patch_planes(path: NDArray[np.float64], shape: Geometry) -> NDArray[np.float
 
 def reduce(
     contact: ContactCase,
-    rtol: float,
+    numerics: Numerics,
     textures: Textures,
     shape: Geometry,
     planes: NDArray[np.float64] | None,
@@ -108,8 +114,8 @@ def reduce(
     ----------
     contact : ContactCase
         The contact section of the case.
-    rtol : float
-        Tolerance of each contact solution, as in `HalfSpace.solve`.
+    numerics : Numerics
+        The numerics section of the case: how accurately contacts are solved.
     textures : Textures
         Samples, strips and path.
     shape : Geometry
@@ -131,13 +137,13 @@ def reduce(
     cells = (shape.body.shape[0], shape.body.shape[1])
     samples = patches([m.heights for m in textures.maps], cells, contact.samples, weights)
     half_space = HalfSpace(cells, shape.spacing, shape.modulus, hardness)
-    contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=rtol) for s in samples]
+    contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=numerics.rtol) for s in samples]
     approaches = _approaches(contact, textures, shape, planes, samples, half_space)
     lowest = min(float(approaches[0]), _lowest_touch(textures, shape, planes, samples))
     datum = max(-lowest, LEAST_DATUM)
     ensemble = stiffness_ensemble(
         samples, shape.spacing, shape.body, shape.modulus, approaches, datum, hardness,
-        rtol=rtol, progress=progress,
+        rtol=rtol_for(numerics.force_accuracy), progress=progress,
     )  # fmt: skip
     mean = ensemble.mean_force
     if mean[-1] < shape.load:
@@ -149,7 +155,8 @@ def reduce(
         )
     semi_axes = np.array([shape.axes(f) for f in mean])
     loaded = mean >= LIGHTEST_STATE * shape.load
-    contact_filter, scans = _filters(contact, rtol, textures, shape, ensemble, loaded, cache, progress)
+    accuracy = FILTER_SHARE * numerics.force_accuracy
+    contact_filter, scans = _filters(contact, accuracy, textures, shape, ensemble, loaded, cache, progress)
     order = contact.filter_taps or tap_count(shape.spacing[0], float(semi_axes.max()))
     return Reduction(
         approaches,
@@ -159,7 +166,7 @@ def reduce(
         design_fir(contact_filter, shape.spacing[0], order),
         contacts[0],
         float(np.mean([c.approach for c in contacts])),
-        sum(int(np.count_nonzero(s.forces)) for s in scans),
+        sum(s.solved for s in scans),
         sum(s.iterations for s in scans),
     )
 
@@ -174,7 +181,7 @@ def _lowest_touch(
     touches = [first_touch(s, shape.body).min() for s in samples]
     touches += [first_touch(s.heights, shape.body).min() for s in textures.strips]
     if textures.path is not None and planes is not None:
-        touches.append((first_touch(textures.path.heights, shape.body) + _centred(planes, shape)).min())
+        touches.append((first_touch(textures.path, shape.body) + _centred(planes, shape)).min())
     return float(min(touches))
 
 
@@ -204,7 +211,7 @@ def _approaches(
 
 def _filters(
     contact: ContactCase,
-    rtol: float,
+    accuracy: float,
     textures: Textures,
     shape: Geometry,
     ensemble: StiffnessEnsemble,
@@ -225,21 +232,30 @@ def _filters(
     if not any(np.ptp(strip.heights) for strip in textures.strips):
         return _closed_form(approaches, np.array(axes), curve.stiffness(approaches)), []
     asymptote = LONG_WAVE / (2 * np.pi * np.array(axes))
-    estimates, scans = [], []
-    for i, strip in enumerate(textures.strips):
-        z = strip.heights
-        scanned = scan_forces(
-            z, shape.spacing, shape.body, shape.modulus, approaches, contact.hardness,
-            stride=stride, rtol=rtol, cache=cache, progress=progress,
-            message=f"contact filter, strip {i + 1} of {len(textures.strips)}",
+    workers = thread_count() if find_device() is None else 1  # one block fills a device
+    message = "scanning for the contact filters"
+
+    def scan_strip(strip: HeightMap) -> ScannedForces[NDArray[np.float64]]:
+        # one strip is a block or two: strips beside each other keep all processors busy
+        return scan_forces(
+            strip.heights, shape.spacing, shape.body, shape.modulus, approaches, contact.hardness,
+            stride=stride, rtol=rtol_for(accuracy), cache=cache,
+            workers=math.ceil(workers / len(textures.strips)),
         )  # fmt: skip
+
+    progress(0, len(textures.strips), message)
+    estimates, scans = [], []
+    scanning = in_order(scan_strip, textures.strips, workers)
+    for strip, scanned in zip(textures.strips, scanning, strict=True):
         scans.append(scanned)
-        lines = z[half::stride, middle - across : middle + across + 1][: scanned.forces.shape[1]].T
+        progress(len(scans), len(textures.strips), message)
+        lines = strip.heights[half::stride, middle - across : middle + across + 1]
         estimates.append(
             estimate_filter(
-                scanned.forces, lines, stride * dx, tangent_stiffness=tangent, asymptote=asymptote
+                scanned.forces, lines[: scanned.forces.shape[1]].T, stride * dx,
+                tangent_stiffness=tangent, asymptote=asymptote,
             )
-        )
+        )  # fmt: skip
     warn_of_scans(scans, "the filters")
     degree, normalise = contact.filter_degree, contact.normalise
     return mean_filter(estimates, approaches, degree=degree, normalise=normalise), scans  # type: ignore[arg-type]

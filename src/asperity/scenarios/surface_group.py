@@ -19,6 +19,8 @@ from asperity.surfaces.statistics import Statistic, areal_statistics, profile_st
 
 PATH_ROWS = 2000
 LINE_POINTS = 20000
+SPECTRUM_ROWS = 2**16
+"""Rows of a path, at most, that its spectrum is made of."""
 
 
 def surface_group(chain: Chain[Any]) -> xarray.Dataset:
@@ -46,7 +48,8 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
         }
         statistics += _areal(first, "samples")
     if textures.path is not None:
-        piece = textures.surface[textures.recorded][:PATH_ROWS]
+        recorded = textures.recorded
+        piece = textures.surface.rows(recorded.start, min(recorded.stop, recorded.start + PATH_ROWS))
         variables |= {
             "path_x": variable("path_x", np.arange(len(piece)) * dx, "m", "rolling direction"),
             "path_y": variable("path_y", np.arange(piece.shape[1]) * dx, "m", "across"),
@@ -113,9 +116,10 @@ def _texture_spectra(chain: Chain[Any]) -> dict[str, xarray.Variable]:
     else:
         segment = max(16, len(textures.line) // 8)
         wavenumber = np.fft.rfftfreq(segment, dx)
-    lines = textures.line if textures.path is None else np.ascontiguousarray(textures.path.heights.T)
-    if segment <= len(textures.line):
-        k, density = psd(lines, dx, segment=segment)
+    path = textures.path
+    lines = textures.line if path is None else path.rows(0, min(path.shape[0], SPECTRUM_ROWS)).T
+    if segment <= lines.shape[-1]:
+        k, density = psd(np.ascontiguousarray(lines), dx, segment=segment)
         mean = np.atleast_2d(density).mean(axis=0)
         along = np.interp(wavenumber[1:], k, mean)
         result["psd_path"] = variable(dims, along, units, "PSD of the path along it, one-sided")

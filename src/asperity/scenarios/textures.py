@@ -16,10 +16,14 @@ from asperity.scenarios.geometry import window_cells
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.readers import read_surface, read_surfaces
-from asperity.surfaces.synthesis import from_map, self_affine
+from asperity.surfaces.strip import Raised, Strip
+from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
 
 STRIP_WINDOWS = 8
 """Length of a synthesised strip for the filters, in windows."""
+
+HELD_POINTS = 2**22
+"""Points of a synthesised path that are held in memory (32 MiB); of longer paths, pieces are."""
 
 FORM_DEGREE = {"plane": 1, "quadratic": 2}
 
@@ -34,7 +38,7 @@ class Textures:
         Samples for the stiffness; empty where only a line is given.
     strips : tuple of HeightMap, shape (n, ny)
         Strips for the filters, as wide as the window.
-    path : HeightMap or None, shape (rows, ny)
+    path : Strip or None, shape (rows, ny)
         Texture of the path with its neighbourhood; None where the path is a line.
     line : ndarray, shape (rows,)
         Line texture of the path, m, peaks positive.
@@ -55,7 +59,7 @@ class Textures:
 
     maps: tuple[HeightMap, ...]
     strips: tuple[HeightMap, ...]
-    path: HeightMap | None
+    path: Strip | None
     line: NDArray[np.float64]
     start: float
     before: int
@@ -77,10 +81,10 @@ class Textures:
         return self.line if self.trajectory is None else self.line + self.trajectory
 
     @property
-    def surface(self) -> NDArray[np.float64]:
-        """Heights of the path with its defects, m, shape (rows, ny)."""
+    def surface(self) -> Strip:
+        """The path with its defects, shape (rows, ny)."""
         assert self.path is not None
-        return self.path.heights if self.defects is None else self.path.heights + self.defects[:, None]
+        return self.path if self.defects is None else Raised(self.path, self.defects)
 
 
 def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:
@@ -191,7 +195,7 @@ def strips_of(
     return strips, "filter strips synthesised in their likeness"
 
 
-def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> tuple[HeightMap, str]:
+def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> tuple[Strip, str]:
     """Take the path from maps.
 
     Parameters
@@ -205,8 +209,9 @@ def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> t
 
     Returns
     -------
-    path : HeightMap
-        Cut from the first map where it is large enough, else synthesised in their likeness.
+    path : Strip
+        Cut from the first map where it is large enough, else synthesised in their likeness, in pieces
+        where it is long.
     origin : str
         Which of the two.
     """
@@ -215,7 +220,29 @@ def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> t
         middle = (first.shape[1] - shape[1]) // 2
         heights = first.heights[: shape[0], middle : middle + shape[1]]
         return HeightMap(heights - heights.mean(), first.spacing, first.source), "path cut from the first"
-    return from_map(maps, shape, seed), "path synthesised in their likeness"
+    origin = "path synthesised in their likeness"
+    if shape[0] * shape[1] > HELD_POINTS:
+        return long_strip_like(maps, shape, seed), f"{origin}, in pieces"
+    return from_map(maps, shape, seed), origin
+
+
+def middle_line(strip: Strip) -> NDArray[np.float64]:
+    """Take the line in the middle of a strip.
+
+    Parameters
+    ----------
+    strip : Strip, shape (rows, ny)
+        Any strip.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        Heights, m.
+    """
+    rows, ny = strip.shape
+    piece = max(1, HELD_POINTS // ny)
+    lines = [strip.rows(i, min(i + piece, rows))[:, ny // 2].copy() for i in range(0, rows, piece)]
+    return np.concatenate(lines)
 
 
 def synthesised(surface: Surface, spacing: float, shape: tuple[int, int], seed: int) -> HeightMap:
@@ -237,17 +264,31 @@ def synthesised(surface: Surface, spacing: float, shape: tuple[int, int], seed: 
     HeightMap
         Gaussian texture.
     """
+    return self_affine(shape, (spacing, spacing), **_self_affine_keys(surface), seed=seed)
+
+
+def synthesised_path(surface: Surface, spacing: float, shape: tuple[int, int], seed: int) -> Strip:
+    """Synthesise a self-affine path, in pieces where it is long.
+
+    Parameters
+    ----------
+    surface, spacing, shape, seed
+        As in `synthesised`.
+
+    Returns
+    -------
+    Strip
+        Gaussian texture.
+    """
+    if shape[0] * shape[1] <= HELD_POINTS:
+        return synthesised(surface, spacing, shape, seed)
+    return long_self_affine(shape, (spacing, spacing), **_self_affine_keys(surface), seed=seed)
+
+
+def _self_affine_keys(surface: Surface) -> dict[str, float]:
     longest, shortest = surface.band
     assert surface.rms is not None
     assert longest is not None
     assert shortest is not None
-    return self_affine(
-        shape,
-        (spacing, spacing),
-        rms=surface.rms,
-        hurst=surface.hurst,
-        longest=longest,
-        shortest=shortest,
-        anisotropy=surface.anisotropy,
-        seed=seed,
-    )
+    keys = {"rms": surface.rms, "hurst": surface.hurst, "anisotropy": surface.anisotropy}
+    return keys | {"longest": longest, "shortest": shortest}

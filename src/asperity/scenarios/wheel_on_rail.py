@@ -163,4 +163,5 @@ def _run_key(case: WheelOnRailCase, textures: Textures) -> str:
     sections = [s.model_dump(mode="json") for s in (case.wheel, case.track, case.numerics)]
     files = [case.wheel.profile, case.track.rail_profile, case.wheel.modes, case.wheel.receptance]
     content = [path.read_bytes().hex() for path in files if path is not None]
-    return content_key("direct-rail", textures.surface, scalars, contact, sections, content)
+    heights = textures.surface.rows(0, len(textures.line))
+    return content_key("direct-rail", heights, scalars, contact, sections, content)

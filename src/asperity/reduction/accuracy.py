@@ -1,0 +1,44 @@
+"""How tightly a contact is solved, by what its force is for."""
+
+from __future__ import annotations
+
+from asperity.errors import InputError
+
+FORCE_ACCURACY = 1e-4
+"""Largest relative error of a scanned force: 0.05 dB at most in any band of the force spectrum of a path."""
+FILTER_SHARE = 0.1
+"""Accuracy of the scans for contact filters, relative to that: short waves are small parts of a force."""
+SAFETY = 2.0
+"""Residual asked for, below the accuracy of the force: see `rtol_for`."""
+
+
+def rtol_for(accuracy: float) -> float:
+    """Tolerance of a contact solution whose force shall have a relative accuracy.
+
+    Parameters
+    ----------
+    accuracy : float
+        Largest relative error of the force, above 0 and at most 0.1.
+
+    Returns
+    -------
+    float
+        `rtol` of `HalfSpace.solve`: the largest complementarity residual relative to the largest overlap.
+
+    Raises
+    ------
+    InputError
+        If the accuracy is out of range.
+
+    Notes
+    -----
+    A residual e on the contact set acts as an error of the approach: by reciprocity it changes the force by
+    no more than k_t max|e|. Relative to the force, with F growing as the n-th power of the overlap, that is n
+    times the relative residual: 1.5 for Hertz, 1 to 3 for rough contacts, if the residual had everywhere its
+    largest value and one sign. It alternates: on smooth, rough and flowing contacts at light and heavy
+    loads, the largest error found is 1.3 times the relative residual, hence half the accuracy is asked for
+    (``benchmarks/force_accuracy.py``).
+    """
+    if not 0.0 < accuracy <= 0.1:
+        raise InputError("accuracy of the force", accuracy, "a number above 0, at most 0.1", "Try 1e-4.")
+    return accuracy / SAFETY

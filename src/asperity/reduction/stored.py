@@ -1,0 +1,84 @@
+"""Forces of a scan that are too many for memory: read from the cache where they are looked at."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import ComputationError
+from asperity.store import Cache
+
+
+@dataclass(frozen=True, eq=False)
+class StoredForces:
+    """Forces of a scan, block by block in a cache.
+
+    Attributes
+    ----------
+    cache : Cache
+        Holds the blocks.
+    keys : tuple of str
+        Name of each block in the cache.
+    block : int
+        Positions in a block; the last may have fewer.
+    shape : tuple of int
+        Number of states and positions.
+    """
+
+    cache: Cache
+    keys: tuple[str, ...]
+    block: int
+    shape: tuple[int, ...]
+
+    def columns(self, first: int, stop: int) -> NDArray[np.float64]:
+        """Forces at some positions.
+
+        Parameters
+        ----------
+        first, stop : int
+            The positions first … stop − 1.
+
+        Returns
+        -------
+        ndarray, shape (states, stop − first)
+            Forces, N.
+
+        Raises
+        ------
+        ComputationError
+            If a block is no longer in the cache.
+        """
+        stop = min(stop, self.shape[1])
+        blocks = range(first // self.block, (stop - 1) // self.block + 1) if stop > first else range(0)
+        parts = [np.empty((self.shape[0], 0)), *(self._forces(i) for i in blocks)]
+        offset = blocks.start * self.block
+        return np.concatenate(parts, axis=1)[:, first - offset : stop - offset]
+
+    def _forces(self, index: int) -> NDArray[np.float64]:
+        found = self.cache.get(self.keys[index])
+        if found is None:
+            raise ComputationError(
+                "forces of the path are no longer in the cache",
+                "the run again: it recomputes what is missing",
+            )
+        return found["forces"]
+
+
+def columns(forces: NDArray[np.float64] | StoredForces, first: int, stop: int) -> NDArray[np.float64]:
+    """Forces at some positions, in memory or stored.
+
+    Parameters
+    ----------
+    forces : ndarray (states, positions), or StoredForces
+        Forces, N.
+    first, stop : int
+        The positions first … stop − 1.
+
+    Returns
+    -------
+    ndarray, shape (states, stop − first)
+        Forces, N.
+    """
+    return forces[:, first:stop] if isinstance(forces, np.ndarray) else forces.columns(first, stop)
