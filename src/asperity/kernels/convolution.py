@@ -8,6 +8,7 @@ its spectrum is real, and the same in both senses but for the order.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -75,6 +76,7 @@ def convolution(table: NDArray[np.float64], mx: int, my: int, dtype: Any = np.fl
     )  # fmt: skip
 
 
+@lru_cache
 def _turn(m: int, dtype: Any) -> NDArray:
     return np.ascontiguousarray(roots(4 * m, dtype)[:m])
 
@@ -94,8 +96,7 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
     ndarray
         Spectrum, of the table's shape.
     """
-    m = table.shape[axis]
-    turn = np.exp(-0.5j * np.pi * np.arange(m) / m)
+    turn = _turn(table.shape[axis], np.float64) @ [1.0, 1.0j]
     turned = table * (turn if axis else turn[:, None])
     return 2.0 * scipy.fft.fft(turned, axis=axis).real - table.take([0], axis)
 

@@ -6,6 +6,7 @@ transforms that sort themselves (T. G. Stockham, AFIPS Conf. Proc. 28 (1966) 229
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from asperity.kernels.lanes import load, store
 from asperity.kernels.options import INNER, LOOP
 
 
+@lru_cache
 def smooth_length(n: int) -> int:
     """Smallest length that transforms fast.
 
@@ -56,6 +58,7 @@ def factors(n: int) -> list[int]:
     return [*radices, n] if n > 1 or not radices else radices
 
 
+@lru_cache
 def roots(n: int, dtype: Any) -> NDArray:
     """Powers of the root of unity exp(−2πi/n).
 

@@ -106,17 +106,24 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(coefficients)
 
 
-@njit(**LOOP, **REASSOCIATE)
-def _precondition(
-    pressure: NDArray[np.float64], b: Box, ny: int, hardness: float, taps: NDArray[np.float64]
-) -> tuple[float, float]:
-    """Apply the stencil to the residual on the free set; return residual·z and (residual − previous)·z."""
-    nx = pressure.shape[0]
-    for i in range(nx):
+@njit(**LOOP)
+def _free(pressure: NDArray[np.float64], b: Box, ny: int, hardness: float, tolerance: float) -> int:
+    """Mask the residual with the free set; return how many cells violate complementarity."""
+    violated = 0
+    for i in range(pressure.shape[0]):
         p, g, m = pressure[i], b.residual[i], b.masked[i + REACH]
         for j in range(ny):
-            free = (p[j] > 0.0 or g[j] < 0.0) and (p[j] < hardness or g[j] > 0.0)
-            m[j + REACH] = g[j] if free else 0.0
+            r = g[j]
+            masked = r if ((p[j] > 0.0) | (r < 0.0)) & ((p[j] < hardness) | (r > 0.0)) else 0.0
+            m[j + REACH] = masked
+            violated += not abs(masked) <= tolerance
+    return violated
+
+
+@njit(**LOOP, **REASSOCIATE)
+def _precondition(b: Box, ny: int, taps: NDArray[np.float64]) -> tuple[float, float]:
+    """Apply the stencil to the residual on the free set; return residual·z and (residual − previous)·z."""
+    nx = b.z.shape[0]
     c0, c1, c2, c3, c4, c5 = taps[0], taps[1], taps[2], taps[3], taps[4], taps[5]
     rho, change = 0.0, 0.0
     for i in range(nx):
@@ -193,18 +200,6 @@ def _correct(b: Box, ny: int, mirrored: NDArray[np.float64]) -> None:
                         g[j] += amount * influence[j]
 
 
-@njit(**LOOP, **REASSOCIATE)
-def _complementarity(b: Box, ny: int, hardness: float) -> float:
-    """Largest violation of the complementarity conditions, in the unit of the residual."""
-    worst = 0.0
-    for i in range(b.pressure.shape[0]):
-        p, r = b.pressure[i], b.residual[i]
-        for j in range(ny):
-            g = -r[j] if p[j] <= 0.0 else (abs(r[j]) if p[j] < hardness else r[j])
-            worst = max(worst, g)
-    return worst
-
-
 @njit(**LOOP)
 def _true_residual(c: Convolution, b: Box, ny: int) -> None:
     convolve(c, b.pressure, ny, b.work, b.residual)
@@ -260,12 +255,14 @@ def survey(c: Convolution, b: Box, ny: int, hardness: float) -> tuple[float, int
     """
     _true_residual(c, b, ny)
     first, end, left, right = b.pressure.shape[0], 0, ny, 0
+    worst = 0.0
     for i in range(b.pressure.shape[0]):
         for j in range(ny):
-            if b.pressure[i, j] > 0.0 or b.residual[i, j] < 0.0:
+            p, r = b.pressure[i, j], b.residual[i, j]
+            if p > 0.0 or r < 0.0:
+                worst = max(worst, abs(r) if p < hardness else r)
                 first, end = min(first, i), i + 1
                 left, right = min(left, j), max(right, j + 1)
-    worst = _complementarity(b, ny, hardness)
     return (worst, first, end, left, right) if end else (worst, 0, 0, 0, 0)
 
 
@@ -327,10 +324,10 @@ def solve(
     _copy(outer.pressure, row, column, b.pressure, ny)
     _copy(outer.residual, row, column, b.residual, ny)
     rho, iteration, definite = 0.0, 0, True
-    while iteration < max_iterations and _complementarity(b, ny, hardness) > tolerance:
+    while iteration < max_iterations and _free(b.pressure, b, ny, hardness, tolerance):
         iteration += 1
         before = rho
-        rho, change = _precondition(b.pressure, b, ny, hardness, taps)
+        rho, change = _precondition(b, ny, taps)
         slope = _turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
         if slope >= 0.0:  # not a descent direction any more: restart from the preconditioned gradient
             slope = _turn(b, ny, 0.0)
@@ -373,23 +370,22 @@ def unit_indentation(
     bool
         Whether the residual fell below `rtol`.
     """
-    nx, rho, worst = b.overlap.shape[0], 0.0, 1.0
+    nx, rho = b.overlap.shape[0], 0.0
     for i in range(nx):
         for j in range(ny):
             b.residual[i, j] = -b.overlap[i, j]
     for _ in range(max_iterations):
-        if worst <= rtol:
+        # a positive "pressure" on the set marks it as free
+        if not _free(b.overlap, b, ny, np.inf, rtol):
             return True
         before = rho
-        # a positive "pressure" on the set marks it as free
-        rho, change = _precondition(b.overlap, b, ny, np.inf, taps)
+        rho, change = _precondition(b, ny, taps)
         slope = _turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
         convolve(c, b.direction, ny, b.work, b.response)
-        step, worst = -slope / _dot(b.direction, b.response, ny), 0.0
+        step = -slope / _dot(b.direction, b.response, ny)
         for i in range(nx):
             for j in range(ny):
                 b.previous[i, j] = b.residual[i, j]
                 b.pressure[i, j] += step * b.direction[i, j]
                 b.residual[i, j] += step * b.response[i, j] * b.overlap[i, j]
-                worst = max(worst, abs(b.residual[i, j]))
     return False
