@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ laws = ["hertz", "linear"]
 [surface]
 spectrum = "iso3095"
 """
-SWEEP = {"ball.load": ["5 N", "6 N"], "seed": list(range(1, 11))}
+SWEEP = {"ball.load": ["5 N", "6 N"], "seed": list(range(1, 8))}
 
 
 @pytest.fixture(scope="module")
@@ -60,11 +61,12 @@ def test_a_study_survives_a_killed_worker(scheduler, monkeypatch):
         table = asperity.study("ball.toml", SWEEP, executor=executor, progress=kill_half_way)
         assert workers[0] not in client_processes(scheduler)
     assert killed
-    assert killed[0] < 20
-    assert calls == list(range(21))
+    assert killed[0] < 14
+    assert calls == list(range(15))
     assert table["completed"].all()
     monkeypatch.setenv("ASPERITY_CACHE", "local")
-    xarray.testing.assert_identical(table, asperity.study("ball.toml", SWEEP, workers=2))
+    with ThreadPoolExecutor(1) as here:
+        xarray.testing.assert_identical(table, asperity.study("ball.toml", SWEEP, executor=here))
 
 
 def client_processes(scheduler):
