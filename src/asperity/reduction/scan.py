@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.contact.device import Device, find_device
 from asperity.contact.halfspace import HalfSpace
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
+from asperity.kernels.continuation import continued
 from asperity.reduction import batched_scan
 from asperity.reduction.pool import in_order
 from asperity.reduction.stored import StoredForces
@@ -370,22 +371,25 @@ def _solve_block(
     nx, stride = job.body.shape[0], job.stride
     forces = np.zeros((len(job.approaches), len(planes)))
     counts = np.zeros(4, dtype=np.int64)
-    previous: list[NDArray | None] = [None] * len(job.approaches)
+    cap = half_space.hardness or np.inf
+    known: list[list[NDArray]] = [[] for _ in job.approaches]  # pressures at the last two positions
     for m, plane in enumerate(planes):
         gap = job.body + plane - rows[m * stride : m * stride + nx]
         touch = gap.min()
-        below: NDArray | None = None
+        below: list[tuple[float, NDArray]] = []
         for i, approach in enumerate(job.approaches):
             if approach <= touch:
-                previous[i] = None
+                known[i] = []
                 continue
-            start = previous[i]
-            if start is None:
-                start = below
-            elif stride < nx:  # the surface moved against the body: so did the pressure on its asperities
-                start = np.vstack([start[stride:], np.zeros((stride, start.shape[1]))])
+            start = None
+            if known[i] and stride < nx:  # pressures move with the asperities, against the body
+                start = continued(known[i][-1], known[i][0], stride, len(known[i]) - 1.0, cap)
+            elif below:
+                (a, p), (b, q) = below[-1], below[-2:][0]
+                start = continued(p, q, 0, (approach - a) / (a - b) if a > b else 0.0, cap)
             contact = half_space.at_approach(gap, float(approach), start, job.rtol)
-            previous[i] = below = contact.pressure
+            known[i] = [*known[i][-1:], contact.pressure]
+            below = [*below[-1:], (float(approach), contact.pressure)]
             forces[i, m] = contact.force
             counts += (1, contact.iterations, not contact.converged, contact.edge_share > TRUNCATED)
     return forces, counts
