@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -328,6 +329,21 @@ class TestExecutors:
             worker = int(started.stdout.readline())
             started.kill()
         assert ended(worker)
+
+    def test_an_interrupt_keeps_what_is_finished_and_leaves_no_process(self):
+        Path("study.toml").write_text(f'case = "ball.toml"\n[sweep]\nseed = {list(range(400))}\n')
+        Path("script.py").write_text(
+            "from asperity.cli import main\nif __name__ == '__main__':\n    main()\n"
+        )
+        program = [sys.executable, "script.py", "study", "study.toml", "--workers", "1"]
+        with subprocess.Popen(program, stderr=subprocess.PIPE, text=True, process_group=0) as started:
+            while not list(Path("cache").glob("member-*.npz")):
+                time.sleep(0.1)
+            os.killpg(started.pid, signal.SIGINT)  # as a terminal does
+            said = started.stderr.read()  # to its end: when the last process that may write to it has ended
+        assert started.returncode == 130
+        assert "run the same command again to continue" in said
+        assert "Traceback" not in said
 
     def test_workers_are_at_least_one(self):
         with pytest.raises(InputError, match="workers: received 0; allowed: a whole number greater than 0"):

@@ -154,7 +154,7 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
         pool.shutdown()
     finally:
         held.close()
-        pool.shutdown(wait=False, cancel_futures=True)
+        pool.shutdown(cancel_futures=True)
 
 
 def _begin(watched: Connection, threads: int) -> None:
@@ -190,6 +190,11 @@ def cluster(address: str) -> Iterator[Executor]:
     ------
     InputError
         If the package distributed is not there, or no scheduler answers.
+
+    Notes
+    -----
+    A process computes one member at a time, whatever the number of its threads: start workers of one thread
+    each, ``dask worker --nworkers -1 --nthreads 1``, with ``ASPERITY_THREADS=1`` in their environment.
     """
     allowed = "the address of a Dask scheduler that runs, as tcp://127.0.0.1:8786"
     try:
