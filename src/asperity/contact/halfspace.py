@@ -127,8 +127,8 @@ class HalfSpace:
         self.spacing = (float(spacing[0]), float(spacing[1]))
         self.modulus = float(modulus)
         self.hardness = None if hardness is None else float(hardness)
-        reach = smooth_length(max(*self.shape, 32))
-        self._table = influence_table(reach, reach, *self.spacing) / (math.pi * self.modulus)
+        reach_x, reach_y = (smooth_length(max(n, 32)) for n in self.shape)
+        self._table = influence_table(reach_x, reach_y, *self.spacing) / (math.pi * self.modulus)
         self._mirrored = np.concatenate([self._table[:, :0:-1], self._table], axis=1)
         self._taps = inverse_stencil(self._table)
         self._convolutions: dict[tuple[int, int], Convolution] = {}

@@ -17,7 +17,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.fourier import factors, roots, transform
-from asperity.kernels.lanes import lanes, load, store, transpose
+from asperity.kernels.lanes import LANES, load, store, transpose
 from asperity.kernels.options import INNER, LOOP
 
 
@@ -34,8 +34,6 @@ class Convolution(NamedTuple):
         exp(−iπj/2m).
     spectrum : ndarray, shape (⌈mx / lanes⌉ my lanes,)
         Spectrum at the frequencies (k + ¼)/m, a quarter of 1/(mx my) of it.
-    lanes : int
-        Numbers in a vector of this precision.
     """
 
     radices_x: NDArray[np.int64]
@@ -45,10 +43,9 @@ class Convolution(NamedTuple):
     turn_x: NDArray
     turn_y: NDArray
     spectrum: NDArray
-    lanes: int
 
 
-def convolution(table: NDArray[np.float64], mx: int, my: int, dtype: Any = np.float64) -> Convolution:
+def convolution(table: NDArray[np.float64], mx: int, my: int) -> Convolution:
     """Prepare the convolution with an even kernel.
 
     Parameters
@@ -57,28 +54,25 @@ def convolution(table: NDArray[np.float64], mx: int, my: int, dtype: Any = np.fl
         Kernel at non-negative separations.
     mx, my : int
         Largest box, cells, from `fourier.smooth_length`.
-    dtype : dtype
-        float32 or float64: the precision of the convolution.
 
     Returns
     -------
     Convolution
         For `convolve`.
     """
-    width = lanes(dtype)
     quarter = quarter_spectrum(quarter_spectrum(table[:mx, :my], 1), 0) / (2.0 * mx * my)
-    blocks = np.zeros((-(-mx // width) * width, my))
+    blocks = np.zeros((-(-mx // LANES) * LANES, my))
     blocks[:mx] = quarter
-    spectrum = blocks.reshape(-1, width, my).transpose(0, 2, 1).astype(dtype).ravel()
+    spectrum = blocks.reshape(-1, LANES, my).transpose(0, 2, 1).ravel()
     return Convolution(
-        np.array(factors(mx)), np.array(factors(my)), roots(mx, dtype), roots(my, dtype),
-        _turn(mx, dtype), _turn(my, dtype), spectrum, width,
+        np.array(factors(mx)), np.array(factors(my)), roots(mx), roots(my),
+        _turn(mx), _turn(my), spectrum,
     )  # fmt: skip
 
 
 @lru_cache
-def _turn(m: int, dtype: Any) -> NDArray:
-    return np.ascontiguousarray(roots(4 * m, dtype)[:m])
+def _turn(m: int) -> NDArray:
+    return np.ascontiguousarray(roots(4 * m)[:m])
 
 
 def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
@@ -96,27 +90,25 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
     ndarray
         Spectrum, of the table's shape.
     """
-    turn = _turn(table.shape[axis], np.float64) @ [1.0, 1.0j]
+    turn = _turn(table.shape[axis]) @ [1.0, 1.0j]
     turned = table * (turn if axis else turn[:, None])
     return 2.0 * scipy.fft.fft(turned, axis=axis).real - table.take([0], axis)
 
 
-def pitch(ny: int, dtype: Any = np.float64) -> int:
+def pitch(ny: int) -> int:
     """Length of the rows of a field of `ny` columns, filled up to whole vectors.
 
     Parameters
     ----------
     ny : int
         Columns.
-    dtype : dtype
-        float32 or float64.
 
     Returns
     -------
     int
         Columns with those that stay zero.
     """
-    return -(-ny // lanes(dtype)) * lanes(dtype)
+    return -(-ny // LANES) * LANES
 
 
 def workspace(c: Convolution) -> NDArray:
@@ -132,8 +124,8 @@ def workspace(c: Convolution) -> NDArray:
     ndarray
         For `convolve`, as often as liked.
     """
-    mx, my = (-(-len(turn) // c.lanes) * c.lanes for turn in (c.turn_x, c.turn_y))
-    return np.zeros(2 * mx * my + 6 * max(mx, my) * c.lanes, dtype=c.spectrum.dtype)
+    mx, my = (-(-len(turn) // LANES) * LANES for turn in (c.turn_x, c.turn_y))
+    return np.zeros(2 * mx * my + 6 * max(mx, my) * LANES)
 
 
 @njit(**INNER)
@@ -146,18 +138,18 @@ def _clear(buffer: NDArray, first: int, end: int) -> None:
 def _turn_in(c: Convolution, field: NDArray, row: int, first: int, nx: int, buffer: NDArray) -> None:
     """Turn a block of real columns into the buffer, zero behind the box."""
     for i in range(nx):
-        re, o = load(field, i * row + first), 2 * i * c.lanes
+        re, o = load(field, i * row + first), 2 * i * LANES
         store(buffer, o, c.turn_x[i, 0] * re)
-        store(buffer, o + c.lanes, c.turn_x[i, 1] * re)
-    _clear(buffer, 2 * nx * c.lanes, 2 * len(c.turn_x) * c.lanes)
+        store(buffer, o + LANES, c.turn_x[i, 1] * re)
+    _clear(buffer, 2 * nx * LANES, 2 * len(c.turn_x) * LANES)
 
 
 @njit(**LOOP)
 def _turn_out(c: Convolution, buffer: NDArray, row: int, first: int, nx: int, out: NDArray) -> None:
     """Turn a block back and keep its real part."""
     for i in range(nx):
-        o = 2 * i * c.lanes
-        re, im = load(buffer, o), load(buffer, o + c.lanes)
+        o = 2 * i * LANES
+        re, im = load(buffer, o), load(buffer, o + LANES)
         store(out, i * row + first, c.turn_x[i, 0] * re - c.turn_x[i, 1] * im)
 
 
@@ -169,33 +161,33 @@ def _turned(re: Any, im: Any, cosine: Any, sine: Any) -> Any:
 @njit(**LOOP)
 def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: NDArray, s: NDArray) -> None:
     """Convolve across in both senses of turning; the conjugate of the sum replaces the rows."""
-    width, my, minus = c.lanes, len(c.turn_y), c.turn_y.dtype.type(-1.0)
+    my = len(c.turn_y)
     for sense in range(2):
-        sign = c.turn_y.dtype.type(1 - 2 * sense)
+        sign = 1.0 - 2.0 * sense
         for j in range(ny):
-            o = 2 * j * width
-            re, im = _turned(load(rows, o), load(rows, o + width), c.turn_y[j, 0], sign * c.turn_y[j, 1])
+            o = 2 * j * LANES
+            re, im = _turned(load(rows, o), load(rows, o + LANES), c.turn_y[j, 0], sign * c.turn_y[j, 1])
             store(a, o, re)
-            store(a, o + width, im)
-        _clear(a, 2 * ny * width, 2 * my * width)
-        swapped = transform(a, b, c.radices_y, c.roots_y, width)
+            store(a, o + LANES, im)
+        _clear(a, 2 * ny * LANES, 2 * my * LANES)
+        swapped = transform(a, b, c.radices_y, c.roots_y)
         x, y = (b, a) if swapped else (a, b)
         for k in range(my):
-            factor = load(c.spectrum, (block * my + (k if sense == 0 or k == 0 else my - k)) * width)
-            o = 2 * k * width
+            factor = load(c.spectrum, (block * my + (k if sense == 0 or k == 0 else my - k)) * LANES)
+            o = 2 * k * LANES
             store(x, o, factor * load(x, o))
-            store(x, o + width, minus * (factor * load(x, o + width)))
-        if transform(x, y, c.radices_y, c.roots_y, width):
+            store(x, o + LANES, -1.0 * (factor * load(x, o + LANES)))
+        if transform(x, y, c.radices_y, c.roots_y):
             x = y
         for j in range(ny):
-            o = 2 * j * width
-            re, im = _turned(load(x, o), load(x, o + width), c.turn_y[j, 0], sign * c.turn_y[j, 1])
+            o = 2 * j * LANES
+            re, im = _turned(load(x, o), load(x, o + LANES), c.turn_y[j, 0], sign * c.turn_y[j, 1])
             if sense == 0:
                 store(s, o, re)
-                store(s, o + width, im)
+                store(s, o + LANES, im)
             else:
                 store(rows, o, re + load(s, o))
-                store(rows, o + width, im + load(s, o + width))
+                store(rows, o + LANES, im + load(s, o + LANES))
 
 
 @njit(**LOOP, nogil=True)
@@ -207,7 +199,7 @@ def convolve(c: Convolution, field: NDArray, ny: int, work: NDArray, out: NDArra
     c : Convolution
         From `convolution`; the box has at most its cells.
     field : ndarray, shape (nx, pitch)
-        Field on the box; zero in the columns from `ny` on. Of the convolution's precision.
+        Field on the box; zero in the columns from `ny` on.
     ny : int
         Columns of the box.
     work : ndarray
@@ -215,25 +207,25 @@ def convolve(c: Convolution, field: NDArray, ny: int, work: NDArray, out: NDArra
     out : ndarray, shape (nx, pitch)
         Receives the convolution; columns from `ny` on have no meaning.
     """
-    width, mx = c.lanes, len(c.turn_x)
+    mx = len(c.turn_x)
     nx, row = field.shape
-    blocks = -(-mx // width)
-    size = 2 * max(blocks * width, -(-len(c.turn_y) // width) * width) * width
+    blocks = -(-mx // LANES)
+    size = 2 * max(blocks * LANES, -(-len(c.turn_y) // LANES) * LANES) * LANES
     a, b, s = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
-    rows, line = work[3 * size :], 2 * row * width
-    for first in range(0, row, width):
+    rows, line = work[3 * size :], 2 * row * LANES
+    for first in range(0, row, LANES):
         _turn_in(c, field, row, first, nx, a)
-        x = b if transform(a, b, c.radices_x, c.roots_x, width) else a
+        x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for k in range(blocks):
-            for part in range(0, 2 * width, width):
-                o = k * line + 2 * first * width + part
-                transpose(x, 2 * k * width * width + part, 2 * width, rows, o, 2 * width)
+            for part in range(0, 2 * LANES, LANES):
+                o = k * line + 2 * first * LANES + part
+                transpose(x, 2 * k * LANES * LANES + part, 2 * LANES, rows, o, 2 * LANES)
     for k in range(blocks):
         _across(c, k, rows[k * line : (k + 1) * line], ny, a, b, s)
-    for first in range(0, row, width):
+    for first in range(0, row, LANES):
         for k in range(blocks):
-            for part in range(0, 2 * width, width):
-                o = k * line + 2 * first * width + part
-                transpose(rows, o, 2 * width, a, 2 * k * width * width + part, 2 * width)
-        x = b if transform(a, b, c.radices_x, c.roots_x, width) else a
+            for part in range(0, 2 * LANES, LANES):
+                o = k * line + 2 * first * LANES + part
+                transpose(rows, o, 2 * LANES, a, 2 * k * LANES * LANES + part, 2 * LANES)
+        x = b if transform(a, b, c.radices_x, c.roots_x) else a
         _turn_out(c, x, row, first, nx, out)

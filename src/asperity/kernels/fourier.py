@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.lanes import load, store
+from asperity.kernels.lanes import LANES, load, store
 from asperity.kernels.options import INNER, LOOP
 
 
@@ -59,15 +59,13 @@ def factors(n: int) -> list[int]:
 
 
 @lru_cache
-def roots(n: int, dtype: Any) -> NDArray:
+def roots(n: int) -> NDArray:
     """Powers of the root of unity exp(−2πi/n).
 
     Parameters
     ----------
     n : int
         Length.
-    dtype : dtype
-        float32 or float64.
 
     Returns
     -------
@@ -75,106 +73,106 @@ def roots(n: int, dtype: Any) -> NDArray:
         Real and imaginary parts.
     """
     turn = np.exp(-2j * np.pi * np.arange(n) / n)
-    return np.stack([turn.real, turn.imag], axis=1).astype(dtype)
+    return np.stack([turn.real, turn.imag], axis=1)
 
 
 @njit(**INNER)
-def _put(target: NDArray, index: int, width: int, re: Any, im: Any, w: NDArray, power: int) -> None:
+def _put(target: NDArray, index: int, re: Any, im: Any, w: NDArray, power: int) -> None:
     c, s = w[power, 0], w[power, 1]
     store(target, index, c * re - s * im)
-    store(target, index + width, c * im + s * re)
+    store(target, index + LANES, c * im + s * re)
 
 
 @njit(**INNER)
-def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray, width: int) -> None:
-    m, unit, row = n // 2, w.shape[0] // n, 2 * width
+def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
+    m, unit, row = n // 2, w.shape[0] // n, 2 * LANES
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 2 * p) * row
-            a, ai = load(x, i), load(x, i + width)
+            a, ai = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + width)
+            b, bi = load(x, i), load(x, i + LANES)
             store(y, o, a + b)
-            store(y, o + width, ai + bi)
-            _put(y, o + stride * row, width, a - b, ai - bi, w, p * unit)
+            store(y, o + LANES, ai + bi)
+            _put(y, o + stride * row, a - b, ai - bi, w, p * unit)
 
 
 @njit(**INNER)
-def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray, width: int) -> None:
-    m, unit, row = n // 3, w.shape[0] // n, 2 * width
-    half, sine = w.dtype.type(0.5), w.dtype.type(0.75**0.5)
+def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
+    m, unit, row = n // 3, w.shape[0] // n, 2 * LANES
+    half, sine = 0.5, 0.75**0.5
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 3 * p) * row
-            a, ai = load(x, i), load(x, i + width)
+            a, ai = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + width)
+            b, bi = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            c, ci = load(x, i), load(x, i + width)
+            c, ci = load(x, i), load(x, i + LANES)
             t, ti = b + c, bi + ci
             u, ui = a - half * t, ai - half * ti
             v, vi = sine * (bi - ci), sine * (c - b)
             store(y, o, a + t)
-            store(y, o + width, ai + ti)
-            _put(y, o + stride * row, width, u + v, ui + vi, w, p * unit)
-            _put(y, o + 2 * stride * row, width, u - v, ui - vi, w, 2 * p * unit)
+            store(y, o + LANES, ai + ti)
+            _put(y, o + stride * row, u + v, ui + vi, w, p * unit)
+            _put(y, o + 2 * stride * row, u - v, ui - vi, w, 2 * p * unit)
 
 
 @njit(**INNER)
-def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray, width: int) -> None:
-    m, unit, row = n // 4, w.shape[0] // n, 2 * width
+def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
+    m, unit, row = n // 4, w.shape[0] // n, 2 * LANES
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 4 * p) * row
-            a, ai = load(x, i), load(x, i + width)
+            a, ai = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + width)
+            b, bi = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            c, ci = load(x, i), load(x, i + width)
+            c, ci = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            d, di = load(x, i), load(x, i + width)
+            d, di = load(x, i), load(x, i + LANES)
             s, si, t, ti = a + c, ai + ci, a - c, ai - ci
             u, ui, v, vi = b + d, bi + di, bi - di, d - b
             store(y, o, s + u)
-            store(y, o + width, si + ui)
-            _put(y, o + stride * row, width, t + v, ti + vi, w, p * unit)
-            _put(y, o + 2 * stride * row, width, s - u, si - ui, w, 2 * p * unit)
-            _put(y, o + 3 * stride * row, width, t - v, ti - vi, w, 3 * p * unit)
+            store(y, o + LANES, si + ui)
+            _put(y, o + stride * row, t + v, ti + vi, w, p * unit)
+            _put(y, o + 2 * stride * row, s - u, si - ui, w, 2 * p * unit)
+            _put(y, o + 3 * stride * row, t - v, ti - vi, w, 3 * p * unit)
 
 
 @njit(**INNER)
-def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray, width: int) -> None:
-    m, unit, row = n // 5, w.shape[0] // n, 2 * width
-    c1, c2 = w.dtype.type(np.cos(0.4 * np.pi)), w.dtype.type(np.cos(0.8 * np.pi))
-    s1, s2 = w.dtype.type(np.sin(0.4 * np.pi)), w.dtype.type(np.sin(0.8 * np.pi))
+def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
+    m, unit, row = n // 5, w.shape[0] // n, 2 * LANES
+    c1, c2 = np.cos(0.4 * np.pi), np.cos(0.8 * np.pi)
+    s1, s2 = np.sin(0.4 * np.pi), np.sin(0.8 * np.pi)
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 5 * p) * row
-            a, ai = load(x, i), load(x, i + width)
+            a, ai = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + width)
+            b, bi = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            c, ci = load(x, i), load(x, i + width)
+            c, ci = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            d, di = load(x, i), load(x, i + width)
+            d, di = load(x, i), load(x, i + LANES)
             i += stride * m * row
-            e, ei = load(x, i), load(x, i + width)
+            e, ei = load(x, i), load(x, i + LANES)
             t, ti, u, ui = b + e, bi + ei, c + d, ci + di
             v, vi, z, zi = bi - ei, e - b, ci - di, d - c
             store(y, o, a + t + u)
-            store(y, o + width, ai + ti + ui)
+            store(y, o + LANES, ai + ti + ui)
             f, fi = a + c1 * t + c2 * u, ai + c1 * ti + c2 * ui
             g, gi = s1 * v + s2 * z, s1 * vi + s2 * zi
-            _put(y, o + stride * row, width, f + g, fi + gi, w, p * unit)
-            _put(y, o + 4 * stride * row, width, f - g, fi - gi, w, 4 * p * unit)
+            _put(y, o + stride * row, f + g, fi + gi, w, p * unit)
+            _put(y, o + 4 * stride * row, f - g, fi - gi, w, 4 * p * unit)
             f, fi = a + c2 * t + c1 * u, ai + c2 * ti + c1 * ui
             g, gi = s2 * v - s1 * z, s2 * vi - s1 * zi
-            _put(y, o + 2 * stride * row, width, f + g, fi + gi, w, 2 * p * unit)
-            _put(y, o + 3 * stride * row, width, f - g, fi - gi, w, 3 * p * unit)
+            _put(y, o + 2 * stride * row, f + g, fi + gi, w, 2 * p * unit)
+            _put(y, o + 3 * stride * row, f - g, fi - gi, w, 3 * p * unit)
 
 
 @njit(**LOOP)
-def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray, width: int) -> bool:
+def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) -> bool:
     """Transform every column of a batch, forward and not normalised.
 
     Parameters
@@ -185,8 +183,6 @@ def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray, wi
         From `factors`.
     w : ndarray, shape (n, 2)
         From `roots`.
-    width : int
-        Lanes.
 
     Returns
     -------
@@ -197,12 +193,12 @@ def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray, wi
     for radix in radices:
         source, target = (y, x) if swapped else (x, y)
         if radix == 4:
-            _by_four(source, target, n, stride, w, width)
+            _by_four(source, target, n, stride, w)
         elif radix == 2:
-            _by_two(source, target, n, stride, w, width)
+            _by_two(source, target, n, stride, w)
         elif radix == 3:
-            _by_three(source, target, n, stride, w, width)
+            _by_three(source, target, n, stride, w)
         else:
-            _by_five(source, target, n, stride, w, width)
+            _by_five(source, target, n, stride, w)
         n, stride, swapped = n // radix, stride * radix, not swapped
     return swapped

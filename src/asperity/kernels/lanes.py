@@ -1,7 +1,7 @@
 """Vectors of numbers as values of compiled code: one instruction works on all lanes.
 
 Compilers do not find these vectors by themselves in a butterfly that reads and writes many rows, because the
-rows might overlap. A vector holds 64 bytes; processors with shorter registers use several.
+rows might overlap. A vector holds eight numbers; processors with shorter registers use several.
 """
 
 from __future__ import annotations
@@ -9,29 +9,13 @@ from __future__ import annotations
 import operator
 from typing import Any
 
-import numpy as np
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 
-BYTES = 64
-
-
-def lanes(dtype: Any) -> int:
-    """Count the numbers in a vector.
-
-    Parameters
-    ----------
-    dtype : dtype
-        float32 or float64.
-
-    Returns
-    -------
-    int
-        Numbers.
-    """
-    return BYTES // np.dtype(dtype).itemsize
+LANES = 8
+"""Numbers in a vector."""
 
 
 def _compiled(generator: Any) -> Any:
@@ -42,34 +26,33 @@ def _compiled(generator: Any) -> Any:
 class Lanes(types.Type):
     """Numba's type of a vector."""
 
-    def __init__(self, element: types.Float) -> None:
-        self.element = element
-        self.width = BYTES * 8 // element.bitwidth
-        super().__init__(name=f"Lanes({element})")
+    def __init__(self) -> None:
+        super().__init__(name="Lanes")
+
+
+VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+KIND = Lanes()
 
 
 @register_model(Lanes)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Lanes) -> None:
-        element = manager.lookup(kind.element).get_value_type()
-        super().__init__(manager, kind, ir.VectorType(element, kind.width))
+        super().__init__(manager, kind, VECTOR)
 
 
-def _pointer(context: Any, builder: Any, kind: Any, value: Any, index: Any) -> tuple[Any, int]:
-    """Pointer to the vector that starts at an element of a flat array, and its alignment."""
+def _pointer(context: Any, builder: Any, kind: Any, value: Any, index: Any) -> Any:
+    """Pointer to the vector that starts at an element of a contiguous array, counted flat."""
     data = context.make_array(kind)(context, builder, value).data
-    vector = context.get_value_type(Lanes(kind.dtype))
-    return builder.bitcast(builder.gep(data, [index]), ir.PointerType(vector)), kind.dtype.bitwidth // 8
+    return builder.bitcast(builder.gep(data, [index]), ir.PointerType(VECTOR))
 
 
-def _broadcast(builder: Any, scalar: Any, width: int) -> Any:
-    vector = ir.VectorType(scalar.type, width)
-    single = builder.insert_element(ir.Constant(vector, ir.Undefined), scalar, cgutils.int32_t(0))
-    return builder.shuffle_vector(single, single, _mask([0] * width))
+def _broadcast(builder: Any, scalar: Any) -> Any:
+    single = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), scalar, cgutils.int32_t(0))
+    return builder.shuffle_vector(single, single, _mask([0] * LANES))
 
 
 def _mask(lanes: list[int]) -> Any:
-    return ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), lanes)
+    return ir.Constant(ir.VectorType(ir.IntType(32), LANES), lanes)
 
 
 @_compiled
@@ -77,10 +60,9 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     """Vector of the elements from `index` on of a flat contiguous array."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        pointer, alignment = _pointer(context, builder, array, *arguments)
-        return builder.load(pointer, align=alignment)
+        return builder.load(_pointer(context, builder, array, *arguments), align=8)
 
-    return Lanes(array.dtype)(array, types.intp), generate
+    return KIND(array, types.intp), generate
 
 
 @_compiled
@@ -88,8 +70,7 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
     """Write a vector to the elements from `index` on of a flat contiguous array."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        pointer, alignment = _pointer(context, builder, array, *arguments[:2])
-        builder.store(arguments[2], pointer, align=alignment)
+        builder.store(arguments[2], _pointer(context, builder, array, *arguments[:2]), align=8)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, vector), generate
@@ -101,18 +82,16 @@ def _operation(symbol: Any, instruction: str) -> None:
     @type_callable(symbol)
     def typed(context: Any) -> Any:
         def typer(left: Any, right: Any) -> Any:
-            if isinstance(right, Lanes) and left in (right, right.element):
-                return right
-            return None
+            return KIND if right == KIND and left in (KIND, types.float64) else None
 
         return typer
 
     @lower_builtin(symbol, Lanes, Lanes)
-    @lower_builtin(symbol, types.Float, Lanes)
+    @lower_builtin(symbol, types.float64, Lanes)
     def lowered(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         left, right = arguments
         if not isinstance(signature.args[0], Lanes):
-            left = _broadcast(builder, left, signature.args[1].width)
+            left = _broadcast(builder, left)
         # "contract": a product and a sum may become one instruction
         return getattr(builder, instruction)(left, right, flags=("contract",))
 
@@ -128,16 +107,13 @@ def transpose(typing: Any, source: Any, start: Any, stride: Any, target: Any, fi
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         read, start_, stride_, written, first_, step_ = arguments
-        width = Lanes(source.dtype).width
         rows = []
-        for i in range(width):
+        for i in range(LANES):
             index = builder.add(start_, builder.mul(stride_, stride_.type(i)))
-            pointer, alignment = _pointer(context, builder, source, read, index)
-            rows.append(builder.load(pointer, align=alignment))
+            rows.append(builder.load(_pointer(context, builder, source, read, index), align=8))
         for i, row in enumerate(_transposed(builder, rows)):
             index = builder.add(first_, builder.mul(step_, step_.type(i)))
-            pointer, alignment = _pointer(context, builder, target, written, index)
-            builder.store(row, pointer, align=alignment)
+            builder.store(row, _pointer(context, builder, target, written, index), align=8)
         return context.get_dummy_value()
 
     n = types.intp
@@ -146,13 +122,12 @@ def transpose(typing: Any, source: Any, start: Any, stride: Any, target: Any, fi
 
 def _transposed(builder: Any, rows: list[Any]) -> list[Any]:
     """Swap blocks off the diagonal, from the largest to the smallest."""
-    width = len(rows)
-    block = width // 2
+    block = LANES // 2
     while block:
-        lower = [lane if not lane & block else width + lane - block for lane in range(width)]
-        upper = [lane + block if not lane & block else width + lane for lane in range(width)]
+        lower = [lane if not lane & block else LANES + lane - block for lane in range(LANES)]
+        upper = [lane + block if not lane & block else LANES + lane for lane in range(LANES)]
         masks = _mask(lower), _mask(upper)
-        for i in range(width):
+        for i in range(LANES):
             if not i & block:
                 pair = rows[i], rows[i + block]
                 rows[i], rows[i + block] = (builder.shuffle_vector(*pair, mask) for mask in masks)

@@ -1,0 +1,74 @@
+"""Transforms, convolutions and boxes beneath the contact solver, against sums and numpy."""
+
+import numpy as np
+import pytest
+
+from asperity.kernels.continuation import continued
+from asperity.kernels.convolution import convolution, convolve, pitch, workspace
+from asperity.kernels.fourier import factors, roots, smooth_length, transform
+from asperity.kernels.lanes import LANES
+from asperity.kernels.overlap import box_of_positive, overlap_box
+
+
+@pytest.mark.parametrize("n", [4, 8, 12, 20, 36, 60, 100, 128, 270])
+def test_transform_is_the_discrete_fourier_transform_of_every_column(n: int) -> None:
+    rng = np.random.default_rng(n)
+    z = rng.standard_normal((n, LANES)) + 1j * rng.standard_normal((n, LANES))
+    x = np.stack([z.real, z.imag], axis=1).ravel()
+    y = np.empty_like(x)
+    result = (y if transform(x, y, np.array(factors(n)), roots(n)) else x).reshape(n, 2, LANES)
+    expected = np.fft.fft(z, axis=0)
+    assert np.abs(result[:, 0] + 1j * result[:, 1] - expected).max() < 1e-14 * np.abs(expected).max()
+
+
+def test_lengths_are_the_smallest_that_transform_fast() -> None:
+    lengths = [smooth_length(n) for n in range(1, 400)]
+    fast = [n for n in range(4, 500, 4) if factors(n)[-1] <= 5]
+    assert lengths == [next(m for m in fast if m >= n) for n in range(1, 400)]
+    assert all(int(np.prod(factors(n))) == n for n in range(1, 400))
+    assert factors(44)[-1] == 11
+    assert factors(1) == [1]
+
+
+@pytest.mark.parametrize(("nx", "ny"), [(1, 1), (3, 17), (16, 16), (17, 5), (30, 41)])
+def test_convolution_is_the_sum_over_cells_in_the_box(nx: int, ny: int) -> None:
+    rng = np.random.default_rng(nx + 100 * ny)
+    mx, my = smooth_length(nx), smooth_length(ny)
+    table = rng.standard_normal((mx, my))
+    field = np.zeros((nx, pitch(ny)))
+    field[:, :ny] = rng.standard_normal((nx, ny))
+    i, j = np.arange(nx), np.arange(ny)
+    rows, columns = np.abs(i[:, None] - i), np.abs(j[:, None] - j)
+    expected = np.einsum("ikjl,kl->ij", table[rows[:, :, None, None], columns], field[:, :ny])
+    c, out = convolution(table, mx, my), np.full_like(field, np.nan)
+    work = workspace(c)
+    for _ in range(2):  # the second time in a used workspace
+        convolve(c, field, ny, work, out)
+        assert np.abs(out[:, :ny] - expected).max() < 1e-13 * np.abs(expected).max()
+
+
+def test_boxes_hold_what_they_should_and_no_more() -> None:
+    gap = np.ones((9, 7))
+    assert overlap_box(gap, 0.5) == (-0.5, 0, 0, 0, 0)
+    gap[2, 5], gap[6, 1] = 0.25, 0.0
+    assert overlap_box(gap, 0.5) == (0.5, 2, 7, 1, 6)
+    assert overlap_box(gap, 0.25) == (0.25, 6, 7, 1, 2)
+    assert overlap_box(gap, 2.0) == (2.0, 0, 9, 0, 7)
+    assert box_of_positive(0.5 - gap) == (2, 7, 1, 6)
+    assert box_of_positive(-gap) == (0, 0, 0, 0)
+
+
+def test_continuation_is_straight_at_points_of_the_surface_and_stays_within_bounds() -> None:
+    surface = np.arange(30.0)[:, None] * np.ones((1, 4))
+
+    def at(first: int, time: float) -> np.ndarray:
+        """Pressure on ten rows of the surface, straight in time."""
+        return np.ascontiguousarray(surface[first : first + 10] * time)
+
+    moved = continued(at(2, 2.0), at(0, 1.0), 2, 1.0, np.inf)
+    assert np.allclose(moved[:6], at(4, 3.0)[:6])
+    assert np.allclose(moved[6:8], at(4, 2.0)[6:8])  # these rows were not in the window before
+    assert not moved[8:].any()
+    assert np.allclose(continued(at(0, 2.0), at(0, 1.0), 0, 0.5, np.inf), at(0, 2.5))
+    assert continued(at(0, 2.0), at(0, 1.0), 0, 1.0, 10.0).max() == 10.0
+    assert not continued(at(0, 1.0), at(0, 3.0), 0, 1.0, np.inf).any()
