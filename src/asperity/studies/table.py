@@ -58,7 +58,8 @@ def tabulated(
         for index, table in ordered:
             if name in table:
                 places = [_places(coordinates[str(dim)], table[dim].values) for dim in first.dims]
-                values[(*index, ...)][np.ix_(*places)] = table[name].values
+                here: tuple[Any, ...] = (*index, ...)
+                values[here][np.ix_(*places)] = table[name].values
         variables[name] = xarray.Variable((*swept, *first.dims), values, first.attrs)
     return xarray.Dataset(variables, attrs=_attributes(study, members, ordered, failures))
 
