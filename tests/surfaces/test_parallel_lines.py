@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.reference import cnossos
-from asperity.surfaces.en15610 import trim
+from asperity.surfaces.en15610 import process, trim
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.parallel_lines import common_length, register, strip_from_lines
 from asperity.surfaces.synthesis import strip_from_bands
@@ -86,6 +86,14 @@ def test_flats_of_measured_wheels_come_to_lie_beside_each_other():
     strip = strip_from_lines(found.lines, MM, 5 * MM, 91, 0.5 * MM)
     assert strip.shape == (found.lines.shape[1], 91)
     assert np.isfinite(strip).all()
+
+
+@pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
+def test_lines_that_were_rolled_over_keep_to_and_fro_apart():
+    # the circle takes the short waves that tell the directions apart; the starts still lie close together
+    found = register([process(profile, curvature=True)[0] for profile in measured_wheel("flat0p2mm")])
+    assert found.reversed == 5 * (False, True)
+    assert np.ptp(np.argmin(found.lines[:5], axis=1)) <= 5
 
 
 @pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")

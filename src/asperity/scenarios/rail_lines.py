@@ -25,7 +25,7 @@ FULL_TURN = 0.02
 """Share of the circumference that a measured line around a wheel may lack or exceed."""
 JOIN = 10e-3
 """Length on either side over which the ends of a turn are made to meet, m."""
-SAME_TEXTURE = 0.5
+SAME_TEXTURE = 0.3
 """Median correlation of neighbouring lines from which they are brought into register."""
 
 
