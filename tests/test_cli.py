@@ -3,10 +3,12 @@
 import importlib
 import json
 import os
+import re
 import subprocess
 import sys
 import warnings
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -236,7 +238,7 @@ def test_a_terminal_without_greek_letters_is_enough():
     ]
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = subprocess.run(program, capture_output=True, text=True, env=environment, check=True)
-    assert "1251 positions 8 ?m apart" in done.stdout
+    assert "1251 points 8 ?m apart" in done.stdout
 
 
 def test_help_imports_nothing_heavy():
@@ -265,9 +267,9 @@ def test_check_shows_values_and_work():
         "a valid case",
         "ball.radius",
         "25 mm",
-        "1251 positions 8 µm apart",
+        "1251 points 8 µm apart",
         "1250 steps of 8 µs",
-        "on one core",
+        "less what the cache holds",
     ):
         assert text in outcome.stdout
 
@@ -293,11 +295,63 @@ def test_the_plan_counts_contact_solutions():
     laws = 'laws = ["table", "direct"]\n'
     contact = '[contact]\napproaches = ["0 um", "1 um"]\nsamples = 2\nsample_length = "1.5 mm"\n'
     rows = dict(plan(parse_case(laws + CASE + contact)))
-    assert rows["contact solutions, stiffness and filters"] == f"at most {2 * 2 * 125}"
-    assert rows["contact solutions, table"] == f"at most {2 * 1251}"
+    window, strip = 63, 188  # rows of 8 µm
+    assert rows["contact solutions, scan for the filters"] == f"at most {2 * 2 * (strip - window)}"
+    assert rows["contact solutions, scan for the path"] == f"at most {2 * (1252 + window)}"
     assert rows["contact solutions, direct"] == f"at most {3 * 1250}"
     smooth = CASE.replace('rms = "0.5 um"', 'spectrum = "iso3095"')
     assert not any(name.startswith("contact solutions") for name in dict(plan(parse_case(smooth))))
+
+
+LONG = """
+kind = "ball-on-beam"
+laws = ["table"]
+speed = "1 m/s"
+[surface]
+rms = "0.05 um"
+shortest = "40 um"
+[ball]
+radius = "25 mm"
+[beam]
+length = "10 m"
+[contact]
+spacing = "10 um"
+window = "0.5 mm"
+approaches = [
+    "-0.2 um", "-0.1 um", "0 um", "0.1 um", "0.2 um", "0.3 um", "0.4 um", "0.6 um", "0.8 um", "1 um",
+]
+"""
+
+
+def test_a_path_of_ten_metres_is_planned_and_announced(monkeypatch):
+    """10^6 positions × 10 approaches of 8 bytes are 76 MiB."""
+    Path("long.toml").write_text(LONG)
+    monkeypatch.setenv("COLUMNS", "400")
+    shown = " ".join(call("check", "long.toml").stdout.replace("│", " ").split())
+    planned = re.search(
+        r"scan of the path (\d+) positions 10 µm apart × 10 approaches, in the order of (.*?) on", shown
+    )
+    assert planned
+    assert 1_000_000 <= int(planned[1]) <= 1_000_100
+    assert planned[2].endswith((" min", " h"))
+    size = float(re.search(r"([\d.]+) MiB in", shown)[1])
+    assert 76 < size < 90
+
+    def interrupted(case, progress):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("asperity.scenarios.run", interrupted)
+    outcome = call("run", "long.toml", "-o", "out", code=130)
+    assert f"Scan of the path: {planned[1]} positions" in outcome.stderr
+    assert "goes on after its last finished block" in outcome.stderr
+
+
+def test_a_scan_that_the_disk_cannot_hold_is_refused(monkeypatch):
+    Path("long.toml").write_text(LONG)
+    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=2**20))
+    message = call("run", "long.toml", "-o", "out", code=2).stderr
+    assert "disk of the cache: received 1 MiB free" in message
+    assert "ASPERITY_CACHE" in message
 
 
 # --- surface and cache

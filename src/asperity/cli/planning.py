@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
+
+import click
 
 from asperity.config import Case, WheelOnRailCase
 from asperity.errors import InputError
 from asperity.progress import duration
 
-SOLVE_TIME = 2e-7  # s per grid cell of one contact solution on one core, in order of magnitude
+if TYPE_CHECKING:
+    from asperity.scenarios.expecting import Expected
+
 STEP_TIME = 3e-6  # s per time step of one compiled law, in order of magnitude
+SOLUTIONS_PER_STEP = 3  # of `direct`: two or three iterations in each time step
+ANNOUNCED = 60.0  # s of a scan that is announced before it starts
 
 
 def show_plan(case: Case, source: str) -> None:
@@ -56,20 +63,25 @@ def plan(case: Case) -> list[tuple[str, str]]:
     list of (str, str)
         Name and value, with units.
     """
+    from asperity.scenarios.expecting import direct_time, expected_scans
     from asperity.scenarios.reducing import STATES
 
     contact = case.contact
     states = STATES if contact.approaches is None else len(contact.approaches)
     settling = case.settling if isinstance(case, WheelOnRailCase) else 0.0
     length = (settling + case.rolled_time) * case.speed
-    positions = round(length / contact.spacing) + 1
+    points = round(length / contact.spacing) + 1
     steps = round((settling + case.rolled_time) / case.time_step)
     where = f"{length:g} m from {case.start - settling * case.speed:g} m"
     run_in = f", and {settling:g} s before it" if settling else ""
-    solves = _solves(case, states, positions, steps)
-    seconds = sum(solves.values()) * contact.cells**2 * SOLVE_TIME + steps * len(case.laws) * STEP_TIME
+    scans = expected_scans(case)
+    solves = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
+    seconds = sum(scan.seconds for scan in scans.values()) + steps * len(case.laws) * STEP_TIME
+    if "direct" in case.laws:
+        solves["direct"] = SOLUTIONS_PER_STEP * steps
+        seconds += solves["direct"] * direct_time(case)
     return [
-        ("path", f"{where}, {positions} positions {contact.spacing * 1e6:g} µm apart"),
+        ("path", f"{where}, {points} points {contact.spacing * 1e6:g} µm apart"),
         ("time", f"{case.rolled_time:g} s{run_in}, {steps} steps of {case.time_step * 1e6:.4g} µs"),
         *_track(case),
         ("laws", ", ".join(case.laws)),
@@ -77,26 +89,58 @@ def plan(case: Case) -> list[tuple[str, str]]:
             "contact",
             f"{contact.cells} × {contact.cells} cells, {contact.samples} samples, {states} approaches",
         ),
-        *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items() if count),
-        ("work", f"in the order of {duration(seconds)} on one core, less what the cache holds"),
+        *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items()),
+        *([("scan of the path", described_scan(scans["path"]))] if "path" in scans else []),
+        ("work", f"in the order of {duration(seconds)}, less what the cache holds"),
     ]
 
 
-def _solves(case: Case, states: int, positions: int, steps: int) -> dict[str, int]:
-    """Contact solutions by what they are for."""
-    contact = case.contact
-    strip = 8 * contact.window if contact.sample_length is None else contact.sample_length
-    scanned = max(1, round((strip - contact.window) / contact.spacing))
-    return {
-        "stiffness and filters": contact.samples * states * scanned if _is_reduced(case) else 0,
-        "table": states * positions if "table" in case.laws else 0,
-        "direct": 3 * steps if "direct" in case.laws else 0,  # two or three iterations in each time step
-    }
+def described_scan(scan: Expected) -> str:
+    """Describe the scan of a path: its size, time, disk use, and what an interruption costs.
+
+    Parameters
+    ----------
+    scan : Expected
+        From `asperity.scenarios.expecting`.
+
+    Returns
+    -------
+    str
+        One sentence.
+    """
+    from asperity.store import Store
+    from asperity.threads import thread_count
+
+    root, size = Store().root, f"{scan.bytes / 2**20:.1f} MiB"
+    return (
+        f"{scan.positions} positions {scan.step * 1e6:.4g} µm apart × {scan.states} approaches, "
+        f"in the order of {duration(scan.seconds)} on {thread_count()} threads, {size} in {root}; "
+        "if interrupted or killed, it goes on after its last finished block"
+    )
 
 
-def _is_reduced(case: Case) -> bool:
-    """Whether stiffness and filters are reduced from rough samples."""
-    return isinstance(case, WheelOnRailCase) or case.surface.has_samples
+def announce_scan(case: Case) -> None:
+    """Before a long scan of a path starts, say what it takes; refuse one that the disk cannot hold.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase or WheelOnRailCase
+        The case.
+
+    Raises
+    ------
+    InputError
+        If the disk has too little room.
+    """
+    if "table" not in case.laws:
+        return
+    from asperity.scenarios.expecting import check_disk, expected_scans
+    from asperity.store import Store
+
+    scan = expected_scans(case)["path"]
+    check_disk(scan, Store().root)
+    if scan.seconds > ANNOUNCED:
+        click.echo(f"Scan of the path: {described_scan(scan)}.", err=True)
 
 
 def _track(case: Case) -> list[tuple[str, str]]:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from asperity.cli.planning import announce_scan
 from asperity.config import Case
 from asperity.errors import InputError
 from asperity.progress import progress_bar
@@ -29,7 +30,7 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
     Raises
     ------
     InputError
-        If `directory` holds the run of another case.
+        If `directory` holds the run of another case, or the disk cannot hold the scan of the path.
     """
     if not overwrite:
         _refuse_to_overwrite(case, directory)
@@ -37,6 +38,7 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
     from asperity.scenarios import run
     from asperity.store import Store
 
+    announce_scan(case)
     with progress_bar() as progress:
         tree = run(case, progress=progress)
     for warning in json.loads(tree.attrs.get("warnings", "[]")):

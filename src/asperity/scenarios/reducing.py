@@ -220,10 +220,10 @@ def _filters(
     progress: Progress,
 ) -> tuple[ContactFilter, list[ScannedForces]]:
     """Scan the strips and average their fitted filters."""
-    a, b = shape.semi_axes
+    b = shape.semi_axes[1]
     dx, dy = shape.spacing
     half, middle = (n // 2 for n in shape.body.shape)
-    stride = max(1, math.floor(a / 6 / dx))
+    stride = filter_stride(shape)
     approaches = ensemble.approaches[loaded]
     curve = ensemble.curve
     tangent = curve.stiffness(approaches) if contact.normalise == "tangent" else None
@@ -259,6 +259,22 @@ def _filters(
     warn_of_scans(scans, "the filters")
     degree, normalise = contact.filter_degree, contact.normalise
     return mean_filter(estimates, approaches, degree=degree, normalise=normalise), scans  # type: ignore[arg-type]
+
+
+def filter_stride(shape: Geometry) -> int:
+    """Rows between the positions of a scan for a filter: a sixth of the patch.
+
+    Parameters
+    ----------
+    shape : Geometry
+        What presses on what.
+
+    Returns
+    -------
+    int
+        Rows of the contact grid.
+    """
+    return max(1, math.floor(shape.semi_axes[0] / 6 / shape.spacing[0]))
 
 
 def _closed_form(

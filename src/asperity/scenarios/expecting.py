@@ -1,0 +1,161 @@
+"""How long the scan of a case's path will take, and what it will keep on disk, before it starts."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config import BallOnBeamCase, Case, WheelOnRailCase
+from asperity.errors import InputError, PhysicsWarning
+from asperity.reduction.scan import BLOCK
+from asperity.reference.materials import contact_modulus, material
+from asperity.scenarios.ball_on_beam import ball_geometry
+from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry, window_cells
+from asperity.scenarios.laws import table_stride
+from asperity.scenarios.rail_geometry import rail_geometry
+from asperity.scenarios.reducing import STATES, filter_stride
+from asperity.scenarios.textures import strip_rows
+from asperity.structures.ball import Ball
+from asperity.threads import thread_count
+
+SOLUTION_TIME = 9e-5
+"""Time of a contact solution on one core at the accuracy of a scan, beside that of its cells, s."""
+CELL_TIME = 1e-7
+"""Time of a contact solution for each cell of the box around the overlap, s."""
+BLOCK_BYTES = 1200
+"""What the file of a block holds beside its forces, bytes."""
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a scan will take, in order of magnitude: processors differ by a factor of two or three.
+
+    Attributes
+    ----------
+    positions, states : int
+        Size of the scan.
+    step : float
+        Distance of the positions, m.
+    seconds : float
+        Time on all threads, nothing of it found in the cache.
+    bytes : int
+        Size on disk.
+    """
+
+    positions: int
+    states: int
+    step: float
+    seconds: float
+    bytes: int
+
+    @property
+    def solutions(self) -> int:
+        """Contact solutions, at most: states that do not touch need none."""
+        return self.positions * self.states
+
+
+def expected_scans(case: Case) -> dict[str, Expected]:
+    """Expect the scans of a case.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase or WheelOnRailCase
+        The case.
+
+    Returns
+    -------
+    dict of Expected
+        ``"filters"`` where samples are scanned, ``"path"`` where `table` is among the laws.
+
+    Raises
+    ------
+    InputError
+        If the bodies do not fit the contact's window.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)  # the run tells
+        shape = _geometry(case)
+    contact, window = case.contact, window_cells(case.contact)
+    result = {}
+    if isinstance(case, WheelOnRailCase) or case.surface.has_samples:
+        rows = contact.samples * max(strip_rows(contact) - window, 1)
+        result["filters"] = _expected(case, shape, rows, filter_stride(shape))
+    if "table" in case.laws:
+        settling = case.settling if isinstance(case, WheelOnRailCase) else 0.0
+        rows = math.ceil((settling + case.rolled_time) * case.speed / contact.spacing) + 2 + window
+        result["path"] = _expected(case, shape, rows, table_stride(shape))
+    return result
+
+
+def direct_time(case: Case) -> float:
+    """Time of a contact solution under the working load, s."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        shape = _geometry(case)
+    return float(_solution_times(shape, np.array([shape.hertz.approach(shape.load)]))[0])
+
+
+def check_disk(expected: Expected, root: Path) -> None:
+    """Refuse a scan that the disk cannot hold.
+
+    Parameters
+    ----------
+    expected : Expected
+        The scan.
+    root : Path
+        Folder of the cache.
+
+    Raises
+    ------
+    InputError
+        If the disk has less room.
+    """
+    existing = next(folder for folder in (root.absolute(), *root.absolute().parents) if folder.exists())
+    free = shutil.disk_usage(existing).free
+    if free < expected.bytes:
+        raise InputError(
+            "disk of the cache",
+            f"{free / 2**20:.0f} MiB free in {root}",
+            f"{expected.bytes / 2**20:.0f} MiB for the scan of the path",
+            "Set $ASPERITY_CACHE to a folder on another disk, or free some space.",
+        )
+
+
+def _geometry(case: Case) -> Geometry:
+    if isinstance(case, WheelOnRailCase):
+        return rail_geometry(case)
+    assert isinstance(case, BallOnBeamCase)
+    ball = Ball(case.ball.radius, material(case.ball.material), case.ball.load, case.ball.mass)
+    modulus = contact_modulus(material(case.ball.material), material(case.beam.material))
+    return ball_geometry(case, ball.static_load, modulus)
+
+
+def _expected(case: Case, shape: Geometry, rows: int, stride: int) -> Expected:
+    positions = -(-rows // stride)
+    approaches = _approaches(case, shape)
+    seconds = float(_solution_times(shape, approaches).sum()) * positions / thread_count()
+    size = positions * len(approaches) * 8 + -(-positions // BLOCK) * BLOCK_BYTES
+    return Expected(positions, len(approaches), stride * shape.spacing[0], seconds, size)
+
+
+def _solution_times(shape: Geometry, approaches: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Time of a contact solution at each approach on one core, by the box around the overlap, s."""
+    radii = (shape.hertz.radius_x, shape.hertz.radius_y)
+    cells = np.ones(len(approaches))
+    for n, d, radius in zip(shape.body.shape, shape.spacing, radii, strict=True):
+        cells *= np.minimum(n, 2.0 * np.sqrt(2.0 * radius * approaches) / d)
+    return SOLUTION_TIME + CELL_TIME * cells
+
+
+def _approaches(case: Case, shape: Geometry) -> NDArray[np.float64]:
+    """Overlaps of smooth bodies in the states: as given, or up to the force that chosen states reach."""
+    if case.contact.approaches is not None:
+        return np.maximum(np.array(case.contact.approaches), 0.0)
+    highest = shape.hertz.approach(min(shape.largest_force, HIGHEST_FORCE * shape.load))
+    return np.asarray(highest * np.linspace(0.0, 1.0, STATES) ** 1.3)
