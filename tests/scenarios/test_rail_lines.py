@@ -8,8 +8,11 @@ import pytest
 
 from asperity.config import parse_case
 from asperity.errors import InputError, ShortRecordWarning
+from asperity.rolling.linear_reference import force_transfer
 from asperity.scenarios import run
+from asperity.scenarios.laws import working_point
 from asperity.scenarios.rail_textures import gather
+from asperity.scenarios.wheel_on_rail import compute
 
 MEASURED = Path(__file__).parents[3] / "shared" / "data" / "wheel_lines_um_1mm.npz"
 CASE = """
@@ -150,3 +153,30 @@ def test_flat_of_a_measured_wheel_is_found(folder):
     assert int(found["rolling/contact_loss_events"].sel(law="areal")) >= 2
     assert "rolled over with a circle" in found["surface"].attrs["source"]
     assert json.loads(found.attrs["warnings"])
+
+
+@pytest.mark.skipif(not MEASURED.is_file(), reason="no measured wheel lines in shared/data")
+@pytest.mark.parametrize("speed", [20, 56, 80])
+def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, speed):
+    text = CASE.replace("56 m/s", f"{speed} m/s").replace('"areal", "linear"', '"linear"')
+    text = text.replace("1 mm", "0.5 mm").replace("samples = 2", "samples = 1").format(
+        surface="smooth = true", duration=f"{3.2 / speed:g} s",
+        wheel=f'line = "{MEASURED}"\nline_array = "flat0p4mm"\nline_unit = "um"\nline_spacing = "1 mm"\n'
+        'line_distance = "5 mm"\nprocessing = ["curvature"]',
+    )  # fmt: skip
+    computed = compute(parse_case(text, folder / "case.toml"), lambda done, total, message: None)
+    chain = computed.chain
+    wheel = chain.runs["linear"]
+    # the middle lines are lowest at 0.267 m; the wheel strikes where it reaches the flat's far end
+    struck = float(wheel.position[np.argmax(wheel.contact_force)])
+    assert 0.267 < struck % 2.88 < 0.30
+    at = chain.textures.start + chain.shape.spacing[0] * np.arange(len(chain.textures.followed))
+    texture = np.interp(wheel.position, at, chain.textures.followed)
+    mirrored = np.concatenate([texture, texture[::-1]])
+    _, stiffness = working_point(computed.case.contact, chain.shape, chain.reduction)
+    step = computed.case.time_step
+    transfer = force_transfer(
+        np.fft.rfftfreq(len(mirrored), step), computed.wheel, computed.track, stiffness, [struck % 0.6]
+    )
+    still = 65e3 + np.fft.irfft(np.fft.rfft(mirrored) * transfer[0], len(mirrored))[: len(texture)]
+    assert wheel.contact_force.max() == pytest.approx(still.max(), rel=0.1)

@@ -99,7 +99,7 @@ def height_histogram(axes: Axes, named: dict[str, NDArray[np.float64]], unit: tu
     power_axis(axes.yaxis)
     axes.set_xlabel(f"height / {unit[1]} (out of the material →)")
     axes.set_ylabel(f"probability density / (1/{unit[1]})")
-    axes.legend(loc="lower center")
+    axes.legend(loc="upper left")
 
 
 def _map_and_histogram(slender: bool) -> tuple[Figure, Axes, Axes]:
