@@ -1,12 +1,14 @@
 # ruff: noqa: E402 (the threads are set before numpy is imported)
-"""Time a step of the contact scan against tamaas and ContactMechanics.
+"""Time a step of the contact scan against slippy, aspher, tamaas and ContactMechanics.
 
-A ball moves over a rough surface in 64 positions at one prescribed approach; at each the 3-D contact
-(elastic half-space, free boundary) is solved to a relative tolerance of 1e-8. Compared are asperity's scan
-(each position from the pressure of the previous one), its cold solutions, and the same contacts solved by
-the peers: cold from Hertz's pressure of the smooth ball, warm like the scan, on request from their own
-start. One thread each, CPU time, set-up of the kernel included, compilation and imports not; the codes take
-turns in every round, and medians over the rounds count. Forces are compared with asperity's cold ones.
+A ball moves over a rough surface in 64 positions at one prescribed approach (or, with ``--loading``, is
+pressed on it in 30 approaches); at each the 3-D contact (elastic half-space, free boundary) is solved to a
+relative tolerance of 1e-8. Compared are asperity's scan (each contact from those before it), its cold
+solutions, and the same contacts solved by the peers: cold from Hertz's pressure of the smooth ball, warm
+from the previous contact, on request from their own start. ``--cropped`` hands all codes the smallest square
+window that holds the overlap at all contacts. One thread each, CPU time, set-up of the kernel included,
+compilation and imports not; the codes take turns in every round, and medians over the rounds count. Forces
+are compared with asperity's cold ones.
 
     benchmarks/peers.sh FOLDER
     python benchmarks/scan_step.py --peers-python FOLDER/bin/python
@@ -38,6 +40,10 @@ RADIUS = 25e-3  # m
 LOAD = 10.0  # N, of the smooth ball
 AGREEMENT = 1e-6  # relative, of the forces
 PEER_RUNS = [
+    ("slippy", "cold", "slippy, cold"),
+    ("slippy", "warm", "slippy, warm"),
+    ("aspher", "warm", "aspher, secant on the load, warm"),
+    ("aspher", "load", "aspher, load known beforehand, cold"),
     ("tamaas", "cold", "tamaas, secant on the load, cold"),
     ("tamaas", "warm", "tamaas, secant on the load, warm"),
     ("tamaas", "load", "tamaas, load known beforehand, cold"),
@@ -72,8 +78,9 @@ def problem(cells: int, options: argparse.Namespace) -> dict[str, np.ndarray]:
     spacing = window / cells
     stride = options.stride or max(1, round(radius / 8 / spacing))
     x = (np.arange(cells) - cells // 2) * spacing
+    length = cells + (0 if options.loading else (options.positions - 1) * stride)
     heights = self_affine(
-        (cells + (options.positions - 1) * stride, cells),
+        (length, cells),
         (spacing, spacing),
         rms=options.rms * approach,
         hurst=0.8,
@@ -81,48 +88,67 @@ def problem(cells: int, options: argparse.Namespace) -> dict[str, np.ndarray]:
         shortest=0.36 * radius,
         seed=1,
     ).heights
-    return {
+    steps = np.arange(options.loading or options.positions)
+    shares = (steps + 1.0) / options.loading if options.loading else np.ones(len(steps))
+    body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
+    p = {
         "heights": np.asarray(heights),
-        "body": (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS),
+        "body": body,
         "spacing": np.array(spacing),
         "modulus": np.array(MODULUS),
-        "approach": np.array(approach),
+        "approaches": approach * shares,
         "smooth_force": np.array(LOAD),
-        "stride": np.array(stride),
+        "offsets": steps * (0 if options.loading else stride),
         "rtol": np.array(options.rtol),
-        "forces": np.zeros(options.positions),
+        "forces": np.zeros(len(steps)),
+    }
+    return cropped(p) if options.cropped else p
+
+
+def cropped(p: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Cut the smallest square window that holds the overlap at all contacts; its side is even."""
+    n = len(p["body"])
+    gaps = np.array([p["body"] - p["heights"][m : m + n] for m in p["offsets"]])
+    overlap = (gaps < p["approaches"].max()).any(axis=0)
+    used = [np.flatnonzero(overlap.any(axis=axis)) for axis in (1, 0)]
+    side = max(int(u[-1] - u[0]) + 1 for u in used)
+    side += side % 2
+    i, j = (min(int(u[0]), n - side) for u in used)
+    rows = len(p["heights"]) - n + side
+    return p | {
+        "heights": np.ascontiguousarray(p["heights"][i : i + rows, j : j + side]),
+        "body": np.ascontiguousarray(p["body"][i : i + side, j : j + side]),
     }
 
 
 def scanned(p: dict[str, np.ndarray]) -> Run:
     """Scan as the reduction does: warm-started, one thread."""
+    loading = not p["offsets"].any()
     began = time.process_time()
     result = scan_forces(
         p["heights"],
         (float(p["spacing"]),) * 2,
         p["body"],
         MODULUS,
-        [float(p["approach"])],
-        stride=int(p["stride"]),
+        p["approaches"] if loading else p["approaches"][:1],
+        stride=int(p["offsets"][1]) or 1,
         rtol=float(p["rtol"]),
         workers=1,
     )
     seconds, unknown = time.process_time() - began, np.full(len(p["forces"]), np.nan)
-    return seconds, result.forces[0], unknown, np.arange(len(unknown)) < result.unconverged
+    return seconds, result.forces.ravel(), unknown, np.arange(len(unknown)) < result.unconverged
 
 
 def cold(p: dict[str, np.ndarray]) -> Run:
-    """Solve every position from nothing."""
-    stride, rows = int(p["stride"]), len(p["body"])
+    """Solve every contact from nothing."""
+    rows = len(p["body"])
     began = time.process_time()
     half_space = HalfSpace(p["body"].shape, (float(p["spacing"]),) * 2, MODULUS)
     contacts = [
         half_space.solve(
-            p["body"] - p["heights"][m * stride : m * stride + rows],
-            approach=float(p["approach"]),
-            rtol=float(p["rtol"]),
+            p["body"] - p["heights"][m : m + rows], approach=float(approach), rtol=float(p["rtol"])
         )
-        for m in range(len(p["forces"]))
+        for m, approach in zip(p["offsets"], p["approaches"], strict=True)
     ]
     seconds = time.process_time() - began
     failed = np.array([not c.converged for c in contacts])
@@ -155,6 +181,7 @@ def measure(p: dict[str, np.ndarray], options: argparse.Namespace) -> tuple[dict
 
     scanned(p), cold(p)  # compiles
     python, peers = options.peers_python, PEER_RUNS + (OWN_STARTS if options.own_starts else [])
+    peers = [run for run in peers if not options.peers or run[0] in options.peers]
     if not python:
         peers = []
         notes.append("no peers: make their environment with peers.sh and name it with --peers-python")
@@ -178,9 +205,10 @@ def measure(p: dict[str, np.ndarray], options: argparse.Namespace) -> tuple[dict
 def report(p: dict[str, np.ndarray], measured: dict[str, Measured], notes: list[str]) -> None:
     """Print the table in Markdown."""
     cells, positions = p["body"].shape[0], len(p["forces"])
+    stride = int(p["offsets"][1])
+    kind = f"positions, stride {stride}" if stride else "approaches"
     print(
-        f"\n{positions} positions, {cells} x {cells} cells, stride {int(p['stride'])}, "
-        f"tolerance {float(p['rtol']):g}, one thread, CPU time"
+        f"\n{positions} {kind}, {cells} x {cells} cells, tolerance {float(p['rtol']):g}, one thread, CPU time"
     )
     print("; ".join(notes) + "\n")
     print("| code | ms per solve | to the scan | to cold | accuracy | failed | largest difference of force |")
@@ -211,6 +239,9 @@ def main() -> None:
     )
     parser.add_argument("--cells", type=int, nargs="+", default=[128], help="cells along the window")
     parser.add_argument("--positions", type=int, default=64)
+    parser.add_argument("--loading", type=int, default=0, metavar="N", help="one position, N approaches")
+    parser.add_argument("--cropped", action="store_true", help="hand all codes the window of the overlap")
+    parser.add_argument("--peers", nargs="+", help="these peers only")
     parser.add_argument("--radius-share", type=float, default=0.35, help="contact radius in half windows")
     parser.add_argument("--rms", type=float, default=0.1, help="rms roughness in approaches")
     parser.add_argument("--stride", type=int, help="rows between positions; default an eighth of the radius")

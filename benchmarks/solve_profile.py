@@ -1,0 +1,184 @@
+# ruff: noqa: E402 (the threads are set before numpy is imported)
+"""Where the time of a contact solution goes, and how it grows.
+
+Per grid: iterations and convolutions of a scan's solution, time per iteration against the convolutions that
+it makes (bare: the same box again and again), and the share of what lies around the compiled loop. Then the
+time of a scan against grid, path and number of approaches, drawn beside straight lines of the expected
+slopes. One thread, CPU time, the least of some rounds.
+
+    python benchmarks/solve_profile.py --figure benchmarks/growth.svg
+"""
+
+from __future__ import annotations
+
+import os
+
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+import argparse
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit
+from scan_step import MODULUS, problem
+
+from asperity.contact import halfspace
+from asperity.kernels import projected_cg as kernel
+from asperity.kernels.convolution import Convolution, convolve
+from asperity.reduction.scan import scan_forces
+
+ROUNDS = 5
+
+
+def least(work: Callable[[], Any], rounds: int = ROUNDS) -> float:
+    """CPU time of some work, s; the first time does not count."""
+    work()
+    seconds = []
+    for _ in range(rounds):
+        began = time.process_time()
+        work()
+        seconds.append(time.process_time() - began)
+    return min(seconds)
+
+
+def options(**changed: Any) -> argparse.Namespace:
+    given = {"radius_share": 0.35, "stride": None, "positions": 64, "rms": 0.1, "rtol": 1e-8}
+    return argparse.Namespace(**(given | {"loading": 0, "cropped": False} | changed))
+
+
+def scan_time(cells: int, positions: int = 64, approaches: int = 1, rounds: int = ROUNDS) -> float:
+    """CPU time of a scan, s."""
+    p = problem(cells, options(positions=positions))
+    at = float(p["approaches"][0]) * np.linspace(1.0, 0.3, approaches)[::-1]
+
+    def scan() -> None:
+        scan_forces(
+            p["heights"], (float(p["spacing"]),) * 2, p["body"], MODULUS, at,
+            stride=int(p["offsets"][1]), rtol=1e-8, workers=1,
+        )  # fmt: skip
+
+    return least(scan, rounds)
+
+
+@njit
+def bare(c: Convolution, b: kernel.Box, ny: int, times: int) -> None:
+    """Convolve again and again."""
+    for _ in range(times):
+        convolve(c, b.direction, ny, b.work, b.response)
+
+
+class Counted:
+    """Stands for the compiled solution: times it, then does it again in steps and counts convolutions."""
+
+    def __init__(self) -> None:
+        self.compiled, self.seconds, self.convolving = halfspace.solve, 0.0, 0.0
+        self.iterations = self.convolutions = self.solutions = 0
+
+    def __call__(
+        self, c: Any, mirrored: Any, taps: Any, outer: Any, row: int, column: int, b: Any, ny: int,
+        *limits: Any,
+    ) -> tuple[int, bool]:  # fmt: skip
+        """Solve, timed."""
+        start = outer.pressure.copy()
+        arguments = (c, mirrored, taps, outer, row, column, b, ny, *limits)
+        began = time.process_time()
+        result = self.compiled(*arguments)
+        self.seconds += time.process_time() - began
+        solution, outer.pressure[:] = outer.pressure.copy(), start
+        count = self.count(c, taps, outer, row, column, b, ny, limits[0], result[0])
+        outer.pressure[:] = solution
+        self.convolving += count * least(lambda: bare(c, b, ny, 40), 2) / 40
+        self.iterations, self.convolutions = self.iterations + result[0], self.convolutions + count
+        self.solutions += 1
+        return result
+
+    def count(
+        self, c: Any, taps: Any, outer: Any, row: int, column: int, b: Any, ny: int, cap: float, times: int
+    ) -> int:
+        """Convolutions of the same iterations: one each, another where many cells are clipped."""
+        nx, count, rho = b.overlap.shape[0], times, 0.0
+        part = slice(row, row + nx), slice(column, column + ny)
+        for name in ("overlap", "pressure", "residual"):
+            getattr(b, name)[:, :ny] = getattr(outer, name)[part]
+        b.direction[:], b.previous[:] = 0.0, 0.0
+        for _ in range(times):
+            kernel._free(b.pressure, b, ny, cap, 0.0)
+            before = rho
+            rho, change = kernel._precondition(b, ny, taps)
+            slope = kernel._turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
+            convolve(c, b.direction, ny, b.work, b.response)
+            step = -slope / kernel._dot(b.direction, b.response, ny)
+            clipped = kernel._advance(b, ny, step, cap)
+            count += clipped > kernel.FEW
+            if clipped:
+                kernel._true_residual(c, b, ny)
+        return count
+
+
+def profile(cells: int) -> None:
+    """Print a line of the table of one grid."""
+    total, counted = scan_time(cells), Counted()
+    halfspace.solve = counted
+    try:
+        p = problem(cells, options())
+        scan_forces(
+            p["heights"], (float(p["spacing"]),) * 2, p["body"], MODULUS, p["approaches"][:1],
+            stride=int(p["offsets"][1]), rtol=1e-8, workers=1,
+        )  # fmt: skip
+    finally:
+        halfspace.solve = counted.compiled
+    n, iterations = counted.solutions, counted.iterations
+    print(
+        f"| {cells}² | {1e3 * total / 64:.3f} | {iterations / n:.1f} | {counted.convolutions / n:.1f} "
+        f"| {1e6 * counted.seconds / iterations:.1f} | {1e6 * counted.convolving / iterations:.1f} "
+        f"| {counted.seconds / counted.convolving:.2f} |"
+    )
+
+
+def draw(path: str) -> None:
+    """Measure how the time of a scan grows, and draw it."""
+    import matplotlib.pyplot as plt
+
+    cells, positions, approaches = [32, 64, 128, 256, 512], [16, 64, 256, 1024], [1, 2, 4, 8, 16, 32]
+    by_cells = np.array([scan_time(n, 16, rounds=2) / 16 for n in cells])
+    by_positions = np.array([scan_time(64, n, rounds=2) for n in positions])
+    by_approaches = np.array([scan_time(64, 16, n, rounds=2) / 16 for n in approaches])
+    grid = np.array(cells) ** 2 * np.log(cells)
+    figure, axes = plt.subplots(1, 3, figsize=(10, 3.2), layout="constrained")
+    panels = [
+        (cells, by_cells, grid, "cells along the window", "N² log N"),
+        (positions, by_positions, np.array(positions), "positions, 64² cells", "linear"),
+        (approaches, by_approaches, np.array(approaches), "approaches at a position, 64² cells", "linear"),
+    ]
+    for axis, (x, y, slope, label, name) in zip(axes, panels, strict=True):
+        axis.loglog(x, 1e3 * y, "o-", label="measured")
+        axis.loglog(x, 1e3 * y[0] * slope / slope[0], "--", color="0.5", label=name)
+        axis.set_xlabel(label)
+        axis.set_xticks(x, [str(n) for n in x], minor=False)
+        axis.minorticks_off()
+        axis.legend(frameon=False)
+        print(f"{label}: " + ", ".join(f"{n}: {1e3 * t:.3g}" for n, t in zip(x, y, strict=True)) + " ms")
+    axes[0].set_ylabel("CPU time, ms")
+    figure.savefig(path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--cells", type=int, nargs="+", default=[64, 128, 256])
+    parser.add_argument("--figure", metavar="FILE", help="measure growth, too, and draw it here")
+    chosen = parser.parse_args()
+    print("| grid | ms per solve | iterations | convolutions | us per iteration | of it convolving | ratio |")
+    print("|---|---:|---:|---:|---:|---:|---:|")
+    for cells in chosen.cells:
+        profile(cells)
+    if chosen.figure:
+        draw(chosen.figure)
+
+
+if __name__ == "__main__":
+    main()
