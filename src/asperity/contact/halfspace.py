@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -130,7 +130,8 @@ class HalfSpace:
         reach_x, reach_y = (smooth_length(max(n, 32)) for n in self.shape)
         self._table = influence_table(reach_x, reach_y, *self.spacing) / (math.pi * self.modulus)
         self._mirrored = np.concatenate([self._table[:, :0:-1], self._table], axis=1)
-        self._taps = inverse_stencil(self._table)
+        dx, dy = self.spacing
+        self._taps = _unit_taps(dy / dx) * (math.pi * self.modulus / dx)
         self._convolutions: dict[tuple[int, int], Convolution] = {}
 
     @property
@@ -391,6 +392,12 @@ class HalfSpace:
         i = int(np.searchsorted(np.maximum.accumulate(force), load))
         i = min(max(i, 1), ordered.size - 1) if ordered.size > 1 else 0
         return float(mean_gap[i] + load / foundation[i])
+
+
+@lru_cache
+def _unit_taps(ratio: float) -> NDArray[np.float64]:
+    """Preconditioning stencil of cells 1 × ratio, π E* being one."""
+    return inverse_stencil(influence_table(32, 32, 1.0, ratio))
 
 
 def _slices(limits: Sequence[int]) -> tuple[slice, slice]:

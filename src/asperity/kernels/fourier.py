@@ -29,11 +29,11 @@ def smooth_length(n: int) -> int:
     Returns
     -------
     int
-        A multiple of four ≥ n without prime factors above 5.
+        A multiple of eight ≥ n without prime factors above 5: whole vectors, and few lengths to prepare.
     """
-    length = max(4, -(-n // 4) * 4)
+    length = max(8, -(-n // 8) * 8)
     while factors(length)[-1] > 5:
-        length += 4
+        length += 8
     return length
 
 
