@@ -181,6 +181,11 @@ def spectra(rng, laws, points):
             ),
             "sound_power_level": variable(("law", "source", "noise_band"), power, "dB re 1 pW", "power"),
             "sound_power_level_a": variable(("law", "source"), power_a, "dB(A) re 1 pW", "A-weighted"),
+            "cnossos_sound_power_level_a": (
+                "source",
+                power_a[0] - 1.5,
+                {"units": "dB(A) re 1 pW", "long_name": "CNOSSOS-EU", "contact_filter": "50 kN, 920 mm"},
+            ),
         },
         coords={
             "law": laws,

@@ -201,6 +201,15 @@ def sound_power_table(tree: DataTree) -> Table | None:
             row += [Cell(_signed(d) if law != "linear" else "–", "number") for d in level - levels["linear"]]
         rows.append(row)
     note = "Re 1 pW, over the bands that were computed. Positive differences: linear contact underestimates."
+    standard = variable(tree, "spectra/cnossos_sound_power_level_a")
+    if standard is not None:
+        level = standard.sel(source=found["source"]).values
+        row = [_text("CNOSSOS-EU"), *(Cell(_level(value), "number") for value in level)]
+        if "linear" in names:
+            row += [Cell(_signed(d), "number") for d in level - levels["linear"]]
+        rows.append(row)
+        name = standard.attrs.get("contact_filter", "")
+        note += f" CNOSSOS-EU: the same roughness with its own contact filter ({name})."
     return Table("sound_power_table", "A-weighted sound power", head, rows, note)
 
 
