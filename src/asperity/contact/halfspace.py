@@ -82,9 +82,9 @@ class Contact:
     def edge_share(self) -> float:
         """Share of the force that acts on the window's outermost cells: above zero, some may be cut off."""
         p = self.pressure
-        inner = float(p[1:-1, 1:-1].sum())
-        total = float(p.sum())
-        return (total - inner) / total if total > 0.0 else 0.0
+        last_row, last_column = max(1, p.shape[0] - 1), max(1, p.shape[1] - 1)
+        edge = float(p[::last_row].sum()) + float(p[1:-1, ::last_column].sum())
+        return edge / float(p.sum()) if edge > 0.0 else 0.0
 
 
 class HalfSpace:
