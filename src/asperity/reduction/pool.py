@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import islice
 from typing import TypeVar
@@ -17,7 +17,7 @@ AHEAD = 2
 """Tasks begun for each worker before the first result is taken: no worker waits, and no results pile up."""
 
 
-def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = None) -> Iterator[R]:
+def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = None) -> Generator[R]:
     """Run a task on each item, on threads, and yield the results in the order of the items.
 
     Parameters

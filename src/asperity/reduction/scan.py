@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import threading
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.contact.device import Device, find_device
-from asperity.contact.halfspace import HalfSpace
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
-from asperity.kernels.continuation import continued
 from asperity.reduction import batched_scan
+from asperity.reduction.blocks import TRUNCATED, Contacts, Solvers
 from asperity.reduction.pool import in_order
 from asperity.reduction.stored import StoredForces
 from asperity.store import Cache, content_key
 from asperity.surfaces.strip import Rows, Strip
+from asperity.threads import thread_count
 
 if TYPE_CHECKING:
     import xarray
@@ -28,10 +28,6 @@ F = TypeVar("F", NDArray[np.float64], StoredForces)
 
 BLOCK = 256
 """Positions solved in one go, from a cold start: the unit of parallel work and of what is kept on disk."""
-
-
-TRUNCATED = 0.01
-"""Share of the force on the window's edge from which a contact counts as cut off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -303,45 +299,41 @@ def _blocks(
     cache: Cache | None,
     progress: Callable[[int, int, str], None] | None,
     message: str,
-) -> Iterator[_Block]:
+) -> Generator[_Block]:
     """Blocks of a scan in order, from the cache or solved, each from a cold start of its own."""
     report = progress or (lambda done, total, message: None)
-    of_thread, (nx, ny) = threading.local(), job.body.shape
+    count = (workers or thread_count()) if job.device is None else 1  # one block fills a device
     parameters = [list(job.spacing), job.modulus, job.hardness, job.stride, job.rtol]
     parameters += ["batched"] if job.device else []
+    contacts = Contacts(
+        job.body, job.approaches, job.spacing, job.modulus, job.hardness, job.stride, job.rtol
+    )
 
     def block(first: int) -> _Block:
         planes = np.ascontiguousarray(job.planes[first : first + job.block])
-        stop = (first + len(planes) - 1) * job.stride + nx
+        stop = (first + len(planes) - 1) * job.stride + job.body.shape[0]
         rows = np.ascontiguousarray(job.strip.rows(first * job.stride, stop))
+        left = (job.positions - first) / job.block / count  # blocks for each worker
         if cache is None:
-            return _Block("", *solve(rows, planes))
+            return _Block("", *solvers.solve(rows, planes, left))
         key = content_key("scan", rows, job.body, job.approaches, planes, parameters)
         kept = cache.get(key)
         if kept is None:
-            forces, counts = solve(rows, planes)
+            forces, counts = solvers.solve(rows, planes, left)
             kept = {"forces": forces, "counts": counts}
             cache.put(key, kept)
         return _Block(key, kept["forces"], kept["counts"])
 
-    def solve(rows: NDArray, planes: NDArray) -> tuple[NDArray, NDArray]:
-        if not hasattr(of_thread, "half_space"):
-            of_thread.half_space = HalfSpace((nx, ny), job.spacing, job.modulus, job.hardness)
-        if job.device is None:
-            return _solve_block(of_thread.half_space, rows, job, planes)
-        found = batched_scan.solve_rows(
-            of_thread.half_space, rows, job.body, job.approaches, planes, job.stride, job.rtol, job.device,
-            TRUNCATED,
-        )  # fmt: skip
-        flaws = found[1:].sum(axis=(1, 2)).astype(np.int64)
-        return found[0], np.concatenate([[np.count_nonzero(found[0])], flaws])
-
     report(0, job.positions, message)
     done = 0
-    for found in in_order(block, range(0, job.positions, job.block), workers if job.device is None else 1):
-        done += found.forces.shape[1]
-        report(done, job.positions, message)
-        yield found
+    with (
+        Solvers(contacts, job.device, count) as solvers,
+        closing(in_order(block, range(0, job.positions, job.block), count)) as blocks,
+    ):
+        for found in blocks:
+            done += found.forces.shape[1]
+            report(done, job.positions, message)
+            yield found
 
 
 def _check(surface: tuple[int, int], body: NDArray, approaches: NDArray, stride: int) -> None:
@@ -362,37 +354,6 @@ def _check(surface: tuple[int, int], body: NDArray, approaches: NDArray, stride:
 
 def _cells(shape: tuple[int, ...]) -> str:
     return f"{shape[0]} × {shape[1]} cells"
-
-
-def _solve_block(
-    half_space: HalfSpace, rows: NDArray, job: _Job, planes: NDArray
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Forces (k, positions), and how many solutions, iterations, unconverged and truncated solutions."""
-    nx, stride = job.body.shape[0], job.stride
-    forces = np.zeros((len(job.approaches), len(planes)))
-    counts = np.zeros(4, dtype=np.int64)
-    cap = half_space.hardness or np.inf
-    known: list[list[NDArray]] = [[] for _ in job.approaches]  # pressures at the last two positions
-    for m, plane in enumerate(planes):
-        gap = job.body + plane - rows[m * stride : m * stride + nx]
-        touch = gap.min()
-        below: list[tuple[float, NDArray]] = []
-        for i, approach in enumerate(job.approaches):
-            if approach <= touch:
-                known[i] = []
-                continue
-            start = None
-            if known[i] and stride < nx:  # pressures move with the asperities, against the body
-                start = continued(known[i][-1], known[i][0], stride, len(known[i]) - 1.0, cap)
-            elif below:
-                (a, p), (b, q) = below[-1], below[-2:][0]
-                start = continued(p, q, 0, (approach - a) / (a - b) if a > b else 0.0, cap)
-            contact = half_space.at_approach(gap, float(approach), start, job.rtol)
-            known[i] = [*known[i][-1:], contact.pressure]
-            below = [*below[-1:], (float(approach), contact.pressure)]
-            forces[i, m] = contact.force
-            counts += (1, contact.iterations, not contact.converged, contact.edge_share > TRUNCATED)
-    return forces, counts
 
 
 def warn_of_scans(scans: Sequence[ScannedForces[Any]], what: str) -> None:
