@@ -36,7 +36,7 @@ def rtol_for(accuracy: float) -> float:
     no more than k_t max|e|. Relative to the force, with F growing as the n-th power of the overlap, that is n
     times the relative residual: 1.5 for Hertz, 1 to 3 for rough contacts, if the residual had everywhere its
     largest value and one sign. It alternates: on smooth, rough and flowing contacts, from first touches to
-    heavy loads, the largest error found is 1.9 times the relative residual
+    heavy loads, the largest error found is twice the relative residual
     (``benchmarks/force_accuracy.py``).
     """
     if not 0.0 < accuracy <= 0.1:
