@@ -145,6 +145,10 @@ def svg(figure: Figure, name: str, title: str) -> str:
     FigureCanvasSVG(figure)
     text = StringIO()
     with rc_context(RC):
+        engine = figure.get_layout_engine()
+        if engine is not None:  # lay out once; saving with an engine would draw everything twice
+            engine.execute(figure)
+            figure.set_layout_engine("none")
         figure.savefig(text, format="svg", dpi=110, transparent=False, metadata={"Date": None})
     body = text.getvalue()
     body = body[body.index("<svg") :]

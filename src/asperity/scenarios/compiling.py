@@ -2,66 +2,105 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
+from asperity.kernels import modal, rail
 from asperity.pointforce import Hertz
 from asperity.progress import Progress
 from asperity.reference.materials import material
 from asperity.rolling.ball_on_beam import roll
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.threads import processors
 
-MESSAGE = "compiled functions (the first run compiles them, some 15 s)"
+MESSAGE = "compiled functions (the first run compiles them, some 10 s)"
 
 
 def compile_kernels(progress: Progress) -> None:
-    """Call every compiled kernel once on next to nothing: they are compiled now, or loaded from disk.
+    """Call every kernel of a ball once on next to nothing: it is compiled now, or loaded from disk.
 
     Parameters
     ----------
     progress : Progress
         Called between the pieces.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)
-        progress(0, 3, MESSAGE)
-        x = np.arange(-4.0, 5.0) ** 2
-        contact = HalfSpace((9, 9), (1.0, 1.0), 1.0).solve(np.add.outer(x, x), approach=5.0)
-        progress(1, 3, MESSAGE)
-        assert contact.stiffness > 0.0
-        progress(2, 3, MESSAGE)
-        steel = material("steel")
-        beam, ball = Beam.rectangular(1.0, 0.05, 0.01, steel, highest_frequency=100.0), Ball(0.025, steel)
-        roll(beam, ball, Hertz(1e10), speed=1.0, start=0.5, duration=1e-4, time_step=1e-5, sensors=[0.5])
-        progress(3, 3, MESSAGE)
+    _compile(progress, modal.roll_steps, roll_a_ball)
 
 
 def compile_rail_kernels(progress: Progress) -> None:
-    """Call the kernels of a wheel on a rail once on next to nothing, too.
+    """Call the kernels of a wheel on a rail once on next to nothing.
 
     Parameters
     ----------
     progress : Progress
         Called between the pieces.
     """
+    _compile(progress, rail.roll_steps, roll_a_wheel)
+
+
+def _compile(progress: Progress, stepping: Any, rolling: Callable[[], None]) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        progress(0, 2, MESSAGE)
+        with _beside(stepping, rolling.__name__):
+            x = np.arange(-4.0, 5.0) ** 2
+            contact = HalfSpace((9, 9), (1.0, 1.0), 1.0).solve(np.add.outer(x, x), approach=5.0)
+            assert contact.stiffness > 0.0
+        progress(1, 2, MESSAGE)
+        rolling()
+        progress(2, 2, MESSAGE)
+
+
+@contextmanager
+def _beside(stepping: Any, name: str) -> Iterator[None]:
+    """Compile the rolling in a second process beside the contact, where it is not on disk yet.
+
+    The compiler takes one function at a time in a process; what the second one compiles, the first loads.
+    """
+    kept = Path(stepping.stats.cache_path or ".").glob(f"*.{stepping.__name__}-*.nbi")
+    if processors() < 2 or any(kept):
+        yield
+        return
+    code = f"from asperity.scenarios import compiling; compiling.{name}()"
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    with subprocess.Popen([sys.executable, "-W", "ignore", "-c", code], env=environment, **quiet) as other:
+        try:
+            yield
+        except BaseException:
+            other.kill()
+            raise
+
+
+def roll_a_ball() -> None:
+    """Roll a ball a few steps."""
+    steel = material("steel")
+    beam, ball = Beam.rectangular(1.0, 0.05, 0.01, steel, highest_frequency=100.0), Ball(0.025, steel)
+    roll(beam, ball, Hertz(1e10), speed=1.0, start=0.5, duration=1e-4, time_step=1e-5, sensors=[0.5])
+
+
+def roll_a_wheel() -> None:
+    """Roll a wheel a few steps, on a scattered rail and on one of poles."""
     from asperity.rolling import wheel_on_rail
     from asperity.structures.moving_kernel import MovingKernel
     from asperity.structures.rail_poles import RailPoles
     from asperity.structures.track import Track
     from asperity.structures.wheel import Wheel
 
-    compile_kernels(progress)
     wheel = Wheel.rigid(600.0, 65e3)
     kernel = MovingKernel(Track.named("nordborg"), 1.0, 1e-6, np.full((4, 4), 1e-12), 0.0)
     poles = RailPoles(kernel, np.array([0.5 + 0.1j]), np.full((4, 1), 1e-12 + 0j), 0.0, 0.0)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)
-        rails: list[RailPoles | MovingKernel] = [kernel, poles]
-        for done, rail in enumerate(rails):
-            progress(done, len(rails), MESSAGE)
-            wheel_on_rail.roll(rail, wheel, Hertz(1e11), start=0.0, duration=4e-6, settling=0.0)
-        progress(len(rails), len(rails), MESSAGE)
+    rails: list[RailPoles | MovingKernel] = [kernel, poles]
+    for each in rails:
+        wheel_on_rail.roll(each, wheel, Hertz(1e11), start=0.0, duration=4e-6, settling=0.0)
