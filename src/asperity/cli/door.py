@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 import traceback
 import warnings
@@ -14,6 +15,8 @@ from asperity.errors import AsperityError
 
 FAILED = 3
 INTERRUPTED = 130
+COLLECT_AFTER = 100_000
+"""New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
 
 
 class Door(click.Group):
@@ -24,6 +27,7 @@ class Door(click.Group):
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
+        gc.set_threshold(COLLECT_AFTER)
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, TextIOWrapper):
                 stream.reconfigure(errors="replace")  # a terminal without µ shows ? and goes on

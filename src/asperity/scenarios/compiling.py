@@ -18,6 +18,7 @@ from asperity.errors import PhysicsWarning
 from asperity.kernels import modal, rail
 from asperity.pointforce import Hertz
 from asperity.progress import Progress
+from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.ball_on_beam import roll
 from asperity.structures.ball import Ball
@@ -84,10 +85,11 @@ def _beside(stepping: Any, name: str) -> Iterator[None]:
 
 
 def roll_a_ball() -> None:
-    """Roll a ball a few steps."""
+    """Roll a ball a few steps over a line."""
     steel = material("steel")
     beam, ball = Beam.rectangular(1.0, 0.05, 0.01, steel, highest_frequency=100.0), Ball(0.025, steel)
-    roll(beam, ball, Hertz(1e10), speed=1.0, start=0.5, duration=1e-4, time_step=1e-5, sensors=[0.5])
+    law = Hertz(1e10, StateTexture.unfiltered(np.zeros(8), 0.2))
+    roll(beam, ball, law, speed=1.0, start=0.5, duration=1e-4, time_step=1e-5, sensors=[0.5])
 
 
 def roll_a_wheel() -> None:
@@ -103,4 +105,5 @@ def roll_a_wheel() -> None:
     poles = RailPoles(kernel, np.array([0.5 + 0.1j]), np.full((4, 1), 1e-12 + 0j), 0.0, 0.0)
     rails: list[RailPoles | MovingKernel] = [kernel, poles]
     for each in rails:
-        wheel_on_rail.roll(each, wheel, Hertz(1e11), start=0.0, duration=4e-6, settling=0.0)
+        law = Hertz(1e11, StateTexture.unfiltered(np.zeros(8), 0.2))
+        wheel_on_rail.roll(each, wheel, law, start=0.0, duration=4e-6, settling=0.0)
