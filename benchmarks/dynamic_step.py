@@ -34,6 +34,7 @@ from asperity.progress import progress_bar
 from asperity.rolling.ball_on_beam import Rolling, roll
 from asperity.scenarios.ball_on_beam import Computed, compute
 from asperity.scenarios.laws import Workshop
+from asperity.store import Store
 
 COMPILED = ["linear", "hertz", "printed", "shifted", "areal", "table"]
 
@@ -85,8 +86,17 @@ def prepared_case(load: float, rms: float, duration: float) -> Computed:
 
 def direct_law(computed: Computed) -> Law:
     """Make the law that solves the contact in every step of the same path."""
-    case, textures, shape = computed.case, computed.textures, computed.shape
-    workshop = Workshop(case, textures, shape, computed.reduction, None, None, lambda *_: None)
+    case, chain = computed.case, computed.chain
+    workshop = Workshop(
+        case.contact,
+        case.numerics,
+        chain.textures,
+        chain.shape,
+        chain.reduction,
+        None,
+        Store(),
+        lambda *_: None,
+    )
     return workshop.build("direct")[0]
 
 
@@ -131,8 +141,8 @@ def report(
     case = computed.case
     modes, sensors = len(computed.beam.natural_frequencies), len(case.beam.sensor_positions)
     print(
-        f"\nBall on beam, {computed.shape.load:g} N, window {computed.shape.body.shape[0]} x "
-        f"{computed.shape.body.shape[1]} cells, {modes} beam modes, {sensors} sensors, "
+        f"\nBall on beam, {computed.chain.shape.load:g} N, window {computed.chain.shape.body.shape[0]} x "
+        f"{computed.chain.shape.body.shape[1]} cells, {modes} beam modes, {sensors} sensors, "
         f"time step {1e6 * case.time_step:.3g} us, CPU time\n"
     )
     print("| law | steps | us per step | to areal | direct to it | evaluations per step | laying out, ms |")
@@ -161,16 +171,14 @@ def main() -> None:
     options = parser.parse_args()
     warnings.simplefilter("ignore", PhysicsWarning)  # what is timed is not what is concluded
     computed = prepared_case(options.load, options.rms, options.duration)
-    laws = computed.laws | {"direct": direct_law(computed)}
+    laws = computed.chain.laws | {"direct": direct_law(computed)}
     steps: dict[str, list[float]] = {name: [] for name in laws}
     layouts: dict[str, list[float]] = {name: [] for name in laws}
     runs: dict[str, Rolling] = {}
     rolled(computed, laws["direct"], 20 * computed.case.time_step)  # compiles
     for _ in range(options.rounds):
         for name, law in laws.items():
-            duration = (
-                min(options.direct_duration, computed.duration) if name == "direct" else computed.duration
-            )
+            duration = options.direct_duration if name == "direct" else options.duration
             step, layout, runs[name] = rolled(computed, law, duration)
             steps[name].append(step)
             layouts[name].append(layout)
