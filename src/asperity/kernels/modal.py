@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.options import INNER, LOOP
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE
 from asperity.kernels.pointforce import evaluate, with_damping
 
 FORCE_TOLERANCE = 1e-10  # of the force plus the load, at the end of each step
@@ -28,7 +28,7 @@ class System(NamedTuple):
 
     Attributes
     ----------
-    coefficients : ndarray (modes, 2, 4)
+    coefficients : ndarray (8, modes)
         From `modal_coefficients`.
     stiffness, damping : ndarray (modes,)
         omega^2 and 2 zeta omega of mass-normalised modes.
@@ -115,9 +115,9 @@ def modal_coefficients(natural: NDArray, damping_ratio: NDArray, time_step: floa
 
     Returns
     -------
-    ndarray (modes, 2, 4)
-        Rows: q and q' at the end of the step; columns: factors of q, q', p at the start and p at
-        the end.
+    ndarray (8, modes)
+        Factors of q, q', p at the start and p at the end, first those that give q at the end of the
+        step, then those that give q' there.
 
     Notes
     -----
@@ -135,7 +135,7 @@ def modal_coefficients(natural: NDArray, damping_ratio: NDArray, time_step: floa
     step[..., 2] -= step[..., 3]
     step *= np.array([1.0, time_step, time_step**2, time_step**2])
     step[:, 1] /= time_step
-    return step
+    return np.ascontiguousarray(step.reshape(-1, 8).T)
 
 
 def _exponential(matrices: NDArray) -> NDArray:
@@ -151,7 +151,7 @@ def _exponential(matrices: NDArray) -> NDArray:
     return result
 
 
-@njit(**INNER)
+@njit(**INNER, **REASSOCIATE)
 def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no-untyped-def]
     """Advance all but the last force of a step.
 
@@ -171,20 +171,19 @@ def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no
     compliance, rate_compliance : float
         How much they fall per force at the end, m/N and m/(s N).
     """
-    h, force = system.time_step, motion.force[0]
+    h, force, a = system.time_step, motion.force[0], system.coefficients
     beam, beam_rate, compliance, rate_compliance = 0.0, 0.0, 0.0, 0.0
     for j in range(shape.shape[0]):
-        a = system.coefficients[j]
         q, v, p = motion.displacement[j], motion.velocity[j], shape[j] * force
-        free = a[0, 0] * q + a[0, 1] * v + a[0, 2] * p
-        free_rate = a[1, 0] * q + a[1, 1] * v + a[1, 2] * p
+        free = a[0, j] * q + a[1, j] * v + a[2, j] * p
+        free_rate = a[4, j] * q + a[5, j] * v + a[6, j] * p
         motion.free_displacement[j], motion.free_velocity[j] = free, free_rate
         # the contact moves along the beam: total derivative
         convected = system.speed * next_slope[j]
         beam += next_shape[j] * free
         beam_rate += next_shape[j] * free_rate + convected * free
-        compliance += next_shape[j] ** 2 * a[0, 3]
-        rate_compliance += next_shape[j] * (next_shape[j] * a[1, 3] + convected * a[0, 3])
+        compliance += next_shape[j] ** 2 * a[3, j]
+        rate_compliance += next_shape[j] * (next_shape[j] * a[7, j] + convected * a[3, j])
     ball = motion.ball[0] + h * motion.ball[1] + h * h / system.mass * (0.5 * system.load - force / 3.0)
     ball_rate = motion.ball[1] + h / system.mass * (system.load - 0.5 * force)
     return (
@@ -275,7 +274,7 @@ def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
     return (free_approach - approach) / compliance, ITERATIONS, False
 
 
-@njit(**INNER)
+@njit(**INNER, **REASSOCIATE)
 def observe(system, motion, record, step, shape, slope):  # type: ignore[no-untyped-def]
     """Write the records of a step and the powers of its energy ledger.
 
@@ -290,17 +289,18 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
     """
     force = motion.force[0]
     beam, beam_rate, beam_slope, dissipated = 0.0, 0.0, 0.0, 0.0
-    for s in range(system.sensors.shape[0]):
-        record.acceleration[s, step] = 0.0
     for j in range(shape.shape[0]):
         q, v = motion.displacement[j], motion.velocity[j]
         beam += shape[j] * q
         beam_rate += shape[j] * v
         beam_slope += slope[j] * q
         dissipated += system.damping[j] * v * v
-        acceleration = shape[j] * force - system.damping[j] * v - system.stiffness[j] * q
-        for s in range(system.sensors.shape[0]):
-            record.acceleration[s, step] += system.sensors[s, j] * acceleration
+    for s in range(system.sensors.shape[0]):
+        total = 0.0
+        for j in range(shape.shape[0]):
+            driving = shape[j] * force - system.damping[j] * motion.velocity[j]
+            total += system.sensors[s, j] * (driving - system.stiffness[j] * motion.displacement[j])
+        record.acceleration[s, step] = total
     climb = system.speed * beam_slope
     record.force[step] = force
     record.ball[step], record.beam[step] = motion.ball[0], beam
@@ -312,7 +312,7 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
     motion.power[THROUGHPUT] = abs(force * beam_rate) + abs(force * motion.ball[1])
 
 
-@njit(**INNER)
+@njit(**INNER, **REASSOCIATE)
 def complete_step(system, motion, record, step, shape, slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
     """Apply the force at the end of a step, advance the state and keep the books.
 
@@ -334,8 +334,8 @@ def complete_step(system, motion, record, step, shape, slope, force, evaluations
     h, mass = system.time_step, system.mass
     for j in range(shape.shape[0]):
         p = shape[j] * force
-        motion.displacement[j] = motion.free_displacement[j] + system.coefficients[j, 0, 3] * p
-        motion.velocity[j] = motion.free_velocity[j] + system.coefficients[j, 1, 3] * p
+        motion.displacement[j] = motion.free_displacement[j] + system.coefficients[3, j] * p
+        motion.velocity[j] = motion.free_velocity[j] + system.coefficients[7, j] * p
     before = motion.force[0]
     motion.ball[0] += h * motion.ball[1] + h * h / mass * (0.5 * system.load - before / 3.0 - force / 6.0)
     motion.ball[1] += h / mass * (system.load - 0.5 * (before + force))
