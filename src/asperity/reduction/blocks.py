@@ -111,6 +111,18 @@ def solve_block(
     return forces, counts
 
 
+_KEPT = threading.local()
+
+
+def _half_space(contacts: Contacts) -> HalfSpace:
+    """Half-space of the last scan on this thread, with all it has prepared, or a new one."""
+    key = (contacts.body.shape, contacts.spacing, contacts.modulus, contacts.hardness)
+    if getattr(_KEPT, "key", None) != key:
+        _KEPT.key, _KEPT.half_space = key, contacts.half_space()
+    kept: HalfSpace = _KEPT.half_space
+    return kept
+
+
 class Solvers:
     """Solves blocks for the threads of a scan, the same digits on a thread, in a process, alone or not.
 
@@ -159,13 +171,11 @@ class Solvers:
         return found
 
     def _solve_here(self, rows: NDArray, planes: NDArray) -> tuple[NDArray, NDArray]:
-        own, contacts = self._of_thread, self.contacts
-        if not hasattr(own, "half_space"):
-            own.half_space = contacts.half_space()
+        contacts, half_space = self.contacts, _half_space(self.contacts)
         if self.device is None:
-            return solve_block(own.half_space, contacts, rows, planes)
+            return solve_block(half_space, contacts, rows, planes)
         found = batched_scan.solve_rows(
-            own.half_space, rows, contacts.body, contacts.approaches, planes, contacts.stride, contacts.rtol,
+            half_space, rows, contacts.body, contacts.approaches, planes, contacts.stride, contacts.rtol,
             self.device, TRUNCATED,
         )  # fmt: skip
         flaws = found[1:].sum(axis=(1, 2)).astype(np.int64)

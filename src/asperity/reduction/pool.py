@@ -27,7 +27,7 @@ def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = N
     items : iterable
         What it is called with; taken one by one.
     workers : int, optional
-        Threads; by default as many as `asperity.threads` says.
+        Threads; by default as many as `asperity.threads` says. One worker is the caller's own thread.
 
     Yields
     ------
@@ -36,6 +36,9 @@ def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = N
         are finished and the others are not begun.
     """
     count = workers or thread_count()
+    if count == 1:
+        yield from map(task, items)
+        return
     waiting, pending = iter(items), deque[Future[R]]()
     executor = ThreadPoolExecutor(count)
     try:

@@ -303,6 +303,7 @@ def _blocks(
     """Blocks of a scan in order, from the cache or solved, each from a cold start of its own."""
     report = progress or (lambda done, total, message: None)
     count = (workers or thread_count()) if job.device is None else 1  # one block fills a device
+    count = min(count, -(-job.positions // job.block))
     parameters = [list(job.spacing), job.modulus, job.hardness, job.stride, job.rtol]
     parameters += ["batched"] if job.device else []
     contacts = Contacts(
