@@ -87,7 +87,7 @@ class TestDirect:
             law.warn_of_flaws()
 
     def test_path_must_hold_the_window(self):
-        with pytest.raises(InputError, match=r"path of the ball \(m\): received"):
+        with pytest.raises(InputError, match=r"path \(m\): received"):
             direct(rough(60)).prepare([10 * DX])
 
     def test_sizes_must_fit(self):

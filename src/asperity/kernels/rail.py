@@ -110,6 +110,25 @@ def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
     return cell, at - cell
 
 
+@njit(**INNER)
+def direct_at(vehicle, step):  # type: ignore[no-untyped-def]
+    """Displacement of the rail at a step for unit force there, m/N."""
+    cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
+    return vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
+
+
+@njit(**INNER)
+def cubic_weights(t):  # type: ignore[no-untyped-def]
+    """Lagrange weights of the nodes -1, 0, 1, 2 at a place t between 0 and 1."""
+    before, after, beyond = t + 1.0, t - 1.0, t - 2.0
+    return (
+        -t * after * beyond / 6.0,
+        before * after * beyond / 2.0,
+        -before * t * beyond / 2.0,
+        before * t * after / 6.0,
+    )
+
+
 @njit(**INNER, **REASSOCIATE)
 def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     """Advance the rail by one step under the force at its start.
@@ -155,10 +174,8 @@ def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     cell, t = place(vehicle, step, rows)
     before, after = vehicle.scattered[(cell + rows - 1) % rows], vehicle.scattered[(cell + 1) % rows]
     here, beyond = vehicle.scattered[cell % rows], vehicle.scattered[(cell + 2) % rows]
-    w0 = -t * (t - 1.0) * (t - 2.0) / 6.0 * force
-    w1 = (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * force
-    w2 = -(t + 1.0) * t * (t - 2.0) / 2.0 * force
-    w3 = (t + 1.0) * t * (t - 1.0) / 6.0 * force
+    w0, w1, w2, w3 = cubic_weights(t)
+    w0, w1, w2, w3 = w0 * force, w1 * force, w2 * force, w3 * force
     ring, now = motion.ring, step % taps
     for k in range(1, taps - now):
         ring[now + k] += w0 * before[k] + w1 * here[k] + w2 * after[k] + w3 * beyond[k]
@@ -227,10 +244,7 @@ def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
     motion.free[1] = flexible
     wheel = motion.wheel[0] + h * motion.wheel[1] + h * h / vehicle.mass * (0.5 * vehicle.load - force / 3.0)
     approach = wheel + flexible - motion.free[0]
-    cells = vehicle.direct.shape[0] - 1
-    cell, share = place(vehicle, step, cells)
-    compliance = vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
-    compliance += h * h / (6.0 * vehicle.mass) + vehicle.flexible_compliance
+    compliance = direct_at(vehicle, step) + h * h / (6.0 * vehicle.mass) + vehicle.flexible_compliance
     rate = (1.5 * approach - 2.0 * motion.approach[0] + 0.5 * motion.approach[1]) / h
     return approach, rate, compliance, 1.5 * compliance / h
 
@@ -258,9 +272,7 @@ def complete_step(vehicle, motion, record, step, force, evaluations, converged):
     motion.wheel[1] += h / mass * (vehicle.load - 0.5 * (before + force))
     for w in range(motion.flexible.shape[0]):
         motion.flexible[w] -= vehicle.flexible_now[w] * force
-    cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
-    direct = vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
-    rail = motion.free[0] + direct * force
+    rail = motion.free[0] + direct_at(vehicle, step) * force
     wheel = motion.wheel[0] + motion.free[1] - vehicle.flexible_compliance * force
     motion.force[1], motion.force[0] = before, force
     motion.approach[1], motion.approach[0] = motion.approach[0], wheel - rail
@@ -322,9 +334,7 @@ def add_passing(displacement, forces, responses, places, begin):  # type: ignore
     mixed = np.empty(taps)
     for i in range(places.shape[0]):
         node = min(int(places[i]), responses.shape[0] - 4)
-        t = places[i] - node
-        w0, w1 = -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0
-        w2, w3 = -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0
+        w0, w1, w2, w3 = cubic_weights(places[i] - node)
         for k in range(taps):
             mixed[k] = w0 * responses[node, k] + w1 * responses[node + 1, k]
             mixed[k] += w2 * responses[node + 2, k] + w3 * responses[node + 3, k]

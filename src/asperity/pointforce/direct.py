@@ -71,7 +71,7 @@ class Direct:
         if index.min() < half - 1e-6 or index.max() > last + 1e-6:
             first, end = (self.start + self.spacing[0] * i for i in (half, last))
             raise InputError(
-                "path of the ball (m)",
+                "path (m)",
                 f"{self.start + self.spacing[0] * index.min():.6g} to "
                 f"{self.start + self.spacing[0] * index.max():.6g}",
                 f"{first:.6g} to {end:.6g}, where the texture fills the contact window",

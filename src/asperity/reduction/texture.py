@@ -173,7 +173,7 @@ def grid_index(what: str, points: int, start: float, spacing: float, positions: 
     slack = 1e-6  # of a spacing: rounding of the positions
     if index.min() < -slack or index.max() > last + slack:
         raise InputError(
-            "path of the ball (m)",
+            "path (m)",
             f"{start + spacing * index.min():.6g} to {start + spacing * index.max():.6g}",
             f"{start:.6g} to {start + spacing * last:.6g}, where the {what} is known",
             "Shorten the duration or provide a longer texture.",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.errors import CoarseSamplingWarning, InputError, Outcome
 from asperity.kernels.pointforce import Prepared
-from asperity.kernels.rail import Motion, Record, Vehicle, preload
+from asperity.kernels.rail import Motion, Record, Vehicle, direct_at, preload
 from asperity.pointforce.base import Law
 from asperity.progress import Progress
 from asperity.rolling.equilibrium import static_approach
@@ -233,9 +233,7 @@ def _at_rest(
         np.zeros(3, dtype=np.int64),
     )
     now, before = preload(vehicle, motion, wheel.load, int(PRELOAD * kernel.weights.shape[1]))
-    direct = np.interp(
-        (origin / kernel.spacing) % 1.0, np.linspace(0, 1, len(vehicle.direct)), vehicle.direct
-    )
+    direct = float(direct_at(vehicle, 0))
     motion.wheel[0] = now + direct * wheel.load + approach - 2.0 * flexible.real.sum()
     motion.wheel[1] = (now - before) / vehicle.time_step
     record = Record(*(np.zeros(samples) for _ in Record._fields))
