@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from asperity.kernels.continuation import continued
-from asperity.kernels.convolution import convolution, convolve, pitch, workspace
+from asperity.kernels.continuation import continue_pressure
+from asperity.kernels.convolution import convolve, pitch, workspace
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
+from asperity.kernels.influence import convolution, influence, is_prepared, prepared
 from asperity.kernels.lanes import LANES
 from asperity.kernels.overlap import box_of_positive, overlap_box
 
@@ -40,7 +41,11 @@ def test_convolution_is_the_sum_over_cells_in_the_box(nx: int, ny: int) -> None:
     i, j = np.arange(nx), np.arange(ny)
     rows, columns = np.abs(i[:, None] - i), np.abs(j[:, None] - j)
     expected = np.einsum("ikjl,kl->ij", table[rows[:, :, None, None], columns], field[:, :ny])
-    c, out = convolution(table, mx, my), np.full_like(field, np.nan)
+    known = prepared(prepared(influence(table, np.zeros(6)), 1, 1), nx, ny)
+    assert is_prepared(known, mx, my)
+    assert is_prepared(known, 1, 1)
+    assert max(mx, my) == 8 or not is_prepared(known, 1, 17)
+    c, out = convolution(known, nx, ny), np.full_like(field, np.nan)
     work = workspace(c)
     for _ in range(2):  # the second time in a used workspace
         convolve(c, field, ny, work, out)
@@ -64,6 +69,11 @@ def test_continuation_is_straight_at_points_of_the_surface_and_stays_within_boun
     def at(first: int, time: float) -> np.ndarray:
         """Pressure on ten rows of the surface, straight in time."""
         return np.ascontiguousarray(surface[first : first + 10] * time)
+
+    def continued(*given) -> np.ndarray:
+        start = np.full((10, 4), np.nan)
+        continue_pressure(*given, start)
+        return start
 
     moved = continued(at(2, 2.0), at(0, 1.0), 2, 1.0, np.inf)
     assert np.allclose(moved[:6], at(4, 3.0)[:6])

@@ -10,9 +10,9 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from asperity.contact import HalfSpace
 from asperity.errors import ComputationError, InputError
 from asperity.reduction.areal import areal_texture
+from asperity.reduction.blocks import solve_block
 from asperity.reduction.ensemble import stiffness_ensemble
 from asperity.reduction.pool import in_order
 from asperity.reduction.scan import first_touch, scan_forces, scan_into
@@ -111,22 +111,16 @@ def test_memory_does_not_grow_with_the_path(tmp_path, monkeypatch):
     """Beyond a few bytes a position (names of blocks, planes); the strip alone would take 120 a row."""
     monkeypatch.setattr("asperity.reduction.scan.BLOCK", 64)
     store = Store(tmp_path)
-    monkeypatch.setattr(HalfSpace, "at_approach", ForceOnly.at_approach)
+    monkeypatch.setattr("asperity.reduction.scan.solve_block", overlaps)
     short, long = peak(lambda rows: scan_into(store, strip(rows), *SCAN, workers=1))
     assert long - short < 12 * 20000
 
 
-class ForceOnly:
-    """A contact that costs nothing."""
-
-    iterations, converged, edge_share = 1, True, 0.0
-
-    def __init__(self, pressure):
-        self.pressure, self.force = pressure, float(pressure.sum())
-
-    @staticmethod
-    def at_approach(half_space, gap, approach, start, rtol):
-        return ForceOnly(np.maximum(approach - gap, 0.0))
+def overlaps(contacts, rows, planes, device):
+    """Instead of contacts: something that costs nothing."""
+    nx = len(contacts.body)
+    largest = [(rows[m : m + nx] - contacts.body).max() - plane for m, plane in enumerate(planes)]
+    return np.maximum(np.add.outer(contacts.approaches, largest), 0.0), np.zeros(4, dtype=np.int64)
 
 
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
@@ -160,6 +154,17 @@ scan.scan_into(Store({root!r}), strip(1000000), *SCAN, workers=1)
 """
 
 
+def counted(solved):
+    """Solution of a block that tells of the number of its contacts."""
+
+    def solve(*block):
+        forces, counts = solve_block(*block)
+        solved.append(counts[0])
+        return forces, counts
+
+    return solve
+
+
 def test_a_killed_scan_goes_on_with_nothing_recomputed_but_the_last_block(tmp_path, monkeypatch):
     script = SCRIPT.format(folder=os.path.dirname(__file__), root=str(tmp_path))
     scanning = subprocess.Popen([sys.executable, "-c", script])
@@ -174,13 +179,12 @@ def test_a_killed_scan_goes_on_with_nothing_recomputed_but_the_last_block(tmp_pa
     kept = len(store.files())
     assert kept >= 4
     solved = []
-    original = HalfSpace.at_approach
     monkeypatch.setattr("asperity.reduction.scan.BLOCK", 16)
-    monkeypatch.setattr(HalfSpace, "at_approach", lambda *a: solved.append(1) or original(*a))
+    monkeypatch.setattr("asperity.reduction.scan.solve_block", counted(solved))
     positions = 16 * (kept + 2)
     resumed = scan_into(store, strip(positions + N - 1), *SCAN, workers=1)
     again = np.count_nonzero(resumed.forces.columns(16 * kept, positions))
-    assert len(solved) == again  # the two blocks beyond the last kept one, and no other
+    assert sum(solved) == again  # the two blocks beyond the last kept one, and no other
     fresh = scan_forces(strip(positions + N - 1), *SCAN, workers=2)
     assert np.array_equal(resumed.forces.columns(0, positions), fresh.forces)
 

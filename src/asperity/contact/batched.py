@@ -183,7 +183,7 @@ def _solve_batch(
     found: SolvedContacts,
 ) -> None:
     """Solve positions first … last at all approaches, and write what was found."""
-    xp, cap, taps = device.xp, half_space._cap, tuple(half_space._taps.tolist())
+    xp, cap, taps = device.xp, half_space.pressure_cap, tuple(half_space.influence.taps.tolist())
     pressure = xp.zeros_like(gap)
     for i, approach in enumerate(approaches):
         members = np.flatnonzero(boxes.touching[i, span[0] : span[1]])
@@ -195,7 +195,7 @@ def _solve_batch(
         overlap = float(approach) - gap[cells]
         largest = overlap.max(axis=(1, 2))
         p = pressure[cells]
-        spectrum, my = xp.asarray(padded_spectrum(half_space._table, nx, ny)), padded_length(ny)
+        spectrum, my = xp.asarray(padded_spectrum(half_space.influence.table, nx, ny)), padded_length(ny)
         fresh = ~p.any(axis=(1, 2))
         if bool(fresh.any()):
             guess = first_guess(overlap, spectrum, my, cap, xp)

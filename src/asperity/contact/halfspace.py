@@ -12,23 +12,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError, Outcome, UnconvergedWarning
-from asperity.kernels.convolution import Convolution, convolution, convolve, pitch, workspace
+from asperity.kernels import contact as kernel
+from asperity.kernels.convolution import Convolution, convolve, pitch, workspace
 from asperity.kernels.fourier import smooth_length
+from asperity.kernels.influence import Influence, convolution, influence, is_prepared, prepared
 from asperity.kernels.love import influence_table
-from asperity.kernels.overlap import box_of_positive, overlap_box
-from asperity.kernels.projected_cg import (
-    Box,
-    empty_box,
-    enter,
-    inverse_stencil,
-    solve,
-    survey,
-    unit_indentation,
-)
+from asperity.kernels.overlap import box_of_positive
+from asperity.kernels.projected_cg import empty_box, inverse_stencil, unit_indentation
 
 MAX_ITERATIONS = 2000
-MARGIN = 3
-"""Cells left around pressure and overlap of what a solution starts from."""
+OUTCOMES = {
+    kernel.NO_CONTACT: Outcome.NO_CONTACT,
+    kernel.CONVERGED: Outcome.CONVERGED,
+    kernel.ITERATION_LIMIT: Outcome.ITERATION_LIMIT,
+    kernel.SINGULAR: Outcome.SINGULAR,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,11 +126,11 @@ class HalfSpace:
         self.modulus = float(modulus)
         self.hardness = None if hardness is None else float(hardness)
         reach_x, reach_y = (smooth_length(max(n, 32)) for n in self.shape)
-        self._table = influence_table(reach_x, reach_y, *self.spacing) / (math.pi * self.modulus)
-        self._mirrored = np.concatenate([self._table[:, :0:-1], self._table], axis=1)
         dx, dy = self.spacing
-        self._taps = _unit_taps(dy / dx) * (math.pi * self.modulus / dx)
-        self._convolutions: dict[tuple[int, int], Convolution] = {}
+        scale = math.pi * self.modulus
+        self.influence: Influence = influence(
+            influence_table(reach_x, reach_y, dx, dy) / scale, _unit_taps(dy / dx) * (scale / dx)
+        )
 
     @property
     def cell_area(self) -> float:
@@ -171,14 +169,14 @@ class HalfSpace:
             dA · 1ᵀ A⁻¹ 1 on the contact set, N/m.
         """
         p = self._field("pressure", pressure)
-        free = (p > 0.0) & (p < self._cap)
+        free = (p > 0.0) & (p < self.pressure_cap)
         if not free.any():
             return 0.0
         inside = free[_slices(box_of_positive(free.astype(np.float64)))]
-        box = self._empty_box(*inside.shape)
-        box.overlap[:, : inside.shape[1]] = inside
         c = self._convolution(*inside.shape)
-        converged = unit_indentation(c, self._taps, box, inside.shape[1], rtol, MAX_ITERATIONS)
+        box = empty_box(inside.shape[0], inside.shape[1], c)
+        box.overlap[:, : inside.shape[1]] = inside
+        converged = unit_indentation(c, self.influence.taps, box, inside.shape[1], rtol, MAX_ITERATIONS)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         return float(box.pressure.sum()) * self.cell_area
@@ -222,7 +220,7 @@ class HalfSpace:
             raise InputError("approach and load", given, "exactly one of them", "Give one of the two.")
         if not (math.isfinite(rtol) and 0 < rtol < 1):
             raise InputError("rtol", rtol, "a number between 0 and 1, as 1e-6")
-        p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self._cap)
+        p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self.pressure_cap)
         if approach is not None:
             if not math.isfinite(approach):
                 raise InputError("approach", approach, "a finite length, m")
@@ -234,13 +232,14 @@ class HalfSpace:
         return contact
 
     @property
-    def _cap(self) -> float:
+    def pressure_cap(self) -> float:
+        """Largest pressure, Pa; infinite without hardness."""
         return math.inf if self.hardness is None else self.hardness
 
     def _checked_load(self, load: float | None) -> float:
         if load is None or not (math.isfinite(load) and load >= 0):
             raise InputError("load", load, "a force ≥ 0, N")
-        largest = self._cap * self.cell_area * self.shape[0] * self.shape[1]
+        largest = self.pressure_cap * self.cell_area * self.shape[0] * self.shape[1]
         if load >= largest:
             raise InputError(
                 "load",
@@ -264,15 +263,21 @@ class HalfSpace:
             )
         return a
 
-    def _convolution(self, nx: int, ny: int) -> Convolution:
-        """Convolution on a box; those of all boxes of a path are few, as few lengths transform fast."""
-        key = (smooth_length(nx), smooth_length(ny))
-        if key not in self._convolutions:
-            self._convolutions[key] = convolution(self._table, *key)
-        return self._convolutions[key]
+    def prepare(self, nx: int, ny: int) -> None:
+        """Prepare the convolution on a box: few do for a path, as few lengths transform fast.
 
-    def _empty_box(self, nx: int, ny: int) -> Box:
-        return empty_box(nx, ny, self._convolution(nx, ny))
+        Parameters
+        ----------
+        nx, ny : int
+            Cells.
+        """
+        if not is_prepared(self.influence, nx, ny):
+            self.influence = prepared(self.influence, nx, ny)
+
+    def _convolution(self, nx: int, ny: int) -> Convolution:
+        self.prepare(nx, ny)
+        c: Convolution = convolution(self.influence, nx, ny)
+        return c
 
     def _convolved(self, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
         """Displacement on a box under a pressure on that box, m."""
@@ -298,52 +303,18 @@ class HalfSpace:
         Contact
             The solution; look at `converged`.
         """
-        largest, *limits = overlap_box(gap, approach)
         pressure = np.zeros(self.shape)
-        if largest <= 0.0:
-            return Contact(pressure, 0.0, approach, 0.0, 0, 0.0, Outcome.NO_CONTACT, self, gap)
-        outer = _slices(limits)
-        p = pressure[outer] if start is None else start[outer]
-        if not p.any():
-            p = self._first_guess(approach - gap[outer])
-        box = self._empty_box(*p.shape)
-        enter(box, p.shape[1], gap[outer], approach, p)
-        iterations, worst = self._solve_box(box, p.shape[1], rtol * largest)
-        if worst <= rtol * largest:
-            outcome = Outcome.CONVERGED
-        else:
-            outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.SINGULAR
-        pressure[outer] = p = box.pressure[:, : p.shape[1]]
-        force = float(p.sum()) * self.cell_area
-        area = int(np.count_nonzero(p)) * self.cell_area
-        return Contact(pressure, force, approach, area, iterations, worst / largest, outcome, self, gap)
-
-    def _solve_box(self, outer: Box, columns: int, tolerance: float) -> tuple[int, float]:
-        """Solve on smaller boxes around pressure and overlap until the whole box holds no violation.
-
-        The box's pressure is the start and becomes the solution. Returned: iterations, largest residual.
-        """
-        iterations, shape = 0, (outer.overlap.shape[0], columns)
-        whole = self._convolution(*shape)
+        begin = pressure if start is None else start
         while True:
-            worst, *limits = survey(whole, outer, columns, self._cap)
-            if worst <= tolerance or iterations >= MAX_ITERATIONS:
-                return iterations, worst
-            first, end, left, right = _grown(limits, shape)
-            nx, ny = end - first, right - left
-            done, definite = solve(
-                self._convolution(nx, ny), self._mirrored, self._taps, outer, first, left,
-                self._empty_box(nx, ny), ny, self._cap, tolerance, MAX_ITERATIONS - iterations,
-            )  # fmt: skip
-            iterations += done
-            if not definite:
-                return iterations, worst
-
-    def _first_guess(self, overlap: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Pressure of Hertzian form over the deeper half of the overlap, scaled to least energy."""
-        p = np.sqrt(np.maximum(overlap - 0.5 * overlap.max(), 0.0))
-        scale = float(np.vdot(p, overlap)) / float(np.vdot(p, self._convolved(p)))
-        return np.minimum(p * scale, self._cap)
+            found = kernel.solve_contact(
+                self.influence, gap, approach, begin, self.pressure_cap, rtol, MAX_ITERATIONS, pressure
+            )
+            if found.status != kernel.UNPREPARED:
+                break
+            self.prepare(found.nx, found.ny)
+        force, area = found.total * self.cell_area, found.cells * self.cell_area
+        outcome = OUTCOMES[found.status]
+        return Contact(pressure, force, approach, area, found.iterations, found.residual, outcome, self, gap)
 
     def _at_load(
         self, gap: NDArray[np.float64], load: float, start: NDArray[np.float64] | None, rtol: float
@@ -402,16 +373,6 @@ def _unit_taps(ratio: float) -> NDArray[np.float64]:
 
 def _slices(limits: Sequence[int]) -> tuple[slice, slice]:
     return slice(limits[0], limits[1]), slice(limits[2], limits[3])
-
-
-def _grown(limits: Sequence[int], shape: tuple[int, int]) -> list[int]:
-    """Box with a margin, and with what transforms at the same cost, inside of a larger one."""
-    grown: list[int] = []
-    for first, end, n in zip(limits[::2], limits[1::2], shape, strict=True):
-        length = min(smooth_length(end - first + 2 * MARGIN), n)
-        begin = min(max(0, first - (length - (end - first)) // 2), n - length)
-        grown += [begin, begin + length]
-    return grown
 
 
 def _warn_unconverged(what: str, outcome: Outcome) -> None:

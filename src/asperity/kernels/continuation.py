@@ -10,7 +10,7 @@ from asperity.kernels.options import LOOP
 
 
 @njit(**LOOP, nogil=True)
-def _continue(
+def continue_pressure(
     last: NDArray[np.float64],
     before: NDArray[np.float64],
     stride: int,
@@ -18,17 +18,6 @@ def _continue(
     cap: float,
     start: NDArray[np.float64],
 ) -> None:
-    nx, ny = last.shape
-    for i in range(nx - stride):
-        known = share if i + 2 * stride < nx else 0.0
-        p, q = last[i + stride], before[min(i + 2 * stride, nx - 1)]
-        for j in range(ny):
-            start[i, j] = min(max(p[j] + known * (p[j] - q[j]), 0.0), cap)
-
-
-def continued(
-    last: NDArray[np.float64], before: NDArray[np.float64], stride: int, share: float, cap: float
-) -> NDArray[np.float64]:
     """Continue the pressures of two contacts to a third, straight at every point of the surface.
 
     Parameters
@@ -41,12 +30,15 @@ def continued(
         How far to go on, in steps from the contact before to the last; at zero, `before` does not matter.
     cap : float
         Largest pressure, Pa.
-
-    Returns
-    -------
-    ndarray, shape (nx, ny)
-        Pressure, Pa.
+    start : ndarray, shape (nx, ny)
+        Receives the pressure, Pa.
     """
-    start = np.zeros_like(last)
-    _continue(last, before, stride, share, cap, start)
-    return start
+    nx, ny = last.shape
+    for i in range(nx - stride):
+        known = share if i + 2 * stride < nx else 0.0
+        p, q = last[i + stride], before[min(i + 2 * stride, nx - 1)]
+        for j in range(ny):
+            start[i, j] = min(max(p[j] + known * (p[j] - q[j]), 0.0), cap)
+    for i in range(nx - stride, nx):
+        for j in range(ny):
+            start[i, j] = 0.0

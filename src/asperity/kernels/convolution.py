@@ -16,7 +16,7 @@ import scipy.fft
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.fourier import factors, roots, transform
+from asperity.kernels.fourier import roots, transform
 from asperity.kernels.lanes import LANES, load, store, transpose
 from asperity.kernels.options import INNER, LOOP
 
@@ -28,25 +28,25 @@ class Convolution(NamedTuple):
     ----------
     radices_x, radices_y : ndarray of int
         Of the lengths mx and my.
-    roots_x, roots_y : ndarray, shape (m, 2)
+    roots_x, roots_y : ndarray, shape (2 m,)
         From `fourier.roots`.
-    turn_x, turn_y : ndarray, shape (m, 2)
-        exp(−iπj/2m).
+    turn_x, turn_y : ndarray, shape (2 m,)
+        From `quarter_turn`.
     spectrum : ndarray, shape (⌈mx / lanes⌉ my lanes,)
-        Spectrum at the frequencies (k + ¼)/m, a quarter of 1/(mx my) of it.
+        From `spectrum`.
     """
 
     radices_x: NDArray[np.int64]
     radices_y: NDArray[np.int64]
-    roots_x: NDArray
-    roots_y: NDArray
-    turn_x: NDArray
-    turn_y: NDArray
-    spectrum: NDArray
+    roots_x: NDArray[np.float64]
+    roots_y: NDArray[np.float64]
+    turn_x: NDArray[np.float64]
+    turn_y: NDArray[np.float64]
+    spectrum: NDArray[np.float64]
 
 
-def convolution(table: NDArray[np.float64], mx: int, my: int) -> Convolution:
-    """Prepare the convolution with an even kernel.
+def spectrum(table: NDArray[np.float64], mx: int, my: int) -> NDArray[np.float64]:
+    """Spectrum of an even kernel in the order in which it is multiplied with.
 
     Parameters
     ----------
@@ -57,22 +57,30 @@ def convolution(table: NDArray[np.float64], mx: int, my: int) -> Convolution:
 
     Returns
     -------
-    Convolution
-        For `convolve`.
+    ndarray, shape (⌈mx / lanes⌉ my lanes,)
+        Spectrum at the frequencies (k + ¼)/m, divided by 2 mx my.
     """
     quarter = quarter_spectrum(quarter_spectrum(table[:mx, :my], 1), 0) / (2.0 * mx * my)
     blocks = np.zeros((-(-mx // LANES) * LANES, my))
     blocks[:mx] = quarter
-    spectrum = blocks.reshape(-1, LANES, my).transpose(0, 2, 1).ravel()
-    return Convolution(
-        np.array(factors(mx)), np.array(factors(my)), roots(mx), roots(my),
-        _turn(mx), _turn(my), spectrum,
-    )  # fmt: skip
+    return blocks.reshape(-1, LANES, my).transpose(0, 2, 1).ravel()
 
 
 @lru_cache
-def _turn(m: int) -> NDArray:
-    return np.ascontiguousarray(roots(4 * m)[:m])
+def quarter_turn(m: int) -> NDArray[np.float64]:
+    """Factors that turn a record by a right angle from one end to the other.
+
+    Parameters
+    ----------
+    m : int
+        Length.
+
+    Returns
+    -------
+    ndarray, shape (2 m,)
+        exp(−iπj/2m), real and imaginary parts in turn.
+    """
+    return np.ascontiguousarray(roots(4 * m)[: 2 * m])
 
 
 def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
@@ -90,11 +98,12 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
     ndarray
         Spectrum, of the table's shape.
     """
-    turn = _turn(table.shape[axis]) @ [1.0, 1.0j]
+    turn = quarter_turn(table.shape[axis]).view(np.complex128)
     turned = table * (turn if axis else turn[:, None])
     return 2.0 * scipy.fft.fft(turned, axis=axis).real - table.take([0], axis)
 
 
+@njit(cache=True, nogil=True)
 def pitch(ny: int) -> int:
     """Length of the rows of a field of `ny` columns, filled up to whole vectors.
 
@@ -111,7 +120,8 @@ def pitch(ny: int) -> int:
     return -(-ny // LANES) * LANES
 
 
-def workspace(c: Convolution) -> NDArray:
+@njit(cache=True, nogil=True)
+def workspace(c: Convolution) -> NDArray[np.float64]:
     """Room that a convolution needs, for one thread.
 
     Parameters
@@ -124,7 +134,7 @@ def workspace(c: Convolution) -> NDArray:
     ndarray
         For `convolve`, as often as liked.
     """
-    mx, my = (-(-len(turn) // LANES) * LANES for turn in (c.turn_x, c.turn_y))
+    mx, my = pitch(len(c.turn_x) // 2), pitch(len(c.turn_y) // 2)
     return np.zeros(2 * mx * my + 6 * max(mx, my) * LANES)
 
 
@@ -139,9 +149,9 @@ def _turn_in(c: Convolution, field: NDArray, row: int, first: int, nx: int, buff
     """Turn a block of real columns into the buffer, zero behind the box."""
     for i in range(nx):
         re, o = load(field, i * row + first), 2 * i * LANES
-        store(buffer, o, c.turn_x[i, 0] * re)
-        store(buffer, o + LANES, c.turn_x[i, 1] * re)
-    _clear(buffer, 2 * nx * LANES, 2 * len(c.turn_x) * LANES)
+        store(buffer, o, c.turn_x[2 * i] * re)
+        store(buffer, o + LANES, c.turn_x[2 * i + 1] * re)
+    _clear(buffer, 2 * nx * LANES, len(c.turn_x) * LANES)
 
 
 @njit(**LOOP)
@@ -150,7 +160,7 @@ def _turn_out(c: Convolution, buffer: NDArray, row: int, first: int, nx: int, ou
     for i in range(nx):
         o = 2 * i * LANES
         re, im = load(buffer, o), load(buffer, o + LANES)
-        store(out, i * row + first, c.turn_x[i, 0] * re - c.turn_x[i, 1] * im)
+        store(out, i * row + first, c.turn_x[2 * i] * re - c.turn_x[2 * i + 1] * im)
 
 
 @njit(**INNER)
@@ -161,12 +171,14 @@ def _turned(re: Any, im: Any, cosine: Any, sine: Any) -> Any:
 @njit(**LOOP)
 def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: NDArray, s: NDArray) -> None:
     """Convolve across in both senses of turning; the conjugate of the sum replaces the rows."""
-    my = len(c.turn_y)
+    my = len(c.turn_y) // 2
     for sense in range(2):
         sign = 1.0 - 2.0 * sense
         for j in range(ny):
             o = 2 * j * LANES
-            re, im = _turned(load(rows, o), load(rows, o + LANES), c.turn_y[j, 0], sign * c.turn_y[j, 1])
+            re, im = _turned(
+                load(rows, o), load(rows, o + LANES), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1]
+            )
             store(a, o, re)
             store(a, o + LANES, im)
         _clear(a, 2 * ny * LANES, 2 * my * LANES)
@@ -181,7 +193,7 @@ def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: N
             x = y
         for j in range(ny):
             o = 2 * j * LANES
-            re, im = _turned(load(x, o), load(x, o + LANES), c.turn_y[j, 0], sign * c.turn_y[j, 1])
+            re, im = _turned(load(x, o), load(x, o + LANES), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
             if sense == 0:
                 store(s, o, re)
                 store(s, o + LANES, im)
@@ -197,7 +209,7 @@ def convolve(c: Convolution, field: NDArray, ny: int, work: NDArray, out: NDArra
     Parameters
     ----------
     c : Convolution
-        From `convolution`; the box has at most its cells.
+        The box has at most its cells.
     field : ndarray, shape (nx, pitch)
         Field on the box; zero in the columns from `ny` on.
     ny : int
@@ -207,10 +219,10 @@ def convolve(c: Convolution, field: NDArray, ny: int, work: NDArray, out: NDArra
     out : ndarray, shape (nx, pitch)
         Receives the convolution; columns from `ny` on have no meaning.
     """
-    mx = len(c.turn_x)
+    mx = len(c.turn_x) // 2
     nx, row = field.shape
     blocks = -(-mx // LANES)
-    size = 2 * max(blocks * LANES, -(-len(c.turn_y) // LANES) * LANES) * LANES
+    size = 2 * max(blocks * LANES, -(-len(c.turn_y) // (2 * LANES)) * LANES) * LANES
     a, b, s = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
     rows, line = work[3 * size :], 2 * row * LANES
     for first in range(0, row, LANES):

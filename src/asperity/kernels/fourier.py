@@ -69,23 +69,22 @@ def roots(n: int) -> NDArray:
 
     Returns
     -------
-    ndarray, shape (n, 2)
-        Real and imaginary parts.
+    ndarray, shape (2 n,)
+        Real and imaginary parts in turn.
     """
-    turn = np.exp(-2j * np.pi * np.arange(n) / n)
-    return np.stack([turn.real, turn.imag], axis=1)
+    return np.exp(-2j * np.pi * np.arange(n) / n).view(np.float64)
 
 
 @njit(**INNER)
 def _put(target: NDArray, index: int, re: Any, im: Any, w: NDArray, power: int) -> None:
-    c, s = w[power, 0], w[power, 1]
+    c, s = w[2 * power], w[2 * power + 1]
     store(target, index, c * re - s * im)
     store(target, index + LANES, c * im + s * re)
 
 
 @njit(**INNER)
 def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 2, w.shape[0] // n, 2 * LANES
+    m, unit, row = n // 2, len(w) // (2 * n), 2 * LANES
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 2 * p) * row
@@ -99,7 +98,7 @@ def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @njit(**INNER)
 def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 3, w.shape[0] // n, 2 * LANES
+    m, unit, row = n // 3, len(w) // (2 * n), 2 * LANES
     half, sine = 0.5, 0.75**0.5
     for p in range(m):
         for q in range(stride):
@@ -120,7 +119,7 @@ def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @njit(**INNER)
 def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 4, w.shape[0] // n, 2 * LANES
+    m, unit, row = n // 4, len(w) // (2 * n), 2 * LANES
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 4 * p) * row
@@ -142,7 +141,7 @@ def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @njit(**INNER)
 def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 5, w.shape[0] // n, 2 * LANES
+    m, unit, row = n // 5, len(w) // (2 * n), 2 * LANES
     c1, c2 = np.cos(0.4 * np.pi), np.cos(0.8 * np.pi)
     s1, s2 = np.sin(0.4 * np.pi), np.sin(0.8 * np.pi)
     for p in range(m):
@@ -181,7 +180,7 @@ def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) ->
         The batch, and room for another; both are overwritten.
     radices : ndarray of int
         From `factors`.
-    w : ndarray, shape (n, 2)
+    w : ndarray, shape (2 n,)
         From `roots`.
 
     Returns
@@ -189,7 +188,7 @@ def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) ->
     bool
         Whether the result is in `y`; else it is in `x`.
     """
-    n, stride, swapped = w.shape[0], 1, False
+    n, stride, swapped = len(w) // 2, 1, False
     for radix in radices:
         source, target = (y, x) if swapped else (x, y)
         if radix == 4:

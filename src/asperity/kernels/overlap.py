@@ -26,7 +26,8 @@ def overlap_box(gap: NDArray[np.float64], approach: float) -> tuple[float, int, 
         The smallest box that holds all overlapping cells; zeros if there are none.
     """
     nx, ny = gap.shape
-    lowest = np.full(ny, np.inf)
+    lowest = np.empty(ny)
+    lowest[:] = np.inf
     smallest, first, end = np.inf, nx, 0
     for i in range(nx):
         row = np.inf
@@ -34,11 +35,11 @@ def overlap_box(gap: NDArray[np.float64], approach: float) -> tuple[float, int, 
             g = gap[i, j]
             row = min(row, g)
             lowest[j] = min(lowest[j], g)
+        smallest = min(smallest, row)
         if row < approach:
             first, end = min(first, i), i + 1
-            smallest = min(smallest, row)
     if end == 0:
-        return approach - gap.min(), 0, 0, 0, 0
+        return approach - smallest, 0, 0, 0, 0
     left, right = 0, ny
     while lowest[left] >= approach:
         left += 1

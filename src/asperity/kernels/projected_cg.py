@@ -57,6 +57,7 @@ class Box(NamedTuple):
     work: NDArray[np.float64]
 
 
+@njit(cache=True, nogil=True)
 def empty_box(nx: int, ny: int, c: Convolution) -> Box:
     """Make the fields of a box.
 
@@ -73,8 +74,8 @@ def empty_box(nx: int, ny: int, c: Convolution) -> Box:
         Zeros.
     """
     row = pitch(ny)
-    a, b, c_, d, e, f, g = np.zeros((7, nx, row))
-    return Box(a, b, c_, d, e, f, g, np.zeros((nx + 2 * REACH, row + 2 * REACH)), workspace(c))
+    f, masked = np.zeros((7, nx, row)), np.zeros((nx + 2 * REACH, row + 2 * REACH))
+    return Box(f[0], f[1], f[2], f[3], f[4], f[5], f[6], masked, workspace(c))
 
 
 def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -206,29 +207,6 @@ def _true_residual(c: Convolution, b: Box, ny: int) -> None:
     for i in range(b.residual.shape[0]):
         for j in range(ny):
             b.residual[i, j] -= b.overlap[i, j]
-
-
-@njit(**LOOP, nogil=True)
-def enter(b: Box, ny: int, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64]) -> None:
-    """Set overlap and pressure of a box.
-
-    Parameters
-    ----------
-    b : Box
-        The box, of `ny` columns.
-    ny : int
-        Columns of the box.
-    gap : ndarray, shape (nx, ny)
-        Separation at zero approach, m.
-    approach : float
-        Approach, m.
-    start : ndarray, shape (nx, ny)
-        Pressure, Pa.
-    """
-    for i in range(gap.shape[0]):
-        for j in range(ny):
-            b.overlap[i, j] = approach - gap[i, j]
-            b.pressure[i, j] = start[i, j]
 
 
 @njit(**LOOP, nogil=True)

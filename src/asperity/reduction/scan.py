@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.contact.device import Device, find_device
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
 from asperity.reduction import batched_scan
-from asperity.reduction.blocks import TRUNCATED, Contacts, Solvers
+from asperity.reduction.blocks import TRUNCATED, Contacts, solve_block
 from asperity.reduction.pool import in_order
 from asperity.reduction.stored import StoredForces
 from asperity.store import Cache, content_key
@@ -314,23 +314,19 @@ def _blocks(
         planes = np.ascontiguousarray(job.planes[first : first + job.block])
         stop = (first + len(planes) - 1) * job.stride + job.body.shape[0]
         rows = np.ascontiguousarray(job.strip.rows(first * job.stride, stop))
-        left = (job.positions - first) / job.block / count  # blocks for each worker
         if cache is None:
-            return _Block("", *solvers.solve(rows, planes, left))
+            return _Block("", *solve_block(contacts, rows, planes, job.device))
         key = content_key("scan", rows, job.body, job.approaches, planes, parameters)
         kept = cache.get(key)
         if kept is None:
-            forces, counts = solvers.solve(rows, planes, left)
+            forces, counts = solve_block(contacts, rows, planes, job.device)
             kept = {"forces": forces, "counts": counts}
             cache.put(key, kept)
         return _Block(key, kept["forces"], kept["counts"])
 
     report(0, job.positions, message)
     done = 0
-    with (
-        Solvers(contacts, job.device, count) as solvers,
-        closing(in_order(block, range(0, job.positions, job.block), count)) as blocks,
-    ):
+    with closing(in_order(block, range(0, job.positions, job.block), count)) as blocks:
         for found in blocks:
             done += found.forces.shape[1]
             report(done, job.positions, message)

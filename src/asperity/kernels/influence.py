@@ -1,0 +1,157 @@
+"""What contact solutions need of an elastic half-space, on boxes of any size within a grid."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from asperity.kernels.convolution import Convolution, quarter_turn, spectrum
+from asperity.kernels.fourier import factors, roots, smooth_length
+
+UNIT = 8
+"""Boxes are convolved in multiples of this length."""
+RADICES = 16
+"""Room for the radices of a length."""
+
+
+class Influence(NamedTuple):
+    """Influence of pressure on displacement, with the convolutions prepared so far.
+
+    Attributes
+    ----------
+    table : ndarray, shape (≥ nx, ≥ ny)
+        Displacement per pressure at non-negative separations, m/Pa.
+    mirrored : ndarray, shape (≥ nx, ≥ 2 ny − 1)
+        The same at separations of both signs along y, zero in the middle column.
+    taps : ndarray, shape (6,)
+        Preconditioner, from `projected_cg.inverse_stencil`, Pa/m.
+    lengths : ndarray of int, shape (k,)
+        Length in which n cells are convolved, at ⌈n / UNIT⌉.
+    radices : ndarray of int, shape (RADICES k,)
+        Radices of the length UNIT i from RADICES i on, then zeros.
+    starts : ndarray of int, shape (k,)
+        Where the roots and turns of the length UNIT i begin.
+    roots, turns : ndarray
+        From `fourier.roots` and `convolution.quarter_turn`.
+    places : ndarray of int, shape (k, k)
+        Where the spectrum on UNIT i × UNIT j cells begins; −1 if it is not prepared.
+    spectra : ndarray
+        From `convolution.spectrum`, one after the other.
+    """
+
+    table: NDArray[np.float64]
+    mirrored: NDArray[np.float64]
+    taps: NDArray[np.float64]
+    lengths: NDArray[np.int64]
+    radices: NDArray[np.int64]
+    starts: NDArray[np.int64]
+    roots: NDArray[np.float64]
+    turns: NDArray[np.float64]
+    places: NDArray[np.int64]
+    spectra: NDArray[np.float64]
+
+
+def influence(table: NDArray[np.float64], taps: NDArray[np.float64]) -> Influence:
+    """Make the influence of a half-space, without any convolution prepared.
+
+    Parameters
+    ----------
+    table, taps : ndarray
+        As in `Influence`; the table's sides are from `fourier.smooth_length`.
+
+    Returns
+    -------
+    Influence
+        For boxes within the table.
+    """
+    count = max(table.shape) // UNIT + 1
+    lengths = np.array([smooth_length(UNIT * i) for i in range(count)])
+    radices = np.zeros((count, RADICES), dtype=np.int64)
+    starts = np.zeros(count, dtype=np.int64)
+    fast = np.unique(lengths)
+    starts[fast // UNIT] = 2 * (np.cumsum(fast) - fast)
+    for length in fast.tolist():
+        split = factors(length)
+        radices[length // UNIT, : len(split)] = split
+    return Influence(
+        table, np.concatenate([table[:, :0:-1], table], axis=1), taps, lengths, radices.ravel(), starts,
+        np.concatenate([roots(n) for n in fast.tolist()]),
+        np.concatenate([quarter_turn(n) for n in fast.tolist()]), np.full((count, count), -1), np.zeros(0),
+    )  # fmt: skip
+
+
+def prepared(known: Influence, nx: int, ny: int) -> Influence:
+    """Add the convolution on a box.
+
+    Parameters
+    ----------
+    known : Influence
+        The influence.
+    nx, ny : int
+        Cells.
+
+    Returns
+    -------
+    Influence
+        With that convolution.
+    """
+    mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
+    places = known.places.copy()
+    places[mx // UNIT, my // UNIT] = len(known.spectra)
+    return known._replace(
+        places=places, spectra=np.concatenate([known.spectra, spectrum(known.table, mx, my)])
+    )
+
+
+@njit(cache=True, nogil=True)
+def is_prepared(known: Influence, nx: int, ny: int) -> bool:
+    """Whether the convolution on a box is there.
+
+    Parameters
+    ----------
+    known : Influence
+        The influence.
+    nx, ny : int
+        Cells.
+
+    Returns
+    -------
+    bool
+        Whether `convolution` may be called.
+    """
+    mx, my = known.lengths[-(-nx // UNIT)], known.lengths[-(-ny // UNIT)]
+    return known.places[mx // UNIT, my // UNIT] >= 0
+
+
+@njit(cache=True, nogil=True)
+def convolution(known: Influence, nx: int, ny: int) -> Convolution:
+    """Convolution on a box that is prepared.
+
+    Parameters
+    ----------
+    known : Influence
+        The influence.
+    nx, ny : int
+        Cells.
+
+    Returns
+    -------
+    Convolution
+        For `convolve`.
+    """
+    i, j = known.lengths[-(-nx // UNIT)] // UNIT, known.lengths[-(-ny // UNIT)] // UNIT
+    x, y, place = known.starts[i], known.starts[j], known.places[i, j]
+    count_x = np.count_nonzero(known.radices[RADICES * i : RADICES * (i + 1)])
+    count_y = np.count_nonzero(known.radices[RADICES * j : RADICES * (j + 1)])
+    return Convolution(
+        known.radices[RADICES * i : RADICES * i + count_x],
+        known.radices[RADICES * j : RADICES * j + count_y],
+        known.roots[x : x + 2 * UNIT * i],
+        known.roots[y : y + 2 * UNIT * j],
+        known.turns[x : x + 2 * UNIT * i],
+        known.turns[y : y + 2 * UNIT * j],
+        known.spectra[place : place + UNIT * i * UNIT * j],
+    )

@@ -1,0 +1,146 @@
+"""Contacts of a body moved along a surface, each started from those before it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from asperity.kernels.contact import CONVERGED, UNPREPARED, solve_contact
+from asperity.kernels.continuation import continue_pressure
+from asperity.kernels.influence import Influence
+
+TRUNCATED = 0.01
+"""Share of the force on the window's edge from which a contact counts as cut off."""
+
+
+class Block(NamedTuple):
+    """Contacts to be solved, and what is known of them.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (rows, ny)
+        Heights under the block, m.
+    body : ndarray, shape (nx, ny)
+        Shape of the smooth body, m.
+    planes : ndarray, shape (positions,)
+        Height of the plane from which approaches count at each position, m.
+    approaches : ndarray, shape (k,)
+        Increasing approaches, m.
+    stride : int
+        Rows between positions.
+    hardness, rtol : float
+        As in `contact.solve_contact`.
+    max_iterations : int
+        As there.
+    pressures : ndarray, shape (2, k, nx, ny)
+        Of the last two positions, Pa: even ones first, odd ones second.
+    solved : ndarray of int, shape (k,)
+        Positions in contact one after the other up to the last.
+    totals : ndarray, shape (k, positions)
+        Receives the sum of the pressure over the cells, Pa.
+    counts : ndarray of int, shape (4,)
+        Solutions, iterations, unconverged and truncated solutions so far.
+    """
+
+    rows: NDArray[np.float64]
+    body: NDArray[np.float64]
+    planes: NDArray[np.float64]
+    approaches: NDArray[np.float64]
+    stride: int
+    hardness: float
+    rtol: float
+    max_iterations: int
+    pressures: NDArray[np.float64]
+    solved: NDArray[np.int64]
+    totals: NDArray[np.float64]
+    counts: NDArray[np.int64]
+
+
+@njit(cache=True, nogil=True)
+def solve_positions(
+    known: Influence, b: Block, position: int, level: int, end: int
+) -> tuple[int, int, int, int]:
+    """Solve the contacts at some positions of a block.
+
+    Parameters
+    ----------
+    known : Influence
+        With the convolutions prepared so far.
+    b : Block
+        The block; all contacts before the first are solved.
+    position, level : int
+        First contact, and its approach, by number.
+    end : int
+        Position at which to stop.
+
+    Returns
+    -------
+    position, level : int
+        The contact at which it stopped.
+    nx, ny : int
+        The box on which a convolution has to be prepared to go on; zeros at the end.
+    """
+    nx, ny = b.body.shape
+    gap, start = np.empty((nx, ny)), np.empty((nx, ny))
+    for m in range(position, end):
+        touch = _set_gap(b, m, gap)
+        for i in range(level if m == position else 0, len(b.approaches)):
+            if not b.approaches[i] > touch:
+                b.solved[i] = 0
+                continue
+            _set_start(b, m, i, touch, start)
+            pressure = b.pressures[m % 2, i]
+            found = solve_contact(
+                known, gap, b.approaches[i], start, b.hardness, b.rtol, b.max_iterations, pressure
+            )
+            if found.status == UNPREPARED:
+                return m, i, found.nx, found.ny
+            b.solved[i] += 1
+            b.totals[i, m] = found.total
+            b.counts[0] += 1
+            b.counts[1] += found.iterations
+            b.counts[2] += found.status != CONVERGED
+            b.counts[3] += _on_edge(pressure) > TRUNCATED * found.total
+    return end, 0, 0, 0
+
+
+@njit(cache=True, nogil=True)
+def _set_gap(b: Block, m: int, gap: NDArray[np.float64]) -> float:
+    """Set the gap at a position; return the approach of first touch."""
+    touch = np.inf
+    for i in range(gap.shape[0]):
+        for j in range(gap.shape[1]):
+            gap[i, j] = b.body[i, j] + b.planes[m] - b.rows[m * b.stride + i, j]
+            touch = min(touch, gap[i, j])
+    return touch
+
+
+@njit(cache=True, nogil=True)
+def _set_start(b: Block, m: int, i: int, touch: float, start: NDArray[np.float64]) -> None:
+    """Continue the pressure of the last positions, or else of the last approaches."""
+    here, before = b.pressures[m % 2], b.pressures[(m + 1) % 2]
+    if b.solved[i] and b.stride < start.shape[0]:  # pressures move with the asperities, against the body
+        share = 1.0 if b.solved[i] > 1 else 0.0
+        continue_pressure(before[i], here[i], b.stride, share, b.hardness, start)
+    elif i > 0 and b.approaches[i - 1] > touch:
+        two = i > 1 and b.approaches[i - 2] > touch
+        above, below, last = b.approaches[i], b.approaches[i - 1], b.approaches[i - 2]
+        share = (above - below) / (below - last) if two else 0.0
+        continue_pressure(here[i - 1], here[i - 2] if two else here[i - 1], 0, share, b.hardness, start)
+    else:
+        start[:] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def _on_edge(pressure: NDArray[np.float64]) -> float:
+    """Sum of the pressure over the outermost cells."""
+    nx, ny = pressure.shape
+    total = 0.0
+    for j in range(ny):
+        total += pressure[0, j] + pressure[nx - 1, j]
+    for i in range(1, nx - 1):
+        total += pressure[i, 0] + pressure[i, ny - 1]
+    return total
