@@ -64,6 +64,30 @@ def test_slopes_are_the_derivative_of_the_shapes(support):
     assert_allclose(slopes, difference, atol=1e-6 * np.abs(slopes).max())
 
 
+@pytest.mark.parametrize("support", SUPPORTS)
+@pytest.mark.parametrize(("count", "highest_frequency"), [(10**6, 10e3), (2049, 300e3), (7, 10e3), (1, 10e3)])
+def test_shapes_along_a_path_are_the_shapes(support, count, highest_frequency):
+    b = beam(support, highest_frequency=highest_frequency)
+    spacing = b.length / count
+    k = np.sqrt(2 * np.pi * b.natural_frequencies * np.sqrt(b.mass_per_length / b.bending_stiffness))
+    size = 1.0 / np.sqrt(b.mass)
+    for first in range(0, count, 50_000):
+        x = spacing * np.arange(first, min(first + 50_000, count) + 1)
+        shapes, slopes = b.shapes_along(x[0], spacing, len(x))
+        expected = b.shapes(x)
+        assert np.abs(shapes - expected[0]).max() < 1e-12 * size
+        assert np.abs((slopes - expected[1]) / k).max() < 1e-12 * size
+
+
+def test_shapes_along_a_path_backwards_and_in_place():
+    b = beam("clamped")
+    for spacing in (-1e-3, 0.0):
+        at = 0.7 + spacing * np.arange(300)
+        assert_allclose(b.shapes_along(0.7, spacing, 300), b.shapes(at), atol=1e-11)
+    with pytest.raises(InputError, match="positions on the beam"):
+        b.shapes_along(0.9, 1e-3, 300)
+
+
 def test_end_conditions():
     shapes, slopes = beam("clamped").shapes([0.0, 1.0])
     assert_allclose(shapes, 0.0, atol=1e-12)

@@ -89,7 +89,6 @@ def motion_at(modes, ball, velocity, q):
         np.array(q, dtype=float),
         np.zeros(modes),
         np.zeros(modes),
-        np.zeros(modes),
         np.array([ball, velocity]),
         np.zeros(2),
         np.zeros(5),

@@ -57,8 +57,8 @@ class Motion(NamedTuple):
     ----------
     displacement, velocity : ndarray (modes,)
         Modal coordinates.
-    free_displacement, free_velocity : ndarray (modes,)
-        The same at the end of the step without its last force.
+    acceleration : ndarray (modes,)
+        Of the modal coordinates.
     ball : ndarray (2,)
         Displacement, m, and velocity, m/s, of the ball.
     force : ndarray (2,)
@@ -74,8 +74,7 @@ class Motion(NamedTuple):
 
     displacement: NDArray
     velocity: NDArray
-    free_displacement: NDArray
-    free_velocity: NDArray
+    acceleration: NDArray
     ball: NDArray
     force: NDArray
     power: NDArray
@@ -153,14 +152,14 @@ def _exponential(matrices: NDArray) -> NDArray:
 
 @njit(**INNER, **REASSOCIATE)
 def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no-untyped-def]
-    """Advance all but the last force of a step.
+    """Where a step ends without the force at its end, and what that force does.
 
     Parameters
     ----------
     system : System
         Constants.
     motion : Motion
-        State at the start; its free coordinates are written.
+        State at the start.
     shape, next_shape, next_slope : ndarray (modes,)
         Mode shapes under the contact at the start and the end, and their slopes at the end.
 
@@ -177,7 +176,6 @@ def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no
         q, v, p = motion.displacement[j], motion.velocity[j], shape[j] * force
         free = a[0, j] * q + a[1, j] * v + a[2, j] * p
         free_rate = a[4, j] * q + a[5, j] * v + a[6, j] * p
-        motion.free_displacement[j], motion.free_velocity[j] = free, free_rate
         # the contact moves along the beam: total derivative
         convected = system.speed * next_slope[j]
         beam += next_shape[j] * free
@@ -289,6 +287,10 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
     """
     force = motion.force[0]
     beam, beam_rate, beam_slope, dissipated = 0.0, 0.0, 0.0, 0.0
+    # sums apart from what is written: compiled together, their order would hang on where arrays lie
+    for j in range(shape.shape[0]):
+        q, v = motion.displacement[j], motion.velocity[j]
+        motion.acceleration[j] = shape[j] * force - system.damping[j] * v - system.stiffness[j] * q
     for j in range(shape.shape[0]):
         q, v = motion.displacement[j], motion.velocity[j]
         beam += shape[j] * q
@@ -298,8 +300,7 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
     for s in range(system.sensors.shape[0]):
         total = 0.0
         for j in range(shape.shape[0]):
-            driving = shape[j] * force - system.damping[j] * motion.velocity[j]
-            total += system.sensors[s, j] * (driving - system.stiffness[j] * motion.displacement[j])
+            total += system.sensors[s, j] * motion.acceleration[j]
         record.acceleration[s, step] = total
     climb = system.speed * beam_slope
     record.force[step] = force
@@ -313,17 +314,34 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
 
 
 @njit(**INNER, **REASSOCIATE)
-def complete_step(system, motion, record, step, shape, slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
-    """Apply the force at the end of a step, advance the state and keep the books.
+def advance_modes(a, motion, shape, force, next_shape, next_force):  # type: ignore[no-untyped-def]
+    """Advance the modal coordinates by a step; one array is written at a time, so that loops vectorise."""
+    q, v = motion.displacement, motion.velocity
+    ahead = motion.acceleration  # overwritten by `observe`
+    for j in range(q.shape[0]):
+        p, next_p = shape[j] * force, next_shape[j] * next_force
+        ahead[j] = a[0, j] * q[j] + a[1, j] * v[j] + a[2, j] * p + a[3, j] * next_p
+    for j in range(q.shape[0]):
+        p, next_p = shape[j] * force, next_shape[j] * next_force
+        v[j] = a[4, j] * q[j] + a[5, j] * v[j] + a[6, j] * p + a[7, j] * next_p
+    for j in range(q.shape[0]):
+        q[j] = ahead[j]
+
+
+@njit(**INNER, **REASSOCIATE)
+def complete_step(system, motion, record, step, shapes, slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
+    """Advance the state over a step, the force at its end known, and keep the books.
 
     Parameters
     ----------
     system, motion, record
-        Constants, state with its free step done, histories.
+        Constants, state at the start, histories.
     step : int
         Index of the step's end.
-    shape, slope : ndarray (modes,)
-        Mode shapes and slopes under the contact at the end.
+    shapes : ndarray (2, modes)
+        Mode shapes under the contact at the start and the end.
+    slope : ndarray (modes,)
+        Their slopes at the end.
     force : float
         Contact force at the end, N.
     evaluations : int
@@ -332,17 +350,14 @@ def complete_step(system, motion, record, step, shape, slope, force, evaluations
         Whether it converged.
     """
     h, mass = system.time_step, system.mass
-    for j in range(shape.shape[0]):
-        p = shape[j] * force
-        motion.displacement[j] = motion.free_displacement[j] + system.coefficients[3, j] * p
-        motion.velocity[j] = motion.free_velocity[j] + system.coefficients[7, j] * p
     before = motion.force[0]
+    advance_modes(system.coefficients, motion, shapes[0], before, shapes[1], force)
     motion.ball[0] += h * motion.ball[1] + h * h / mass * (0.5 * system.load - before / 3.0 - force / 6.0)
     motion.ball[1] += h / mass * (system.load - 0.5 * (before + force))
     motion.force[1], motion.force[0] = before, force
     for k in range(motion.ledger.shape[0]):
         motion.ledger[k] += 0.5 * h * motion.power[k]
-    observe(system, motion, record, step, shape, slope)
+    observe(system, motion, record, step, shapes[1], slope)
     for k in range(motion.ledger.shape[0]):
         motion.ledger[k] += 0.5 * h * motion.power[k]
     motion.counts[0] = step
@@ -375,7 +390,8 @@ def roll_steps(system, motion, record, law, shapes, slopes, offset, stop):  # ty
         free = free_step(system, motion, shapes[row - 1], shapes[row], slopes[row])
         guess = 2.0 * motion.force[0] - motion.force[1]
         force, evaluations, converged = solve_contact(law, step, free, system.load, guess)
-        complete_step(system, motion, record, step, shapes[row], slopes[row], force, evaluations, converged)
+        both = shapes[row - 1 : row + 1]
+        complete_step(system, motion, record, step, both, slopes[row], force, evaluations, converged)
         if not np.isfinite(force):
             return False
     return True

@@ -237,7 +237,6 @@ def _at_rest(
         displacement,
         np.zeros(modes),
         np.zeros(modes),
-        np.zeros(modes),
         np.array([approach + float(shape @ displacement), 0.0]),
         np.full(2, system.load),
         np.zeros(5),

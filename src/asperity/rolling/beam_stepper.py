@@ -26,7 +26,7 @@ class BeamStepper:
     beam : Beam
         Gives the mode shapes under the contact.
     positions : ndarray (n,)
-        Of the contact, m.
+        Of the contact, m; equally spaced by speed and time step.
     """
 
     def __init__(
@@ -43,7 +43,8 @@ class BeamStepper:
         offset = int(self.motion.counts[0]) // CHUNK * CHUNK
         end = min(offset + CHUNK, self.total)
         if offset != self._offset:
-            self._shapes, self._slopes = self.beam.shapes(self.positions[offset : end + 1])
+            start, spacing = float(self.positions[offset]), self.system.speed * self.system.time_step
+            self._shapes, self._slopes = self.beam.shapes_along(start, spacing, end + 1 - offset)
             self._offset = offset
         return end
 
@@ -56,18 +57,18 @@ class BeamStepper:
         )
 
     def free(self, step: int) -> Free:
-        """Advance all but the last force of a step."""
+        """Where a step ends without the force at its end."""
         row = step - self._offset
         shapes, slopes = self._shapes, self._slopes
         result: Free = free_step(self.system, self.motion, shapes[row - 1], shapes[row], slopes[row])
         return result
 
     def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:
-        """Apply the force at the end of the step."""
+        """Advance over the step whose end has this force."""
         row = step - self._offset
-        shape, slope = self._shapes[row], self._slopes[row]
+        shapes, slope = self._shapes[row - 1 : row + 1], self._slopes[row]
         complete_step(
-            self.system, self.motion, self.record, step, shape, slope, force, evaluations, converged
+            self.system, self.motion, self.record, step, shapes, slope, force, evaluations, converged
         )
 
     def where(self, step: int) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
+from asperity.kernels.waves import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
 
 SUPPORTS = ("simply-supported", "free", "clamped")
@@ -166,6 +167,54 @@ class Beam:
         InputError
             If a position is off the beam.
         """
+        (wave, rising, falling), slopes = self._parts(x)
+        return wave + rising + falling, slopes + self._wavenumbers * (rising - falling)
+
+    def shapes_along(self, start: float, spacing: float, count: int) -> tuple[NDArray, NDArray]:
+        """Mode shapes and slopes at equally spaced positions, as under a contact that rolls.
+
+        Parameters
+        ----------
+        start : float
+            First position from the left end, m.
+        spacing : float
+            Distance of the positions, m.
+        count : int
+            Number of positions.
+
+        Returns
+        -------
+        shapes, slopes : ndarray (count, modes)
+            As `shapes` to rounding, many times faster: sines and cosines follow by angle addition and
+            exponentials by products from exact values at every 128th position.
+
+        Raises
+        ------
+        InputError
+            If a position is off the beam.
+        """
+        k = self._wavenumbers
+        (wave, rising, falling), slope = self._parts(start + spacing * np.arange(0, count, STRIDE))
+        shapes, slopes = np.empty((2, count, len(k)))
+        angle = k * spacing
+        sine_over_k = spacing * np.sinc(angle / np.pi)  # the limit of k = 0 moves rigid modes
+        turn = np.array([2.0 * np.sin(0.5 * angle) ** 2, sine_over_k, k * np.sin(angle)])
+        turn_on(wave, slope, turn, shapes, slopes)
+        if self.support != "simply-supported":
+            near = np.array([rising, falling])
+            add_near_fields(near, np.array([np.exp(angle), np.exp(-angle), k]), shapes, slopes)
+        return shapes, slopes
+
+    @cached_property
+    def _wavenumbers(self) -> NDArray:
+        """Of all modes, 1/m; zero for the rigid ones."""
+        return np.concatenate([np.zeros(self._rigid_modes), self._bending_roots / self.length])
+
+    def _parts(self, x: ArrayLike) -> tuple[tuple[NDArray, NDArray | float, NDArray | float], NDArray]:
+        """Mode shapes (n, modes) in three parts, and the slope of the first.
+
+        A sinusoid, or the straight line of a rigid mode, and the exponentials that rise and fall with x.
+        """
         at = np.atleast_1d(np.asarray(x, dtype=float))
         if at.min() < -1e-9 * self.length or at.max() > self.length * (1.0 + 1e-9):
             received = f"{at.min():.6g} to {at.max():.6g}"
@@ -174,34 +223,37 @@ class Beam:
         if self.support == "simply-supported":
             k = self._bending_roots / self.length
             scale *= np.sqrt(2.0)
-            return scale * np.sin(np.outer(at, k)), scale * k * np.cos(np.outer(at, k))
-        shapes, slopes = self._centred_shapes(at)
+            phase = np.outer(at, k)
+            return (scale * np.sin(phase), 0.0, 0.0), scale * k * np.cos(phase)
+        wave, slope, rising, falling = self._centred_parts(at)
         if self.support == "free":
             rotation = np.sqrt(12.0) / self.length
             rigid = np.stack([np.ones_like(at), rotation * (at - 0.5 * self.length)], axis=1)
             rigid_slopes = np.stack([np.zeros_like(at), np.full_like(at, rotation)], axis=1)
-            shapes, slopes = np.hstack([rigid, shapes]), np.hstack([rigid_slopes, slopes])
-        return scale * shapes, scale * slopes
+            none = np.zeros_like(rigid)
+            wave, slope = np.hstack([rigid, wave]), np.hstack([rigid_slopes, slope])
+            rising, falling = np.hstack([none, rising]), np.hstack([none, falling])
+        return (scale * wave, scale * rising, scale * falling), scale * slope
 
-    def _centred_shapes(self, at: NDArray) -> tuple[NDArray, NDArray]:
+    def _centred_parts(self, at: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
         """Bending modes of free and clamped beams, even or odd about the middle.
 
         cos(kx)/cos(kL/2) -+ cosh(kx)/cosh(kL/2) and the same with sines, written with decaying
-        exponentials only; the mean square over the length is one.
+        exponentials only; the mean square over the length is one. Sinusoid, its slope, and the
+        exponentials that rise and fall with x.
         """
         k = self._bending_roots / self.length
         even = np.arange(len(k)) % 2 == 0
         phase = np.outer(at - 0.5 * self.length, k)
         half = 0.5 * self._bending_roots
-        near, far = np.exp(-np.outer(self.length - at, k)), np.exp(-np.outer(at, k))
         parity = np.where(even, 1.0, -1.0)
-        end = 1.0 + parity * np.exp(-2.0 * half)
-        hyperbolic, hyperbolic_slope = (near + parity * far) / end, (near - parity * far) / end
+        end = (1.0 + parity * np.exp(-2.0 * half)) * (1.0 if self.support == "free" else -1.0)
+        rising = np.exp(-np.outer(self.length - at, k)) / end
+        falling = parity * np.exp(-np.outer(at, k)) / end
         cosine, sine = np.cos(phase), np.sin(phase)
-        trigonometric = np.where(even, cosine / np.cos(half), sine / np.sin(half))
-        trigonometric_slope = np.where(even, -sine / np.cos(half), cosine / np.sin(half))
-        sign = 1.0 if self.support == "free" else -1.0
-        return trigonometric + sign * hyperbolic, k * (trigonometric_slope + sign * hyperbolic_slope)
+        wave = np.where(even, cosine / np.cos(half), sine / np.sin(half))
+        slope = k * np.where(even, -sine / np.cos(half), cosine / np.sin(half))
+        return wave, slope, rising, falling
 
     def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray:
         """Displacement at `x` per harmonic force at `x0`, by modal superposition.
