@@ -5,8 +5,9 @@ The track's kernel, its poles and the laws are prepared beforehand (not timed; t
 the path is reported beside). Timed is the rolling alone: rail, wheel and contact of every time step. The
 same law rolls with the rail as poles and as the explicit scatter of its kernel, which is how time-domain
 models with impulse responses do it; both in one run, best of the rounds. CPU time of one thread.
+With a figure, the time of a step against the number of poles, too.
 
-    python benchmarks/rail_step.py
+    python benchmarks/rail_step.py --figure benchmarks/growth_poles.svg
 """
 
 from __future__ import annotations
@@ -105,12 +106,47 @@ def timed(rail: RailPoles | MovingKernel, law: LaidOut, duration: float) -> floa
     return clock.seconds_per_step
 
 
+def with_poles(kernel: MovingKernel, count: int, most: int = 100) -> RailPoles:
+    """A rail of so many poles: fitted, and beyond the most that are, those again and again in equal shares.
+
+    Such a rail moves as the fitted one does, and costs what as many different poles would.
+    """
+    fitted = rail_poles(kernel, min(count, most))
+    times = max(1, count // most)
+    residues = np.tile(fitted.residues, (1, times)) / times
+    return RailPoles(kernel, np.tile(fitted.poles, times), residues, fitted.fit_error, fitted.static_error)
+
+
+def draw(path: str, kernel: MovingKernel, law: LaidOut, duration: float, rounds: int) -> None:
+    """Measure how the time of a step grows with the poles, and draw it."""
+    import matplotlib.pyplot as plt
+
+    rails = [with_poles(kernel, count) for count in (24, 50, 100, 200, 400, 800, 1600, 3200)]
+    best = np.full(len(rails) + 1, np.inf)
+    for _ in range(rounds):
+        best = np.minimum(best, [timed(rail, law, duration) for rail in (*rails, kernel)])
+    count, seconds = np.array([rail.count for rail in rails]), best[:-1]
+    print("\npoles: " + ", ".join(f"{n}: {1e6 * t:.3f}" for n, t in zip(count, seconds, strict=True)) + " µs")
+    print(f"scatter: {1e6 * best[-1]:.3f} µs")
+    figure, axis = plt.subplots(figsize=(4.2, 3.2), layout="constrained")
+    axis.loglog(count, 1e6 * seconds, "o-", label="measured")
+    axis.loglog(count, 1e6 * seconds[-1] * count / count[-1], "--", color="0.5", label="linear")
+    axis.axhline(1e6 * best[-1], linestyle=":", color="0.5", label=f"scatter, {kernel.weights.shape[1]} taps")
+    axis.set_xlabel("poles")
+    axis.set_ylabel("CPU time of a step, µs")
+    axis.set_xticks(count, [str(n) for n in count], minor=False)
+    axis.minorticks_off()
+    axis.legend(frameon=False)
+    figure.savefig(path)
+
+
 def main() -> None:
     """Print a table: µs per step and ratios."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--duration", type=float, default=10.0, help="simulated time, s")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--poles", type=int, nargs="+", default=[40, 100, 200])
+    parser.add_argument("--figure", metavar="FILE", help="measure growth with poles, too, and draw it here")
     options = parser.parse_args()
     track = Track.named("nordborg")
     kernel = moving_kernel(track, SPEED, STEP)
@@ -135,6 +171,9 @@ def main() -> None:
             columns = [f"{1e6 * seconds:.3f}", f"{STEP / seconds:.0f}", ratio]
             columns.append(f"{1e6 * laid_out.seconds / len(positions):.2f}")
             print(f"| `{name}` | {label} | {' | '.join(columns)} |")
+    if options.figure:
+        hertz = LaidOut(laws(options.duration)["hertz"], positions)
+        draw(options.figure, kernel, hertz, options.duration, options.rounds)
 
 
 if __name__ == "__main__":
