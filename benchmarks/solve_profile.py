@@ -20,17 +20,20 @@ import argparse
 import time
 from collections.abc import Callable
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from numba import njit
 from scan_step import MODULUS, problem
 
-from asperity.contact import halfspace
-from asperity.kernels import projected_cg as kernel
+from asperity.kernels import contact, scanning
+from asperity.kernels import projected_cg as cg
 from asperity.kernels.convolution import Convolution, convolve
+from asperity.reduction import blocks
 from asperity.reduction.scan import scan_forces
 
 ROUNDS = 5
+FIELDS = ("overlap", "pressure", "residual", "previous", "direction", "response", "z", "masked")
 
 
 def least(work: Callable[[], Any], rounds: int = ROUNDS) -> float:
@@ -64,72 +67,83 @@ def scan_time(cells: int, positions: int = 64, approaches: int = 1, rounds: int 
 
 
 @njit
-def bare(c: Convolution, b: kernel.Box, ny: int, times: int) -> None:
+def bare(c: Convolution, b: cg.Box, times: int) -> None:
     """Convolve again and again."""
     for _ in range(times):
-        convolve(c, b.direction, ny, b.work, b.response)
+        convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
+
+
+@njit
+def repeated(start: Any, times: int, c: Any, mirrored: Any, taps: Any, outer: Any, row: int, column: int,
+             b: Any, cap: float, tolerance: float, limit: int) -> tuple[int, bool]:  # fmt: skip
+    """Solve again and again from the same start."""
+    result = (0, True)
+    for _ in range(times):
+        outer.pressure[:] = start
+        result = cg.solve(c, mirrored, taps, outer, row, column, b, cap, tolerance, limit)
+    return result
 
 
 class Counted:
     """Stands for the compiled solution: times it, then does it again in steps and counts convolutions."""
 
     def __init__(self) -> None:
-        self.compiled, self.seconds, self.convolving = halfspace.solve, 0.0, 0.0
+        self.seconds, self.convolving = 0.0, 0.0
         self.iterations = self.convolutions = self.solutions = 0
 
     def __call__(
-        self, c: Any, mirrored: Any, taps: Any, outer: Any, row: int, column: int, b: Any, ny: int,
-        *limits: Any,
-    ) -> tuple[int, bool]:  # fmt: skip
+        self, c: Any, mirrored: Any, taps: Any, outer: Any, row: int, column: int, b: Any, *limits: Any
+    ) -> tuple[int, bool]:
         """Solve, timed."""
-        start = outer.pressure.copy()
-        arguments = (c, mirrored, taps, outer, row, column, b, ny, *limits)
-        began = time.process_time()
-        result = self.compiled(*arguments)
-        self.seconds += time.process_time() - began
+        start, empty = outer.pressure.copy(), b._replace(**{f: getattr(b, f).copy() for f in FIELDS})
+        arguments = (c, mirrored, taps, outer, row, column, b, *limits)
+        self.seconds += least(lambda: repeated(start, 5, *arguments), 2) / 5
+        result = repeated(start, 1, *arguments)
         solution, outer.pressure[:] = outer.pressure.copy(), start
-        count = self.count(c, taps, outer, row, column, b, ny, limits[0], result[0])
+        count = self.count(c, taps, outer, row, column, empty, limits[0], result[0])
         outer.pressure[:] = solution
-        self.convolving += count * least(lambda: bare(c, b, ny, 40), 2) / 40
+        self.convolving += count * least(lambda: bare(c, b, 40), 2) / 40
         self.iterations, self.convolutions = self.iterations + result[0], self.convolutions + count
         self.solutions += 1
         return result
 
     def count(
-        self, c: Any, taps: Any, outer: Any, row: int, column: int, b: Any, ny: int, cap: float, times: int
+        self, c: Any, taps: Any, outer: Any, row: int, column: int, b: Any, cap: float, times: int
     ) -> int:
         """Convolutions of the same iterations: one each, another where many cells are clipped."""
-        nx, count, rho = b.overlap.shape[0], times, 0.0
-        part = slice(row, row + nx), slice(column, column + ny)
+        count, rho = times, 0.0
         for name in ("overlap", "pressure", "residual"):
-            getattr(b, name)[:, :ny] = getattr(outer, name)[part]
-        b.direction[:], b.previous[:] = 0.0, 0.0
+            inner, whole = getattr(b, name), getattr(outer, name)
+            part = whole[: outer.nx * outer.pitch].reshape(outer.nx, -1)[
+                row : row + b.nx, column : column + b.ny
+            ]
+            inner[: b.nx * b.pitch].reshape(b.nx, -1)[:, : b.ny] = part
         for _ in range(times):
-            kernel._free(b.pressure, b, ny, cap, 0.0)
+            cg._free(b.pressure, b, cap, 0.0)
             before = rho
-            rho, change = kernel._precondition(b, ny, taps)
-            slope = kernel._turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
-            convolve(c, b.direction, ny, b.work, b.response)
-            step = -slope / kernel._dot(b.direction, b.response, ny)
-            clipped = kernel._advance(b, ny, step, cap)
-            count += clipped > kernel.FEW
+            rho, change = cg._precondition(b, taps)
+            slope = cg._turn(b, max(0.0, change / before) if before > 0.0 else 0.0)
+            convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
+            clipped = cg._advance(b, -slope / cg._dot(b.direction, b.response), cap)
+            count += clipped > cg.FEW
             if clipped:
-                kernel._true_residual(c, b, ny)
+                cg._true_residual(c, b)
         return count
 
 
 def profile(cells: int) -> None:
     """Print a line of the table of one grid."""
     total, counted = scan_time(cells), Counted()
-    halfspace.solve = counted
-    try:
-        p = problem(cells, options())
+    p = problem(cells, options())
+    with (
+        patch.object(contact, "solve", counted),
+        patch.object(scanning, "solve_contact", contact.solve_contact.py_func),
+        patch.object(blocks, "solve_positions", scanning.solve_positions.py_func),
+    ):
         scan_forces(
             p["heights"], (float(p["spacing"]),) * 2, p["body"], MODULUS, p["approaches"][:1],
             stride=int(p["offsets"][1]), rtol=1e-8, workers=1,
         )  # fmt: skip
-    finally:
-        halfspace.solve = counted.compiled
     n, iterations = counted.solutions, counted.iterations
     print(
         f"| {cells}² | {1e3 * total / 64:.3f} | {iterations / n:.1f} | {counted.convolutions / n:.1f} "

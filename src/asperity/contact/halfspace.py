@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError, Outcome, UnconvergedWarning
 from asperity.kernels import contact as kernel
-from asperity.kernels.convolution import Convolution, convolve, pitch, workspace
+from asperity.kernels.convolution import Convolution, convolve, workspace
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.influence import Influence, convolution, influence, is_prepared, prepared
+from asperity.kernels.lanes import LANES
 from asperity.kernels.love import influence_table
 from asperity.kernels.overlap import box_of_positive
 from asperity.kernels.projected_cg import empty_box, inverse_stencil, unit_indentation
@@ -175,8 +176,7 @@ class HalfSpace:
         inside = free[_slices(box_of_positive(free.astype(np.float64)))]
         c = self._convolution(*inside.shape)
         box = empty_box(inside.shape[0], inside.shape[1], c)
-        box.overlap[:, : inside.shape[1]] = inside
-        converged = unit_indentation(c, self.influence.taps, box, inside.shape[1], rtol, MAX_ITERATIONS)
+        converged = unit_indentation(c, self.influence.taps, box, inside, rtol, MAX_ITERATIONS)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
         return float(box.pressure.sum()) * self.cell_area
@@ -283,9 +283,10 @@ class HalfSpace:
         """Displacement on a box under a pressure on that box, m."""
         nx, ny = pressure.shape
         c = self._convolution(nx, ny)
-        fields = np.zeros((2, nx, pitch(ny)))
+        pitch = -(-ny // LANES) * LANES
+        fields = np.zeros((2, nx, pitch))
         fields[0, :, :ny] = pressure
-        convolve(c, fields[0], ny, workspace(c), fields[1])
+        convolve(c, fields[0].ravel(), nx, ny, pitch, workspace(c), fields[1].ravel())
         return fields[1, :, :ny].copy()
 
     def at_approach(

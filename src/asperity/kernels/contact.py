@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.convolution import convolve
+from asperity.kernels.convolution import Convolution, convolve
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
 from asperity.kernels.overlap import overlap_box
 from asperity.kernels.projected_cg import Box, empty_box, solve, survey
@@ -96,14 +96,15 @@ def solve_contact(
     started = False
     for i in range(nx):
         for j in range(ny):
-            box.overlap[i, j] = approach - gap[first + i, left + j]
-            box.pressure[i, j] = start[first + i, left + j]
-            started |= box.pressure[i, j] > 0.0
+            q = i * box.pitch + j
+            box.overlap[q] = approach - gap[first + i, left + j]
+            box.pressure[q] = start[first + i, left + j]
+            started |= box.pressure[q] > 0.0
     if not started:
-        _guess(known, box, nx, ny, largest, hardness)
+        _guess(whole, box, largest, hardness)
     iterations, tolerance = 0, rtol * largest
     while True:
-        worst, top, bottom, near, far = survey(whole, box, ny, hardness)
+        worst, top, bottom, near, far = survey(whole, box, hardness)
         if worst <= tolerance or iterations >= max_iterations:
             break
         row, rows = _grown(known, top, bottom, nx)
@@ -112,8 +113,8 @@ def solve_contact(
             return Solution(UNPREPARED, 0, 0.0, 0.0, 0, rows, columns)
         c = convolution(known, rows, columns)
         done, definite = solve(
-            c, known.mirrored, known.taps, box, row, column, empty_box(rows, columns, c), columns, hardness,
-            tolerance, max_iterations - iterations,
+            c, known.mirrored, known.taps, box, row, column, empty_box(rows, columns, c), hardness, tolerance,
+            max_iterations - iterations,
         )  # fmt: skip
         iterations += done
         if not definite:
@@ -122,7 +123,7 @@ def solve_contact(
     total, cells = 0.0, 0
     for i in range(nx):
         for j in range(ny):
-            p = box.pressure[i, j]
+            p = box.pressure[i * box.pitch + j]
             pressure[first + i, left + j] = p
             total += p
             cells += p > 0.0
@@ -133,20 +134,17 @@ def solve_contact(
 
 
 @njit(cache=True, nogil=True)
-def _guess(known: Influence, b: Box, nx: int, ny: int, largest: float, hardness: float) -> None:
+def _guess(c: Convolution, b: Box, largest: float, hardness: float) -> None:
     """Pressure of Hertzian form over the deeper half of the overlap, scaled to least energy."""
-    for i in range(nx):
-        for j in range(ny):
-            b.pressure[i, j] = np.sqrt(max(b.overlap[i, j] - 0.5 * largest, 0.0))
-    convolve(convolution(known, nx, ny), b.pressure, ny, b.work, b.residual)
+    for q in range(len(b.pressure)):
+        b.pressure[q] = np.sqrt(max(b.overlap[q] - 0.5 * largest, 0.0))
+    convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
     done, stored = 0.0, 0.0
-    for i in range(nx):
-        for j in range(ny):
-            done += b.pressure[i, j] * b.overlap[i, j]
-            stored += b.pressure[i, j] * b.residual[i, j]
-    for i in range(nx):
-        for j in range(ny):
-            b.pressure[i, j] = min(b.pressure[i, j] * (done / stored), hardness)
+    for q in range(len(b.pressure)):
+        done += b.pressure[q] * b.overlap[q]
+        stored += b.pressure[q] * b.response[q]
+    for q in range(len(b.pressure)):
+        b.pressure[q] = min(b.pressure[q] * (done / stored), hardness)
 
 
 @njit(cache=True, nogil=True)

@@ -103,21 +103,21 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
     return 2.0 * scipy.fft.fft(turned, axis=axis).real - table.take([0], axis)
 
 
-@njit(cache=True, nogil=True)
-def pitch(ny: int) -> int:
-    """Length of the rows of a field of `ny` columns, filled up to whole vectors.
+@njit(**INNER)
+def whole(n: int) -> int:
+    """Smallest number of whole vectors, in cells, that hold n cells.
 
     Parameters
     ----------
-    ny : int
-        Columns.
+    n : int
+        Cells.
 
     Returns
     -------
     int
-        Columns with those that stay zero.
+        A multiple of the lanes.
     """
-    return -(-ny // LANES) * LANES
+    return -(-n // LANES) * LANES
 
 
 @njit(cache=True, nogil=True)
@@ -134,7 +134,7 @@ def workspace(c: Convolution) -> NDArray[np.float64]:
     ndarray
         For `convolve`, as often as liked.
     """
-    mx, my = pitch(len(c.turn_x) // 2), pitch(len(c.turn_y) // 2)
+    mx, my = whole(len(c.turn_x) // 2), whole(len(c.turn_y) // 2)
     return np.zeros(2 * mx * my + 6 * max(mx, my) * LANES)
 
 
@@ -144,23 +144,23 @@ def _clear(buffer: NDArray, first: int, end: int) -> None:
         buffer[i] = 0.0
 
 
-@njit(**LOOP)
-def _turn_in(c: Convolution, field: NDArray, row: int, first: int, nx: int, buffer: NDArray) -> None:
+@njit(**INNER)
+def _turn_in(c: Convolution, field: NDArray, pitch: int, first: int, nx: int, buffer: NDArray) -> None:
     """Turn a block of real columns into the buffer, zero behind the box."""
     for i in range(nx):
-        re, o = load(field, i * row + first), 2 * i * LANES
+        re, o = load(field, i * pitch + first), 2 * i * LANES
         store(buffer, o, c.turn_x[2 * i] * re)
         store(buffer, o + LANES, c.turn_x[2 * i + 1] * re)
     _clear(buffer, 2 * nx * LANES, len(c.turn_x) * LANES)
 
 
-@njit(**LOOP)
-def _turn_out(c: Convolution, buffer: NDArray, row: int, first: int, nx: int, out: NDArray) -> None:
+@njit(**INNER)
+def _turn_out(c: Convolution, buffer: NDArray, pitch: int, first: int, nx: int, out: NDArray) -> None:
     """Turn a block back and keep its real part."""
     for i in range(nx):
         o = 2 * i * LANES
         re, im = load(buffer, o), load(buffer, o + LANES)
-        store(out, i * row + first, c.turn_x[2 * i] * re - c.turn_x[2 * i + 1] * im)
+        store(out, i * pitch + first, c.turn_x[2 * i] * re - c.turn_x[2 * i + 1] * im)
 
 
 @njit(**INNER)
@@ -168,7 +168,7 @@ def _turned(re: Any, im: Any, cosine: Any, sine: Any) -> Any:
     return cosine * re - sine * im, cosine * im + sine * re
 
 
-@njit(**LOOP)
+@njit(**INNER)
 def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: NDArray, s: NDArray) -> None:
     """Convolve across in both senses of turning; the conjugate of the sum replaces the rows."""
     my = len(c.turn_y) // 2
@@ -203,30 +203,33 @@ def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: N
 
 
 @njit(**LOOP, nogil=True)
-def convolve(c: Convolution, field: NDArray, ny: int, work: NDArray, out: NDArray) -> None:
+def convolve(
+    c: Convolution, field: NDArray, nx: int, ny: int, pitch: int, work: NDArray, out: NDArray
+) -> None:
     """Convolve a field on a box with an even kernel, with nothing outside the box.
 
     Parameters
     ----------
     c : Convolution
         The box has at most its cells.
-    field : ndarray, shape (nx, pitch)
-        Field on the box; zero in the columns from `ny` on.
-    ny : int
-        Columns of the box.
+    field : ndarray, shape (nx pitch,)
+        Field on the box, row after row; zero in the columns from `ny` on.
+    nx, ny : int
+        Cells of the box.
+    pitch : int
+        Length of a row, not less than `whole(ny)`.
     work : ndarray
         From `workspace`.
-    out : ndarray, shape (nx, pitch)
+    out : ndarray, shape (nx pitch,)
         Receives the convolution; columns from `ny` on have no meaning.
     """
     mx = len(c.turn_x) // 2
-    nx, row = field.shape
-    blocks = -(-mx // LANES)
-    size = 2 * max(blocks * LANES, -(-len(c.turn_y) // (2 * LANES)) * LANES) * LANES
+    row, blocks = whole(ny), -(-mx // LANES)
+    size = 2 * max(blocks * LANES, whole(len(c.turn_y) // 2)) * LANES
     a, b, s = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
     rows, line = work[3 * size :], 2 * row * LANES
     for first in range(0, row, LANES):
-        _turn_in(c, field, row, first, nx, a)
+        _turn_in(c, field, pitch, first, nx, a)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for k in range(blocks):
             for part in range(0, 2 * LANES, LANES):
@@ -240,4 +243,4 @@ def convolve(c: Convolution, field: NDArray, ny: int, work: NDArray, out: NDArra
                 o = k * line + 2 * first * LANES + part
                 transpose(rows, o, 2 * LANES, a, 2 * k * LANES * LANES + part, 2 * LANES)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
-        _turn_out(c, x, row, first, nx, out)
+        _turn_out(c, x, pitch, first, nx, out)

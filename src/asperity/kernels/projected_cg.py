@@ -5,7 +5,8 @@ preconditioner applies an approximate inverse of K as a short stencil on the fre
 needs one convolution. What cells that hit a bound did not take of a step is convolved cell by cell where they
 are few.
 
-Fields lie on a box of `ny` columns in arrays whose rows are filled up to whole vectors.
+Fields lie flat, row after row, with some idle columns behind each row: nothing overlaps there, so that no
+pressure acts, and loops need not know where a row ends.
 """
 
 from __future__ import annotations
@@ -16,20 +17,25 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.convolution import Convolution, convolve, pitch, quarter_spectrum, workspace
-from asperity.kernels.options import LOOP, REASSOCIATE
+from asperity.kernels.convolution import Convolution, convolve, quarter_spectrum, whole, workspace
+from asperity.kernels.lanes import LANES, load, store
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
-FEW = 24
+FEW = 32
 """Clipped cells up to which it is faster to convolve them one by one."""
+FAR = 1e30
+"""Separation in the idle columns, m."""
 
 
 class Box(NamedTuple):
-    """Fields of a solution on a box, shape (nx, pitch).
+    """Fields of a solution on a box, each of nx rows of `pitch` cells.
 
     Attributes
     ----------
+    nx, ny, pitch : int
+        Rows, columns, and columns with the idle ones.
     overlap : ndarray
         Overlap of the undeformed bodies, m.
     pressure : ndarray
@@ -40,12 +46,17 @@ class Box(NamedTuple):
         Search direction, Pa, and what it displaces, m.
     z : ndarray
         Preconditioned residual, Pa.
-    masked : ndarray, shape (nx + 2 REACH, pitch + 2 REACH)
-        Residual on the free set, within a border of zeros.
+    masked : ndarray
+        Residual on the free set, between REACH rows of zeros.
     work : ndarray
         Room for convolutions.
+    clipped : ndarray of int, shape (2 FEW,)
+        Rows and columns of clipped cells.
     """
 
+    nx: int
+    ny: int
+    pitch: int
     overlap: NDArray[np.float64]
     pressure: NDArray[np.float64]
     residual: NDArray[np.float64]
@@ -55,11 +66,12 @@ class Box(NamedTuple):
     z: NDArray[np.float64]
     masked: NDArray[np.float64]
     work: NDArray[np.float64]
+    clipped: NDArray[np.int64]
 
 
 @njit(cache=True, nogil=True)
 def empty_box(nx: int, ny: int, c: Convolution) -> Box:
-    """Make the fields of a box.
+    """Make the fields of a box on which nothing overlaps.
 
     Parameters
     ----------
@@ -71,11 +83,16 @@ def empty_box(nx: int, ny: int, c: Convolution) -> Box:
     Returns
     -------
     Box
-        Zeros.
+        With pressure zero.
     """
-    row = pitch(ny)
-    f, masked = np.zeros((7, nx, row)), np.zeros((nx + 2 * REACH, row + 2 * REACH))
-    return Box(f[0], f[1], f[2], f[3], f[4], f[5], f[6], masked, workspace(c))
+    pitch = max(whole(ny), ny + REACH)
+    size = 4 * whole(-(-nx * pitch // 4))  # four vectors at a time, none left over
+    f, masked = np.zeros((7, size)), np.zeros(size + 2 * REACH * pitch)
+    overlap, residual = f[0], f[2]
+    overlap[:] = -FAR
+    residual[:] = FAR
+    clipped = np.zeros(2 * FEW, dtype=np.int64)
+    return Box(nx, ny, pitch, overlap, f[1], residual, f[3], f[4], f[5], f[6], masked, workspace(c), clipped)
 
 
 def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -107,110 +124,106 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(coefficients)
 
 
-@njit(**LOOP)
-def _free(pressure: NDArray[np.float64], b: Box, ny: int, hardness: float, tolerance: float) -> int:
+@njit(**INNER, **REASSOCIATE)
+def _free(pressure: NDArray[np.float64], b: Box, hardness: float, tolerance: float) -> float:
     """Mask the residual with the free set; return how many cells violate complementarity."""
-    violated = 0
-    for i in range(pressure.shape[0]):
-        p, g, m = pressure[i], b.residual[i], b.masked[i + REACH]
-        for j in range(ny):
-            r = g[j]
-            masked = r if ((p[j] > 0.0) | (r < 0.0)) & ((p[j] < hardness) | (r > 0.0)) else 0.0
-            m[j + REACH] = masked
-            violated += not abs(masked) <= tolerance
+    violated, target = 0.0, b.masked[REACH * b.pitch :]
+    for q in range(len(pressure)):
+        p, r = pressure[q], b.residual[q]
+        masked = r if p > 0.0 else min(r, 0.0)
+        masked = masked if p < hardness else max(masked, 0.0)
+        target[q] = masked
+        violated += 0.0 if abs(masked) <= tolerance else 1.0
     return violated
 
 
-@njit(**LOOP, **REASSOCIATE)
-def _precondition(b: Box, ny: int, taps: NDArray[np.float64]) -> tuple[float, float]:
+@njit(**INNER, **REASSOCIATE)
+def _precondition(b: Box, taps: NDArray[np.float64]) -> tuple[float, float]:
     """Apply the stencil to the residual on the free set; return residual·z and (residual − previous)·z."""
-    nx = b.z.shape[0]
+    row = b.pitch
+    above, m, below = b.masked[row - 1 :], b.masked[2 * row - 2 :], b.masked[3 * row - 1 :]
+    top, bottom = b.masked, b.masked[4 * row :]
     c0, c1, c2, c3, c4, c5 = taps[0], taps[1], taps[2], taps[3], taps[4], taps[5]
     rho, change = 0.0, 0.0
-    for i in range(nx):
-        k, l, m, n, o = b.masked[i], b.masked[i + 1], b.masked[i + 2], b.masked[i + 3], b.masked[i + 4]
-        old, z = b.previous[i], b.z[i]
-        for j in range(ny):
-            g = m[j + 2]
-            s = c0 * g + c1 * (l[j + 2] + n[j + 2]) + c2 * (m[j + 1] + m[j + 3])
-            s += c3 * (l[j + 1] + l[j + 3] + n[j + 1] + n[j + 3])
-            s += c4 * (k[j + 2] + o[j + 2]) + c5 * (m[j] + m[j + 4])
-            s = s if g != 0.0 else 0.0
-            z[j] = s
-            rho += g * s
-            change += (g - old[j]) * s
+    for q in range(len(b.z)):
+        g = m[q + 2]
+        s = c0 * g + c1 * (above[q + 1] + below[q + 1]) + c2 * (m[q + 1] + m[q + 3])
+        s += c3 * (above[q] + above[q + 2] + below[q] + below[q + 2])
+        s += c4 * (top[q] + bottom[q]) + c5 * (m[q] + m[q + 4])
+        s = s if g != 0.0 else 0.0
+        b.z[q] = s
+        rho += g * s
+        change += (g - b.previous[q]) * s
     return rho, change
 
 
-@njit(**LOOP, **REASSOCIATE)
-def _turn(b: Box, ny: int, beta: float) -> float:
+@njit(**INNER, **REASSOCIATE)
+def _turn(b: Box, beta: float) -> float:
     """Set the search direction from z and the one before; return residual·direction."""
     slope = 0.0
-    for i in range(b.z.shape[0]):
-        z, d, g = b.z[i], b.direction[i], b.residual[i]
-        for j in range(ny):
-            t = beta * d[j] - z[j] if z[j] != 0.0 else 0.0
-            d[j] = t
-            slope += g[j] * t
+    for q in range(len(b.z)):
+        t = beta * b.direction[q] - b.z[q] if b.z[q] != 0.0 else 0.0
+        b.direction[q] = t
+        slope += b.residual[q] * t
     return slope
 
 
-@njit(**LOOP, **REASSOCIATE)
-def _dot(left: NDArray[np.float64], right: NDArray[np.float64], ny: int) -> float:
+@njit(**INNER, **REASSOCIATE)
+def _dot(left: NDArray[np.float64], right: NDArray[np.float64]) -> float:
     total = 0.0
-    for i in range(left.shape[0]):
-        x, y = left[i], right[i]
-        for j in range(ny):
-            total += x[j] * y[j]
+    for q in range(len(left)):
+        total += left[q] * right[q]
     return total
 
 
-@njit(**LOOP)
-def _advance(b: Box, ny: int, step: float, hardness: float) -> int:
+@njit(**INNER)
+def _advance(b: Box, step: float, hardness: float) -> int:
     """Step along the direction and project on the bounds; return how many cells were clipped.
 
     The residual becomes the previous one, `z` what the bounds took off the step.
     """
     clipped = 0
-    for i in range(b.pressure.shape[0]):
-        p, d, z = b.pressure[i], b.direction[i], b.z[i]
-        g, old, u = b.residual[i], b.previous[i], b.response[i]
-        for j in range(ny):
-            wanted = p[j] + step * d[j]
-            kept = min(max(wanted, 0.0), hardness)
-            clipped += kept != wanted
-            z[j] = kept - wanted
-            p[j] = kept
-        for j in range(ny):
-            old[j] = g[j]
-            g[j] += step * u[j]
+    for q in range(len(b.z)):
+        wanted = b.pressure[q] + step * b.direction[q]
+        kept = min(max(wanted, 0.0), hardness)
+        clipped += kept != wanted
+        b.z[q] = kept - wanted
+        b.pressure[q] = kept
+        b.previous[q] = b.residual[q]
+        b.residual[q] += step * b.response[q]
     return clipped
 
 
-@njit(**LOOP)
-def _correct(b: Box, ny: int, mirrored: NDArray[np.float64]) -> None:
-    """Add to the residual what the cells in `z` displace, one by one."""
-    nx, middle = b.z.shape[0], mirrored.shape[1] // 2
-    for k in range(nx):
-        for l in range(ny):
-            amount = b.z[k, l]
-            if amount != 0.0:
-                for i in range(nx):
-                    g, influence = b.residual[i], mirrored[abs(i - k), middle - l :]
-                    for j in range(ny):
-                        g[j] += amount * influence[j]
+@njit(**INNER)
+def _correct(b: Box, mirrored: NDArray[np.float64], count: int) -> None:
+    """Add to the residual what the clipped cells in `z` displace, one by one."""
+    found, q = 0, 0
+    while found < count:
+        if b.z[q] != 0.0:
+            b.clipped[2 * found], b.clipped[2 * found + 1] = q // b.pitch, q % b.pitch
+            found += 1
+        q += 1
+    width = mirrored.shape[1]
+    middle = width // 2
+    for i in range(b.nx):
+        for j in range(0, b.ny, LANES):
+            total = load(b.residual, i * b.pitch + j)
+            for n in range(count):
+                row, column = b.clipped[2 * n], b.clipped[2 * n + 1]
+                influence = load(mirrored, abs(i - row) * width + middle - column + j)
+                total = total + b.z[row * b.pitch + column] * influence
+            store(b.residual, i * b.pitch + j, total)
 
 
-@njit(**LOOP)
-def _true_residual(c: Convolution, b: Box, ny: int) -> None:
-    convolve(c, b.pressure, ny, b.work, b.residual)
-    for i in range(b.residual.shape[0]):
-        for j in range(ny):
-            b.residual[i, j] -= b.overlap[i, j]
+@njit(**INNER)
+def _true_residual(c: Convolution, b: Box) -> None:
+    convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
+    for q in range(len(b.residual)):
+        b.residual[q] = b.response[q] - b.overlap[q]
 
 
 @njit(**LOOP, nogil=True)
-def survey(c: Convolution, b: Box, ny: int, hardness: float) -> tuple[float, int, int, int, int]:
+def survey(c: Convolution, b: Box, hardness: float) -> tuple[float, int, int, int, int]:
     """Compute the residual of a pressure and where there is something left to solve.
 
     Parameters
@@ -219,8 +232,6 @@ def survey(c: Convolution, b: Box, ny: int, hardness: float) -> tuple[float, int
         With the kernel, m/Pa, for this box.
     b : Box
         Holds overlap and pressure, receives the residual.
-    ny : int
-        Columns of the box.
     hardness : float
         Upper bound of the pressure, Pa.
 
@@ -231,12 +242,12 @@ def survey(c: Convolution, b: Box, ny: int, hardness: float) -> tuple[float, int
     first_row, end_row, first_column, end_column : int
         The smallest box that holds all cells under pressure or in overlap; zeros if there are none.
     """
-    _true_residual(c, b, ny)
-    first, end, left, right = b.pressure.shape[0], 0, ny, 0
+    _true_residual(c, b)
+    first, end, left, right = b.nx, 0, b.ny, 0
     worst = 0.0
-    for i in range(b.pressure.shape[0]):
-        for j in range(ny):
-            p, r = b.pressure[i, j], b.residual[i, j]
+    for i in range(b.nx):
+        for j in range(b.ny):
+            p, r = b.pressure[i * b.pitch + j], b.residual[i * b.pitch + j]
             if p > 0.0 or r < 0.0:
                 worst = max(worst, abs(r) if p < hardness else r)
                 first, end = min(first, i), i + 1
@@ -244,11 +255,11 @@ def survey(c: Convolution, b: Box, ny: int, hardness: float) -> tuple[float, int
     return (worst, first, end, left, right) if end else (worst, 0, 0, 0, 0)
 
 
-@njit(**LOOP)
-def _copy(outer: NDArray[np.float64], row: int, column: int, inner: NDArray[np.float64], ny: int) -> None:
-    for i in range(inner.shape[0]):
-        for j in range(ny):
-            inner[i, j] = outer[row + i, column + j]
+@njit(**INNER)
+def _copy(outer: Box, source: NDArray[np.float64], row: int, column: int, b: Box, target: NDArray) -> None:
+    for i in range(b.nx):
+        for j in range(b.ny):
+            target[i * b.pitch + j] = source[(row + i) * outer.pitch + column + j]
 
 
 @njit(**LOOP, nogil=True)
@@ -260,7 +271,6 @@ def solve(
     row: int,
     column: int,
     b: Box,
-    ny: int,
     hardness: float,
     tolerance: float,
     max_iterations: int,
@@ -271,7 +281,7 @@ def solve(
     ----------
     c : Convolution
         With the kernel, m/Pa, for the inner box.
-    mirrored : ndarray, shape (≥ nx, ≥ 2 ny − 1)
+    mirrored : ndarray, shape (≥ nx, ≥ 2 whole(ny) − 1)
         The kernel at separations i ≥ 0 and, with zero in the middle column, j of both signs, m/Pa.
     taps : ndarray, shape (6,)
         From `inverse_stencil`, Pa/m.
@@ -282,8 +292,6 @@ def solve(
         Where the inner box begins.
     b : Box
         The inner box, empty.
-    ny : int
-        Columns of the inner box.
     hardness : float
         Upper bound of the pressure, Pa (may be infinite).
     tolerance : float
@@ -298,46 +306,52 @@ def solve(
     definite : bool
         Whether the kernel is: otherwise there is no going on.
     """
-    _copy(outer.overlap, row, column, b.overlap, ny)
-    _copy(outer.pressure, row, column, b.pressure, ny)
-    _copy(outer.residual, row, column, b.residual, ny)
+    _copy(outer, outer.overlap, row, column, b, b.overlap)
+    _copy(outer, outer.pressure, row, column, b, b.pressure)
+    _copy(outer, outer.residual, row, column, b, b.residual)
     rho, iteration, definite = 0.0, 0, True
-    while iteration < max_iterations and _free(b.pressure, b, ny, hardness, tolerance):
+    while iteration < max_iterations and _free(b.pressure, b, hardness, tolerance):
         iteration += 1
         before = rho
-        rho, change = _precondition(b, ny, taps)
-        slope = _turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
+        rho, change = _precondition(b, taps)
+        slope = _turn(b, max(0.0, change / before) if before > 0.0 else 0.0)
         if slope >= 0.0:  # not a descent direction any more: restart from the preconditioned gradient
-            slope = _turn(b, ny, 0.0)
-        convolve(c, b.direction, ny, b.work, b.response)
-        curvature = _dot(b.direction, b.response, ny)
+            slope = _turn(b, 0.0)
+        convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
+        curvature = _dot(b.direction, b.response)
         definite = curvature > 0.0
         if not definite:
             break
-        clipped = _advance(b, ny, -slope / curvature, hardness)
+        clipped = _advance(b, -slope / curvature, hardness)
         if clipped > FEW:
-            _true_residual(c, b, ny)
+            _true_residual(c, b)
         elif clipped:
-            _correct(b, ny, mirrored)
-    for i in range(b.pressure.shape[0]):
-        for j in range(ny):
-            outer.pressure[row + i, column + j] = b.pressure[i, j]
+            _correct(b, mirrored, clipped)
+    for i in range(b.nx):
+        for j in range(b.ny):
+            outer.pressure[(row + i) * outer.pitch + column + j] = b.pressure[i * b.pitch + j]
     return iteration, definite
 
 
 @njit(**LOOP, nogil=True)
 def unit_indentation(
-    c: Convolution, taps: NDArray[np.float64], b: Box, ny: int, rtol: float, max_iterations: int
+    c: Convolution,
+    taps: NDArray[np.float64],
+    b: Box,
+    inside: NDArray[np.bool_],
+    rtol: float,
+    max_iterations: int,
 ) -> bool:
     """Find the pressure that displaces a fixed set of cells by one: K p = 1 on the set, p = 0 elsewhere.
 
     Parameters
     ----------
-    c, taps, ny
+    c, taps
         As in `solve`.
     b : Box
-        `overlap` is one on the set and zero elsewhere, `pressure` zero. On return `pressure` is Pa per m of
-        indentation; its integral is the tangent stiffness.
+        Empty. On return `pressure` is Pa per m of indentation; its integral is the tangent stiffness.
+    inside : ndarray of bool, shape (nx, ny)
+        The set.
     rtol : float
         Largest residual, relative to one.
     max_iterations : int
@@ -348,22 +362,22 @@ def unit_indentation(
     bool
         Whether the residual fell below `rtol`.
     """
-    nx, rho = b.overlap.shape[0], 0.0
-    for i in range(nx):
-        for j in range(ny):
-            b.residual[i, j] = -b.overlap[i, j]
+    rho = 0.0
+    for q in range(len(b.overlap)):
+        i, j = q // b.pitch, q % b.pitch
+        b.overlap[q] = 1.0 if j < b.ny and inside[i, j] else 0.0
+        b.residual[q] = -b.overlap[q]
     for _ in range(max_iterations):
         # a positive "pressure" on the set marks it as free
-        if not _free(b.overlap, b, ny, np.inf, rtol):
+        if not _free(b.overlap, b, np.inf, rtol):
             return True
         before = rho
-        rho, change = _precondition(b, ny, taps)
-        slope = _turn(b, ny, max(0.0, change / before) if before > 0.0 else 0.0)
-        convolve(c, b.direction, ny, b.work, b.response)
-        step = -slope / _dot(b.direction, b.response, ny)
-        for i in range(nx):
-            for j in range(ny):
-                b.previous[i, j] = b.residual[i, j]
-                b.pressure[i, j] += step * b.direction[i, j]
-                b.residual[i, j] += step * b.response[i, j] * b.overlap[i, j]
+        rho, change = _precondition(b, taps)
+        slope = _turn(b, max(0.0, change / before) if before > 0.0 else 0.0)
+        convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
+        step = -slope / _dot(b.direction, b.response)
+        for q in range(len(b.overlap)):
+            b.previous[q] = b.residual[q]
+            b.pressure[q] += step * b.direction[q]
+            b.residual[q] += step * b.response[q] * b.overlap[q]
     return False

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from asperity.kernels.contact import CONVERGED, UNPREPARED, solve_contact
 from asperity.kernels.continuation import continue_pressure
 from asperity.kernels.influence import Influence
+from asperity.kernels.options import INNER
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
@@ -84,9 +85,9 @@ def solve_positions(
         The box on which a convolution has to be prepared to go on; zeros at the end.
     """
     nx, ny = b.body.shape
-    gap, start = np.empty((nx, ny)), np.empty((nx, ny))
+    gap, start, lowest = np.empty((nx, ny)), np.empty((nx, ny)), np.empty(ny)
     for m in range(position, end):
-        touch = _set_gap(b, m, gap)
+        touch = _set_gap(b, m, gap, lowest)
         for i in range(level if m == position else 0, len(b.approaches)):
             if not b.approaches[i] > touch:
                 b.solved[i] = 0
@@ -107,14 +108,19 @@ def solve_positions(
     return end, 0, 0, 0
 
 
-@njit(cache=True, nogil=True)
-def _set_gap(b: Block, m: int, gap: NDArray[np.float64]) -> float:
-    """Set the gap at a position; return the approach of first touch."""
-    touch = np.inf
+@njit(**INNER)
+def _set_gap(b: Block, m: int, gap: NDArray[np.float64], lowest: NDArray[np.float64]) -> float:
+    """Set the gap at a position, and the lowest of every column; return the approach of first touch."""
+    plane = b.planes[m]
+    lowest[:] = np.inf
     for i in range(gap.shape[0]):
-        for j in range(gap.shape[1]):
-            gap[i, j] = b.body[i, j] + b.planes[m] - b.rows[m * b.stride + i, j]
-            touch = min(touch, gap[i, j])
+        body, row, target = b.body[i], b.rows[m * b.stride + i], gap[i]
+        for j in range(len(target)):
+            target[j] = body[j] + plane - row[j]
+            lowest[j] = min(lowest[j], target[j])
+    touch = np.inf
+    for j in range(len(lowest)):
+        touch = min(touch, lowest[j])
     return touch
 
 
