@@ -314,22 +314,7 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
 
 
 @njit(**INNER, **REASSOCIATE)
-def advance_modes(a, motion, shape, force, next_shape, next_force):  # type: ignore[no-untyped-def]
-    """Advance the modal coordinates by a step; one array is written at a time, so that loops vectorise."""
-    q, v = motion.displacement, motion.velocity
-    ahead = motion.acceleration  # overwritten by `observe`
-    for j in range(q.shape[0]):
-        p, next_p = shape[j] * force, next_shape[j] * next_force
-        ahead[j] = a[0, j] * q[j] + a[1, j] * v[j] + a[2, j] * p + a[3, j] * next_p
-    for j in range(q.shape[0]):
-        p, next_p = shape[j] * force, next_shape[j] * next_force
-        v[j] = a[4, j] * q[j] + a[5, j] * v[j] + a[6, j] * p + a[7, j] * next_p
-    for j in range(q.shape[0]):
-        q[j] = ahead[j]
-
-
-@njit(**INNER, **REASSOCIATE)
-def complete_step(system, motion, record, step, shapes, slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
+def complete_step(system, motion, record, step, shape, next_shape, next_slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
     """Advance the state over a step, the force at its end known, and keep the books.
 
     Parameters
@@ -338,10 +323,8 @@ def complete_step(system, motion, record, step, shapes, slope, force, evaluation
         Constants, state at the start, histories.
     step : int
         Index of the step's end.
-    shapes : ndarray (2, modes)
-        Mode shapes under the contact at the start and the end.
-    slope : ndarray (modes,)
-        Their slopes at the end.
+    shape, next_shape, next_slope : ndarray (modes,)
+        As in `free_step`.
     force : float
         Contact force at the end, N.
     evaluations : int
@@ -349,15 +332,23 @@ def complete_step(system, motion, record, step, shapes, slope, force, evaluation
     converged : bool
         Whether it converged.
     """
-    h, mass = system.time_step, system.mass
-    before = motion.force[0]
-    advance_modes(system.coefficients, motion, shapes[0], before, shapes[1], force)
+    h, mass, a, before = system.time_step, system.mass, system.coefficients, motion.force[0]
+    q, v, ahead = motion.displacement, motion.velocity, motion.acceleration  # `observe` overwrites the last
+    # one array is written at a time, so that loops vectorise
+    for j in range(shape.shape[0]):
+        p, next_p = shape[j] * before, next_shape[j] * force
+        ahead[j] = a[0, j] * q[j] + a[1, j] * v[j] + a[2, j] * p + a[3, j] * next_p
+    for j in range(shape.shape[0]):
+        p, next_p = shape[j] * before, next_shape[j] * force
+        v[j] = a[4, j] * q[j] + a[5, j] * v[j] + a[6, j] * p + a[7, j] * next_p
+    for j in range(shape.shape[0]):
+        q[j] = ahead[j]
     motion.ball[0] += h * motion.ball[1] + h * h / mass * (0.5 * system.load - before / 3.0 - force / 6.0)
     motion.ball[1] += h / mass * (system.load - 0.5 * (before + force))
     motion.force[1], motion.force[0] = before, force
     for k in range(motion.ledger.shape[0]):
         motion.ledger[k] += 0.5 * h * motion.power[k]
-    observe(system, motion, record, step, shapes[1], slope)
+    observe(system, motion, record, step, next_shape, next_slope)
     for k in range(motion.ledger.shape[0]):
         motion.ledger[k] += 0.5 * h * motion.power[k]
     motion.counts[0] = step
@@ -387,11 +378,13 @@ def roll_steps(system, motion, record, law, shapes, slopes, offset, stop):  # ty
     """
     for step in range(motion.counts[0] + 1, stop + 1):
         row = step - offset
-        free = free_step(system, motion, shapes[row - 1], shapes[row], slopes[row])
+        shape, next_shape, next_slope = shapes[row - 1], shapes[row], slopes[row]
+        free = free_step(system, motion, shape, next_shape, next_slope)
         guess = 2.0 * motion.force[0] - motion.force[1]
         force, evaluations, converged = solve_contact(law, step, free, system.load, guess)
-        both = shapes[row - 1 : row + 1]
-        complete_step(system, motion, record, step, both, slopes[row], force, evaluations, converged)
+        complete_step(
+            system, motion, record, step, shape, next_shape, next_slope, force, evaluations, converged
+        )
         if not np.isfinite(force):
             return False
     return True

@@ -66,10 +66,11 @@ class BeamStepper:
     def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:
         """Advance over the step whose end has this force."""
         row = step - self._offset
-        shapes, slope = self._shapes[row - 1 : row + 1], self._slopes[row]
+        shape, next_shape, next_slope = self._shapes[row - 1], self._shapes[row], self._slopes[row]
         complete_step(
-            self.system, self.motion, self.record, step, shapes, slope, force, evaluations, converged
-        )
+            self.system, self.motion, self.record, step, shape, next_shape, next_slope,
+            force, evaluations, converged,
+        )  # fmt: skip
 
     def where(self, step: int) -> str:
         """Time and position of a step."""
