@@ -6,7 +6,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import InputError
-from asperity.results import GROUPS, checked, load, save, variable
+from asperity.results import GROUPS, case_text, checked, load, save, variable
 
 
 def small_tree():
@@ -91,3 +91,18 @@ def test_a_file_too_large_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr("asperity.results.LARGEST_FILE", 10)
     with pytest.raises(InputError, match="GiB"):
         load(path)
+
+
+def test_the_case_is_read_alone(tmp_path):
+    path = save(small_tree(), tmp_path / "run.nc")
+    assert case_text(path) == "kind = 'ball-on-beam'  # µm"
+
+
+@pytest.mark.parametrize("content", [b"time, force", b"\x89HDF\r\n\x1a\n and no more"])
+def test_a_file_without_a_case_is_refused(tmp_path, content):
+    (tmp_path / "run.nc").write_bytes(content)
+    with pytest.raises(InputError, match="without a readable case"):
+        case_text(tmp_path / "run.nc")
+    xr.Dataset({"force": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    with pytest.raises(InputError, match="without a readable case"):
+        case_text(tmp_path / "other.nc")

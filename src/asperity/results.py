@@ -148,3 +148,31 @@ def load(path: str | os.PathLike[str]) -> xarray.DataTree:
     if "asperity_version" not in tree.attrs or not set(GROUPS) <= set(tree.children):
         raise InputError(str(path), "a netCDF-4 file of another kind", allowed)
     return tree
+
+
+def case_text(path: str | os.PathLike[str]) -> str:
+    """Read the text of the case that a result belongs to, and nothing else of it.
+
+    Parameters
+    ----------
+    path : path
+        A ``run.nc``.
+
+    Returns
+    -------
+    str
+        The case in TOML.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged or not a result of this program.
+    """
+    import h5netcdf
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            return str(file.attrs["case"])
+    except Exception as error:  # h5py raises errors of many kinds on damaged files
+        received = f"a file without a readable case ({type(error).__name__})"
+        raise InputError(str(path), received, "a result file that a run has written (run.nc)") from error

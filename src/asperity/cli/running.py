@@ -66,10 +66,10 @@ def _refuse_to_overwrite(case: Case, directory: Path) -> None:
     if directory.exists() and not directory.is_dir():
         raise InputError(str(directory), "a file", allowed, "Choose another folder with -o.")
     if (directory / "run.nc").exists():
-        from asperity.results import load
+        from asperity.results import case_text
 
         try:
-            earlier = str(load(directory / "run.nc").attrs.get("case", ""))
+            earlier = case_text(directory / "run.nc")
         except InputError:
             raise InputError(str(directory), "a run.nc that cannot be read", allowed, remedy) from None
         if earlier.split() != case.text.split():
