@@ -2,12 +2,13 @@
 
 import math
 
+import pint
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from asperity.errors import InputError
-from asperity.units import factor, quantity
+from asperity.units import _PREFIXED, _PREFIXES, factor, quantity
 
 
 @pytest.mark.parametrize(
@@ -99,6 +100,13 @@ def test_messages(text, dimension, message):
 def test_a_tower_of_powers_is_refused_unevaluated():
     with pytest.raises(InputError, match="powers"):
         quantity("1 m^9^9^9^9", "m")
+
+
+@pytest.mark.parametrize("dimension", _PREFIXED)
+def test_usual_units_are_those_of_the_unit_library(dimension):
+    library = pint.UnitRegistry()
+    for unit in (dimension, *(prefix + dimension for prefix in _PREFIXES)):
+        assert factor(unit, dimension) == library.Quantity(1.0, unit).to(dimension).magnitude
 
 
 def test_factor():
