@@ -15,7 +15,7 @@ from asperity.errors import AsperityError
 
 FAILED = 3
 INTERRUPTED = 130
-COLLECT_AFTER = 100_000
+COLLECT_AFTER = 1_000_000
 """New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
 
 
