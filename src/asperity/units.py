@@ -19,7 +19,7 @@ _UNIT = re.compile(rf"[A-Za-zµμΩ°%]+{_POWER}(?:\s*[ */·]\s*[A-Za-zµμΩ°%
 _LONGEST = 40  # characters
 
 # What nearly every case is written in: its values need no unit library, which takes 0.3 s to be ready.
-_PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m")
+_PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m", "N m^2")
 _PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 
 
