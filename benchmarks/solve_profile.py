@@ -137,6 +137,8 @@ def profile(cells: int) -> None:
     p = problem(cells, options())
     with (
         patch.object(contact, "solve", counted),
+        patch.object(contact, "convolution", contact.convolution.py_func),
+        patch.object(contact, "empty_box", cg.empty_box.py_func),
         patch.object(scanning, "solve_contact", contact.solve_contact.py_func),
         patch.object(blocks, "solve_positions", scanning.solve_positions.py_func),
     ):

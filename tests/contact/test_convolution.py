@@ -46,20 +46,20 @@ def test_convolution_is_the_sum_over_cells_in_the_box(nx: int, ny: int) -> None:
     assert is_prepared(known, mx, my)
     assert is_prepared(known, 1, 1)
     assert is_prepared(known, mx, 1) == (8 in (mx, my))
-    c, out = convolution(known, nx, ny), np.full_like(field, np.nan)
-    work = workspace(c)
+    c, out = convolution.py_func(known, nx, ny), np.full_like(field, np.nan)
+    work = np.full(workspace(mx, my), np.nan)
     for _ in range(2):  # the second time in a used workspace
         convolve(c, field.ravel(), nx, ny, pitch, work, out.ravel())
         assert np.abs(out[:, :ny] - expected).max() < 1e-13 * np.abs(expected).max()
 
 
 def test_boxes_hold_what_they_should_and_no_more() -> None:
-    gap = np.ones((9, 7))
-    assert overlap_box(gap, 0.5) == (-0.5, 0, 0, 0, 0)
+    gap, lowest = np.ones((9, 7)), np.empty(7)
+    assert overlap_box(gap, 0.5, lowest) == (-0.5, 0, 0, 0, 0)
     gap[2, 5], gap[6, 1] = 0.25, 0.0
-    assert overlap_box(gap, 0.5) == (0.5, 2, 7, 1, 6)
-    assert overlap_box(gap, 0.25) == (0.25, 6, 7, 1, 2)
-    assert overlap_box(gap, 2.0) == (2.0, 0, 9, 0, 7)
+    assert overlap_box(gap, 0.5, lowest) == (0.5, 2, 7, 1, 6)
+    assert overlap_box(gap, 0.25, lowest) == (0.25, 6, 7, 1, 2)
+    assert overlap_box(gap, 2.0, lowest) == (2.0, 0, 9, 0, 7)
     assert box_of_positive(0.5 - gap) == (2, 7, 1, 6)
     assert box_of_positive(-gap) == (0, 0, 0, 0)
 

@@ -12,22 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError, Outcome, UnconvergedWarning
-from asperity.kernels import contact as kernel
-from asperity.kernels.convolution import Convolution, convolve, workspace
+from asperity.kernels.contact import displace, indent, room
 from asperity.kernels.fourier import smooth_length
-from asperity.kernels.influence import Influence, convolution, influence, is_prepared, prepared
-from asperity.kernels.lanes import LANES
+from asperity.kernels.influence import Influence, influence, is_prepared, prepared
 from asperity.kernels.love import influence_table
 from asperity.kernels.overlap import box_of_positive
-from asperity.kernels.projected_cg import empty_box, inverse_stencil, unit_indentation
+from asperity.kernels.projected_cg import inverse_stencil
+from asperity.kernels.scanning import Block, solve_positions
 
 MAX_ITERATIONS = 2000
-OUTCOMES = {
-    kernel.NO_CONTACT: Outcome.NO_CONTACT,
-    kernel.CONVERGED: Outcome.CONVERGED,
-    kernel.ITERATION_LIMIT: Outcome.ITERATION_LIMIT,
-    kernel.SINGULAR: Outcome.SINGULAR,
-}
+AT_ONCE = 16
+"""Positions between two looks at whether the user wants to stop."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +147,10 @@ class HalfSpace:
             Displacement, m.
         """
         p = self._field("pressure", pressure)
-        return self._convolved(p)
+        self.prepare(*self.shape)
+        displaced = np.empty(self.shape)
+        displace(self.influence, p, room(self.influence, *self.shape), displaced)
+        return displaced
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
@@ -174,12 +172,12 @@ class HalfSpace:
         if not free.any():
             return 0.0
         inside = free[_slices(box_of_positive(free.astype(np.float64)))]
-        c = self._convolution(*inside.shape)
-        box = empty_box(inside.shape[0], inside.shape[1], c)
-        converged = unit_indentation(c, self.influence.taps, box, inside, rtol, MAX_ITERATIONS)
+        self.prepare(*inside.shape)
+        own = room(self.influence, *inside.shape)
+        total, converged = indent(self.influence, inside.copy(), rtol, MAX_ITERATIONS, own)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
-        return float(box.pressure.sum()) * self.cell_area
+        return float(total) * self.cell_area
 
     def solve(
         self,
@@ -250,7 +248,7 @@ class HalfSpace:
         return float(load)
 
     def _field(self, name: str, values: ArrayLike) -> NDArray[np.float64]:
-        a = np.ascontiguousarray(values, dtype=np.float64)
+        a = _array(values)
         if a.shape != self.shape:
             raise InputError(f"{name} shape", a.shape, f"the half-space's shape {self.shape}")
         if not np.isfinite(a).all():
@@ -274,21 +272,6 @@ class HalfSpace:
         if not is_prepared(self.influence, nx, ny):
             self.influence = prepared(self.influence, nx, ny)
 
-    def _convolution(self, nx: int, ny: int) -> Convolution:
-        self.prepare(nx, ny)
-        c: Convolution = convolution(self.influence, nx, ny)
-        return c
-
-    def _convolved(self, pressure: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacement on a box under a pressure on that box, m."""
-        nx, ny = pressure.shape
-        c = self._convolution(nx, ny)
-        pitch = -(-ny // LANES) * LANES
-        fields = np.zeros((2, nx, pitch))
-        fields[0, :, :ny] = pressure
-        convolve(c, fields[0].ravel(), nx, ny, pitch, workspace(c), fields[1].ravel())
-        return fields[1, :, :ny].copy()
-
     def at_approach(
         self, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64] | None, rtol: float
     ) -> Contact:
@@ -304,18 +287,59 @@ class HalfSpace:
         Contact
             The solution; look at `converged`.
         """
-        pressure = np.zeros(self.shape)
-        begin = pressure if start is None else start
-        while True:
-            found = kernel.solve_contact(
-                self.influence, gap, approach, begin, self.pressure_cap, rtol, MAX_ITERATIONS, pressure
-            )
-            if found.status != kernel.UNPREPARED:
-                break
-            self.prepare(found.nx, found.ny)
-        force, area = found.total * self.cell_area, found.cells * self.cell_area
-        outcome = OUTCOMES[found.status]
-        return Contact(pressure, force, approach, area, found.iterations, found.residual, outcome, self, gap)
+        flat, here = np.zeros(self.shape), np.zeros(1)
+        block = self.at_positions(flat, gap, here, np.array([approach]), 0, rtol, start)
+        pressure, iterations = block.pressures[0, 0], int(block.counts[1])
+        outcome = Outcome.CONVERGED if block.counts[0] else Outcome.NO_CONTACT
+        if block.counts[2]:
+            outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.SINGULAR
+        force = float(block.totals[0, 0]) * self.cell_area
+        area = int(np.count_nonzero(pressure)) * self.cell_area
+        residual = float(block.residuals[0, 0])
+        return Contact(pressure, force, approach, area, iterations, residual, outcome, self, gap)
+
+    def at_positions(
+        self,
+        rows: NDArray[np.float64],
+        body: NDArray[np.float64],
+        planes: NDArray[np.float64],
+        approaches: NDArray[np.float64],
+        stride: int,
+        rtol: float,
+        start: NDArray[np.float64] | None = None,
+    ) -> Block:
+        """Solve at positions of a body on a surface, unchecked and silent.
+
+        Parameters
+        ----------
+        rows, body, planes, approaches, stride
+            As in `asperity.kernels.scanning.Block`.
+        rtol : float
+            As in `solve`.
+        start : ndarray, shape (nx, ny), optional
+            Pressure to start from at the first position and approach, Pa.
+
+        Returns
+        -------
+        Block
+            With forces per cell area, residuals and counts.
+        """
+        rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
+        k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
+        block = Block(
+            rows, body, planes, approaches, stride, self.pressure_cap, rtol, MAX_ITERATIONS,
+            room(self.influence, *shape), np.empty(shape), np.empty(shape), np.zeros((2, k, *shape)),
+            np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size), np.zeros(4, dtype=np.int64),
+        )  # fmt: skip
+        if start is not None:
+            block.pressures[1, 0], block.solved[0] = start, 1
+        position, level = 0, 0
+        while position < len(planes):
+            end = min(position + AT_ONCE, len(planes))
+            position, level, nx, ny = solve_positions(self.influence, block, position, level, end)
+            if position < end:
+                self.prepare(nx, ny)
+        return block
 
     def _at_load(
         self, gap: NDArray[np.float64], load: float, start: NDArray[np.float64] | None, rtol: float
@@ -370,6 +394,11 @@ class HalfSpace:
 def _unit_taps(ratio: float) -> NDArray[np.float64]:
     """Preconditioning stencil of cells 1 × ratio, π E* being one."""
     return inverse_stencil(influence_table(32, 32, 1.0, ratio))
+
+
+def _array(values: ArrayLike) -> NDArray[np.float64]:
+    """Array of the one kind that kernels are compiled for: contiguous and writable."""
+    return np.require(values, np.float64, ["C", "W"])
 
 
 def _slices(limits: Sequence[int]) -> tuple[slice, slice]:

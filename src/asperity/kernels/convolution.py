@@ -120,22 +120,21 @@ def whole(n: int) -> int:
     return -(-n // LANES) * LANES
 
 
-@njit(cache=True, nogil=True)
-def workspace(c: Convolution) -> NDArray[np.float64]:
-    """Room that a convolution needs, for one thread.
+@njit(**INNER)
+def workspace(mx: int, my: int) -> int:
+    """Room that a convolution needs.
 
     Parameters
     ----------
-    c : Convolution
-        The convolution.
+    mx, my : int
+        Cells of its largest box.
 
     Returns
     -------
-    ndarray
-        For `convolve`, as often as liked.
+    int
+        Numbers.
     """
-    mx, my = whole(len(c.turn_x) // 2), whole(len(c.turn_y) // 2)
-    return np.zeros(2 * mx * my + 6 * max(mx, my) * LANES)
+    return 2 * whole(mx) * whole(my) + 6 * max(whole(mx), whole(my)) * LANES
 
 
 @njit(**INNER)
@@ -219,7 +218,7 @@ def convolve(
     pitch : int
         Length of a row, not less than `whole(ny)`.
     work : ndarray
-        From `workspace`.
+        As many numbers as `workspace` says, of any value.
     out : ndarray, shape (nx pitch,)
         Receives the convolution; columns from `ny` on have no meaning.
     """

@@ -188,7 +188,7 @@ def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) ->
     bool
         Whether the result is in `y`; else it is in `x`.
     """
-    n, stride, swapped = len(w) // 2, 1, False
+    n, stride, swapped = len(w) // 2, np.int64(1), False  # a literal one would be compiled apart
     for radix in radices:
         source, target = (y, x) if swapped else (x, y)
         if radix == 4:

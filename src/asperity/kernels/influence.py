@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.convolution import Convolution, quarter_turn, spectrum
 from asperity.kernels.fourier import factors, roots, smooth_length
+from asperity.kernels.options import LOOP
 
 UNIT = 8
 """Boxes are convolved in multiples of this length."""
@@ -106,7 +107,7 @@ def prepared(known: Influence, nx: int, ny: int) -> Influence:
     )
 
 
-@njit(cache=True, nogil=True)
+@njit(**LOOP)
 def is_prepared(known: Influence, nx: int, ny: int) -> bool:
     """Whether the convolution on a box is there.
 
@@ -126,7 +127,7 @@ def is_prepared(known: Influence, nx: int, ny: int) -> bool:
     return known.places[mx // UNIT, my // UNIT] >= 0
 
 
-@njit(cache=True, nogil=True)
+@njit(**LOOP)
 def convolution(known: Influence, nx: int, ny: int) -> Convolution:
     """Convolution on a box that is prepared.
 
@@ -144,11 +145,14 @@ def convolution(known: Influence, nx: int, ny: int) -> Convolution:
     """
     i, j = known.lengths[-(-nx // UNIT)] // UNIT, known.lengths[-(-ny // UNIT)] // UNIT
     x, y, place = known.starts[i], known.starts[j], known.places[i, j]
-    count_x = np.count_nonzero(known.radices[RADICES * i : RADICES * (i + 1)])
-    count_y = np.count_nonzero(known.radices[RADICES * j : RADICES * (j + 1)])
+    end_x, end_y = RADICES * i, RADICES * j
+    while known.radices[end_x]:
+        end_x += 1
+    while known.radices[end_y]:
+        end_y += 1
     return Convolution(
-        known.radices[RADICES * i : RADICES * i + count_x],
-        known.radices[RADICES * j : RADICES * j + count_y],
+        known.radices[RADICES * i : end_x],
+        known.radices[RADICES * j : end_y],
         known.roots[x : x + 2 * UNIT * i],
         known.roots[y : y + 2 * UNIT * j],
         known.turns[x : x + 2 * UNIT * i],

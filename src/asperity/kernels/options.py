@@ -13,5 +13,7 @@ LOOP: dict[str, Any] = {"cache": True, "_nrt": False}
 """For a loop over time steps, called from Python."""
 INNER: dict[str, Any] = {**LOOP, "forceinline": True}
 """For what such a loop calls; it allocates nothing."""
+ONCE: dict[str, Any] = {**LOOP, "inline": "always"}
+"""For what is called in one place and contains much: it is compiled there, not before and there again."""
 REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}
 """Lets sums over poles be vectorised; NaN stays NaN."""

@@ -6,9 +6,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from asperity.kernels.options import LOOP
 
-@njit(cache=True, nogil=True)
-def overlap_box(gap: NDArray[np.float64], approach: float) -> tuple[float, int, int, int, int]:
+
+@njit(**LOOP)
+def overlap_box(
+    gap: NDArray[np.float64], approach: float, lowest: NDArray[np.float64]
+) -> tuple[float, int, int, int, int]:
     """Find where undeformed bodies overlap.
 
     Parameters
@@ -17,6 +21,8 @@ def overlap_box(gap: NDArray[np.float64], approach: float) -> tuple[float, int, 
         Separation at zero approach, m.
     approach : float
         Approach, m.
+    lowest : ndarray, shape (ny,)
+        Receives the lowest gap of each column, m.
 
     Returns
     -------
@@ -26,8 +32,8 @@ def overlap_box(gap: NDArray[np.float64], approach: float) -> tuple[float, int, 
         The smallest box that holds all overlapping cells; zeros if there are none.
     """
     nx, ny = gap.shape
-    lowest = np.empty(ny)
-    lowest[:] = np.inf
+    for j in range(ny):
+        lowest[j] = np.inf
     smallest, first, end = np.inf, nx, 0
     for i in range(nx):
         row = np.inf
@@ -48,7 +54,7 @@ def overlap_box(gap: NDArray[np.float64], approach: float) -> tuple[float, int, 
     return approach - smallest, first, end, left, right
 
 
-@njit(cache=True, nogil=True)
+@njit(**LOOP)
 def box_of_positive(field: NDArray[np.float64]) -> tuple[int, int, int, int]:
     """Find the smallest box that holds all positive values of a field.
 

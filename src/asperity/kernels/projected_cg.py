@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.convolution import Convolution, convolve, quarter_spectrum, whole, workspace
 from asperity.kernels.lanes import LANES, load, store
-from asperity.kernels.options import INNER, LOOP, REASSOCIATE
+from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
@@ -48,10 +48,10 @@ class Box(NamedTuple):
         Preconditioned residual, Pa.
     masked : ndarray
         Residual on the free set, between REACH rows of zeros.
+    clipped : ndarray, shape (2 FEW,)
+        Rows and columns of clipped cells.
     work : ndarray
         Room for convolutions.
-    clipped : ndarray of int, shape (2 FEW,)
-        Rows and columns of clipped cells.
     """
 
     nx: int
@@ -65,34 +65,65 @@ class Box(NamedTuple):
     response: NDArray[np.float64]
     z: NDArray[np.float64]
     masked: NDArray[np.float64]
+    clipped: NDArray[np.float64]
     work: NDArray[np.float64]
-    clipped: NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
-def empty_box(nx: int, ny: int, c: Convolution) -> Box:
-    """Make the fields of a box on which nothing overlaps.
+@njit(**INNER)
+def _extent(nx: int, ny: int) -> tuple[int, int]:
+    """Pitch of a box, and length of its fields: whole runs of four vectors."""
+    pitch = max(whole(ny), ny + REACH)
+    return pitch, 4 * whole(-(-nx * pitch // 4))
+
+
+@njit(**LOOP)
+def box_room(nx: int, ny: int, mx: int, my: int) -> int:
+    """Room that a box needs.
 
     Parameters
     ----------
     nx, ny : int
         Cells.
-    c : Convolution
-        That the solution will use.
+    mx, my : int
+        Cells that are convolved.
+
+    Returns
+    -------
+    int
+        Numbers.
+    """
+    pitch, size = _extent(nx, ny)
+    return 8 * size + 2 * REACH * pitch + 2 * FEW + workspace(mx, my)
+
+
+@njit(**LOOP)
+def empty_box(nx: int, ny: int, room: NDArray[np.float64]) -> Box:
+    """Make a box on which nothing overlaps.
+
+    Parameters
+    ----------
+    nx, ny : int
+        Cells.
+    room : ndarray
+        As many numbers as `box_room` says, of any value, or more: the fields will lie here.
 
     Returns
     -------
     Box
         With pressure zero.
     """
-    pitch = max(whole(ny), ny + REACH)
-    size = 4 * whole(-(-nx * pitch // 4))  # four vectors at a time, none left over
-    f, masked = np.zeros((7, size)), np.zeros(size + 2 * REACH * pitch)
-    overlap, residual = f[0], f[2]
-    overlap[:] = -FAR
-    residual[:] = FAR
-    clipped = np.zeros(2 * FEW, dtype=np.int64)
-    return Box(nx, ny, pitch, overlap, f[1], residual, f[3], f[4], f[5], f[6], masked, workspace(c), clipped)
+    pitch, size = _extent(nx, ny)
+    masked, end = 7 * size, 8 * size + 2 * REACH * pitch
+    for q in range(end):
+        room[q] = 0.0
+    box = Box(
+        nx, ny, pitch, room[:size], room[size : 2 * size], room[2 * size : 3 * size],
+        room[3 * size : 4 * size], room[4 * size : 5 * size], room[5 * size : 6 * size],
+        room[6 * size : masked], room[masked:end], room[end : end + 2 * FEW], room[end + 2 * FEW :],
+    )  # fmt: skip
+    for q in range(size):
+        box.overlap[q], box.residual[q] = -FAR, FAR
+    return box
 
 
 def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -209,20 +240,20 @@ def _correct(b: Box, mirrored: NDArray[np.float64], count: int) -> None:
         for j in range(0, b.ny, LANES):
             total = load(b.residual, i * b.pitch + j)
             for n in range(count):
-                row, column = b.clipped[2 * n], b.clipped[2 * n + 1]
+                row, column = int(b.clipped[2 * n]), int(b.clipped[2 * n + 1])
                 influence = load(mirrored, abs(i - row) * width + middle - column + j)
                 total = total + b.z[row * b.pitch + column] * influence
             store(b.residual, i * b.pitch + j, total)
 
 
-@njit(**INNER)
+@njit(**ONCE)
 def _true_residual(c: Convolution, b: Box) -> None:
     convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
     for q in range(len(b.residual)):
         b.residual[q] = b.response[q] - b.overlap[q]
 
 
-@njit(**LOOP, nogil=True)
+@njit(**ONCE)
 def survey(c: Convolution, b: Box, hardness: float) -> tuple[float, int, int, int, int]:
     """Compute the residual of a pressure and where there is something left to solve.
 
@@ -262,7 +293,7 @@ def _copy(outer: Box, source: NDArray[np.float64], row: int, column: int, b: Box
             target[i * b.pitch + j] = source[(row + i) * outer.pitch + column + j]
 
 
-@njit(**LOOP, nogil=True)
+@njit(**ONCE)
 def solve(
     c: Convolution,
     mirrored: NDArray[np.float64],
@@ -333,7 +364,7 @@ def solve(
     return iteration, definite
 
 
-@njit(**LOOP, nogil=True)
+@njit(**ONCE)
 def unit_indentation(
     c: Convolution,
     taps: NDArray[np.float64],
@@ -364,8 +395,11 @@ def unit_indentation(
     """
     rho = 0.0
     for q in range(len(b.overlap)):
-        i, j = q // b.pitch, q % b.pitch
-        b.overlap[q] = 1.0 if j < b.ny and inside[i, j] else 0.0
+        b.overlap[q] = 0.0
+    for i in range(b.nx):
+        for j in range(b.ny):
+            b.overlap[i * b.pitch + j] = 1.0 if inside[i, j] else 0.0
+    for q in range(len(b.overlap)):
         b.residual[q] = -b.overlap[q]
     for _ in range(max_iterations):
         # a positive "pressure" on the set marks it as free

@@ -8,10 +8,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.contact import CONVERGED, UNPREPARED, solve_contact
+from asperity.kernels.contact import CONVERGED, UNPREPARED, Room, solve_contact
 from asperity.kernels.continuation import continue_pressure
 from asperity.kernels.influence import Influence
-from asperity.kernels.options import INNER
+from asperity.kernels.options import INNER, LOOP
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
@@ -36,12 +36,18 @@ class Block(NamedTuple):
         As in `contact.solve_contact`.
     max_iterations : int
         As there.
+    room : Room
+        From `contact.room`.
+    gap, start : ndarray, shape (nx, ny)
+        Room for the gap at a position, and the pressure that its solution starts from.
     pressures : ndarray, shape (2, k, nx, ny)
         Of the last two positions, Pa: even ones first, odd ones second.
     solved : ndarray of int, shape (k,)
         Positions in contact one after the other up to the last.
     totals : ndarray, shape (k, positions)
         Receives the sum of the pressure over the cells, Pa.
+    residuals : ndarray, shape (k, positions)
+        Receives the largest complementarity residual relative to the largest overlap.
     counts : ndarray of int, shape (4,)
         Solutions, iterations, unconverged and truncated solutions so far.
     """
@@ -54,13 +60,17 @@ class Block(NamedTuple):
     hardness: float
     rtol: float
     max_iterations: int
+    room: Room
+    gap: NDArray[np.float64]
+    start: NDArray[np.float64]
     pressures: NDArray[np.float64]
     solved: NDArray[np.int64]
     totals: NDArray[np.float64]
+    residuals: NDArray[np.float64]
     counts: NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@njit(**LOOP, nogil=True)
 def solve_positions(
     known: Influence, b: Block, position: int, level: int, end: int
 ) -> tuple[int, int, int, int]:
@@ -84,23 +94,21 @@ def solve_positions(
     nx, ny : int
         The box on which a convolution has to be prepared to go on; zeros at the end.
     """
-    nx, ny = b.body.shape
-    gap, start, lowest = np.empty((nx, ny)), np.empty((nx, ny)), np.empty(ny)
     for m in range(position, end):
-        touch = _set_gap(b, m, gap, lowest)
+        touch = _set_gap(b, m)
         for i in range(level if m == position else 0, len(b.approaches)):
             if not b.approaches[i] > touch:
                 b.solved[i] = 0
                 continue
-            _set_start(b, m, i, touch, start)
+            _set_start(b, m, i, touch)
             pressure = b.pressures[m % 2, i]
             found = solve_contact(
-                known, gap, b.approaches[i], start, b.hardness, b.rtol, b.max_iterations, pressure
+                known, b.gap, b.approaches[i], b.start, b.hardness, b.rtol, b.max_iterations, b.room, pressure
             )
             if found.status == UNPREPARED:
                 return m, i, found.nx, found.ny
             b.solved[i] += 1
-            b.totals[i, m] = found.total
+            b.totals[i, m], b.residuals[i, m] = found.total, found.residual
             b.counts[0] += 1
             b.counts[1] += found.iterations
             b.counts[2] += found.status != CONVERGED
@@ -109,10 +117,11 @@ def solve_positions(
 
 
 @njit(**INNER)
-def _set_gap(b: Block, m: int, gap: NDArray[np.float64], lowest: NDArray[np.float64]) -> float:
-    """Set the gap at a position, and the lowest of every column; return the approach of first touch."""
-    plane = b.planes[m]
-    lowest[:] = np.inf
+def _set_gap(b: Block, m: int) -> float:
+    """Set the gap at a position; return the approach of first touch."""
+    plane, gap, lowest = b.planes[m], b.gap, b.room.lowest
+    for j in range(len(lowest)):
+        lowest[j] = np.inf
     for i in range(gap.shape[0]):
         body, row, target = b.body[i], b.rows[m * b.stride + i], gap[i]
         for j in range(len(target)):
@@ -124,23 +133,24 @@ def _set_gap(b: Block, m: int, gap: NDArray[np.float64], lowest: NDArray[np.floa
     return touch
 
 
-@njit(cache=True, nogil=True)
-def _set_start(b: Block, m: int, i: int, touch: float, start: NDArray[np.float64]) -> None:
+@njit(**LOOP)
+def _set_start(b: Block, m: int, i: int, touch: float) -> None:
     """Continue the pressure of the last positions, or else of the last approaches."""
     here, before = b.pressures[m % 2], b.pressures[(m + 1) % 2]
-    if b.solved[i] and b.stride < start.shape[0]:  # pressures move with the asperities, against the body
-        share = 1.0 if b.solved[i] > 1 else 0.0
-        continue_pressure(before[i], here[i], b.stride, share, b.hardness, start)
+    last, other, stride, share = here[0], here[0], b.stride, 0.0
+    if b.solved[i] and b.stride < b.start.shape[0]:  # pressures move with the asperities, against the body
+        last, other, share = before[i], here[i], 1.0 if b.solved[i] > 1 else 0.0
     elif i > 0 and b.approaches[i - 1] > touch:
-        two = i > 1 and b.approaches[i - 2] > touch
-        above, below, last = b.approaches[i], b.approaches[i - 1], b.approaches[i - 2]
-        share = (above - below) / (below - last) if two else 0.0
-        continue_pressure(here[i - 1], here[i - 2] if two else here[i - 1], 0, share, b.hardness, start)
+        last, other, stride = here[i - 1], here[i - 1], 0
+        if i > 1 and b.approaches[i - 2] > touch:
+            step = b.approaches[i - 1] - b.approaches[i - 2]
+            other, share = here[i - 2], (b.approaches[i] - b.approaches[i - 1]) / step
     else:
-        start[:] = 0.0
+        stride = b.start.shape[0]  # nothing is known
+    continue_pressure(last, other, stride, share, b.hardness, b.start)
 
 
-@njit(cache=True, nogil=True)
+@njit(**LOOP)
 def _on_edge(pressure: NDArray[np.float64]) -> float:
     """Sum of the pressure over the outermost cells."""
     nx, ny = pressure.shape

@@ -8,14 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.contact import halfspace
 from asperity.contact.device import Device
 from asperity.contact.halfspace import HalfSpace
-from asperity.kernels.scanning import TRUNCATED, Block, solve_positions
+from asperity.kernels.scanning import TRUNCATED
 from asperity.reduction import batched_scan
-
-AT_ONCE = 16
-"""Positions between two looks at whether the user wants to stop."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,31 +71,16 @@ def solve_block(
     """
     half_space = _half_space(contacts)
     if device is None:
-        return _solve_here(half_space, contacts, rows, planes)
+        block = half_space.at_positions(
+            rows, contacts.body, planes, contacts.approaches, contacts.stride, contacts.rtol
+        )
+        return block.totals * half_space.cell_area, block.counts
     found = batched_scan.solve_rows(
         half_space, rows, contacts.body, contacts.approaches, planes, contacts.stride, contacts.rtol,
         device, TRUNCATED,
     )  # fmt: skip
     flaws = found[1:].sum(axis=(1, 2)).astype(np.int64)
     return found[0], np.concatenate([[np.count_nonzero(found[0])], flaws])
-
-
-def _solve_here(
-    half_space: HalfSpace, contacts: Contacts, rows: NDArray[np.float64], planes: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    k = len(contacts.approaches)
-    block = Block(
-        rows, contacts.body, planes, contacts.approaches, contacts.stride, half_space.pressure_cap,
-        contacts.rtol, halfspace.MAX_ITERATIONS, np.zeros((2, k, *contacts.body.shape)),
-        np.zeros(k, dtype=np.int64), np.zeros((k, len(planes))), np.zeros(4, dtype=np.int64),
-    )  # fmt: skip
-    position, level = 0, 0
-    while position < len(planes):
-        end = min(position + AT_ONCE, len(planes))
-        position, level, nx, ny = solve_positions(half_space.influence, block, position, level, end)
-        if position < end:
-            half_space.prepare(nx, ny)
-    return block.totals * half_space.cell_area, block.counts
 
 
 _KEPT = threading.local()
