@@ -56,10 +56,10 @@ def _compile(progress: Progress, stepping: Any, rolling: Callable[[], None]) -> 
         progress(0, 2, MESSAGE)
         with _beside(stepping, rolling.__name__):
             x = np.arange(-4.0, 5.0) ** 2
-            contact = HalfSpace((9, 9), (1.0, 1.0), 1.0).solve(np.add.outer(x, x), approach=5.0)
-            assert contact.stiffness > 0.0
+            HalfSpace((9, 9), (1.0, 1.0), 1.0).solve(np.add.outer(x, x), approach=5.0)
         progress(1, 2, MESSAGE)
         rolling()
+        indent()
         progress(2, 2, MESSAGE)
 
 
@@ -73,7 +73,7 @@ def _beside(stepping: Any, name: str) -> Iterator[None]:
     if processors() < 2 or any(kept):
         yield
         return
-    code = f"from asperity.scenarios import compiling; compiling.{name}()"
+    code = f"from asperity.scenarios import compiling; compiling.{name}(); compiling.indent()"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     with subprocess.Popen([sys.executable, "-W", "ignore", "-c", code], env=environment, **quiet) as other:
@@ -82,6 +82,11 @@ def _beside(stepping: Any, name: str) -> Iterator[None]:
         except BaseException:
             other.kill()
             raise
+
+
+def indent() -> None:
+    """Find the stiffness of a contact."""
+    HalfSpace((9, 9), (1.0, 1.0), 1.0).tangent_stiffness(np.ones((9, 9)))
 
 
 def roll_a_ball() -> None:
