@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.kernels.continuation import continue_pressure
+from asperity.kernels.continuation import continue_pressure, correct_start, misfits
 from asperity.kernels.convolution import convolve, workspace
 from asperity.kernels.fourier import factors, roots, smooth_length, transform
 from asperity.kernels.influence import convolution, influence, is_prepared, prepared
@@ -83,3 +83,21 @@ def test_continuation_is_straight_at_points_of_the_surface_and_stays_within_boun
     assert np.allclose(continued(at(0, 2.0), at(0, 1.0), 0, 0.5, np.inf), at(0, 2.5))
     assert continued(at(0, 2.0), at(0, 1.0), 0, 1.0, 10.0).max() == 10.0
     assert not continued(at(0, 1.0), at(0, 3.0), 0, 1.0, np.inf).any()
+
+
+def test_start_is_corrected_by_what_was_wrong_before() -> None:
+    rng = np.random.default_rng(5)
+    surface, wrong = 1.0 + rng.random((6, 4)), 0.1 * rng.standard_normal((6, 4))
+    start = np.full((6, 4), np.nan)
+    correct_start(surface, 0.5 * surface, 0.5 * surface + wrong, 10.0, start)
+    assert np.allclose(start, surface + wrong)
+    correct_start(surface, surface, surface - 100.0, 10.0, start)
+    assert not start.any()
+    correct_start(surface, surface, surface + 100.0, 10.0, start)
+    assert np.array_equal(start, np.full((6, 4), 10.0))
+
+
+def test_misfits_are_sums_of_squares() -> None:
+    found, last, before = np.full((2, 3), 5.0), np.full((2, 3), 3.0), np.full((2, 3), 2.0)
+    assert misfits(found, last, last, before, 2.0) == (24.0, 0.0)
+    assert misfits(found, found, before, last, 4.0) == (0.0, 150.0)  # a line ends where pressure does

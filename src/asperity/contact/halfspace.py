@@ -328,7 +328,8 @@ class HalfSpace:
         k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
         block = Block(
             rows, body, planes, approaches, stride, self.pressure_cap, rtol, MAX_ITERATIONS,
-            room(self.influence, *shape), np.empty(shape), np.empty(shape), np.zeros((2, k, *shape)),
+            room(self.influence, *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
+            np.zeros((2, k, *shape)),
             np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size), np.zeros(4, dtype=np.int64),
         )  # fmt: skip
         if start is not None:

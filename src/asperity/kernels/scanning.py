@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.contact import CONVERGED, UNPREPARED, Room, solve_contact
-from asperity.kernels.continuation import continue_pressure
+from asperity.kernels.continuation import continue_pressure, correct_start, misfits
 from asperity.kernels.influence import Influence
 from asperity.kernels.options import INNER, LOOP
 
@@ -39,7 +39,9 @@ class Block(NamedTuple):
     room : Room
         From `contact.room`.
     gap, start : ndarray, shape (nx, ny)
-        Room for the gap at a position, and the pressure that its solution starts from.
+        Room for the gap at a position, m, and for the pressure that a solution starts from, Pa.
+    expected : ndarray, shape (2, nx, ny)
+        What the positions before let expect at the last approaches, Pa: even ones first, odd ones second.
     pressures : ndarray, shape (2, k, nx, ny)
         Of the last two positions, Pa: even ones first, odd ones second.
     solved : ndarray of int, shape (k,)
@@ -63,6 +65,7 @@ class Block(NamedTuple):
     room: Room
     gap: NDArray[np.float64]
     start: NDArray[np.float64]
+    expected: NDArray[np.float64]
     pressures: NDArray[np.float64]
     solved: NDArray[np.int64]
     totals: NDArray[np.float64]
@@ -135,19 +138,37 @@ def _set_gap(b: Block, m: int) -> float:
 
 @njit(**LOOP)
 def _set_start(b: Block, m: int, i: int, touch: float) -> None:
-    """Continue the pressure of the last positions, or else of the last approaches."""
-    here, before = b.pressures[m % 2], b.pressures[(m + 1) % 2]
-    last, other, stride, share = here[0], here[0], b.stride, 0.0
-    if b.solved[i] and b.stride < b.start.shape[0]:  # pressures move with the asperities, against the body
-        last, other, share = before[i], here[i], 1.0 if b.solved[i] > 1 else 0.0
-    elif i > 0 and b.approaches[i - 1] > touch:
-        last, other, stride = here[i - 1], here[i - 1], 0
-        if i > 1 and b.approaches[i - 2] > touch:
-            step = b.approaches[i - 1] - b.approaches[i - 2]
-            other, share = here[i - 2], (b.approaches[i] - b.approaches[i - 1]) / step
-    else:
-        stride = b.start.shape[0]  # nothing is known
-    continue_pressure(last, other, stride, share, b.hardness, b.start)
+    """Continue the pressure of the last positions or approaches, whichever was nearer one approach before.
+
+    The approach before also tells by how much the positions alone mislead.
+    """
+    here, before, below = b.pressures[m % 2], b.pressures[(m + 1) % 2], 0
+    while below < min(i, 3) and b.approaches[i - 1 - below] > touch:
+        below += 1
+    along = b.solved[i] > 0 and b.stride < b.start.shape[0]  # pressures move with the asperities
+    corrected = along and below > 0 and b.solved[i - 1] > 1
+    across = below > 0 and not along
+    expected, now = b.expected[(i + 1) % 2], b.expected[i % 2]
+    if corrected and below == 3:
+        by_position, by_approach = misfits(here[i - 1], expected, here[i - 2], here[i - 3], _share(b, i - 1))
+        across = by_approach < by_position
+    if along:
+        share = 1.0 if b.solved[i] > 1 else 0.0
+        continue_pressure(before[i], here[i], b.stride, share, b.hardness, now)
+    if across:
+        share = _share(b, i) if below > 1 else 0.0
+        other = here[i - 2] if below > 1 else here[i - 1]
+        continue_pressure(here[i - 1], other, np.int64(0), share, b.hardness, b.start)
+    elif along:
+        correct_start(now, expected, here[i - 1] if corrected else expected, b.hardness, b.start)
+    else:  # nothing is known
+        continue_pressure(here[i], here[i], np.int64(len(b.start)), 0.0, b.hardness, b.start)
+
+
+@njit(**INNER)
+def _share(b: Block, i: int) -> float:
+    """How far an approach is from the one before, in steps between that and the one before it."""
+    return (b.approaches[i] - b.approaches[i - 1]) / (b.approaches[i - 1] - b.approaches[i - 2])
 
 
 @njit(**LOOP)
