@@ -26,10 +26,11 @@ import numpy as np
 from numba import njit
 from scan_step import MODULUS, problem
 
-from asperity.kernels import contact, scanning
+from asperity.contact import halfspace
+from asperity.kernels import contact, influence, scanning
 from asperity.kernels import projected_cg as cg
 from asperity.kernels.convolution import Convolution, convolve
-from asperity.reduction import blocks
+from asperity.kernels.lanes import width
 from asperity.reduction.scan import scan_forces
 
 ROUNDS = 5
@@ -139,8 +140,10 @@ def profile(cells: int) -> None:
         patch.object(contact, "solve", counted),
         patch.object(contact, "convolution", contact.convolution.py_func),
         patch.object(contact, "empty_box", cg.empty_box.py_func),
+        patch.object(cg, "lanes", lambda array: width(array.dtype)),
+        patch.object(influence, "lanes", lambda array: width(array.dtype)),
         patch.object(scanning, "solve_contact", contact.solve_contact.py_func),
-        patch.object(blocks, "solve_positions", scanning.solve_positions.py_func),
+        patch.object(halfspace, "solve_positions", scanning.solve_positions.py_func),
     ):
         scan_forces(
             p["heights"], (float(p["spacing"]),) * 2, p["body"], MODULUS, p["approaches"][:1],

@@ -8,6 +8,7 @@ import pytest
 import asperity
 from asperity.contact import HalfSpace, Hertz
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
+from asperity.reduction.accuracy import in_single
 from asperity.reduction.blocks import solve_block
 from asperity.reduction.scan import first_touch, scan_forces
 
@@ -70,12 +71,14 @@ def test_stride_takes_every_other_position():
     np.testing.assert_allclose(half.position, full.position[::3])
 
 
-@pytest.mark.parametrize("hardness", [None, 1e9])
-def test_workers_do_not_change_a_digit(monkeypatch, hardness):
+@pytest.mark.parametrize(("hardness", "pays"), [(None, np.inf), (1e9, np.inf), (None, 0.0)])
+def test_workers_do_not_change_a_digit(monkeypatch, hardness, pays):
     monkeypatch.setattr("asperity.reduction.scan.BLOCK", 7)
+    monkeypatch.setattr("asperity.reduction.accuracy.SINGLE_PAYS", pays)
     heights, body, approaches = rough(70, 41), ball(41), [0.1e-6, 0.2e-6]
     one, two = (
-        scan_forces(heights, (DX, DX), body, MODULUS, approaches, hardness, workers=n) for n in (1, 2)
+        scan_forces(heights, (DX, DX), body, MODULUS, approaches, hardness, rtol=4e-6, workers=n)
+        for n in (1, 2)
     )
     assert np.array_equal(one.forces, two.forces)
     assert (one.solved, one.iterations) == (two.solved, two.iterations)
@@ -187,3 +190,24 @@ def test_bad_input(change, message):
     }
     with pytest.raises(InputError, match=message):
         asperity.scan(**(keywords | change))
+
+
+@pytest.mark.parametrize("hardness", [None, 1e9])
+@pytest.mark.parametrize("rtol", [4e-5, 4e-6])
+def test_single_precision_is_as_accurate_as_the_tolerance(monkeypatch, hardness, rtol):
+    heights, body, approaches = rough(120, 41), ball(41), [0.05e-6, 0.15e-6, 0.3e-6]
+    scans = []
+    for pays, tolerance in ((np.inf, 1e-10), (np.inf, rtol), (0.0, rtol)):
+        monkeypatch.setattr("asperity.reduction.accuracy.SINGLE_PAYS", pays)
+        scans.append(scan_forces(heights, (DX, DX), body, MODULUS, approaches, hardness, rtol=tolerance))
+    exact, double, single = scans
+    assert single.unconverged == 0
+    assert not np.array_equal(single.forces, double.forces)
+    assert single.iterations <= 1.03 * double.iterations
+    np.testing.assert_allclose(single.forces, exact.forces, rtol=2.5 * rtol, atol=0.0)
+
+
+def test_tight_tolerances_and_short_scans_stay_in_double():
+    assert in_single(4e-6, 1e10)
+    assert not in_single(1e-6, 1e10)
+    assert not in_single(4e-6, 1e9)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.convolution import convolve
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
+from asperity.kernels.lanes import width
 from asperity.kernels.options import INNER, LOOP, ONCE
 from asperity.kernels.overlap import overlap_box
 from asperity.kernels.projected_cg import Box, box_room, empty_box, solve, survey, unit_indentation
@@ -77,8 +78,9 @@ def room(known: Influence, nx: int, ny: int) -> Room:
         Of any value.
     """
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
-    size = box_room(nx, ny, mx, my)
-    return Room(np.empty(ny), np.empty(size), np.empty(size))
+    dtype = known.spectra.dtype
+    size = box_room(nx, ny, mx, my, width(dtype))
+    return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype))
 
 
 @njit(**ONCE)
@@ -131,7 +133,7 @@ def solve_contact(
     outer, everywhere = empty_box(nx, ny, room.outer), convolution(known, nx, ny)
     guessed = not _enter(outer, gap, approach, start, first, left)
     if guessed:
-        _guess(outer, largest)
+        _guess(outer, largest, known.taps[0])
     iterations, tolerance, definite = 0, rtol * largest, True
     while True:
         worst, top, bottom, near, far = survey(everywhere, outer, hardness)
@@ -232,10 +234,10 @@ def _enter(b: Box, gap: NDArray, approach: float, start: NDArray, first: int, le
 
 
 @njit(**INNER)
-def _guess(b: Box, largest: float) -> None:
-    """Set a pressure of Hertzian form over the deeper half of the overlap, of no unit yet."""
+def _guess(b: Box, largest: float, stiffness: float) -> None:
+    """Set a pressure of Hertzian form over the deeper half of the overlap, of about the right size."""
     for q in range(len(b.pressure)):
-        b.pressure[q] = np.sqrt(max(b.overlap[q] - 0.5 * largest, 0.0))
+        b.pressure[q] = stiffness * np.sqrt(largest * max(b.overlap[q] - 0.5 * largest, 0.0))
 
 
 @njit(**INNER)

@@ -17,7 +17,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.fourier import roots, transform
-from asperity.kernels.lanes import LANES, load, store, transpose
+from asperity.kernels.lanes import lanes, load, store, transpose
 from asperity.kernels.options import INNER, LOOP
 
 
@@ -32,7 +32,7 @@ class Convolution(NamedTuple):
         From `fourier.roots`.
     turn_x, turn_y : ndarray, shape (2 m,)
         From `quarter_turn`.
-    spectrum : ndarray, shape (⌈mx / lanes⌉ my lanes,)
+    spectrum : ndarray, shape (whole(mx) my,)
         From `spectrum`.
     """
 
@@ -45,7 +45,7 @@ class Convolution(NamedTuple):
     spectrum: NDArray[np.float64]
 
 
-def spectrum(table: NDArray[np.float64], mx: int, my: int) -> NDArray[np.float64]:
+def spectrum(table: NDArray[np.float64], mx: int, my: int, lanes: int) -> NDArray[np.float64]:
     """Spectrum of an even kernel in the order in which it is multiplied with.
 
     Parameters
@@ -54,16 +54,18 @@ def spectrum(table: NDArray[np.float64], mx: int, my: int) -> NDArray[np.float64
         Kernel at non-negative separations.
     mx, my : int
         Largest box, cells, from `fourier.smooth_length`.
+    lanes : int
+        Numbers in a vector.
 
     Returns
     -------
-    ndarray, shape (⌈mx / lanes⌉ my lanes,)
+    ndarray, shape (whole(mx) my,)
         Spectrum at the frequencies (k + ¼)/m, divided by 2 mx my.
     """
     quarter = quarter_spectrum(quarter_spectrum(table[:mx, :my], 1), 0) / (2.0 * mx * my)
-    blocks = np.zeros((-(-mx // LANES) * LANES, my))
+    blocks = np.zeros((-(-mx // lanes) * lanes, my))
     blocks[:mx] = quarter
-    return blocks.reshape(-1, LANES, my).transpose(0, 2, 1).ravel()
+    return blocks.reshape(-1, lanes, my).transpose(0, 2, 1).ravel()
 
 
 @lru_cache
@@ -104,37 +106,42 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
 
 
 @njit(**INNER)
-def whole(n: int) -> int:
+def whole(n: int, lanes: int) -> int:
     """Smallest number of whole vectors, in cells, that hold n cells.
 
     Parameters
     ----------
     n : int
         Cells.
+    lanes : int
+        Numbers in a vector.
 
     Returns
     -------
     int
         A multiple of the lanes.
     """
-    return -(-n // LANES) * LANES
+    return -(-n // lanes) * lanes
 
 
 @njit(**INNER)
-def workspace(mx: int, my: int) -> int:
+def workspace(mx: int, my: int, lanes: int) -> int:
     """Room that a convolution needs.
 
     Parameters
     ----------
     mx, my : int
         Cells of its largest box.
+    lanes : int
+        Numbers in a vector.
 
     Returns
     -------
     int
         Numbers.
     """
-    return 2 * whole(mx) * whole(my) + 6 * max(whole(mx), whole(my)) * LANES
+    x, y = whole(mx, lanes), whole(my, lanes)
+    return 2 * x * y + 6 * max(x, y) * lanes
 
 
 @njit(**INNER)
@@ -146,19 +153,21 @@ def _clear(buffer: NDArray, first: int, end: int) -> None:
 @njit(**INNER)
 def _turn_in(c: Convolution, field: NDArray, pitch: int, first: int, nx: int, buffer: NDArray) -> None:
     """Turn a block of real columns into the buffer, zero behind the box."""
+    part = lanes(buffer)
     for i in range(nx):
-        re, o = load(field, i * pitch + first), 2 * i * LANES
+        re, o = load(field, i * pitch + first), 2 * i * part
         store(buffer, o, c.turn_x[2 * i] * re)
-        store(buffer, o + LANES, c.turn_x[2 * i + 1] * re)
-    _clear(buffer, 2 * nx * LANES, len(c.turn_x) * LANES)
+        store(buffer, o + part, c.turn_x[2 * i + 1] * re)
+    _clear(buffer, 2 * nx * part, len(c.turn_x) * part)
 
 
 @njit(**INNER)
 def _turn_out(c: Convolution, buffer: NDArray, pitch: int, first: int, nx: int, out: NDArray) -> None:
     """Turn a block back and keep its real part."""
+    part = lanes(buffer)
     for i in range(nx):
-        o = 2 * i * LANES
-        re, im = load(buffer, o), load(buffer, o + LANES)
+        o = 2 * i * part
+        re, im = load(buffer, o), load(buffer, o + part)
         store(out, i * pitch + first, c.turn_x[2 * i] * re - c.turn_x[2 * i + 1] * im)
 
 
@@ -170,35 +179,33 @@ def _turned(re: Any, im: Any, cosine: Any, sine: Any) -> Any:
 @njit(**INNER)
 def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: NDArray, s: NDArray) -> None:
     """Convolve across in both senses of turning; the conjugate of the sum replaces the rows."""
-    my = len(c.turn_y) // 2
+    my, part = len(c.turn_y) // 2, lanes(rows)
     for sense in range(2):
         sign = 1.0 - 2.0 * sense
         for j in range(ny):
-            o = 2 * j * LANES
-            re, im = _turned(
-                load(rows, o), load(rows, o + LANES), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1]
-            )
+            o = 2 * j * part
+            re, im = _turned(load(rows, o), load(rows, o + part), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
             store(a, o, re)
-            store(a, o + LANES, im)
-        _clear(a, 2 * ny * LANES, 2 * my * LANES)
+            store(a, o + part, im)
+        _clear(a, 2 * ny * part, 2 * my * part)
         swapped = transform(a, b, c.radices_y, c.roots_y)
         x, y = (b, a) if swapped else (a, b)
         for k in range(my):
-            factor = load(c.spectrum, (block * my + (k if sense == 0 or k == 0 else my - k)) * LANES)
-            o = 2 * k * LANES
+            factor = load(c.spectrum, (block * my + (k if sense == 0 or k == 0 else my - k)) * part)
+            o = 2 * k * part
             store(x, o, factor * load(x, o))
-            store(x, o + LANES, -1.0 * (factor * load(x, o + LANES)))
+            store(x, o + part, -1.0 * (factor * load(x, o + part)))
         if transform(x, y, c.radices_y, c.roots_y):
             x = y
         for j in range(ny):
-            o = 2 * j * LANES
-            re, im = _turned(load(x, o), load(x, o + LANES), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
+            o = 2 * j * part
+            re, im = _turned(load(x, o), load(x, o + part), c.turn_y[2 * j], sign * c.turn_y[2 * j + 1])
             if sense == 0:
                 store(s, o, re)
-                store(s, o + LANES, im)
+                store(s, o + part, im)
             else:
                 store(rows, o, re + load(s, o))
-                store(rows, o + LANES, im + load(s, o + LANES))
+                store(rows, o + part, im + load(s, o + part))
 
 
 @njit(**LOOP, nogil=True)
@@ -222,24 +229,24 @@ def convolve(
     out : ndarray, shape (nx pitch,)
         Receives the convolution; columns from `ny` on have no meaning.
     """
-    mx = len(c.turn_x) // 2
-    row, blocks = whole(ny), -(-mx // LANES)
-    size = 2 * max(blocks * LANES, whole(len(c.turn_y) // 2)) * LANES
+    mx, n = len(c.turn_x) // 2, lanes(work)
+    row, blocks = whole(ny, n), -(-mx // n)
+    size = 2 * max(blocks * n, whole(len(c.turn_y) // 2, n)) * n
     a, b, s = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
-    rows, line = work[3 * size :], 2 * row * LANES
-    for first in range(0, row, LANES):
+    rows, line = work[3 * size :], 2 * row * n
+    for first in range(0, row, n):
         _turn_in(c, field, pitch, first, nx, a)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         for k in range(blocks):
-            for part in range(0, 2 * LANES, LANES):
-                o = k * line + 2 * first * LANES + part
-                transpose(x, 2 * k * LANES * LANES + part, 2 * LANES, rows, o, 2 * LANES)
+            for part in range(0, 2 * n, n):
+                o = k * line + 2 * first * n + part
+                transpose(x, 2 * k * n * n + part, 2 * n, rows, o, 2 * n)
     for k in range(blocks):
         _across(c, k, rows[k * line : (k + 1) * line], ny, a, b, s)
-    for first in range(0, row, LANES):
+    for first in range(0, row, n):
         for k in range(blocks):
-            for part in range(0, 2 * LANES, LANES):
-                o = k * line + 2 * first * LANES + part
-                transpose(rows, o, 2 * LANES, a, 2 * k * LANES * LANES + part, 2 * LANES)
+            for part in range(0, 2 * n, n):
+                o = k * line + 2 * first * n + part
+                transpose(rows, o, 2 * n, a, 2 * k * n * n + part, 2 * n)
         x = b if transform(a, b, c.radices_x, c.roots_x) else a
         _turn_out(c, x, pitch, first, nx, out)

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.lanes import LANES, load, store
+from asperity.kernels.lanes import lanes, load, store
 from asperity.kernels.options import INNER, LOOP
 
 
@@ -79,61 +79,64 @@ def roots(n: int) -> NDArray:
 def _put(target: NDArray, index: int, re: Any, im: Any, w: NDArray, power: int) -> None:
     c, s = w[2 * power], w[2 * power + 1]
     store(target, index, c * re - s * im)
-    store(target, index + LANES, c * im + s * re)
+    store(target, index + lanes(target), c * im + s * re)
 
 
 @njit(**INNER)
 def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 2, len(w) // (2 * n), 2 * LANES
+    m, unit, part = n // 2, len(w) // (2 * n), lanes(x)
+    row = 2 * part
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 2 * p) * row
-            a, ai = load(x, i), load(x, i + LANES)
+            a, ai = load(x, i), load(x, i + part)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + LANES)
+            b, bi = load(x, i), load(x, i + part)
             store(y, o, a + b)
-            store(y, o + LANES, ai + bi)
+            store(y, o + part, ai + bi)
             _put(y, o + stride * row, a - b, ai - bi, w, p * unit)
 
 
 @njit(**INNER)
 def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 3, len(w) // (2 * n), 2 * LANES
+    m, unit, part = n // 3, len(w) // (2 * n), lanes(x)
+    row = 2 * part
     half, sine = 0.5, 0.75**0.5
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 3 * p) * row
-            a, ai = load(x, i), load(x, i + LANES)
+            a, ai = load(x, i), load(x, i + part)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + LANES)
+            b, bi = load(x, i), load(x, i + part)
             i += stride * m * row
-            c, ci = load(x, i), load(x, i + LANES)
+            c, ci = load(x, i), load(x, i + part)
             t, ti = b + c, bi + ci
             u, ui = a - half * t, ai - half * ti
             v, vi = sine * (bi - ci), sine * (c - b)
             store(y, o, a + t)
-            store(y, o + LANES, ai + ti)
+            store(y, o + part, ai + ti)
             _put(y, o + stride * row, u + v, ui + vi, w, p * unit)
             _put(y, o + 2 * stride * row, u - v, ui - vi, w, 2 * p * unit)
 
 
 @njit(**INNER)
 def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 4, len(w) // (2 * n), 2 * LANES
+    m, unit, part = n // 4, len(w) // (2 * n), lanes(x)
+    row = 2 * part
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 4 * p) * row
-            a, ai = load(x, i), load(x, i + LANES)
+            a, ai = load(x, i), load(x, i + part)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + LANES)
+            b, bi = load(x, i), load(x, i + part)
             i += stride * m * row
-            c, ci = load(x, i), load(x, i + LANES)
+            c, ci = load(x, i), load(x, i + part)
             i += stride * m * row
-            d, di = load(x, i), load(x, i + LANES)
+            d, di = load(x, i), load(x, i + part)
             s, si, t, ti = a + c, ai + ci, a - c, ai - ci
             u, ui, v, vi = b + d, bi + di, bi - di, d - b
             store(y, o, s + u)
-            store(y, o + LANES, si + ui)
+            store(y, o + part, si + ui)
             _put(y, o + stride * row, t + v, ti + vi, w, p * unit)
             _put(y, o + 2 * stride * row, s - u, si - ui, w, 2 * p * unit)
             _put(y, o + 3 * stride * row, t - v, ti - vi, w, 3 * p * unit)
@@ -141,25 +144,26 @@ def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @njit(**INNER)
 def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
-    m, unit, row = n // 5, len(w) // (2 * n), 2 * LANES
+    m, unit, part = n // 5, len(w) // (2 * n), lanes(x)
+    row = 2 * part
     c1, c2 = np.cos(0.4 * np.pi), np.cos(0.8 * np.pi)
     s1, s2 = np.sin(0.4 * np.pi), np.sin(0.8 * np.pi)
     for p in range(m):
         for q in range(stride):
             i, o = (q + stride * p) * row, (q + stride * 5 * p) * row
-            a, ai = load(x, i), load(x, i + LANES)
+            a, ai = load(x, i), load(x, i + part)
             i += stride * m * row
-            b, bi = load(x, i), load(x, i + LANES)
+            b, bi = load(x, i), load(x, i + part)
             i += stride * m * row
-            c, ci = load(x, i), load(x, i + LANES)
+            c, ci = load(x, i), load(x, i + part)
             i += stride * m * row
-            d, di = load(x, i), load(x, i + LANES)
+            d, di = load(x, i), load(x, i + part)
             i += stride * m * row
-            e, ei = load(x, i), load(x, i + LANES)
+            e, ei = load(x, i), load(x, i + part)
             t, ti, u, ui = b + e, bi + ei, c + d, ci + di
             v, vi, z, zi = bi - ei, e - b, ci - di, d - c
             store(y, o, a + t + u)
-            store(y, o + LANES, ai + ti + ui)
+            store(y, o + part, ai + ti + ui)
             f, fi = a + c1 * t + c2 * u, ai + c1 * ti + c2 * ui
             g, gi = s1 * v + s2 * z, s1 * vi + s2 * zi
             _put(y, o + stride * row, f + g, fi + gi, w, p * unit)

@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
-from asperity.kernels.convolution import Convolution, quarter_turn, spectrum
+from asperity.kernels.convolution import Convolution, quarter_turn, spectrum, whole
 from asperity.kernels.fourier import factors, roots, smooth_length
+from asperity.kernels.lanes import lanes, width
 from asperity.kernels.options import LOOP
 
 UNIT = 8
@@ -25,7 +26,7 @@ class Influence(NamedTuple):
     ----------
     table : ndarray, shape (≥ nx, ≥ ny)
         Displacement per pressure at non-negative separations, m/Pa.
-    mirrored : ndarray, shape (≥ nx, ≥ 2 ny − 1)
+    mirrored : ndarray, shape (≥ nx, ≥ 2 whole(ny) − 1)
         The same at separations of both signs along y, zero in the middle column.
     taps : ndarray, shape (6,)
         Preconditioner, from `projected_cg.inverse_stencil`, Pa/m.
@@ -55,13 +56,17 @@ class Influence(NamedTuple):
     spectra: NDArray[np.float64]
 
 
-def influence(table: NDArray[np.float64], taps: NDArray[np.float64]) -> Influence:
+def influence(
+    table: NDArray[np.float64], taps: NDArray[np.float64], dtype: DTypeLike = np.float64
+) -> Influence:
     """Make the influence of a half-space, without any convolution prepared.
 
     Parameters
     ----------
     table, taps : ndarray
         As in `Influence`; the table's sides are from `fourier.smooth_length`.
+    dtype : data type
+        Precision of the solution: float64 or float32. All but the table has it.
 
     Returns
     -------
@@ -77,11 +82,16 @@ def influence(table: NDArray[np.float64], taps: NDArray[np.float64]) -> Influenc
     for length in fast.tolist():
         split = factors(length)
         radices[length // UNIT, : len(split)] = split
+    filled = np.pad(table, ((0, 0), (0, -table.shape[1] % width(dtype))))  # idle columns are read, too
+    mirrored = np.concatenate([filled[:, :0:-1], filled], axis=1)
+    known_roots = np.concatenate([roots(n) for n in fast.tolist()])
+    turns = np.concatenate([quarter_turn(n) for n in fast.tolist()])
+    given = (mirrored, taps, known_roots, turns, np.zeros(0))
+    mirrored, taps, known_roots, turns, spectra = (a.astype(dtype) for a in given)
+    places = np.full((count, count), -1)
     return Influence(
-        table, np.concatenate([table[:, :0:-1], table], axis=1), taps, lengths, radices.ravel(), starts,
-        np.concatenate([roots(n) for n in fast.tolist()]),
-        np.concatenate([quarter_turn(n) for n in fast.tolist()]), np.full((count, count), -1), np.zeros(0),
-    )  # fmt: skip
+        table, mirrored, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra
+    )
 
 
 def prepared(known: Influence, nx: int, ny: int) -> Influence:
@@ -102,9 +112,9 @@ def prepared(known: Influence, nx: int, ny: int) -> Influence:
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
     places = known.places.copy()
     places[mx // UNIT, my // UNIT] = len(known.spectra)
-    return known._replace(
-        places=places, spectra=np.concatenate([known.spectra, spectrum(known.table, mx, my)])
-    )
+    dtype = known.spectra.dtype
+    added = spectrum(known.table, mx, my, width(dtype)).astype(dtype)
+    return known._replace(places=places, spectra=np.concatenate([known.spectra, added]))
 
 
 @njit(**LOOP)
@@ -157,5 +167,5 @@ def convolution(known: Influence, nx: int, ny: int) -> Convolution:
         known.roots[y : y + 2 * UNIT * j],
         known.turns[x : x + 2 * UNIT * i],
         known.turns[y : y + 2 * UNIT * j],
-        known.spectra[place : place + UNIT * i * UNIT * j],
+        known.spectra[place : place + whole(UNIT * i, lanes(known.spectra)) * UNIT * j],
     )

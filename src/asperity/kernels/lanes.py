@@ -1,7 +1,8 @@
 """Vectors of numbers as values of compiled code: one instruction works on all lanes.
 
 Compilers do not find these vectors by themselves in a butterfly that reads and writes many rows, because the
-rows might overlap. A vector holds eight numbers; processors with shorter registers use several.
+rows might overlap. A vector holds eight numbers, sixteen in single precision; processors with shorter
+registers use several.
 """
 
 from __future__ import annotations
@@ -9,13 +10,31 @@ from __future__ import annotations
 import operator
 from typing import Any
 
+import numpy as np
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
+from numpy.typing import DTypeLike
 
-LANES = 8
-"""Numbers in a vector."""
+VECTOR_BYTES = 64
+"""Size of a vector."""
+
+
+def width(dtype: DTypeLike) -> int:
+    """Numbers in a vector.
+
+    Parameters
+    ----------
+    dtype : data type
+        Of the numbers: float64 or float32.
+
+    Returns
+    -------
+    int
+        Lanes.
+    """
+    return VECTOR_BYTES // np.dtype(dtype).itemsize
 
 
 def _compiled(generator: Any) -> Any:
@@ -24,35 +43,48 @@ def _compiled(generator: Any) -> Any:
 
 
 class Lanes(types.Type):
-    """Numba's type of a vector."""
+    """Numba's type of a vector of numbers of a type."""
 
-    def __init__(self) -> None:
-        super().__init__(name="Lanes")
+    def __init__(self, number: Any) -> None:
+        self.number = number
+        self.count = VECTOR_BYTES * 8 // number.bitwidth
+        super().__init__(name=f"Lanes({number})")
 
 
-VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-KIND = Lanes()
+def _vector(kind: Any) -> Any:
+    return ir.VectorType(ir.DoubleType() if kind.number == types.float64 else ir.FloatType(), kind.count)
 
 
 @register_model(Lanes)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, manager: Any, kind: Lanes) -> None:
-        super().__init__(manager, kind, VECTOR)
+        super().__init__(manager, kind, _vector(kind))
 
 
 def _pointer(context: Any, builder: Any, kind: Any, value: Any, index: Any) -> Any:
     """Pointer to the vector that starts at an element of a contiguous array, counted flat."""
     data = context.make_array(kind)(context, builder, value).data
-    return builder.bitcast(builder.gep(data, [index]), ir.PointerType(VECTOR))
+    return builder.bitcast(builder.gep(data, [index]), ir.PointerType(_vector(Lanes(kind.dtype))))
 
 
-def _broadcast(builder: Any, scalar: Any) -> Any:
-    single = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), scalar, cgutils.int32_t(0))
-    return builder.shuffle_vector(single, single, _mask([0] * LANES))
+def _broadcast(builder: Any, scalar: Any, kind: Lanes) -> Any:
+    undefined = ir.Constant(_vector(kind), ir.Undefined)
+    single = builder.insert_element(undefined, scalar, cgutils.int32_t(0))
+    return builder.shuffle_vector(single, single, _mask([0] * kind.count))
 
 
 def _mask(lanes: list[int]) -> Any:
-    return ir.Constant(ir.VectorType(ir.IntType(32), LANES), lanes)
+    return ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), lanes)
+
+
+@_compiled
+def lanes(typing: Any, array: Any) -> Any:
+    """Numbers in a vector of an array's, known to the compiler."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return context.get_constant(types.intp, Lanes(array.dtype).count)
+
+    return types.intp(array), generate
 
 
 @_compiled
@@ -60,9 +92,9 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     """Vector of the elements from `index` on of a flat contiguous array."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.load(_pointer(context, builder, array, *arguments), align=8)
+        return builder.load(_pointer(context, builder, array, *arguments), align=array.dtype.bitwidth // 8)
 
-    return KIND(array, types.intp), generate
+    return Lanes(array.dtype)(array, types.intp), generate
 
 
 @_compiled
@@ -70,28 +102,30 @@ def store(typing: Any, array: Any, index: Any, vector: Any) -> Any:
     """Write a vector to the elements from `index` on of a flat contiguous array."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        builder.store(arguments[2], _pointer(context, builder, array, *arguments[:2]), align=8)
+        pointer = _pointer(context, builder, array, *arguments[:2])
+        builder.store(arguments[2], pointer, align=array.dtype.bitwidth // 8)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, vector), generate
 
 
 def _operation(symbol: Any, instruction: str) -> None:
-    """Give vectors an operator, between themselves and with a number on the left."""
+    """Give vectors an operator, between themselves and with a number on the left, which takes their type."""
 
     @type_callable(symbol)
     def typed(context: Any) -> Any:
         def typer(left: Any, right: Any) -> Any:
-            return KIND if right == KIND and left in (KIND, types.float64) else None
+            fits = isinstance(right, Lanes) and (left == right or isinstance(left, types.Float))
+            return right if fits else None
 
         return typer
 
     @lower_builtin(symbol, Lanes, Lanes)
-    @lower_builtin(symbol, types.float64, Lanes)
+    @lower_builtin(symbol, types.Float, Lanes)
     def lowered(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        left, right = arguments
+        (left, right), kind = arguments, signature.args[1]
         if not isinstance(signature.args[0], Lanes):
-            left = _broadcast(builder, left)
+            left = _broadcast(builder, context.cast(builder, left, signature.args[0], kind.number), kind)
         # "contract": a product and a sum may become one instruction
         return getattr(builder, instruction)(left, right, flags=("contract",))
 
@@ -105,15 +139,18 @@ _operation(operator.mul, "fmul")
 def transpose(typing: Any, source: Any, start: Any, stride: Any, target: Any, first: Any, step: Any) -> Any:
     """Transpose a square of numbers: its rows lie `stride` apart in the source, `step` in the target."""
 
+    kind = Lanes(source.dtype)
+    align = kind.number.bitwidth // 8
+
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         read, start_, stride_, written, first_, step_ = arguments
         rows = []
-        for i in range(LANES):
+        for i in range(kind.count):
             index = builder.add(start_, builder.mul(stride_, stride_.type(i)))
-            rows.append(builder.load(_pointer(context, builder, source, read, index), align=8))
+            rows.append(builder.load(_pointer(context, builder, source, read, index), align=align))
         for i, row in enumerate(_transposed(builder, rows)):
             index = builder.add(first_, builder.mul(step_, step_.type(i)))
-            builder.store(row, _pointer(context, builder, target, written, index), align=8)
+            builder.store(row, _pointer(context, builder, target, written, index), align=align)
         return context.get_dummy_value()
 
     n = types.intp
@@ -122,12 +159,13 @@ def transpose(typing: Any, source: Any, start: Any, stride: Any, target: Any, fi
 
 def _transposed(builder: Any, rows: list[Any]) -> list[Any]:
     """Swap blocks off the diagonal, from the largest to the smallest."""
-    block = LANES // 2
+    count = len(rows)
+    block = count // 2
     while block:
-        lower = [lane if not lane & block else LANES + lane - block for lane in range(LANES)]
-        upper = [lane + block if not lane & block else LANES + lane for lane in range(LANES)]
+        lower = [lane if not lane & block else count + lane - block for lane in range(count)]
+        upper = [lane + block if not lane & block else count + lane for lane in range(count)]
         masks = _mask(lower), _mask(upper)
-        for i in range(LANES):
+        for i in range(count):
             if not i & block:
                 pair = rows[i], rows[i + block]
                 rows[i], rows[i + block] = (builder.shuffle_vector(*pair, mask) for mask in masks)

@@ -18,7 +18,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.convolution import Convolution, convolve, quarter_spectrum, whole, workspace
-from asperity.kernels.lanes import LANES, load, store
+from asperity.kernels.lanes import lanes, load, store
 from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE
 
 REACH = 2
@@ -70,14 +70,14 @@ class Box(NamedTuple):
 
 
 @njit(**INNER)
-def _extent(nx: int, ny: int) -> tuple[int, int]:
+def _extent(nx: int, ny: int, lanes: int) -> tuple[int, int]:
     """Pitch of a box, and length of its fields: whole runs of four vectors."""
-    pitch = max(whole(ny), ny + REACH)
-    return pitch, 4 * whole(-(-nx * pitch // 4))
+    pitch = max(whole(ny, lanes), ny + REACH)
+    return pitch, whole(nx * pitch, 4 * lanes)
 
 
 @njit(**LOOP)
-def box_room(nx: int, ny: int, mx: int, my: int) -> int:
+def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
     """Room that a box needs.
 
     Parameters
@@ -86,14 +86,16 @@ def box_room(nx: int, ny: int, mx: int, my: int) -> int:
         Cells.
     mx, my : int
         Cells that are convolved.
+    lanes : int
+        Numbers in a vector.
 
     Returns
     -------
     int
         Numbers.
     """
-    pitch, size = _extent(nx, ny)
-    return 8 * size + 2 * REACH * pitch + 2 * FEW + workspace(mx, my)
+    pitch, size = _extent(nx, ny, lanes)
+    return 8 * size + 2 * REACH * pitch + 2 * FEW + workspace(mx, my, lanes)
 
 
 @njit(**LOOP)
@@ -112,7 +114,7 @@ def empty_box(nx: int, ny: int, room: NDArray[np.float64]) -> Box:
     Box
         With pressure zero.
     """
-    pitch, size = _extent(nx, ny)
+    pitch, size = _extent(nx, ny, lanes(room))
     masked, end = 7 * size, 8 * size + 2 * REACH * pitch
     for q in range(end):
         room[q] = 0.0
@@ -158,13 +160,15 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
 @njit(**INNER, **REASSOCIATE)
 def _free(pressure: NDArray[np.float64], b: Box, hardness: float, tolerance: float) -> float:
     """Mask the residual with the free set; return how many cells violate complementarity."""
-    violated, target = 0.0, b.masked[REACH * b.pitch :]
+    real = b.z.dtype.type  # numbers of another precision would be computed with in double
+    zero, one, target = real(0.0), real(1.0), b.masked[REACH * b.pitch :]
+    hardness, tolerance, violated = real(hardness), real(tolerance), zero
     for q in range(len(pressure)):
         p, r = pressure[q], b.residual[q]
-        masked = r if p > 0.0 else min(r, 0.0)
-        masked = masked if p < hardness else max(masked, 0.0)
+        masked = r if p > zero else min(r, zero)
+        masked = masked if p < hardness else max(masked, zero)
         target[q] = masked
-        violated += 0.0 if abs(masked) <= tolerance else 1.0
+        violated += zero if abs(masked) <= tolerance else one
     return violated
 
 
@@ -175,13 +179,14 @@ def _precondition(b: Box, taps: NDArray[np.float64]) -> tuple[float, float]:
     above, m, below = b.masked[row - 1 :], b.masked[2 * row - 2 :], b.masked[3 * row - 1 :]
     top, bottom = b.masked, b.masked[4 * row :]
     c0, c1, c2, c3, c4, c5 = taps[0], taps[1], taps[2], taps[3], taps[4], taps[5]
-    rho, change = 0.0, 0.0
+    zero = b.z.dtype.type(0.0)
+    rho, change = zero, zero
     for q in range(len(b.z)):
         g = m[q + 2]
         s = c0 * g + c1 * (above[q + 1] + below[q + 1]) + c2 * (m[q + 1] + m[q + 3])
         s += c3 * (above[q] + above[q + 2] + below[q] + below[q + 2])
         s += c4 * (top[q] + bottom[q]) + c5 * (m[q] + m[q + 4])
-        s = s if g != 0.0 else 0.0
+        s = s if g != zero else zero
         b.z[q] = s
         rho += g * s
         change += (g - b.previous[q]) * s
@@ -191,9 +196,10 @@ def _precondition(b: Box, taps: NDArray[np.float64]) -> tuple[float, float]:
 @njit(**INNER, **REASSOCIATE)
 def _turn(b: Box, beta: float) -> float:
     """Set the search direction from z and the one before; return residual·direction."""
-    slope = 0.0
+    zero, factor = b.z.dtype.type(0.0), b.z.dtype.type(beta)
+    slope = zero
     for q in range(len(b.z)):
-        t = beta * b.direction[q] - b.z[q] if b.z[q] != 0.0 else 0.0
+        t = factor * b.direction[q] - b.z[q] if b.z[q] != zero else zero
         b.direction[q] = t
         slope += b.residual[q] * t
     return slope
@@ -201,7 +207,7 @@ def _turn(b: Box, beta: float) -> float:
 
 @njit(**INNER, **REASSOCIATE)
 def _dot(left: NDArray[np.float64], right: NDArray[np.float64]) -> float:
-    total = 0.0
+    total = left.dtype.type(0.0)
     for q in range(len(left)):
         total += left[q] * right[q]
     return total
@@ -213,15 +219,16 @@ def _advance(b: Box, step: float, hardness: float) -> int:
 
     The residual becomes the previous one, `z` what the bounds took off the step.
     """
-    clipped = 0
+    real = b.z.dtype.type
+    zero, factor, cap, clipped = real(0.0), real(step), real(hardness), 0
     for q in range(len(b.z)):
-        wanted = b.pressure[q] + step * b.direction[q]
-        kept = min(max(wanted, 0.0), hardness)
+        wanted = b.pressure[q] + factor * b.direction[q]
+        kept = min(max(wanted, zero), cap)
         clipped += kept != wanted
         b.z[q] = kept - wanted
         b.pressure[q] = kept
         b.previous[q] = b.residual[q]
-        b.residual[q] += step * b.response[q]
+        b.residual[q] += factor * b.response[q]
     return clipped
 
 
@@ -237,7 +244,7 @@ def _correct(b: Box, mirrored: NDArray[np.float64], count: int) -> None:
     width = mirrored.shape[1]
     middle = width // 2
     for i in range(b.nx):
-        for j in range(0, b.ny, LANES):
+        for j in range(0, b.ny, lanes(mirrored)):
             total = load(b.residual, i * b.pitch + j)
             for n in range(count):
                 row, column = int(b.clipped[2 * n]), int(b.clipped[2 * n + 1])

@@ -11,6 +11,29 @@ FILTER_SHARE = 0.1
 SAFETY = 2.5
 """Residual asked for, below the accuracy of the force: see `rtol_for`."""
 
+SINGLE_ENOUGH = 2e-6
+"""Tolerance from which single precision reaches it in as many iterations as double."""
+SINGLE_PAYS = 2e9
+"""Cells of all contacts of a scan from which single precision saves more than the 10 s to compile it."""
+
+
+def in_single(rtol: float, cells: float) -> bool:
+    """Whether single precision is enough for a scan, and pays.
+
+    Parameters
+    ----------
+    rtol : float
+        Tolerance of each solution.
+    cells : float
+        Cells of a window times the number of solutions.
+
+    Returns
+    -------
+    bool
+        Known before the scan, and the same on all machines.
+    """
+    return rtol >= SINGLE_ENOUGH and cells >= SINGLE_PAYS
+
 
 def rtol_for(accuracy: float) -> float:
     """Tolerance of a contact solution whose force shall have a relative accuracy.

@@ -30,6 +30,8 @@ class Contacts:
         Rows between positions.
     rtol : float
         Tolerance of each solution.
+    single : bool
+        Whether to iterate in single precision.
     """
 
     body: NDArray[np.float64]
@@ -39,6 +41,7 @@ class Contacts:
     hardness: float | None
     stride: int
     rtol: float
+    single: bool = False
 
     def half_space(self) -> HalfSpace:
         """Make the half-space of these contacts; one a thread, for it keeps what it has computed."""
@@ -72,8 +75,9 @@ def solve_block(
     half_space = _half_space(contacts)
     if device is None:
         block = half_space.at_positions(
-            rows, contacts.body, planes, contacts.approaches, contacts.stride, contacts.rtol
-        )
+            rows, contacts.body, planes, contacts.approaches, contacts.stride, contacts.rtol,
+            single=contacts.single,
+        )  # fmt: skip
         return block.totals * half_space.cell_area, block.counts
     found = batched_scan.solve_rows(
         half_space, rows, contacts.body, contacts.approaches, planes, contacts.stride, contacts.rtol,

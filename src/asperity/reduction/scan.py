@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.contact.device import Device, find_device
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
 from asperity.reduction import batched_scan
+from asperity.reduction.accuracy import in_single
 from asperity.reduction.blocks import TRUNCATED, Contacts, solve_block
 from asperity.reduction.pool import in_order
 from asperity.reduction.stored import StoredForces
@@ -262,6 +263,12 @@ class _Job:
     def positions(self) -> int:
         return len(self.planes)
 
+    @property
+    def single(self) -> bool:
+        """Whether the processor iterates in single precision."""
+        cells = self.positions * self.approaches.size * self.body.size
+        return self.device is None and in_single(self.rtol, cells)
+
 
 @dataclass(frozen=True, eq=False)
 class _Block:
@@ -305,9 +312,9 @@ def _blocks(
     count = (workers or thread_count()) if job.device is None else 1  # one block fills a device
     count = min(count, -(-job.positions // job.block))
     parameters = [list(job.spacing), job.modulus, job.hardness, job.stride, job.rtol]
-    parameters += ["batched"] if job.device else []
+    parameters += ["batched"] if job.device else ["single"] if job.single else []
     contacts = Contacts(
-        job.body, job.approaches, job.spacing, job.modulus, job.hardness, job.stride, job.rtol
+        job.body, job.approaches, job.spacing, job.modulus, job.hardness, job.stride, job.rtol, job.single
     )
 
     def block(first: int) -> _Block:
