@@ -67,20 +67,21 @@ def scan_time(cells: int, positions: int = 64, approaches: int = 1, rounds: int 
     return least(scan, rounds)
 
 
-@njit
+@njit(_nrt=False)
 def bare(c: Convolution, b: cg.Box, times: int) -> None:
     """Convolve again and again."""
     for _ in range(times):
         convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
 
 
-@njit
+@njit(_nrt=False)  # as what is timed is compiled
 def repeated(start: Any, times: int, c: Any, mirrored: Any, taps: Any, outer: Any, row: int, column: int,
              b: Any, cap: float, tolerance: float, limit: int) -> tuple[int, bool]:  # fmt: skip
     """Solve again and again from the same start."""
     result = (0, True)
     for _ in range(times):
-        outer.pressure[:] = start
+        for q in range(len(start)):
+            outer.pressure[q] = start[q]
         result = cg.solve(c, mirrored, taps, outer, row, column, b, cap, tolerance, limit)
     return result
 

@@ -23,7 +23,7 @@ from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
-FEW = 32
+FEW = 20
 """Clipped cells up to which it is faster to convolve them one by one."""
 FAR = 1e30
 """Separation in the idle columns, m."""
