@@ -5,7 +5,8 @@ A ball (R = 25 mm, E* = 115 GPa) moves over self-affine surfaces, from smooth to
 with and without a hardness, on 49 to 97 cells, from the first touches to thrice the approach of 10 N. At
 each tolerance the forces are compared with those of a residual of 1e-10: the largest relative error, and the
 largest difference of a one-third-octave band of the force along the path up to ka = 16. CPU time of one
-thread, the smallest of the rounds; the tolerances take turns.
+thread, the smallest of the rounds; tolerances and precisions take turns. Scans as short as these would stay
+in double precision: here each is made in both, where single is enough.
 
     python benchmarks/force_accuracy.py
 """
@@ -20,12 +21,13 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "
 import argparse
 import time
 from dataclasses import dataclass
+from unittest.mock import patch
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.contact import Hertz
-from asperity.reduction.accuracy import FILTER_SHARE, FORCE_ACCURACY, rtol_for
+from asperity.reduction.accuracy import FILTER_SHARE, FORCE_ACCURACY, SINGLE_ENOUGH, rtol_for
 from asperity.reduction.filter import estimate_filter, mean_filter
 from asperity.reduction.scan import ScannedForces, scan_forces
 from asperity.spectra import band_levels, psd
@@ -34,6 +36,10 @@ from asperity.surfaces.synthesis import self_affine
 MODULUS, RADIUS, LOAD = 115e9, 25e-3, 10.0
 TIGHT = 1e-10
 TOLERANCES = (1e-2, 1e-3, 2e-4, rtol_for(FORCE_ACCURACY), rtol_for(FILTER_SHARE * FORCE_ACCURACY), 1e-6, 1e-8)
+ASKED = [
+    (rtol, single) for rtol in TOLERANCES for single in (False, True) if not single or rtol >= SINGLE_ENOUGH
+]
+"""Tolerances, and whether in single precision."""
 CASES = [  # rms in approaches, hardness, cells, seed
     (0.0, None, 49, 1),
     (0.02, None, 49, 1),
@@ -57,13 +63,14 @@ class Problem:
     hardness: float | None
     radius: float
 
-    def scanned(self, rtol: float) -> ScannedForces[NDArray]:
+    def scanned(self, rtol: float, single: bool = False) -> ScannedForces[NDArray]:
         """Scan on one thread."""
         grid = (self.spacing, self.spacing)
-        return scan_forces(
-            self.heights, grid, self.body, MODULUS, self.approaches, self.hardness,
-            rtol=rtol, workers=1, device="cpu",
-        )  # fmt: skip
+        with patch("asperity.reduction.accuracy.SINGLE_PAYS", 0.0 if single else np.inf):
+            return scan_forces(
+                self.heights, grid, self.body, MODULUS, self.approaches, self.hardness,
+                rtol=rtol, workers=1, device="cpu",
+            )  # fmt: skip
 
 
 def problem(rms: float, hardness: float | None, cells: int, seed: int, positions: int) -> Problem:
@@ -113,31 +120,33 @@ def main() -> None:
     options = parser.parse_args()
     problems = [problem(*case, options.positions) for case in CASES]
     tight = [p.scanned(TIGHT) for p in problems]
-    worst = np.zeros((len(TOLERANCES), 3))
-    iterations = np.zeros(len(TOLERANCES))
-    seconds = np.zeros((len(TOLERANCES), len(problems)))
+    worst = np.zeros((len(ASKED), 3))
+    iterations = np.zeros(len(ASKED))
+    seconds = np.zeros((len(ASKED), len(problems)))
+    problems[0].scanned(rtol_for(FORCE_ACCURACY), single=True)  # compiles
     for j, p in enumerate(problems):
-        times = np.full((len(TOLERANCES), options.rounds), np.inf)
+        times = np.full((len(ASKED), options.rounds), np.inf)
         for r in range(options.rounds):
-            for i, rtol in enumerate(TOLERANCES):
+            for i, (rtol, single) in enumerate(ASKED):
                 began = time.process_time()
-                scanned = p.scanned(rtol)
+                scanned = p.scanned(rtol, single)
                 times[i, r] = time.process_time() - began
                 if r == 0:
                     worst[i] = np.maximum(worst[i], errors(p, scanned.forces, tight[j].forces))
                     iterations[i] += scanned.iterations
         seconds[:, j] = times.min(axis=1)
     solved = sum(t.solved for t in tight)
-    reference = seconds[TOLERANCES.index(1e-6)].sum()
+    reference = seconds[ASKED.index((1e-6, False))].sum()
     print(f"{solved} contact solutions, {len(problems)} surfaces, {options.positions} positions\n")
-    columns = ["rtol", "largest error of a force", "to rtol", "of a band, dB", "of a filter, dB"]
+    columns = ["rtol", "precision", "largest error of a force", "to rtol", "of a band, dB", "of a filter, dB"]
     print("| " + " | ".join([*columns, "iterations", "time to 1e-6"]) + " |")
-    print("|---:|---:|---:|---:|---:|---:|---:|")
-    for i, rtol in enumerate(TOLERANCES):
+    print("|---:|---|---:|---:|---:|---:|---:|---:|")
+    for i, (rtol, single) in enumerate(ASKED):
         force, band, fitted = worst[i]
+        precision, share = "single" if single else "double", seconds[i].sum() / reference
         print(
-            f"| {rtol:.0e} | {force:.1e} | {force / rtol:.2f} | {band:.3f} | {fitted:.2f} "
-            f"| {iterations[i] / solved:.1f} | {seconds[i].sum() / reference:.2f} |"
+            f"| {rtol:.0e} | {precision} | {force:.1e} | {force / rtol:.2f} | {band:.3f} | {fitted:.2f} "
+            f"| {iterations[i] / solved:.1f} | {share:.2f} |"
         )
     asked = f"{FORCE_ACCURACY:g} of the force, one for filters for {FILTER_SHARE * FORCE_ACCURACY:g}"
     print(f"\nA scan asks for {asked}.")

@@ -44,7 +44,7 @@ def scanned(positions: int, approaches: int, workers: int, stored: bool) -> dict
     x = (np.arange(CELLS) - CELLS // 2) * SPACING
     body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
     waves = {"rms": 0.2 * approach, "hurst": 0.8, "longest": 0.4e-3, "shortest": 40e-6}
-    grid, states = (SPACING, SPACING), approach * np.linspace(-0.2, 1.5, approaches)
+    grid, states = (SPACING, SPACING), approach * np.linspace(0.2, 1.5, approaches)
     strip = long_self_affine((positions + CELLS - 1, CELLS), grid, **waves, seed=1)
     problem = (grid, body, MODULUS, states)
     scan_forces(strip.rows(0, CELLS), *problem, device="cpu")  # compiles, or reads what is compiled
@@ -103,7 +103,7 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--lengths", type=int, nargs="+", default=[3000, 10000, 30000, 100000])
-    parser.add_argument("--approaches", type=int, nargs="+", default=[2, 4, 8, 16])
+    parser.add_argument("--approaches", type=int, nargs="+", default=[2, 4, 8, 16, 32])
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--figure", metavar="FILE", help="draw the growth")
     parser.add_argument("--job", help=argparse.SUPPRESS)

@@ -19,6 +19,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "
 import argparse
 import time
 from collections.abc import Callable
+from types import FunctionType
 from typing import Any
 from unittest.mock import patch
 
@@ -27,7 +28,7 @@ from numba import njit
 from scan_step import MODULUS, problem
 
 from asperity.contact import halfspace
-from asperity.kernels import contact, influence, scanning
+from asperity.kernels import contact, scanning
 from asperity.kernels import projected_cg as cg
 from asperity.kernels.convolution import Convolution, convolve
 from asperity.kernels.lanes import width
@@ -86,6 +87,12 @@ def repeated(start: Any, times: int, c: Any, mirrored: Any, taps: Any, outer: An
     return result
 
 
+def interpreted(kernel: Any) -> FunctionType:
+    """Make a function of Python of a kernel, which knows how many numbers a vector has."""
+    known = {**kernel.py_func.__globals__, "lanes": lambda array: width(array.dtype)}
+    return FunctionType(kernel.py_func.__code__, known)
+
+
 class Counted:
     """Stands for the compiled solution: times it, then does it again in steps and counts convolutions."""
 
@@ -139,10 +146,8 @@ def profile(cells: int) -> None:
     p = problem(cells, options())
     with (
         patch.object(contact, "solve", counted),
-        patch.object(contact, "convolution", contact.convolution.py_func),
-        patch.object(contact, "empty_box", cg.empty_box.py_func),
-        patch.object(cg, "lanes", lambda array: width(array.dtype)),
-        patch.object(influence, "lanes", lambda array: width(array.dtype)),
+        patch.object(contact, "convolution", interpreted(contact.convolution)),
+        patch.object(contact, "empty_box", interpreted(contact.empty_box)),
         patch.object(scanning, "solve_contact", contact.solve_contact.py_func),
         patch.object(halfspace, "solve_positions", scanning.solve_positions.py_func),
     ):

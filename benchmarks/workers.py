@@ -31,7 +31,7 @@ def serve(positions: int, approaches: int) -> None:
     x = (np.arange(CELLS) - CELLS // 2) * SPACING
     body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
     waves = {"rms": 0.2 * approach, "hurst": 0.8, "longest": 0.4e-3, "shortest": 40e-6}
-    grid, states = (SPACING, SPACING), approach * np.linspace(-0.2, 1.5, approaches)
+    grid, states = (SPACING, SPACING), approach * np.linspace(0.2, 1.5, approaches)
     rows = long_self_affine((positions + CELLS - 1, CELLS), grid, **waves, seed=1).rows(
         0, positions + CELLS - 1
     )

@@ -202,6 +202,7 @@ def test_single_precision_is_as_accurate_as_the_tolerance(monkeypatch, hardness,
         scans.append(scan_forces(heights, (DX, DX), body, MODULUS, approaches, hardness, rtol=tolerance))
     exact, double, single = scans
     assert single.unconverged == 0
+    assert (double.single, single.single) == (False, True)
     assert not np.array_equal(single.forces, double.forces)
     assert single.iterations <= 1.03 * double.iterations
     np.testing.assert_allclose(single.forces, exact.forces, rtol=2.5 * rtol, atol=0.0)

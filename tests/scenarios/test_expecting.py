@@ -30,6 +30,7 @@ def test_size_on_disk_and_number_of_positions(spacing, monkeypatch, tmp_path):
     scanned = compute(case, lambda done, total, message: None).chain.scan
     states, positions = scanned.forces.shape
     assert states == expected.states
+    assert expected.single == scanned.single
     assert positions <= expected.positions <= positions + 2
     files = [Store().path(key) for key in scanned.forces.keys]
     assert sum(file.stat().st_size for file in files) == pytest.approx(expected.bytes, rel=0.05)
@@ -44,4 +45,7 @@ def test_time_grows_with_the_path_and_the_grid():
     assert set(short) == {"filters", "path"}
     assert 8 < long["path"].seconds / short["path"].seconds < 10
     assert long["filters"] == short["filters"]
+    longest = expected_scans(parse_case(case.replace("8 ms", "800 ms")))["path"]
+    assert (short["path"].single, longest.single) == (False, True)
+    assert 4 < longest.seconds / long["path"].seconds < 9
     assert direct_time(fine) > 1.5 * direct_time(parse_case(case))

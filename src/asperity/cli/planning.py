@@ -114,6 +114,7 @@ def described_scan(scan: Expected) -> str:
     root, size = Store().root, f"{scan.bytes / 2**20:.1f} MiB"
     return (
         f"{scan.positions} positions {scan.step * 1e6:.4g} µm apart × {scan.states} approaches, "
+        f"solved in {'single' if scan.single else 'double'} precision, "
         f"in the order of {duration(scan.seconds)} on {thread_count()} threads, {size} in {root}; "
         "if interrupted or killed, it goes on after its last finished block"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -47,6 +47,8 @@ class ScannedForces(Generic[F]):
         Solutions that missed the tolerance.
     truncated : int
         Solutions with a noticeable share of the force on the window's edge.
+    single : bool
+        Whether the iteration was in single precision.
     """
 
     forces: F
@@ -54,6 +56,7 @@ class ScannedForces(Generic[F]):
     iterations: int
     unconverged: int
     truncated: int
+    single: bool = field(default=False, kw_only=True)
 
 
 def scan(
@@ -190,7 +193,7 @@ def scan_forces(
         forces[:, done : done + block.forces.shape[1]] = block.forces
         done += block.forces.shape[1]
         counts += block.counts
-    return ScannedForces(forces, *counts.tolist())
+    return ScannedForces(forces, *counts.tolist(), single=job.single)
 
 
 def scan_into(
@@ -237,7 +240,7 @@ def scan_into(
         keys.append(block.key)
         counts += block.counts
     forces = StoredForces(cache, tuple(keys), job.block, (len(job.approaches), job.positions))
-    return ScannedForces(forces, *counts.tolist())
+    return ScannedForces(forces, *counts.tolist(), single=job.single)
 
 
 @dataclass(frozen=True, eq=False)

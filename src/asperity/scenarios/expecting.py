@@ -49,6 +49,8 @@ class Expected:
         Time on all threads, nothing of it found in the cache.
     bytes : int
         Size on disk.
+    single : bool
+        Whether the iteration will be in single precision.
     """
 
     positions: int
@@ -56,6 +58,7 @@ class Expected:
     step: float
     seconds: float
     bytes: int
+    single: bool
 
     @property
     def solutions(self) -> int:
@@ -144,12 +147,11 @@ def _expected(case: Case, shape: Geometry, rows: int, stride: int, share: float 
     positions = -(-rows // stride)
     approaches = _approaches(case, shape)
     seconds = float(_solution_times(shape, approaches).sum()) * positions / thread_count()
-    if in_single(
-        rtol_for(share * case.numerics.force_accuracy), positions * approaches.size * shape.body.size
-    ):
-        seconds *= SINGLE_TIME
+    cells = positions * approaches.size * shape.body.size
+    single = in_single(rtol_for(share * case.numerics.force_accuracy), cells)
+    seconds *= SINGLE_TIME if single else 1.0
     size = positions * len(approaches) * 8 + -(-positions // BLOCK) * BLOCK_BYTES
-    return Expected(positions, len(approaches), stride * shape.spacing[0], seconds, size)
+    return Expected(positions, len(approaches), stride * shape.spacing[0], seconds, size, single)
 
 
 def _solution_times(shape: Geometry, approaches: NDArray[np.float64]) -> NDArray[np.float64]:

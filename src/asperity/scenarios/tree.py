@@ -115,7 +115,8 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
         yield "iterations per contact", f"{iterations / max(solves, 1):.1f}"
         yield "filter order J", f"{chain.reduction.taps.shape[1] - 1}"
     if chain.scan is not None:
-        yield "contacts solved for the table", f"{chain.scan.solved}"
+        precision = "single" if chain.scan.single else "double"
+        yield "contacts solved for the table", f"{chain.scan.solved} in {precision} precision"
         yield "contacts of the table not converged", f"{chain.scan.unconverged}"
     for name, run in chain.runs.items():
         yield f"time steps not converged, {name}", f"{run.unconverged_steps}"
