@@ -329,7 +329,9 @@ def test_a_path_of_ten_metres_is_planned_and_announced(monkeypatch):
     monkeypatch.setenv("COLUMNS", "400")
     shown = " ".join(call("check", "long.toml").stdout.replace("│", " ").split())
     planned = re.search(
-        r"scan of the path (\d+) positions 10 µm apart × 10 approaches, in the order of (.*?) on", shown
+        r"scan of the path (\d+) positions 10 µm apart × 10 approaches, solved in single precision, "
+        r"in the order of (.*?) on",
+        shown,
     )
     assert planned
     assert 1_000_000 <= int(planned[1]) <= 1_000_100
