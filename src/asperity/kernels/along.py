@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from asperity.kernels.options import compiled
 
 BLOCK = 512
 OVERLAP = 24
 
 
-@njit(cache=True, nogil=True)
+@compiled(cache=True, nogil=True)
 def spline_coefficients(values):  # type: ignore[no-untyped-def]
     """B-spline coefficients of natural cubic splines on a uniform grid.
 
@@ -47,7 +48,7 @@ def spline_coefficients(values):  # type: ignore[no-untyped-def]
     return coefficients
 
 
-@njit(cache=True, nogil=True)
+@compiled(cache=True, nogil=True)
 def splines_along(values, index):  # type: ignore[no-untyped-def]
     """Natural cubic splines of rows at places on their grid.
 

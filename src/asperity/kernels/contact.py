@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.convolution import convolve
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
 from asperity.kernels.lanes import width
-from asperity.kernels.options import INNER, LOOP, ONCE
+from asperity.kernels.options import INNER, LOOP, ONCE, compiled
 from asperity.kernels.overlap import overlap_box
 from asperity.kernels.projected_cg import Box, box_room, empty_box, solve, survey, unit_indentation
 
@@ -83,7 +82,7 @@ def room(known: Influence, nx: int, ny: int) -> Room:
     return Room(np.empty(ny), np.empty(size, dtype), np.empty(size, dtype))
 
 
-@njit(**ONCE)
+@compiled(**ONCE)
 def solve_contact(
     known: Influence,
     gap: NDArray[np.float64],
@@ -159,7 +158,7 @@ def solve_contact(
     return Solution(status, iterations, worst / largest, total, nx, ny)
 
 
-@njit(**LOOP, nogil=True)
+@compiled(**LOOP, nogil=True)
 def displace(known: Influence, pressure: NDArray[np.float64], room: Room, out: NDArray[np.float64]) -> None:
     """Displacement under a pressure, K p.
 
@@ -185,7 +184,7 @@ def displace(known: Influence, pressure: NDArray[np.float64], room: Room, out: N
             out[i, j] = b.response[i * b.pitch + j]
 
 
-@njit(**LOOP, nogil=True)
+@compiled(**LOOP, nogil=True)
 def indent(
     known: Influence, inside: NDArray[np.bool_], rtol: float, max_iterations: int, room: Room
 ) -> tuple[float, bool]:
@@ -220,7 +219,7 @@ def indent(
     return total, converged
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _enter(b: Box, gap: NDArray, approach: float, start: NDArray, first: int, left: int) -> bool:
     """Set overlap and pressure; return whether there is any pressure."""
     started = False
@@ -233,14 +232,14 @@ def _enter(b: Box, gap: NDArray, approach: float, start: NDArray, first: int, le
     return started
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _guess(b: Box, largest: float, stiffness: float) -> None:
     """Set a pressure of Hertzian form over the deeper half of the overlap, of about the right size."""
     for q in range(len(b.pressure)):
         b.pressure[q] = stiffness * np.sqrt(largest * max(b.overlap[q] - 0.5 * largest, 0.0))
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _scale(b: Box, hardness: float) -> None:
     """Scale a pressure whose residual is known to least energy."""
     done, stored = 0.0, 0.0
@@ -251,7 +250,7 @@ def _scale(b: Box, hardness: float) -> None:
         b.pressure[q] = min(b.pressure[q] * (done / stored), hardness)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _leave(b: Box, pressure: NDArray[np.float64], first: int, left: int) -> float:
     """Copy the pressure; return its sum over the cells."""
     _clear(pressure)
@@ -264,14 +263,14 @@ def _leave(b: Box, pressure: NDArray[np.float64], first: int, left: int) -> floa
     return total
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _clear(pressure: NDArray[np.float64]) -> None:
     for i in range(pressure.shape[0]):
         for j in range(pressure.shape[1]):
             pressure[i, j] = 0.0
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _grown(known: Influence, first: int, end: int, n: int) -> tuple[int, int]:
     """Begin and length of a side with a margin, and with what transforms at the same cost, within n cells."""
     needed = end - first + 2 * MARGIN

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.options import LOOP, REASSOCIATE
+from asperity.kernels.options import LOOP, REASSOCIATE, compiled
 
 
-@njit(**LOOP, nogil=True)
+@compiled(**LOOP, nogil=True)
 def continue_pressure(
     last: NDArray[np.float64],
     before: NDArray[np.float64],
@@ -44,7 +43,7 @@ def continue_pressure(
             start[i, j] = 0.0
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def correct_start(
     now: NDArray[np.float64],
     expected: NDArray[np.float64],
@@ -70,7 +69,7 @@ def correct_start(
             start[i, j] = min(max(now[i, j] + (found[i, j] - expected[i, j]), 0.0), cap)
 
 
-@njit(**LOOP, **REASSOCIATE)
+@compiled(**LOOP, **REASSOCIATE)
 def misfits(
     found: NDArray[np.float64],
     expected: NDArray[np.float64],

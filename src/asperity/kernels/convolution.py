@@ -13,12 +13,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.fft
-from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.fourier import roots, transform
 from asperity.kernels.lanes import lanes, load, store, transpose
-from asperity.kernels.options import INNER, LOOP
+from asperity.kernels.options import INNER, LOOP, compiled
 
 
 class Convolution(NamedTuple):
@@ -105,7 +104,7 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
     return 2.0 * scipy.fft.fft(turned, axis=axis).real - table.take([0], axis)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def whole(n: int, lanes: int) -> int:
     """Smallest number of whole vectors, in cells, that hold n cells.
 
@@ -124,7 +123,7 @@ def whole(n: int, lanes: int) -> int:
     return -(-n // lanes) * lanes
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def workspace(mx: int, my: int, lanes: int) -> int:
     """Room that a convolution needs.
 
@@ -144,13 +143,13 @@ def workspace(mx: int, my: int, lanes: int) -> int:
     return 2 * x * y + 6 * max(x, y) * lanes
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _clear(buffer: NDArray, first: int, end: int) -> None:
     for i in range(first, end):
         buffer[i] = 0.0
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _turn_in(c: Convolution, field: NDArray, pitch: int, first: int, nx: int, buffer: NDArray) -> None:
     """Turn a block of real columns into the buffer, zero behind the box."""
     part = lanes(buffer)
@@ -161,7 +160,7 @@ def _turn_in(c: Convolution, field: NDArray, pitch: int, first: int, nx: int, bu
     _clear(buffer, 2 * nx * part, len(c.turn_x) * part)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _turn_out(c: Convolution, buffer: NDArray, pitch: int, first: int, nx: int, out: NDArray) -> None:
     """Turn a block back and keep its real part."""
     part = lanes(buffer)
@@ -171,12 +170,12 @@ def _turn_out(c: Convolution, buffer: NDArray, pitch: int, first: int, nx: int, 
         store(out, i * pitch + first, c.turn_x[2 * i] * re - c.turn_x[2 * i + 1] * im)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _turned(re: Any, im: Any, cosine: Any, sine: Any) -> Any:
     return cosine * re - sine * im, cosine * im + sine * re
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: NDArray, s: NDArray) -> None:
     """Convolve across in both senses of turning; the conjugate of the sum replaces the rows."""
     my, part = len(c.turn_y) // 2, lanes(rows)
@@ -208,7 +207,7 @@ def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: N
                 store(rows, o + part, im + load(s, o + part))
 
 
-@njit(**LOOP, nogil=True)
+@compiled(**LOOP, nogil=True)
 def convolve(
     c: Convolution, field: NDArray, nx: int, ny: int, pitch: int, work: NDArray, out: NDArray
 ) -> None:

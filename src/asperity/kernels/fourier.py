@@ -10,11 +10,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.lanes import lanes, load, store
-from asperity.kernels.options import INNER, LOOP
+from asperity.kernels.options import INNER, LOOP, compiled
 
 
 @lru_cache
@@ -75,14 +74,14 @@ def roots(n: int) -> NDArray:
     return np.exp(-2j * np.pi * np.arange(n) / n).view(np.float64)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _put(target: NDArray, index: int, re: Any, im: Any, w: NDArray, power: int) -> None:
     c, s = w[2 * power], w[2 * power + 1]
     store(target, index, c * re - s * im)
     store(target, index + lanes(target), c * im + s * re)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     m, unit, part = n // 2, len(w) // (2 * n), lanes(x)
     row = 2 * part
@@ -97,7 +96,7 @@ def _by_two(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
             _put(y, o + stride * row, a - b, ai - bi, w, p * unit)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     m, unit, part = n // 3, len(w) // (2 * n), lanes(x)
     row = 2 * part
@@ -119,7 +118,7 @@ def _by_three(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
             _put(y, o + 2 * stride * row, u - v, ui - vi, w, 2 * p * unit)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     m, unit, part = n // 4, len(w) // (2 * n), lanes(x)
     row = 2 * part
@@ -142,7 +141,7 @@ def _by_four(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
             _put(y, o + 3 * stride * row, t - v, ti - vi, w, 3 * p * unit)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
     m, unit, part = n // 5, len(w) // (2 * n), lanes(x)
     row = 2 * part
@@ -174,7 +173,7 @@ def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
             _put(y, o + 3 * stride * row, f - g, fi - gi, w, 3 * p * unit)
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) -> bool:
     """Transform every column of a batch, forward and not normalised.
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import DTypeLike, NDArray
 
 from asperity.kernels.convolution import Convolution, quarter_turn, spectrum, whole
 from asperity.kernels.fourier import factors, roots, smooth_length
 from asperity.kernels.lanes import lanes, width
-from asperity.kernels.options import LOOP
+from asperity.kernels.options import LOOP, compiled
 
 UNIT = 8
 """Boxes are convolved in multiples of this length."""
@@ -117,7 +116,7 @@ def prepared(known: Influence, nx: int, ny: int) -> Influence:
     return known._replace(places=places, spectra=np.concatenate([known.spectra, added]))
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def is_prepared(known: Influence, nx: int, ny: int) -> bool:
     """Whether the convolution on a box is there.
 
@@ -137,7 +136,7 @@ def is_prepared(known: Influence, nx: int, ny: int) -> bool:
     return known.places[mx // UNIT, my // UNIT] >= 0
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def convolution(known: Influence, nx: int, ny: int) -> Convolution:
     """Convolution on a box that is prepared.
 

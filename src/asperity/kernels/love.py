@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from asperity.kernels.options import compiled
 
-@njit(cache=True)
+
+@compiled(cache=True)
 def _edge_log(x: float, y: float, half: float) -> float:
     """ln[(y₊ + √(y₊² + x²)) / (y₋ + √(y₋² + x²))] for y ≥ 0, without cancellation far away."""
     upper, lower = y + half, y - half
@@ -22,7 +23,7 @@ def _edge_log(x: float, y: float, half: float) -> float:
     return math.log1p(step / denominator)
 
 
-@njit(cache=True)
+@compiled(cache=True)
 def cell_displacement(x: float, y: float, dx: float, dy: float) -> float:
     """Surface displacement at (x, y), times π E*, from unit pressure on the cell dx × dy at the origin.
 
@@ -52,7 +53,7 @@ def cell_displacement(x: float, y: float, dx: float, dy: float) -> float:
     )
 
 
-@njit(cache=True)
+@compiled(cache=True)
 def influence_table(nx: int, ny: int, dx: float, dy: float) -> NDArray[np.float64]:
     """Influence coefficients, times π E*, between cells i, j apart.
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.options import INNER, LOOP, REASSOCIATE
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 from asperity.kernels.pointforce import evaluate, with_damping
 
 FORCE_TOLERANCE = 1e-10  # of the force plus the load, at the end of each step
@@ -150,7 +149,7 @@ def _exponential(matrices: NDArray) -> NDArray:
     return result
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no-untyped-def]
     """Where a step ends without the force at its end, and what that force does.
 
@@ -192,7 +191,7 @@ def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no
     )
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-untyped-def]
     """Newton step inside a bracket that it narrows; bisection where Newton fails or dawdles.
 
@@ -222,13 +221,13 @@ def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-
     return low, high, trial
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def tolerance(approach, compliance, force, load, relative):  # type: ignore[no-untyped-def]
     """Largest residual of the approach that counts as solved, m."""
     return relative * compliance * (abs(force) + load) + 1e-15 * abs(approach)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
     """Contact force at the end of a step.
 
@@ -272,7 +271,7 @@ def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
     return (free_approach - approach) / compliance, ITERATIONS, False
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def observe(system, motion, record, step, shape, slope):  # type: ignore[no-untyped-def]
     """Write the records of a step and the powers of its energy ledger.
 
@@ -313,7 +312,7 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
     motion.power[THROUGHPUT] = abs(force * beam_rate) + abs(force * motion.ball[1])
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def complete_step(system, motion, record, step, shape, next_shape, next_slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
     """Advance the state over a step, the force at its end known, and keep the books.
 
@@ -356,7 +355,7 @@ def complete_step(system, motion, record, step, shape, next_shape, next_slope, f
     motion.counts[2] += evaluations
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def roll_steps(system, motion, record, law, shapes, slopes, offset, stop):  # type: ignore[no-untyped-def]
     """Roll a compiled law from the state's step to another.
 

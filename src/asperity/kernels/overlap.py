@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.options import LOOP
+from asperity.kernels.options import LOOP, compiled
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def overlap_box(
     gap: NDArray[np.float64], approach: float, lowest: NDArray[np.float64]
 ) -> tuple[float, int, int, int, int]:
@@ -54,7 +53,7 @@ def overlap_box(
     return approach - smallest, first, end, left, right
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def box_of_positive(field: NDArray[np.float64]) -> tuple[int, int, int, int]:
     """Find the smallest box that holds all positive values of a field.
 

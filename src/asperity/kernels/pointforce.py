@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from asperity.kernels.options import INNER
+from asperity.kernels.options import INNER, compiled
 
 SHIFTED = 0  # F = f(approach - h)
 SECANT = 1  # F = f(approach)/r (r - h), r = approach + datum: Eq. 2.1 as printed
@@ -60,7 +59,7 @@ class Prepared(NamedTuple):
     upper: float
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def curve_force(knots, coefficients, exponent, bilateral, s):  # type: ignore[no-untyped-def]
     """Force and slope of a force curve at the approach `s`."""
     if s <= knots[0] and not bilateral:
@@ -74,7 +73,7 @@ def curve_force(knots, coefficients, exponent, bilateral, s):  # type: ignore[no
     return power(g, slope, exponent)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def power(g, slope, exponent):  # type: ignore[no-untyped-def]
     """Force g**exponent and its slope."""
     if exponent == 1.0:
@@ -85,7 +84,7 @@ def power(g, slope, exponent):  # type: ignore[no-untyped-def]
     return root * g, exponent * root * slope
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def interval(points, x):  # type: ignore[no-untyped-def]
     """Index i with points[i] < x <= points[i + 1], for x above the first and not above the last."""
     low, high = 0, points.shape[0] - 1
@@ -98,7 +97,7 @@ def interval(points, x):  # type: ignore[no-untyped-def]
     return low
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def texture_at(states, heights, step, approach):  # type: ignore[no-untyped-def]
     """Texture at a step between the states, linear in the approach, and its slope; constant outside."""
     last = states.shape[0] - 1
@@ -111,7 +110,7 @@ def texture_at(states, heights, step, approach):  # type: ignore[no-untyped-def]
     return heights[step, i] + slope * (approach - states[i]), slope
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def table_root(states, values, slopes, step, touch, approach):  # type: ignore[no-untyped-def]
     """Monotone cubic g at a step between the states, from first touch on, straight beyond; and its slope."""
     last = states.shape[0] - 1
@@ -139,7 +138,7 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
     return g, slope
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     """Elastic force of a prepared law and its derivative with respect to the approach.
 
@@ -175,7 +174,7 @@ def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     return secant * (r - height), (slope - secant) / r * (r - height) + secant * (1.0 - height_slope)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # type: ignore[no-untyped-def]
     """Contact force with damping, when the approach rate itself falls with the force.
 
@@ -210,7 +209,7 @@ def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # 
     return force, slope * share
 
 
-@njit(cache=True)
+@compiled(cache=True)
 def evaluate_all(law, approach):  # type: ignore[no-untyped-def]
     """Elastic force at every position of the path, for one approach each.
 
@@ -232,7 +231,7 @@ def evaluate_all(law, approach):  # type: ignore[no-untyped-def]
     return force, slope
 
 
-@njit(cache=True)
+@compiled(cache=True)
 def count_beyond(law, approach):  # type: ignore[no-untyped-def]
     """Number of positions at which the law is continued beyond its data.
 

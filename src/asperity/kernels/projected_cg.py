@@ -14,12 +14,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.convolution import Convolution, convolve, quarter_spectrum, whole, workspace
 from asperity.kernels.lanes import lanes, load, store
-from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE
+from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
@@ -69,14 +68,14 @@ class Box(NamedTuple):
     work: NDArray[np.float64]
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _extent(nx: int, ny: int, lanes: int) -> tuple[int, int]:
     """Pitch of a box, and length of its fields: whole runs of four vectors."""
     pitch = max(whole(ny, lanes), ny + REACH)
     return pitch, whole(nx * pitch, 4 * lanes)
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
     """Room that a box needs.
 
@@ -98,7 +97,7 @@ def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
     return 8 * size + 2 * REACH * pitch + 2 * FEW + workspace(mx, my, lanes)
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def empty_box(nx: int, ny: int, room: NDArray[np.float64]) -> Box:
     """Make a box on which nothing overlaps.
 
@@ -157,7 +156,7 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(coefficients)
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def _free(pressure: NDArray[np.float64], b: Box, hardness: float, tolerance: float) -> float:
     """Mask the residual with the free set; return how many cells violate complementarity."""
     real = b.z.dtype.type  # numbers of another precision would be computed with in double
@@ -172,7 +171,7 @@ def _free(pressure: NDArray[np.float64], b: Box, hardness: float, tolerance: flo
     return violated
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def _precondition(b: Box, taps: NDArray[np.float64]) -> tuple[float, float]:
     """Apply the stencil to the residual on the free set; return residual·z and (residual − previous)·z."""
     row = b.pitch
@@ -193,7 +192,7 @@ def _precondition(b: Box, taps: NDArray[np.float64]) -> tuple[float, float]:
     return rho, change
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def _turn(b: Box, beta: float) -> float:
     """Set the search direction from z and the one before; return residual·direction."""
     zero, factor = b.z.dtype.type(0.0), b.z.dtype.type(beta)
@@ -205,7 +204,7 @@ def _turn(b: Box, beta: float) -> float:
     return slope
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def _dot(left: NDArray[np.float64], right: NDArray[np.float64]) -> float:
     total = left.dtype.type(0.0)
     for q in range(len(left)):
@@ -213,7 +212,7 @@ def _dot(left: NDArray[np.float64], right: NDArray[np.float64]) -> float:
     return total
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _advance(b: Box, step: float, hardness: float) -> int:
     """Step along the direction and project on the bounds; return how many cells were clipped.
 
@@ -232,7 +231,7 @@ def _advance(b: Box, step: float, hardness: float) -> int:
     return clipped
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _correct(b: Box, mirrored: NDArray[np.float64], count: int) -> None:
     """Add to the residual what the clipped cells in `z` displace, one by one."""
     found, q = 0, 0
@@ -253,14 +252,14 @@ def _correct(b: Box, mirrored: NDArray[np.float64], count: int) -> None:
             store(b.residual, i * b.pitch + j, total)
 
 
-@njit(**ONCE)
+@compiled(**ONCE)
 def _true_residual(c: Convolution, b: Box) -> None:
     convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
     for q in range(len(b.residual)):
         b.residual[q] = b.response[q] - b.overlap[q]
 
 
-@njit(**ONCE)
+@compiled(**ONCE)
 def survey(c: Convolution, b: Box, hardness: float) -> tuple[float, int, int, int, int]:
     """Compute the residual of a pressure and where there is something left to solve.
 
@@ -293,14 +292,14 @@ def survey(c: Convolution, b: Box, hardness: float) -> tuple[float, int, int, in
     return (worst, first, end, left, right) if end else (worst, 0, 0, 0, 0)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _copy(outer: Box, source: NDArray[np.float64], row: int, column: int, b: Box, target: NDArray) -> None:
     for i in range(b.nx):
         for j in range(b.ny):
             target[i * b.pitch + j] = source[(row + i) * outer.pitch + column + j]
 
 
-@njit(**ONCE)
+@compiled(**ONCE)
 def solve(
     c: Convolution,
     mirrored: NDArray[np.float64],
@@ -371,7 +370,7 @@ def solve(
     return iteration, definite
 
 
-@njit(**ONCE)
+@compiled(**ONCE)
 def unit_indentation(
     c: Convolution,
     taps: NDArray[np.float64],

@@ -10,11 +10,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.modal import solve_contact
-from asperity.kernels.options import INNER, LOOP, REASSOCIATE
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 
 
 class Vehicle(NamedTuple):
@@ -101,7 +100,7 @@ class Record(NamedTuple):
     rail: NDArray
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
     """Cell of the bay in which the contact is at a step, and the share of the cell behind it."""
     bays = vehicle.first + vehicle.stride * step
@@ -110,14 +109,14 @@ def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
     return cell, at - cell
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def direct_at(vehicle, step):  # type: ignore[no-untyped-def]
     """Displacement of the rail at a step for unit force there, m/N."""
     cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
     return vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def cubic_weights(t):  # type: ignore[no-untyped-def]
     """Lagrange weights of the nodes -1, 0, 1, 2 at a place t between 0 and 1."""
     before, after, beyond = t + 1.0, t - 1.0, t - 2.0
@@ -129,7 +128,7 @@ def cubic_weights(t):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     """Advance the rail by one step under the force at its start.
 
@@ -163,7 +162,7 @@ def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     return total
 
 
-@njit(**INNER, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     """Add to the ring what a force at a step will do, and read the displacement of the next step.
 
@@ -185,7 +184,7 @@ def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     return ring[(step + 1) % taps]
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def advance_rail(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     """Advance the rail by poles or by scattering; see `advance_poles`."""
     if vehicle.scattered.shape[0] > 0:
@@ -193,7 +192,7 @@ def advance_rail(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     return advance_poles(vehicle, motion, step, force)
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
     """Let a constant force roll up to step zero; rail displacement there and one step before.
 
@@ -218,7 +217,7 @@ def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
     return now, before
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
     """Advance all but the last force of the step that ends at `step`.
 
@@ -249,7 +248,7 @@ def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
     return approach, rate, compliance, 1.5 * compliance / h
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def complete_step(vehicle, motion, record, step, force, evaluations, converged):  # type: ignore[no-untyped-def]
     """Apply the force at the end of a step, advance the state and write the records.
 
@@ -283,7 +282,7 @@ def complete_step(vehicle, motion, record, step, force, evaluations, converged):
     motion.counts[2] += evaluations
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-def]
     """Roll a compiled law from the state's step to another.
 
@@ -311,7 +310,7 @@ def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-d
     return True
 
 
-@njit(cache=True, **REASSOCIATE)
+@compiled(cache=True, **REASSOCIATE)
 def add_passing(displacement, forces, responses, places, begin):  # type: ignore[no-untyped-def]
     """Add to the displacement of a fixed point what forces moving through one bay do.
 

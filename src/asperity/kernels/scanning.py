@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from asperity.kernels.contact import CONVERGED, UNPREPARED, Room, solve_contact
 from asperity.kernels.continuation import continue_pressure, correct_start, misfits
 from asperity.kernels.influence import Influence
-from asperity.kernels.options import INNER, LOOP
+from asperity.kernels.options import INNER, LOOP, compiled
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
@@ -73,7 +72,7 @@ class Block(NamedTuple):
     counts: NDArray[np.int64]
 
 
-@njit(**LOOP, nogil=True)
+@compiled(**LOOP, nogil=True)
 def solve_positions(
     known: Influence, b: Block, position: int, level: int, end: int
 ) -> tuple[int, int, int, int]:
@@ -119,7 +118,7 @@ def solve_positions(
     return end, 0, 0, 0
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _set_gap(b: Block, m: int) -> float:
     """Set the gap at a position; return the approach of first touch."""
     plane, gap, lowest = b.planes[m], b.gap, b.room.lowest
@@ -136,7 +135,7 @@ def _set_gap(b: Block, m: int) -> float:
     return touch
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def _set_start(b: Block, m: int, i: int, touch: float) -> None:
     """Continue the pressure of the last positions or approaches, whichever was nearer one approach before.
 
@@ -165,13 +164,13 @@ def _set_start(b: Block, m: int, i: int, touch: float) -> None:
         continue_pressure(here[i], here[i], np.int64(len(b.start)), 0.0, b.hardness, b.start)
 
 
-@njit(**INNER)
+@compiled(**INNER)
 def _share(b: Block, i: int) -> float:
     """How far an approach is from the one before, in steps between that and the one before it."""
     return (b.approaches[i] - b.approaches[i - 1]) / (b.approaches[i - 1] - b.approaches[i - 2])
 
 
-@njit(**LOOP)
+@compiled(**LOOP)
 def _on_edge(pressure: NDArray[np.float64]) -> float:
     """Sum of the pressure over the outermost cells."""
     nx, ny = pressure.shape

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from numba import njit
-
-from asperity.kernels.options import LOOP
+from asperity.kernels.options import LOOP, compiled
 
 STRIDE = 128
 """Places that follow from one exact value; rounding does not tell over so many."""
 
 
-@njit(**LOOP, fastmath={"contract"})
+@compiled(**LOOP, fastmath={"contract"})
 def turn_on(wave, slope, turn, shapes, slopes):  # type: ignore[no-untyped-def]
     """Sinusoidal parts of mode shapes, and their slopes.
 
@@ -36,7 +34,7 @@ def turn_on(wave, slope, turn, shapes, slopes):  # type: ignore[no-untyped-def]
                 slopes[i, j] = b - (turn[2, j] * a + turn[0, j] * b)
 
 
-@njit(**LOOP, fastmath={"contract"})
+@compiled(**LOOP, fastmath={"contract"})
 def add_near_fields(near, growth, shapes, slopes):  # type: ignore[no-untyped-def]
     """Add to mode shapes and slopes the exponentials beside the ends.
 
