@@ -16,8 +16,8 @@ from numba import njit
 
 LOOP: dict[str, Any] = {"cache": True, "_nrt": False}
 """For a loop over time steps, called from Python."""
-INNER: dict[str, Any] = {**LOOP, "forceinline": True, "cache": False}
-"""For what such a loop calls, and is kept with; it allocates nothing."""
+INNER: dict[str, Any] = {**LOOP, "forceinline": True}
+"""For what such a loop calls; it allocates nothing."""
 ONCE: dict[str, Any] = {**LOOP, "inline": "always"}
 """For what is called in one place and contains much: it is compiled there, not before and there again."""
 REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}

@@ -85,8 +85,10 @@ def _beside(stepping: Any, name: str) -> Iterator[None]:
 
 
 def indent() -> None:
-    """Find the stiffness of a contact."""
-    HalfSpace((9, 9), (1.0, 1.0), 1.0).tangent_stiffness(np.ones((9, 9)))
+    """Find the stiffness of a contact, and what a pressure displaces."""
+    half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0)
+    half_space.tangent_stiffness(np.ones((9, 9)))
+    half_space.displacement(np.ones((9, 9)))
 
 
 def roll_a_ball() -> None:
