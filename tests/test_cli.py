@@ -4,11 +4,9 @@ import importlib
 import json
 import os
 import re
-import signal
 import subprocess
 import sys
 import warnings
-from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -348,21 +346,6 @@ def test_a_path_of_ten_metres_is_planned_and_announced(monkeypatch):
     outcome = call("run", "long.toml", "-o", "out", code=130)
     assert f"Scan of the path: {planned[1]} positions" in outcome.stderr
     assert "goes on after its last finished block" in outcome.stderr
-
-
-def test_an_interrupt_that_python_loses_is_found_by_the_next_report(monkeypatch):
-    Path("long.toml").write_text(LONG)
-
-    def lost(case, progress):
-        with suppress(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGINT)
-        progress(1, 2, "work")
-        raise AssertionError
-
-    monkeypatch.setattr("asperity.scenarios.run", lost)
-    outcome = call("run", "long.toml", "-o", "out", code=130)
-    assert "run the same command again to continue" in outcome.stderr
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 def test_a_scan_that_the_disk_cannot_hold_is_refused(monkeypatch):

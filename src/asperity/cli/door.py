@@ -4,71 +4,20 @@ from __future__ import annotations
 
 import atexit
 import gc
-import signal
 import sys
-import threading
 import traceback
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from io import TextIOWrapper
-from types import FrameType
 from typing import Any
 
 import click
 
 from asperity.errors import AsperityError
-from asperity.progress import Progress
 
 FAILED = 3
 INTERRUPTED = 130
 COLLECT_AFTER = 1_000_000
 """New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
-
-
-_asked = threading.Event()
-
-
-def interruptible(progress: Progress) -> Progress:
-    """Progress that notices an interrupt which Python lost, as it does within some imports.
-
-    Parameters
-    ----------
-    progress : Progress
-        Where it is reported.
-
-    Returns
-    -------
-    Progress
-        The same, but for the interrupt.
-    """
-
-    def report(done: int, total: int, message: str) -> None:
-        if _asked.is_set():
-            raise KeyboardInterrupt
-        progress(done, total, message)
-
-    return report
-
-
-@contextmanager
-def _remembered_interrupts() -> Iterator[None]:
-    """Remember an interrupt beside raising it."""
-
-    def interrupt(number: int, frame: FrameType | None) -> None:
-        _asked.set()
-        signal.default_int_handler(number, frame)
-
-    _asked.clear()
-    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    if not usual or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    signal.signal(signal.SIGINT, interrupt)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class Door(click.Group):
@@ -84,7 +33,7 @@ class Door(click.Group):
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, TextIOWrapper):
                 stream.reconfigure(errors="replace")  # a terminal without µ shows ? and goes on
-        with warnings.catch_warnings(), _remembered_interrupts():
+        with warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.showwarning = _WarningLines()
             try:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import click
 
-from asperity.cli.door import interruptible
 from asperity.cli.planning import announce_scan
 from asperity.config import Case
 from asperity.errors import InputError
@@ -41,7 +40,7 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
 
     announce_scan(case)
     with progress_bar() as progress:
-        tree = run(case, progress=interruptible(progress))
+        tree = run(case, progress=progress)
     for warning in json.loads(tree.attrs.get("warnings", "[]")):
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
         click.echo(f"Warning: {warning['message']}{times}", err=True)

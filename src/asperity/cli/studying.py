@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from asperity.cli.door import interruptible
 from asperity.config import WheelOnRailCase, load_case
 from asperity.errors import InputError
 from asperity.progress import progress_bar
@@ -74,7 +73,7 @@ def study_into(
     if scheduler is not None:
         place = cluster(scheduler)
     with place as executor, progress_bar() as progress:
-        table = computed(study, executor=executor, workers=workers, progress=interruptible(progress))
+        table = computed(study, executor=executor, workers=workers, progress=progress)
     _show(table)
     _report(table)
     written = save(DataTree(table), directory / "study.nc")
