@@ -20,6 +20,7 @@ from asperity.config import load_case, parse_case
 from asperity.errors import CoarseSamplingWarning, ComputationError, InputError
 from asperity.results import GROUPS, load
 from asperity.store import Store
+from asperity.studies.definition import load_study
 
 CASE = 'kind = "ball-on-beam"\nduration = "0.01 s"\n[surface]\nrms = "0.5 um"\n'
 
@@ -238,7 +239,58 @@ def test_a_terminal_without_greek_letters_is_enough():
     ]
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = subprocess.run(program, capture_output=True, text=True, env=environment, check=True)
-    assert "1251 points 8 ?m apart" in done.stdout
+    assert "1251 points 8 um apart" in done.stdout
+
+
+PROGRAM = [sys.executable, "-c", "from asperity.cli import main; main(prog_name='asperity')"]
+
+
+@pytest.mark.parametrize(
+    ("encoding", "shown"),
+    [("cp1252", "-22.7 dB, 10-6 µm, delta = d0"), ("cp866", "-22.7 dB, 10-6 um, delta = d0")],
+)
+def test_a_pipe_without_a_minus_sign_gets_a_hyphen(encoding, shown):
+    script = (
+        "import sys, click\nfrom asperity.cli import main\n"
+        "@main.command()\ndef say(): click.echo('−22.7 dB, 10⁻⁶ µm, δ = d₀')\n"
+        "main(['say'])"
+    )
+    environment = {**os.environ, "PYTHONIOENCODING": encoding}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, env=environment, check=True)
+    assert done.stdout.decode(encoding).strip() == shown
+
+
+def test_the_module_is_the_program():
+    module = [sys.executable, "-m", "asperity"]
+    done = subprocess.run([*module, "new", "study"], capture_output=True, text=True, check=True)
+    assert done.stdout == call("new", "study").stdout
+    wrong = subprocess.run([*module, "nwe"], capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert "Usage: python -m asperity" in wrong.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "completions"),
+    [
+        ("asperity new ", {"ball-on-beam", "wheel-on-rail", "study"}),
+        ("asperity new w", {"wheel-on-rail"}),
+        ("asperity run --device ", {"cpu", "gpu"}),
+        ("asperity com", {"completion"}),
+    ],
+)
+def test_a_shell_completes(words, completions):
+    asked = {
+        "_ASPERITY_COMPLETE": "bash_complete",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split(" ")) - 1),
+    }
+    done = subprocess.run(PROGRAM, capture_output=True, text=True, env=os.environ | asked, check=True)
+    assert {line.partition(",")[2] for line in done.stdout.split()} == completions
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_is_told_how_to_complete(shell):
+    assert "_ASPERITY_COMPLETE" in call("completion", shell).stdout
 
 
 def test_help_imports_nothing_heavy():
@@ -254,6 +306,57 @@ def test_help_imports_nothing_heavy():
 
 
 # --- new and check
+
+
+@pytest.mark.parametrize("name", ["ball-on-beam", "wheel-on-rail", "study"])
+def test_what_is_new_survives_any_encoding_of_a_redirection(name):
+    """PowerShell 5 writes UTF-16, cmd its code page."""
+    text = call("new", name).stdout
+    assert text.isascii()
+    Path("case.toml").write_text(call("new", "ball-on-beam").stdout)
+    Path("new.toml").write_bytes(text.encode("utf-16"))
+    if name == "study":
+        assert load_study("new.toml").shape == (2, 3)
+    else:
+        assert load_case("new.toml").kind == name
+
+
+def test_no_such_template():
+    message = call("new", "ball-on-bam", code=2).stderr
+    assert message.startswith(
+        'Error: kind: received \'ball-on-bam\'; allowed: "ball-on-beam", "wheel-on-rail", "study". '
+        'Did you mean "ball-on-beam"?'
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "received"),
+    [
+        (CASE.encode("utf-16-le"), "text in UTF-16 without a byte-order mark"),
+        (CASE.encode("utf-16-be"), "text in UTF-16 without a byte-order mark"),
+        (CASE.encode("utf-16")[:-1], "a byte that is no UTF-16"),
+        ("# caf\u00e9\n".encode("cp1252"), "a byte that is no UTF-8 in line 1"),
+        (bytes(range(256)), "bytes that are no text"),
+    ],
+)
+def test_other_encodings_are_named(content, received):
+    Path("case.toml").write_bytes(content)
+    message = call("check", "case.toml", code=2).stderr
+    assert f"case.toml: received {received}" in message
+    assert "Save the file as UTF-8." in message
+
+
+@pytest.mark.parametrize("folder", ["data", "Users", "temp"])
+def test_backslashes_of_windows_get_the_advice_of_single_quotes(folder):
+    """TOML refuses \\d and \\U, and takes \\t for a tab."""
+    Path("case.toml").write_text(CASE.replace('rms = "0.5 um"', rf'file = "C:\{folder}\beam.x3p"'))
+    message = call("check", "case.toml", code=2).stderr
+    assert r"write Windows paths in single quotes, as in file = 'C:\data\beam.x3p', or with /" in message
+    Path("case.toml").write_text(CASE.replace('rms = "0.5 um"', rf"file = 'C:\{folder}\beam.x3p'"))
+    message = call("check", "case.toml", code=2).stderr
+    assert rf"surface.file: received 'C:\{folder}\beam.x3p'; allowed: the path of an existing file" in message
+    Path("case.toml").write_text(CASE.replace('"0.01 s"', "0.01 s"))
+    assert "double quotes" in call("check", "case.toml", code=2).stderr
 
 
 def test_a_new_case_is_valid(own_folder):
@@ -374,7 +477,7 @@ def test_surface_says_what_is_in_a_file(ensemble):
     )
     assert "Sq" in outcome.stdout
     assert "wavelengths 4 µm to 0.08 mm" in outcome.stdout
-    assert Path("maps-surface.png").read_bytes().startswith(b"\x89PNG")
+    assert Path("maps-polished-surface.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_surface_takes_one_of_an_ensemble(ensemble):
@@ -399,6 +502,102 @@ def test_surface_asks_for_what_the_file_does_not_say(ensemble):
     assert "polished" in call(*ensemble, code=2).stderr
     assert "unit" in call("surface", "maps.npz", "--array", "line", "--pixel", "1 um", code=2).stderr
     assert "absent.x3p" in call("surface", "absent.x3p", code=2).stderr
+
+
+def test_hints_are_asked_for_as_options(ensemble):
+    def advised(*arguments):
+        return call("surface", *arguments, code=2).stderr
+
+    bare = ["maps.npz", "--array", "line"]
+    assert "Choose one, as in --array polished." in advised("maps.npz")
+    assert "Give it, as in --height-unit um." in advised(*bare)
+    assert 'Give it, as in --pixel "1.5 um".' in advised(*bare, "--height-unit", "um")
+    Path("comma.txt").write_text("0,5\n1,5\n2,75\n")
+    message = advised("comma.txt", "--height-unit", "um", "--pixel", "1 um")
+    assert 'Give --decimal "," if the comma is the decimal mark; if it separates columns, give' in message
+    call("surface", "comma.txt", "--height-unit", "um", "--pixel", "1 um", "--decimal", ",", code=2)
+    Path("plain.txt").write_text("".join(f"{x} {x % 3}\n" for x in range(20)))
+    assert "or give --pixel-unit mm." in advised("plain.txt", "--height-unit", "um")
+    read = call("surface", "plain.txt", "--height-unit", "um", "--pixel-unit", "mm")
+    assert "a line of 20 points, 20 mm" in read.stdout
+    Path("odd.txt").write_text("# unit: kg\n1\n2\n")
+    assert "leave the bracket out and give --height-unit um." in advised("odd.txt", "--pixel", "1 um")
+
+
+def test_missing_points_are_filled_by_an_option():
+    heights = np.random.default_rng(0).normal(size=300)
+    heights[5] = np.nan
+    np.save("line.npy", heights)
+    warning = call("surface", "line.npy", "--height-unit", "um", "--pixel", "2 um").stderr
+    assert "--fill interpolates them" in warning
+    assert "fill=True" not in warning
+
+
+def test_a_map_is_rolled_along_its_other_direction(ensemble):
+    outcome = call(*ensemble, "--array", "polished", "--transpose")
+    assert "3 maps, each 32 × 40 points" in outcome.stdout
+
+
+def test_each_array_and_map_has_a_picture_of_its_own(ensemble):
+    np.savez("maps.npz", a=np.random.default_rng(0).normal(size=(2, 40, 32)), b=np.ones((30, 30)).cumsum(0))
+    for choice in (["--array", "a"], ["--array", "a", "--index", "0"], ["--array", "b"]):
+        assert call(*ensemble, *choice).stdout.startswith(", ".join(["maps.npz", choice[1]]))
+    assert sorted(path.name for path in Path().glob("*.png")) == [
+        "maps-a-0-surface.png",
+        "maps-a-surface.png",
+        "maps-b-surface.png",
+    ]
+
+
+def test_titles_of_pictures_name_array_and_map(ensemble, monkeypatch):
+    titles = []
+    monkeypatch.setattr("asperity.cli.inspecting.draw", lambda first, title, to: titles.append(title) or to)
+    call(*ensemble, "--array", "polished")
+    call(*ensemble, "--array", "polished", "--index", "2")
+    assert titles == ["maps.npz, polished, the first of 3 maps", "maps.npz, polished, map 2"]
+
+
+@pytest.mark.parametrize(
+    ("keys", "advice"),
+    [
+        ('file = "maps.npz"', 'Choose one, as in array = "polished" in [surface].'),
+        ('file = "maps.npz"\narray = "polished"', 'Give it, as in height_unit = "um" in [surface].'),
+        ('line = "maps.npz"', 'Choose one, as in line_array = "polished" in [surface].'),
+        ('line = "maps.npz"\nline_array = "line"', 'Give it, as in line_unit = "um" in [surface].'),
+        (
+            'line = "maps.npz"\nline_array = "line"\nline_unit = "um"',
+            'Give it, as in line_spacing = "1.5 um" in [surface].',
+        ),
+        ('line = "comma.txt"\nline_unit = "um"', "Write decimal points, or semicolons between columns."),
+        ('line = "pairs.txt"\nline_unit = "um"', 'Write it into the heading, as "x (mm)".'),
+        ('file = "holes.npy"\nheight_unit = "um"\npixel = "8 um"', "Set fill = true in [surface]."),
+    ],
+)
+def test_hints_are_asked_for_as_keys_of_a_case(ensemble, keys, advice):
+    Path("comma.txt").write_text("0,5\n1,5\n2,75\n")
+    Path("pairs.txt").write_text("".join(f"{x} {x % 3}\n" for x in range(20)))
+    np.save("holes.npy", np.where(np.eye(80) > 0, np.nan, np.arange(80) * 1e-9))
+    Path("case.toml").write_text(CASE.replace('rms = "0.5 um"', keys))
+    assert advice in call("run", "case.toml", code=2).stderr
+
+
+def test_a_line_of_a_ball_case_is_read_with_its_hints():
+    np.savez("lines.npz", a=np.zeros(9), b=np.random.default_rng(0).normal(size=4000))
+    keys = 'line = "lines.npz"\nline_array = "b"\nline_unit = "nm"\nline_spacing = "8 um"'
+    Path("case.toml").write_text('laws = ["hertz"]\n' + CASE.replace('rms = "0.5 um"', keys))
+    call("run", "case.toml", "-o", "out", "--no-report")
+    line = load("out")["surface/line"]
+    assert float(line.std()) == pytest.approx(1e-9, rel=0.1)
+
+
+def test_a_file_that_is_missing_is_named_once(ensemble):
+    for arguments in (["surface", "absent.x3p"], ["run", "absent.toml"], ["study", "absent.toml"]):
+        message = call(*arguments, code=2).stderr
+        assert message.startswith(f"Error: {arguments[1]}: received no such file; allowed: ")
+        assert message.count("absent") == 1
+    Path("case.toml").write_text(CASE.replace('rms = "0.5 um"', 'file = "absent.x3p"'))
+    assert call("run", "case.toml", code=2).stderr.count("absent.x3p") == 1
+    assert "received a folder" in call("run", ".", code=2).stderr
 
 
 def test_surface_writes_pictures_only(ensemble):

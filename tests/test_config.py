@@ -232,7 +232,8 @@ def test_all_errors_are_reported_at_once():
     ("section", "key", "message"),
     [
         ("ball", 'radius = "25"', "ball.radius: received '25'; allowed: a length greater than 0"),
-        ("ball", "radius = 25", 'Add the unit and quotes, as "25 mm"'),
+        ("ball", "radius = 0.025", 'Add unit and quotes: "0.025 m" if it is in SI units (m).'),
+        ("contact", "damping = 3", '"3 N s/m" if it is in SI units (N s/m).'),
         ("ball", 'radius = "25 kg"', "a length greater than 0"),
         ("ball", 'radius = "25 mmm"', "Check its spelling"),
         ("ball", 'radius = "0 mm"', "greater than 0"),
@@ -430,5 +431,5 @@ def test_a_case_that_is_too_large_or_no_text_is_refused(tmp_path):
     with pytest.raises(InputError, match="more than 1 MiB"):
         load_case(tmp_path / "large.toml")
     (tmp_path / "binary.toml").write_bytes(b"kind = \xff")
-    with pytest.raises(InputError, match="no UTF-8 at 7"):
+    with pytest.raises(InputError, match="no UTF-8 in line 1"):
         load_case(tmp_path / "binary.toml")

@@ -119,7 +119,7 @@ class TestDefinition:
             ("speed = []", "sweep.speed: received an empty list; allowed: one value or more"),
             ("speed = '1 m/s'", r"sweep.speed: received '1 m/s'; allowed: a list of values"),
             ("speed = ['1 m/s', '1 kg']", r"sweep.speed\[2\]: received '1 kg'; allowed: a speed"),
-            ("speed = [1.0]", r"sweep.speed\[1\]: received 1.0; allowed: a speed.*Add the unit"),
+            ("speed = [1.0]", r"sweep.speed\[1\]: received 1.0; allowed: a speed.*Add unit"),
             ("speed = ['1 m/s', '1000 mm/s']", "sweep.speed: received '1000 mm/s' more than once"),
             ("seed = [1.5]", r"sweep.seed\[1\]: received 1.5; allowed: a whole number"),
             ("laws = ['hertz']", r"sweep.laws\[1\]: received 'hertz'; allowed: a list, each"),

@@ -7,6 +7,7 @@ from collections.abc import Hashable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from asperity.arguments import file_path
 from asperity.errors import InputError
 from asperity.store import atomic_write
 
@@ -127,7 +128,7 @@ def load(path: str | os.PathLike[str]) -> xarray.DataTree:
     """
     import xarray
 
-    path = Path(path)
+    path = file_path("result", path, "the path of a run.nc, or of the folder that holds one")
     if path.is_dir():
         path = path / "run.nc"
     allowed = "a result file that a run has written (run.nc)"

@@ -177,7 +177,7 @@ def test_unconverged_solutions_warn(monkeypatch):
         ({"approaches": []}, "approaches of the scan"),
         ({"stride": 0}, "stride of the scan"),
         ({"modulus": -1.0}, "contact modulus"),
-        ({"spacing": (0.0, DX)}, "half-space spacing"),
+        ({"spacing": (0.0, DX)}, "spacing of the scan"),
     ],
 )
 def test_bad_input(change, message):

@@ -149,7 +149,7 @@ class TestProgress:
             lambda d, n, m: seen.setdefault(m, []).append((d, n)),
         )
         assert [m for m in seen if m.startswith("compiled functions")]
-        wanted = {"loading the samples", "scanning for the contact filters", "scanning the path", "rolling"}
+        wanted = {"pressing the samples", "scanning for the contact filters", "scanning the path", "rolling"}
         assert wanted <= set(seen)
         for steps in seen.values():
             assert steps[-1][0] == steps[-1][1]

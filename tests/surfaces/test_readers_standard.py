@@ -136,7 +136,7 @@ def test_x3p_layers(tmp_path):
     file = x3p(tmp_path / "a.x3p", [EXPECTED.T, 2 * EXPECTED.T])
     np.testing.assert_array_equal(read_surface(file, index=1).heights, 2 * EXPECTED)
     assert len(read_surfaces(file)) == 2
-    with pytest.raises(InputError, match=r"an ensemble of 2 samples.*index= \(0 to 1\)"):
+    with pytest.raises(InputError, match=r"an ensemble of 2 samples.*Choose one of 0 to 1, as in index=0"):
         read_surface(file)
 
 

@@ -80,18 +80,28 @@ def demo(directory: Path, overwrite: bool) -> None:
     run_into(demo_case(), directory, overwrite=overwrite)
 
 
+def _templates(context: click.Context, argument: click.Parameter, incomplete: str) -> list[str]:
+    """Complete what 'asperity new' can write."""
+    from asperity.config import KINDS
+
+    return [name for name in (*KINDS, "study") if name.startswith(incomplete)]
+
+
 @main.command()
-@click.argument("kind", metavar="ball-on-beam|wheel-on-rail|study")
+@click.argument("kind", metavar="ball-on-beam|wheel-on-rail|study", shell_complete=_templates)
 def new(kind: str) -> None:
     """Write a commented case, or a study of one, to standard output."""
+    from asperity.config import KINDS, template
+    from asperity.config.parsing import not_a_kind
+
+    if kind not in (names := (*KINDS, "study")):
+        raise not_a_kind(kind, names)
     if kind == "study":
         from asperity.studies.definition import TEMPLATE
 
         click.echo(TEMPLATE, nl=False)
-        return
-    from asperity.config import template
-
-    click.echo(template(kind), nl=False)
+    else:
+        click.echo(template(kind), nl=False)
 
 
 @main.command()
@@ -181,13 +191,16 @@ def sweep(
 )
 @click.option("--height-unit", help="Unit of heights that carry none, as 'um'.")
 @click.option("--pixel", help="Distance of points that carry none, as '1.5625 um'.")
+@click.option("--pixel-unit", help="Unit of coordinates that carry none, as 'mm'.")
+@click.option("--decimal", metavar="MARK", help="Decimal mark of a text, '.' or ',', where it is in doubt.")
+@click.option("--transpose", is_flag=True, help="Exchange x and y: roll along the other direction.")
 @click.option("--fill", is_flag=True, help="Fill points without a height.")
 @click.option(
     "-o",
     "--output",
     "picture",
     type=click.Path(path_type=Path),
-    help="The picture. [default: NAME-surface.png here]",
+    help="The picture. [default: NAME-surface.png here, with array and index in its name]",
 )
 def surface(
     file: Path,
@@ -195,6 +208,9 @@ def surface(
     index: int | None,
     height_unit: str | None,
     pixel: str | None,
+    pixel_unit: str | None,
+    decimal: str | None,
+    transpose: bool,
     fill: bool,
     picture: Path | None,
 ) -> None:
@@ -203,12 +219,15 @@ def surface(
 
     inspect(
         file,
-        picture or Path(f"{file.stem}-surface.png"),
-        index=index,
-        fill=fill,
+        picture,
         array=array,
+        index=index,
         height_unit=height_unit,
         pixel=pixel,
+        pixel_unit=pixel_unit,
+        decimal=decimal,
+        transpose=transpose,
+        fill=fill,
     )
 
 
@@ -224,3 +243,17 @@ def cache(clear: bool) -> None:
         click.echo(f"{store.root}: {store.clear()} results deleted, {size / 2**20:.1f} MiB")
     else:
         click.echo(f"{store.root}: {count} results, {size / 2**20:.1f} MiB")
+
+
+@main.command()
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+def completion(shell: str) -> None:
+    """Print what makes a shell complete commands: put 'eval "$(asperity completion bash)"' into ~/.bashrc.
+
+    For fish: asperity completion fish > ~/.config/fish/completions/asperity.fish
+    """
+    from click.shell_completion import get_completion_class
+
+    kind = get_completion_class(shell)
+    assert kind is not None
+    click.echo(kind(main, {}, "asperity", "_ASPERITY_COMPLETE").source())

@@ -12,6 +12,7 @@ from typing import Any
 
 import click
 
+from asperity.cli import plain_text
 from asperity.errors import AsperityError
 
 FAILED = 3
@@ -32,7 +33,7 @@ class Door(click.Group):
         atexit.register(gc.freeze)  # a last search for unused objects would take a second
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, TextIOWrapper):
-                stream.reconfigure(errors="replace")  # a terminal without µ shows ? and goes on
+                stream.reconfigure(errors=plain_text.NAME)  # a pipe without − gets - and goes on
         with warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.showwarning = _WarningLines()

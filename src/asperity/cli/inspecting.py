@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,46 +10,56 @@ import click
 
 from asperity.errors import InputError
 from asperity.store import atomic_write
+from asperity.surfaces.readers.spelling import on_command_line, spelled
 
 if TYPE_CHECKING:
     from asperity.surfaces.heightmap import HeightMap, Profile
     from asperity.surfaces.statistics import Statistic
 
 
-def inspect(file: Path, picture: Path, *, index: int | None = None, fill: bool = False, **hints: Any) -> None:
+def inspect(
+    file: Path, picture: Path | None, *, array: str | None = None, index: int | None = None, **hints: Any
+) -> None:
     """Print what is in a measured file, and draw it.
 
     Parameters
     ----------
     file : Path
         The measured file.
-    picture : Path
-        Where the picture goes; the ending names its format.
+    picture : Path or None
+        Where the picture goes; the ending names its format. By default a name made of those of file, array
+        and map, in the working folder.
+    array : str, optional
+        Name of the array.
     index : int, optional
         Which map of an ensemble.
-    fill : bool
-        Whether points without a height are filled.
     **hints
-        What the file does not say itself, as `read_surface` takes it; None where nothing was said.
+        What else the file does not say itself, as `read_surface` takes it.
     """
+    chosen = [str(part) for part in (array, index) if part is not None]
+    if picture is None:
+        picture = Path(
+            "-".join([file.stem, *(re.sub(r"[^\w.]+", "-", part) for part in chosen), "surface.png"])
+        )
     formats = (".png", ".pdf", ".svg")
     if picture.suffix.lower() not in formats:
         raise InputError("picture", f"'{picture}'", f"a name that ends in {', '.join(formats)}")
     if picture.resolve() == file.resolve():
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
-    surfaces = read(file, index, fill=fill, **hints)
-    click.echo(f"{file}: {described(surfaces)}")
+    with spelled(on_command_line):
+        surfaces = read(file, index, array=array, **hints)
+    title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
+    click.echo(f"{title}: {described(surfaces)}")
     first = surfaces[0].levelled()
     if len(surfaces) > 1:
         click.echo(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
+        title += f", the first of {len(surfaces)} maps"
     for line in statistics_lines(first):
         click.echo(line)
-    click.echo(f"Picture: {draw(first, file.name, picture).resolve()}")
+    click.echo(f"Picture: {draw(first, title, picture).resolve()}")
 
 
-def read(
-    file: Path, index: int | None = None, *, fill: bool = False, **hints: Any
-) -> list[HeightMap | Profile]:
+def read(file: Path, index: int | None = None, **hints: Any) -> list[HeightMap | Profile]:
     """Read the map, the line, or all maps of an ensemble.
 
     Parameters
@@ -57,10 +68,8 @@ def read(
         The measured file.
     index : int, optional
         Which map of an ensemble; all of them by default.
-    fill : bool
-        Whether points without a height are filled.
     **hints
-        As `read_surface` takes them; None where nothing was said.
+        As `read_surface` takes them.
 
     Returns
     -------
@@ -68,15 +77,14 @@ def read(
     """
     from asperity.surfaces.readers import read_surface, read_surfaces
 
-    said = {name: value for name, value in hints.items() if value is not None}
     if index is not None:
-        return [read_surface(file, index=index, fill=fill, **said)]
+        return [read_surface(file, index=index, **hints)]
     try:
-        return [read_surface(file, fill=fill, **said)]
+        return [read_surface(file, **hints)]
     except InputError as error:
         if error.allowed != "one sample":
             raise
-    return list(read_surfaces(file, fill=fill, **said))
+    return list(read_surfaces(file, **hints))
 
 
 def described(surfaces: list[HeightMap | Profile]) -> str:

@@ -7,7 +7,7 @@ from importlib import resources
 from asperity.config.ball_on_beam import BallOnBeamCase
 from asperity.config.case import LAWS, Case
 from asperity.config.describing import commented
-from asperity.config.parsing import KINDS, case_of, load_case, not_a_kind, parse_case
+from asperity.config.parsing import KINDS, as_case, case_of, load_case, not_a_kind, parse_case
 from asperity.config.wheel_on_rail import WheelOnRailCase
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "BallOnBeamCase",
     "Case",
     "WheelOnRailCase",
+    "as_case",
     "case_of",
     "demo_case",
     "load_case",

@@ -12,6 +12,7 @@ from typing import Annotated, Any, NoReturn, get_args
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
+from asperity.arguments import shown
 from asperity.errors import InputError
 from asperity.units import factor, quantity
 
@@ -32,13 +33,10 @@ _WORDS = {
 }
 
 
-def shown(value: object) -> str:
-    """Write a received value for a message, shortened to what a person needs to find it again."""
-    try:
-        text = repr(value)
-    except ValueError:  # Python does not write out integers of many thousand digits
-        text = "a huge number"
-    return text if len(text) <= 60 else text[:57] + "…"
+BACKSLASH = (
+    "In double quotes a backslash changes the letter after it: write Windows paths in single quotes, as in "
+    r"file = 'C:\data\beam.x3p', or with / instead."
+)
 
 
 @dataclass(frozen=True)
@@ -72,10 +70,8 @@ class Quantity:
     def __call__(self, value: object) -> float:
         """Return the value in SI."""
         if isinstance(value, int | float) and not isinstance(value, bool):
-            self._fail(
-                value,
-                f'Add the unit and quotes, as "{shown(value)} {_WORDS[self.dimension][1].split(" ", 1)[1]}".',
-            )
+            given = "dB" if self.dimension == "dB" else f"SI units ({self.dimension})"
+            self._fail(value, f'Add unit and quotes: "{shown(value)} {self.dimension}" if it is in {given}.')
         if not isinstance(value, str):
             self._fail(value)
         try:
@@ -195,7 +191,9 @@ class File:
             raise InputError("file", shown(value), self.allowed)
         path = Path((info.context or {}).get("folder", ".")) / value
         if not path.is_file():
-            raise InputError("file", shown(str(value)), self.allowed, f"There is no file {path}.")
+            escaped = any(not character.isprintable() for character in str(value))
+            remedy = BACKSLASH if escaped else f"There is no such file in {path.parent.resolve()}."
+            raise InputError("file", shown(str(value)), self.allowed, remedy)
         return path
 
 

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import os
+import re
 import tomllib
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel, ValidationError
 
+from asperity.arguments import file_path, shown
 from asperity.config.ball_on_beam import BallOnBeamCase
 from asperity.config.case import Case
-from asperity.config.keys import Problems, allowed_in, nearest, shown
+from asperity.config.keys import BACKSLASH, Problems, allowed_in, nearest
 from asperity.config.wheel_on_rail import WheelOnRailCase
+from asperity.config.writing import toml_text
+from asperity.decoding import decoded
 from asperity.errors import CaseError, InputError
 
 KINDS: dict[str, type[Case]] = {"ball-on-beam": BallOnBeamCase, "wheel-on-rail": WheelOnRailCase}
@@ -43,6 +49,47 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     return parse_case(read_text(path, "case", remedy), path)
 
 
+def as_case(case: object) -> Case:
+    """Take a case in any of its forms.
+
+    Parameters
+    ----------
+    case : path, mapping or case object
+        A TOML file; or its keys and values, sections as mappings, quantities as text with units; relative
+        paths then start at the working folder.
+
+    Returns
+    -------
+    BallOnBeamCase or WheelOnRailCase
+        The case, in SI.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, or the file cannot be read.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    if isinstance(case, Case):
+        return case
+    if isinstance(case, Mapping):
+        data = plain(case)
+        return case_of(data, toml_text(data), "case")
+    allowed = "the path of a case file, its keys as a mapping, or a case object"
+    return load_case(file_path("case", case, allowed))
+
+
+def plain(value: Any) -> Any:
+    """Keys and values as TOML would give them: numbers of Python, lists, and paths as text."""
+    if isinstance(value, Mapping):
+        return {str(name): plain(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    return value.item() if isinstance(value, np.generic) else value
+
+
 def read_text(path: str | os.PathLike[str], what: str, remedy: str) -> str:
     """Read a small text file that a person has written.
 
@@ -68,15 +115,13 @@ def read_text(path: str | os.PathLike[str], what: str, remedy: str) -> str:
     path = Path(path)
     allowed = f"the path of a {what} file (TOML)"
     if not path.is_file():
-        raise InputError(str(path), "no such file", allowed, remedy)
+        received = "a folder" if path.is_dir() else "no such file"
+        raise InputError(str(path), received, allowed, remedy)
     with open(path, "rb") as file:
         content = file.read(LARGEST_CASE + 1)
     if len(content) > LARGEST_CASE:
         raise InputError(str(path), "more than 1 MiB", allowed, "Keep heights in a file of their own.")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(str(path), f"a byte that is no UTF-8 at {error.start}", allowed) from None
+    return decoded(content, str(path), allowed)
 
 
 def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str, Any]:
@@ -105,6 +150,9 @@ def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str,
         return tomllib.loads(text.replace("\r\n", "\n"))
     except (ValueError, RecursionError) as error:  # TOML errors, and numbers too long to read
         remedy = 'Strings and quantities stand in double quotes: speed = "1 m/s".'
+        place = re.search(r"at line (\d+)", str(error))
+        if place and "\\" in text.splitlines()[int(place[1]) - 1]:
+            remedy = BACKSLASH
         raise InputError(str(source), f"no TOML ({error})", f"a {what} in TOML", remedy) from None
 
 
@@ -167,12 +215,12 @@ def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> 
     return case
 
 
-def not_a_kind(kind: object) -> InputError:
+def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
     """Error about a kind of case that this version does not have; None stands for a missing key."""
-    allowed = ", ".join(f'"{name}"' for name in KINDS)
+    allowed = ", ".join(f'"{name}"' for name in names)
     if kind is None:
         return InputError("kind", "nothing", allowed, 'Write kind = "ball-on-beam" as the first line.')
-    return InputError("kind", shown(kind), allowed, nearest(kind, list(KINDS)))
+    return InputError("kind", shown(kind), allowed, nearest(kind, list(names)))
 
 
 def _messages(error: ValidationError, model: type[BaseModel]) -> list[str]:

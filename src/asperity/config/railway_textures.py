@@ -12,16 +12,14 @@ from asperity.config.keys import (
     Choice,
     ChoiceOrFile,
     ExistingFile,
-    HeightUnit,
     Length,
-    Name,
     Number,
     Position,
     Section,
     YesNo,
     key,
 )
-from asperity.config.sections import Surface
+from asperity.config.sections import MeasuredLine, Surface
 from asperity.config.tables import read_levels
 from asperity.errors import InputError
 
@@ -33,32 +31,11 @@ Spectrum = Annotated[str | Path, BeforeValidator(ChoiceOrFile(RAIL_SPECTRA, TABL
 Step = Annotated[str, BeforeValidator(Choice(PROCESSING))]
 
 
-class MeasuredLines(Section):
+class MeasuredLines(MeasuredLine):
     """Measured lines along a rail or around a tread."""
 
     line: ExistingFile | None = key(
         None, "measured long line, or several side by side", example='"lines.csv"'
-    )
-    line_array: Name | None = key(
-        None,
-        "name of the lines in a file that holds several arrays",
-        otherwise="the only one",
-        example='"lines"',
-        goes_with="line",
-    )
-    line_unit: HeightUnit | None = key(
-        None,
-        "unit of lines that carry none",
-        otherwise="from the file",
-        example='"um"',
-        goes_with="line",
-    )
-    line_spacing: Length | None = key(
-        None,
-        "spacing of points along lines that carry none",
-        otherwise="from the file",
-        example='"1 mm"',
-        goes_with="line",
     )
     line_distance: Length | None = key(
         None,

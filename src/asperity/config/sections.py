@@ -35,10 +35,8 @@ Material = Annotated[str, BeforeValidator(Choice(tuple(MATERIALS)))]
 Index = Annotated[int, BeforeValidator(Number(at_least=0, at_most=10**9, whole=True))]
 
 
-class Surface(Section):
-    """What is rolled over: samples (measured or synthesised), and the line of the path."""
-
-    synthesised_band: ClassVar = (0.4e-3, 16e-6)  # m, longest and shortest wavelength beside rms
+class MeasuredMap(Section):
+    """A measured map, or an ensemble of them, and what its file does not say."""
 
     file: ExistingFile | None = key(
         None, "measured map: the samples, and the path where it is long enough", example='"beam.x3p"'
@@ -71,11 +69,44 @@ class Surface(Section):
     form: Annotated[str, BeforeValidator(Choice(("plane", "quadratic")))] = key(
         "plane", "form that is removed from each measured map", goes_with="file"
     )
+
+
+class MeasuredLine(Section):
+    """A measured line, and what its file does not say."""
+
     line: ExistingFile | None = key(
         None,
         "measured long line for the path; without one, a path longer than the map is synthesised from it",
         example='"line.csv"',
     )
+    line_array: Name | None = key(
+        None,
+        "name of the array in a file that holds several",
+        otherwise="the only one",
+        example='"lines"',
+        goes_with="line",
+    )
+    line_unit: HeightUnit | None = key(
+        None,
+        "unit of lines that carry none",
+        otherwise="from the file",
+        example='"um"',
+        goes_with="line",
+    )
+    line_spacing: Length | None = key(
+        None,
+        "spacing of points along lines that carry none",
+        otherwise="from the file",
+        example='"1 mm"',
+        goes_with="line",
+    )
+
+
+class Surface(MeasuredLine, MeasuredMap):
+    """What is rolled over: samples (measured or synthesised), and the line of the path."""
+
+    synthesised_band: ClassVar = (0.4e-3, 16e-6)  # m, longest and shortest wavelength beside rms
+
     rms: Length | None = key(None, "rms height of synthesised samples, instead of a file", example='"0.5 um"')
     hurst: Annotated[float, BeforeValidator(Number(above=0, at_most=1))] = key(
         0.8, "Hurst exponent of the synthesised texture", goes_with="rms"

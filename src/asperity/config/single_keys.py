@@ -8,8 +8,9 @@ from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from asperity.arguments import shown
 from asperity.config.describing import Entry, entries
-from asperity.config.keys import Number, Quantity, allowed_in, kind_of, nearest, shown
+from asperity.config.keys import Number, Quantity, allowed_in, kind_of, nearest
 from asperity.config.parsing import KINDS, not_a_kind
 from asperity.errors import InputError
 

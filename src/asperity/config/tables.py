@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.decoding import decoded
 from asperity.errors import InputError
 from asperity.units import factor
 
@@ -192,12 +193,8 @@ def _lines(path: Path, allowed: str) -> list[tuple[int, list[str]]]:
     content = path.read_bytes()[: LARGEST_TABLE + 1]
     if len(content) > LARGEST_TABLE:
         raise InputError(path.name, "more than 10 MiB", allowed)
-    try:
-        lines = content.decode("utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise InputError(path.name, "no text", allowed) from None
     found = []
-    for number, line in enumerate(lines, start=1):
+    for number, line in enumerate(decoded(content, path.name, allowed).splitlines(), start=1):
         text = line.partition("#")[0].strip()
         separator = next((mark for mark in (";", ",") if mark in text), None)
         if separator == ";":

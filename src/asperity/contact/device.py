@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import shown
 from asperity.errors import InputError
 
 DEVICES = ("cpu", "gpu")
@@ -128,9 +129,9 @@ def find_device(name: str | None = None) -> Device | None:
         If there is no such name, or no such device.
     """
     what = "device" if name is not None else f"${CHOSEN}"
-    name = name or os.environ.get(CHOSEN) or "cpu"
-    if name not in DEVICES:
-        raise InputError(what, repr(name), " or ".join(map(repr, DEVICES)))
+    name = (os.environ.get(CHOSEN) or "cpu") if name is None else name
+    if not isinstance(name, str) or name not in DEVICES:
+        raise InputError(what, shown(name), " or ".join(map(repr, DEVICES)))
     return gpu() if name == "gpu" else None
 
 

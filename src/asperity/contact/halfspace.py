@@ -11,6 +11,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import real, two, two_lengths, whole
 from asperity.errors import InputError, Outcome, UnconvergedWarning
 from asperity.kernels.contact import displace, indent, room
 from asperity.kernels.fourier import smooth_length
@@ -89,7 +90,7 @@ class HalfSpace:
     shape : tuple of int
         (nx, ny) cells.
     spacing : tuple of float
-        (dx, dy), m.
+        (dx, dy), m; one number stands for both.
     modulus : float
         Contact modulus E*, Pa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂.
     hardness : float, optional
@@ -105,22 +106,19 @@ class HalfSpace:
     def __init__(
         self,
         shape: tuple[int, int],
-        spacing: tuple[float, float],
+        spacing: float | tuple[float, float],
         modulus: float,
         hardness: float | None = None,
     ) -> None:
-        if len(shape) != 2 or any(int(n) != n or n < 1 for n in shape):
-            raise InputError("half-space shape", shape, "two positive whole numbers (nx, ny)")
-        if len(spacing) != 2 or not all(math.isfinite(d) and d > 0 for d in spacing):
-            raise InputError("half-space spacing", spacing, "two positive lengths (dx, dy) in m")
-        if not (math.isfinite(modulus) and modulus > 0):
-            raise InputError("contact modulus", modulus, "a positive number, Pa", "Steel on steel has 115e9.")
-        if hardness is not None and not (math.isfinite(hardness) and hardness > 0):
-            raise InputError("hardness", hardness, "a positive number, Pa, or None")
-        self.shape = (int(shape[0]), int(shape[1]))
-        self.spacing = (float(spacing[0]), float(spacing[1]))
-        self.modulus = float(modulus)
-        self.hardness = None if hardness is None else float(hardness)
+        allowed = "two positive whole numbers (nx, ny)"
+        sides = two("half-space shape", shape, allowed)
+        nx, ny = (whole("half-space shape", n, allowed, at_least=1) for n in sides)
+        self.shape = (nx, ny)
+        self.spacing = two_lengths("half-space spacing", spacing)
+        remedy = "Steel on steel has 115e9."
+        self.modulus = real("contact modulus", modulus, "a positive number, Pa", above=0.0, remedy=remedy)
+        allowed = "a positive number, Pa, or None"
+        self.hardness = None if hardness is None else real("hardness", hardness, allowed, above=0.0)
         reach_x, reach_y = (smooth_length(max(n, 32)) for n in self.shape)
         dx, dy = self.spacing
         scale = math.pi * self.modulus

@@ -165,7 +165,7 @@ def stiffness_ensemble(
         One loading curve a sample.
     """
     report = progress or (lambda done, total, message: None)
-    report(0, len(samples), "loading the samples")
+    report(0, len(samples), "pressing the samples")
 
     def load(sample: NDArray[np.float64]) -> ScannedForces[NDArray[np.float64]]:
         return scan_forces(
@@ -175,7 +175,7 @@ def stiffness_ensemble(
     scans = []
     for scanned in in_order(load, samples, workers):
         scans.append(scanned)
-        report(len(scans), len(samples), "loading the samples")
+        report(len(scans), len(samples), "pressing the samples")
     warn_of_scans(scans, "the loading curves")
     forces = np.array([scanned.forces[:, 0] for scanned in scans])
     return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), forces, datum)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import real, real_array, shown, two_lengths, whole
 from asperity.contact.device import Device, find_device
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
 from asperity.reduction import batched_scan
@@ -19,6 +20,7 @@ from asperity.reduction.blocks import TRUNCATED, Contacts, solve_block
 from asperity.reduction.pool import in_order
 from asperity.reduction.stored import StoredForces
 from asperity.store import Cache, content_key
+from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import thread_count
 
@@ -60,8 +62,8 @@ class ScannedForces(Generic[F]):
 
 
 def scan(
-    heights: ArrayLike,
-    spacing: tuple[float, float],
+    heights: ArrayLike | HeightMap,
+    spacing: float | tuple[float, float] | None,
     body: ArrayLike,
     modulus: float,
     approaches: ArrayLike,
@@ -78,16 +80,16 @@ def scan(
 
     Parameters
     ----------
-    heights : array_like, shape (n, ny)
+    heights : array_like, shape (n, ny), or HeightMap
         Heights of the surface, m, peaks positive; the first axis is the rolling direction.
-    spacing : tuple of float
-        (dx, dy), m.
+    spacing : tuple of float, float or None
+        (dx, dy), m; one number stands for both, None for the spacing of a `HeightMap`.
     body : array_like, shape (nx, ny)
         Shape of the smooth body, m, zero at its lowest point. Position m puts it on rows m … m + nx − 1.
     modulus : float
         Contact modulus E*, Pa.
     approaches : array_like, shape (k,)
-        Approaches from the mean plane of `heights`, m, positive closing, increasing.
+        Approaches from the mean plane of the heights, m, positive closing, increasing; one number is one.
     hardness : float, optional
         Pressure cap, Pa.
     stride : int
@@ -116,18 +118,20 @@ def scan(
     """
     import xarray
 
-    z = np.ascontiguousarray(heights, dtype=np.float64)
-    if z.ndim != 2 or not np.isfinite(z).all():
-        raise InputError(
-            "heights of the scan", f"shape {z.shape}", "a finite (n, ny) array", "Fill missing points."
-        )
-    delta = np.asarray(approaches, dtype=np.float64)
+    z, (dx, dy) = _surface(heights, spacing)
+    delta = np.atleast_1d(real_array("approaches of the scan", approaches, "increasing lengths in m"))
+    shape = real_array("body of the scan", body, "an array (nx, ny) of lengths in m")
+    pressure = "a positive number, Pa"
+    stiff = real("contact modulus", modulus, pressure, above=0.0)
+    cap = None if hardness is None else real("hardness", hardness, f"{pressure}, or None", above=0.0)
+    step = whole("stride of the scan", stride, "a whole number ≥ 1", at_least=1)
+    _check_settings(rtol, workers, cache, progress)
     result = scan_forces(
-        z - z.mean(), spacing, body, modulus, delta, hardness,
-        stride=stride, rtol=rtol, workers=workers, cache=cache, progress=progress, device=device,
+        z - z.mean(), (dx, dy), shape, stiff, delta, cap,
+        stride=step, rtol=rtol, workers=workers, cache=cache, progress=progress, device=device,
     )  # fmt: skip
     warn_of_scans([result], "the scan")
-    position = np.arange(result.forces.shape[1]) * stride * spacing[0]
+    position = np.arange(result.forces.shape[1]) * step * dx
     return xarray.DataArray(
         result.forces,
         dims=("approach", "position"),
@@ -144,6 +148,38 @@ def scan(
             "truncated": result.truncated,
         },
     )
+
+
+def _surface(
+    heights: ArrayLike | HeightMap, spacing: object
+) -> tuple[NDArray[np.float64], tuple[float, float]]:
+    """Heights and spacing of what is scanned, complete."""
+    if isinstance(heights, Profile):
+        raise InputError("heights of the scan", "a line of heights", "a map of heights")
+    if isinstance(heights, HeightMap):
+        if spacing is not None and not np.allclose(
+            two_lengths("spacing of the scan", spacing), heights.spacing, rtol=1e-9, atol=0.0
+        ):
+            received = f"{shown(spacing)} beside a height map with {heights.spacing}"
+            raise InputError("spacing of the scan", received, "None, or the spacing of the map, m")
+        spacing, heights = heights.spacing, heights.heights
+    allowed = "a height map, or an array (n, ny) of finite lengths in m"
+    z = real_array("heights of the scan", heights, allowed)
+    if z.ndim != 2 or not np.isfinite(z).all():
+        missing = z.size - int(np.isfinite(z).sum())
+        received = f"{missing} of {z.size} points without a height" if missing else f"an array {z.shape}"
+        raise InputError("heights of the scan", received, allowed, "Fill missing points." * bool(missing))
+    return z, two_lengths("spacing of the scan", spacing)
+
+
+def _check_settings(rtol: object, workers: object, cache: object, progress: object) -> None:
+    real("rtol", rtol, "a number between 0 and 1, as 1e-6", above=0.0, at_most=1.0)
+    if workers is not None:
+        whole("workers", workers, "a number of threads, 1 or more, or None", at_least=1)
+    if cache is not None and not (hasattr(cache, "get") and hasattr(cache, "put")):
+        raise InputError("cache", shown(cache), "an object with get and put, as Store(), or None")
+    if progress is not None and not callable(progress):
+        raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
 
 
 def scan_forces(

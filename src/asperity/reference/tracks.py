@@ -88,7 +88,7 @@ def named_track(name: str) -> Parameters:
     InputError
         If the name is unknown.
     """
-    if name not in TRACKS:
+    if not isinstance(name, str) or name not in TRACKS:
         close = difflib.get_close_matches(str(name), TRACKS, n=1)
         remedy = f"Did you mean {close[0]!r}?" if close else ""
         raise InputError("track name", repr(name), "one of " + ", ".join(TRACKS), remedy)

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from asperity.arguments import shown
+from asperity.errors import InputError
 
 if TYPE_CHECKING:
     import xarray
@@ -13,13 +17,16 @@ if TYPE_CHECKING:
     from asperity.progress import Progress
 
 
-def run(case: str | os.PathLike[str] | Case, progress: Progress | None = None) -> xarray.DataTree:
+def run(
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case, progress: Progress | None = None
+) -> xarray.DataTree:
     """Compute a case.
 
     Parameters
     ----------
-    case : path or case object
-        A TOML case file, or what `asperity.config.load_case` made of one.
+    case : path, mapping or case object
+        A TOML case file; its keys and values, sections as mappings; or what `asperity.config.load_case` made
+        of one.
     progress : callable, optional
         ``progress(done, total, message)``, called during long work.
 
@@ -36,11 +43,13 @@ def run(case: str | os.PathLike[str] | Case, progress: Progress | None = None) -
     ComputationError
         If a computation fails.
     """
-    from asperity.config import load_case
+    from asperity.config import as_case
     from asperity.errors import PhysicsWarning
     from asperity.threads import one_thread_in_linear_algebra
 
-    loaded = load_case(case) if isinstance(case, str | os.PathLike) else case
+    loaded = as_case(case)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
         warnings.simplefilter("always", PhysicsWarning)
         result = _computed(loaded, progress or (lambda done, total, message: None), caught)

@@ -11,6 +11,7 @@ from asperity.config import BallOnBeamCase
 from asperity.errors import InputError
 from asperity.reference.rail_roughness import iso_3095_limit
 from asperity.scenarios.geometry import window_cells
+from asperity.scenarios.reading import read_lines
 from asperity.scenarios.textures import (
     Textures,
     measured_maps,
@@ -23,7 +24,6 @@ from asperity.scenarios.textures import (
 )
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
-from asperity.surfaces.readers import read_surface
 from asperity.surfaces.strip import Strip
 from asperity.surfaces.synthesis import from_bands
 
@@ -83,7 +83,7 @@ def _line(case: BallOnBeamCase, rows: int, least: int, seed: int) -> tuple[NDArr
         profile = from_bands(points, spacing, wavelengths, levels + case.surface.level, seed)
         return profile.heights[:rows], f"path of ISO 3095:2013 limit {case.surface.level:+g} dB"
     assert case.surface.line is not None
-    measured = read_surface(case.surface.line)
+    measured = read_lines(case.surface, "surface")
     if not isinstance(measured, Profile):
         remedy = "Give a map as surface.file."
         raise InputError("surface.line", "a map of heights", "a line of heights", remedy)

@@ -47,10 +47,15 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         computed.chain,
         groups,
         caught,
-        title=f"{computed.case.ball.material} ball on a {computed.case.beam.material} beam",
+        title=_title(computed.case.ball.material, computed.case.beam.material),
         verdict=verdict(computed.chain.runs, spectra, "ball"),
         numerics=_numerics(computed),
     )
+
+
+def _title(ball: str, beam: str) -> str:
+    article = "an" if beam[0] in "aeiou" else "a"
+    return f"{ball[0].upper()}{ball[1:]} ball on {article} {beam} beam"
 
 
 def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:

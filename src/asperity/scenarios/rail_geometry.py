@@ -14,9 +14,9 @@ from asperity.contact import Hertz
 from asperity.errors import InputError
 from asperity.reference.materials import contact_modulus, material
 from asperity.scenarios.geometry import Geometry, across_window, geometry
+from asperity.scenarios.reading import read_section
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
-from asperity.surfaces.readers import read_surface
 
 _FINE = 10
 """Points per cell on which the lowest point of a measured gap is looked for."""
@@ -83,12 +83,7 @@ class _Section:
 def _section(path: Path | None, radius: float, key: str) -> _Section:
     if path is None:
         return _Section(radius, None, key)
-    measured = read_surface(path)
-    if not isinstance(measured, Profile):
-        raise InputError(key, "a map of heights", "one line across the rail")
-    if measured.missing_share > 0.0:
-        raise InputError(key, "points without a height", "a complete line", "Fill it first.")
-    return _Section(radius, level(measured), key)
+    return _Section(radius, level(read_section(path, key)), key)
 
 
 def _lowest_in_the_middle(tread: _Section, head: _Section, y: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -13,13 +13,13 @@ from asperity.config.railway_textures import MeasuredLines, RailSurface
 from asperity.config.wheel import WheelCase
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.scenarios.rail_records import Grid, Record
+from asperity.scenarios.reading import read_lines
 from asperity.surfaces.continuation import Continuation, close, extend
 from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.levels import check_levels
 from asperity.surfaces.parallel_lines import common_length, register, strip_from_lines
-from asperity.surfaces.readers import read_surface
 
 FULL_TURN = 0.02
 """Share of the circumference that a measured line around a wheel may lack or exceed."""
@@ -127,12 +127,10 @@ def _measured(section: MeasuredLines, name: str, *, degree: int) -> tuple[list[P
     A line that goes round keeps its slope: it has none, but what noise gives it.
     """
     assert section.line is not None
-    hints = {"array": section.line_array, "height_unit": section.line_unit, "pixel": section.line_spacing}
-    given = {key: value for key, value in hints.items() if value is not None}
     with warnings.catch_warnings():
         # ends are trimmed and gaps refused below
         warnings.simplefilter("ignore", MissingPointsWarning)
-        measured = read_surface(section.line, **given)  # type: ignore[arg-type]
+        measured = read_lines(section, name)
     if isinstance(measured, Profile):
         raw = [measured]
     else:  # lines lie along the longer side

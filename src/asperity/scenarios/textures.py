@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,9 +12,9 @@ from numpy.typing import NDArray
 from asperity.config.sections import ContactCase, Surface
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.scenarios.geometry import window_cells
-from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.scenarios.reading import read_maps
+from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import band_limit, level, resample
-from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.strip import Raised, Strip
 from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
 
@@ -109,16 +108,7 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
     InputError
         If the file holds a line, or points are missing and are not to be filled.
     """
-    hints = {}
-    assert surface.file is not None
-    for name in ("array", "height_unit", "pixel"):
-        if getattr(surface, name) is not None:
-            hints[name] = getattr(surface, name)
-    found: Sequence[HeightMap | Profile]
-    if surface.index is not None:
-        found = [read_surface(surface.file, index=surface.index, fill=surface.fill, **hints)]
-    else:
-        found = read_surfaces(surface.file, fill=surface.fill, **hints)
+    found = read_maps(surface)
     result, degree = [], FORM_DEGREE[surface.form]
     for measured in found:
         if not isinstance(measured, HeightMap):

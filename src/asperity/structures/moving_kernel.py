@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import real, shown, whole
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
 from asperity.store import Cache, content_key
@@ -116,10 +117,13 @@ def moving_kernel(
     sin²(ωΔt/2)/(ωΔt/2)², folded at half the sampling frequency; between the nodes of a bay the
     response is interpolated by a cubic. For viscous damping alone the transform runs along ω − iσ.
     """
-    if not (np.isfinite(time_step) and time_step > 0.0):
-        raise InputError("time step (s)", time_step, "a finite positive number")
-    if not (np.isfinite(speed) and speed >= 0.0):
-        raise InputError("speed (m/s)", speed, "zero or a finite positive number")
+    if not isinstance(track, Track):
+        raise InputError("track", shown(track), "a Track, as Track.named('x2000')")
+    time_step = real("time step (s)", time_step, "a finite positive number", above=0.0)
+    speed = real("speed (m/s)", speed, "zero or a finite positive number", at_least=0.0)
+    positions = whole("start positions", positions, "a whole number, 1 or more", at_least=1)
+    if duration is not None:
+        duration = real("duration (s)", duration, "a finite positive number, or None", above=0.0)
     if not track.is_damped:
         remedy = "Give the rail a loss factor, or damping to pads or ballast."
         raise InputError("track", "no damping at all", "a track whose vibration dies away", remedy)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import real, real_array
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
 from asperity.structures.free_rail import free_rail_waves, pinned_frequency
@@ -235,13 +236,13 @@ class Track:
         -----
         Exact for the infinite track: Floquet sum in closed form.
         """
-        frequency = np.asarray(frequency, dtype=float)
-        if not (np.all(np.isfinite(frequency)) and np.all(frequency > 0.0)):
-            raise InputError("frequency (Hz)", np.min(frequency), "finite positive numbers")
-        if not (np.isfinite(x) and np.isfinite(x0)):
-            raise InputError("positions on the track (m)", (x, x0), "finite numbers")
-        response = self.waves(2.0 * np.pi * frequency.ravel()).receptance(x, x0)
-        return response.reshape(frequency.shape)
+        allowed = "finite positive numbers"
+        at = real_array("frequency (Hz)", frequency, allowed)
+        if not (np.all(np.isfinite(at)) and np.all(at > 0.0)):
+            raise InputError("frequency (Hz)", np.min(at), allowed)
+        positions = [real("positions on the track (m)", each, "a finite number") for each in (x, x0)]
+        response = self.waves(2.0 * np.pi * at.ravel()).receptance(*positions)
+        return response.reshape(at.shape)
 
     @property
     def foundation_stiffness(self) -> float:

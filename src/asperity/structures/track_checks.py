@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from asperity.arguments import real
 from asperity.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,27 +25,27 @@ def check_track(track: Track) -> None:
         If a value is out of range, one element has both viscous damping and a loss factor, or only one
         of shear stiffness and rotary inertia is given.
     """
-    for what, value in (
-        ("bending stiffness of the rail (N m^2)", track.bending_stiffness),
-        ("mass per length of the rail (kg/m)", track.mass_per_length),
-        ("pad stiffness (N/m)", track.pad_stiffness),
-        ("ballast stiffness (N/m)", track.ballast_stiffness),
-        ("sleeper spacing (m)", track.sleeper_spacing),
-        ("shear stiffness of the rail (N)", track.shear_stiffness),
-        ("rotary inertia of the rail (kg m)", track.rotary_inertia),
+    for what, value, needed in (
+        ("bending stiffness of the rail (N m^2)", track.bending_stiffness, True),
+        ("mass per length of the rail (kg/m)", track.mass_per_length, True),
+        ("pad stiffness (N/m)", track.pad_stiffness, True),
+        ("ballast stiffness (N/m)", track.ballast_stiffness, True),
+        ("sleeper spacing (m)", track.sleeper_spacing, True),
+        ("shear stiffness of the rail (N)", track.shear_stiffness, False),
+        ("rotary inertia of the rail (kg m)", track.rotary_inertia, False),
     ):
-        if value is not None and not (np.isfinite(value) and value > 0.0):
-            raise InputError(what, value, "a finite positive number")
-    for what, value in (
-        ("sleeper mass (kg)", track.sleeper_mass),
-        ("rail loss factor", track.rail_loss_factor),
-        ("pad damping (N s/m)", track.pad_damping),
-        ("pad loss factor", track.pad_loss_factor),
-        ("ballast damping (N s/m)", track.ballast_damping),
-        ("ballast loss factor", track.ballast_loss_factor),
+        if needed or value is not None:
+            real(what, value, "a finite positive number", above=0.0)
+    for what, value, needed in (
+        ("sleeper mass (kg)", track.sleeper_mass, True),
+        ("rail loss factor", track.rail_loss_factor, True),
+        ("pad damping (N s/m)", track.pad_damping, False),
+        ("pad loss factor", track.pad_loss_factor, False),
+        ("ballast damping (N s/m)", track.ballast_damping, False),
+        ("ballast loss factor", track.ballast_loss_factor, False),
     ):
-        if value is not None and not (np.isfinite(value) and value >= 0.0):
-            raise InputError(what, value, "a finite number, zero or more")
+        if needed or value is not None:
+            real(what, value, "a finite number, zero or more", at_least=0.0)
     _refuse_doubles(track)
 
 

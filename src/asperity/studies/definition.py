@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity import __version__
+from asperity.arguments import file_path, shown
 from asperity.config import Case, case_of
 from asperity.config.describing import Entry
-from asperity.config.keys import shown
-from asperity.config.parsing import read_text, read_toml
+from asperity.config.parsing import plain, read_text, read_toml
 from asperity.config.single_keys import entry_of, unit_of, value_of
+from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.store import content_key
 
@@ -207,13 +208,13 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     return _checked(*_read_case(source.parent / str(base)), data.get("sweep", {}), source)
 
 
-def study_of(case: str | os.PathLike[str] | Case, sweep: Mapping[str, Any]) -> Study:
+def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Mapping[str, Any]) -> Study:
     """Make a study of a case.
 
     Parameters
     ----------
-    case : path or case object
-        The case.
+    case : path, mapping or case object
+        The case, as `asperity.run` takes it.
     sweep : mapping of str to list
         Keys with lists of values as they stand in TOML, as ``{"wheel.load": ["50 kN", "65 kN"]}``.
 
@@ -231,7 +232,11 @@ def study_of(case: str | os.PathLike[str] | Case, sweep: Mapping[str, Any]) -> S
     """
     if isinstance(case, Case):
         return _checked(case.given, case.text, Path(case.source), sweep, "study")
-    return _checked(*_read_case(Path(case)), sweep, "study")
+    if isinstance(case, Mapping):
+        data = plain(case)
+        return _checked(data, toml_text(data), Path("case"), sweep, "study")
+    allowed = "the path of a case file, its keys as a mapping, or a case object"
+    return _checked(*_read_case(file_path("case", case, allowed)), sweep, "study")
 
 
 def written_out(value: object) -> str:

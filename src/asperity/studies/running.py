@@ -8,6 +8,8 @@ from concurrent.futures import Executor
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
+from asperity.arguments import shown, whole
+from asperity.config import Case
 from asperity.errors import ComputationError, InputError
 from asperity.studies.definition import Member, Study, load_study, study_of
 from asperity.studies.executors import locally, through
@@ -16,13 +18,12 @@ from asperity.studies.member import Failure
 if TYPE_CHECKING:
     import xarray
 
-    from asperity.config import Case
     from asperity.progress import Progress
     from asperity.studies.executors import Outcomes
 
 
 def study(
-    definition: str | os.PathLike[str] | Study | Case,
+    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | Case,
     sweep: Mapping[str, Any] | None = None,
     *,
     executor: Executor | None = None,
@@ -33,8 +34,8 @@ def study(
 
     Parameters
     ----------
-    definition : path, Study, or with `sweep` a case object
-        A study file; with `sweep`, a case file or a case object.
+    definition : path, Study, or with `sweep` a mapping or a case object
+        A study file; with `sweep`, a case as `asperity.run` takes it.
     sweep : mapping of str to list, optional
         Keys with lists of values as they stand in TOML, as ``{"wheel.load": ["50 kN", "65 kN"]}``.
     executor : concurrent.futures.Executor, optional
@@ -69,8 +70,8 @@ def study(
     number of workers.
     """
     plan = _planned(definition, sweep)
-    if workers is not None and workers < 1:
-        raise InputError("workers", workers, "a whole number greater than 0")
+    if workers is not None:
+        workers = whole("workers", workers, "a whole number greater than 0, or None", at_least=1)
     from asperity.studies.table import tabulated
 
     members = plan.members()
@@ -86,7 +87,9 @@ def study(
     return tabulated(plan, members, results, failures)
 
 
-def _planned(definition: str | os.PathLike[str] | Study | Case, sweep: Mapping[str, Any] | None) -> Study:
+def _planned(
+    definition: str | os.PathLike[str] | Mapping[str, Any] | Study | Case, sweep: Mapping[str, Any] | None
+) -> Study:
     if isinstance(definition, Study):
         if sweep is not None:
             raise InputError(
@@ -97,7 +100,10 @@ def _planned(definition: str | os.PathLike[str] | Study | Case, sweep: Mapping[s
         return study_of(definition, sweep)
     if isinstance(definition, str | os.PathLike):
         return load_study(definition)
-    raise InputError("sweep", "nothing", "keys of the case, each with a list of values")
+    if isinstance(definition, Case | Mapping):
+        raise InputError("sweep", "nothing", "keys of the case, each with a list of values")
+    allowed = "the path of a study file, or with `sweep` a case"
+    raise InputError("definition of the study", shown(definition), allowed)
 
 
 def _outcomes(

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import real, two, two_lengths, whole
 from asperity.errors import InputError
 
 
@@ -40,7 +39,7 @@ class HeightMap:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _checked_heights(self.heights, 2, self.source))
-        object.__setattr__(self, "spacing", _checked_pair("spacing of the height map", self.spacing))
+        object.__setattr__(self, "spacing", two_lengths("spacing of the height map", self.spacing))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -148,9 +147,9 @@ class HeightMap:
             If there is no such line.
         """
         ny = self.shape[1]
-        chosen = ny // 2 if index is None else index
-        if not 0 <= chosen < ny:
-            raise InputError("index of a line of the map", index, f"0 to {ny - 1}", "Choose another line.")
+        allowed = f"0 to {ny - 1}, or None for the central line"
+        what = "index of a line of the map"
+        chosen = ny // 2 if index is None else whole(what, index, allowed, at_least=0, at_most=ny - 1)
         return Profile(self.heights[:, chosen], self.spacing[0], self.source)
 
     def crop(self, start: tuple[float, float], size: tuple[float, float]) -> HeightMap:
@@ -173,9 +172,11 @@ class HeightMap:
         InputError
             If the piece is not inside the map or holds fewer than two points along an axis.
         """
+        first = two("start of a piece of the map", start, "two lengths (x, y) in m")
+        lengths = two("size of a piece of the map", size, "two lengths (lx, ly) in m")
         kept = tuple(
             _window(f"piece of the map along {axis}", s, length, step, n)
-            for axis, s, length, step, n in zip("xy", start, size, self.spacing, self.shape, strict=True)
+            for axis, s, length, step, n in zip("xy", first, lengths, self.spacing, self.shape, strict=True)
         )
         return replace(self, heights=self.heights[kept])
 
@@ -210,7 +211,8 @@ class Profile:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _checked_heights(self.heights, 1, self.source))
-        object.__setattr__(self, "spacing", _checked_length("spacing of the profile", self.spacing))
+        allowed = "a finite length above zero, in m"
+        object.__setattr__(self, "spacing", real("spacing of the profile", self.spacing, allowed, above=0.0))
 
     @property
     def shape(self) -> tuple[int]:
@@ -330,28 +332,10 @@ def _frozen_copy(array: NDArray[Any]) -> NDArray[np.float64]:
     return array
 
 
-def _checked_length(what: str, value: float) -> float:
-    try:
-        length = float(value)
-    except (TypeError, ValueError):
-        length = math.nan
-    if not (math.isfinite(length) and length > 0):
-        raise InputError(what, value, "a finite length above zero, in m", "Give the distance of two points.")
-    return length
-
-
-def _checked_pair(what: str, value: float | Sequence[float]) -> tuple[float, float]:
-    pair = np.ravel(np.asarray(value, dtype=object))
-    if len(pair) not in (1, 2):
-        raise InputError(what, value, "two lengths (dx, dy) in m", "Give one number per axis.")
-    return _checked_length(what, pair[0]), _checked_length(what, pair[-1])
-
-
 def _window(what: str, start: float, size: float, step: float, points: int) -> slice:
     allowed = f"from 0 to {points * step:.6g} m, at least {2 * step:.6g} m long"
+    start, size = (real(what, each, f"lengths in m, {allowed}") for each in (start, size))
     received = f"{size} m from {start} m"
-    if not (math.isfinite(start) and math.isfinite(size)):
-        raise InputError(what, received, allowed, "Give finite lengths.")
     first, count = round(start / step), round(size / step)
     if first < 0 or count < 2 or first + count > points:
         raise InputError(what, received, allowed, "Choose a smaller piece inside it.")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, interpolate, signal, sparse
 
+from asperity.arguments import real
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.surfaces.form import Form, Surface, fit_form, polynomial, remove_form
 from asperity.surfaces.heightmap import Profile
@@ -88,9 +89,9 @@ def band_limit(surface: Surface, longest: float | None = None, shortest: float |
     """
     spacings = np.atleast_1d(np.asarray(surface.spacing))
     for name, cut_off in (("longest", longest), ("shortest", shortest)):
-        if cut_off is not None and not 2.0 * spacings.max() <= cut_off < np.inf:
+        if cut_off is not None:
             allowed = f"at least two samples, {2.0 * spacings.max():.4g} m, and finite"
-            raise InputError(f"{name} wavelength", f"{cut_off:.4g} m", allowed)
+            real(f"{name} wavelength", cut_off, allowed, at_least=2.0 * spacings.max())
     if longest is not None and shortest is not None and not longest > shortest:
         raise InputError("wavelengths", f"shortest {shortest}, longest {longest}", "shortest < longest")
     size = float(np.max(surface.size))

@@ -10,11 +10,13 @@ from typing import TypeVar
 
 import numpy as np
 
+from asperity.arguments import shown, whole
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, instruments, netcdf, sdf, text, x3p
 from asperity.surfaces.readers.guards import archive, readable_file
 from asperity.surfaces.readers.hints import Hints, Length, Surface, checked_hints
+from asperity.surfaces.readers.spelling import advice, spell
 
 __all__ = ["read_surface", "read_surfaces"]
 
@@ -93,10 +95,11 @@ def read_surface(
     allowed = f"0 to {len(surfaces) - 1}"
     if index is None and len(surfaces) > 1:
         received = f"an ensemble of {len(surfaces)} samples"
-        raise InputError(str(path), received, "one sample", f"Choose one with index= ({allowed}).")
-    if index is not None and index not in range(len(surfaces)):
-        raise InputError(f"index of a sample in {path}", index, allowed, "Choose another sample.")
-    return _finished([surfaces[index or 0]], transpose, fill)[0]
+        remedy = advice("index", 0, f"Choose one of {allowed}, as in", "Keep one in the file.")
+        raise InputError(str(path), received, "one sample", remedy)
+    what = f"index of a sample in {path}"
+    chosen = 0 if index is None else whole(what, index, allowed, at_least=0, at_most=len(surfaces) - 1)
+    return _finished([surfaces[chosen]], transpose, fill)[0]
 
 
 def read_surfaces(
@@ -190,6 +193,9 @@ def _by_members(file: Path) -> Reader | None:
 
 
 def _finished(surfaces: list[S], transpose: bool, fill: bool) -> list[S]:
+    for name, flag in (("transpose", transpose), ("fill", fill)):
+        if not isinstance(flag, bool | np.bool_):
+            raise InputError(name, shown(flag), "True or False")
     _report_missing(surfaces, fill)
     if transpose:
         surfaces = [_transposed(surface) for surface in surfaces]
@@ -212,7 +218,7 @@ def _report_missing(surfaces: Sequence[Surface], fill: bool) -> None:
     left = (
         "interpolated from their neighbours" if fill else "left as NaN, which contact cannot be solved with"
     )
-    remedy = "check the measurement" if fill else "fill=True interpolates them"
+    remedy = "check the measurement" if fill else f"{spell('fill', True)} interpolates them"
     what = f"{surfaces[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
     message = f"{what}; {left}; {remedy}"
     warnings.warn(message, MissingPointsWarning, stacklevel=4)

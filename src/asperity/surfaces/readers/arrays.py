@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from asperity.errors import InputError
 from asperity.surfaces.readers.guards import archive, check_claim, hostile, member_bytes
 from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
+from asperity.surfaces.readers.spelling import advice
 
 
 def read_npy(path: Path, hints: Hints) -> list[Surface]:
@@ -98,7 +99,8 @@ def only_one(names: list[str], source: str) -> str:
     if len(names) == 1:
         return names[0]
     listed = ", ".join(names) or "none"
-    raise InputError(f"arrays of heights in {source}", listed, "exactly one", "Choose one with array=.")
+    remedy = advice("array", names[0], "Choose one, as in", "Keep one in the file.") if names else ""
+    raise InputError(f"arrays of heights in {source}", listed, "exactly one", remedy)
 
 
 def _decoded(data: bytes, source: str) -> NDArray[Any]:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree
 
+from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 
 MAX_FILE_BYTES = 4 << 30  # largest file, and largest content of an archive
@@ -37,14 +38,18 @@ def readable_file(path: str | Path) -> Path:
     InputError
         If there is no such file, it is a directory, cannot be opened, is empty or is larger than 4 GiB.
     """
-    file = Path(path)
+    file = file_path("surface file", path, "the path of a file")
     try:
         if file.is_dir():
             raise InputError("surface file", f"the directory {file}", "a file", "Name a file inside it.")
+        if not file.exists() and str(file).isprintable():
+            raise InputError(str(file), "no such file", "a file with heights", "Check the path.")
         if not file.is_file():
-            raise InputError("surface file", f"{file}, which is not a file", "a file", "Check the path.")
+            raise InputError("surface file", f"{shown(str(file))}, no file", "a file", "Check the path.")
         with file.open("rb"):
             size = file.stat().st_size
+    except InputError:
+        raise
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
         remedy = "Check its name and permissions."
         raise InputError("surface file", f"{file} ({error})", "a readable file", remedy) from None

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from asperity.errors import InputError
+from asperity.surfaces.readers.spelling import advice
 from asperity.units import factor, quantity
 
 _NUMBER = r"[-+]?\d+(?:[.,]\d*)?(?:[eE][-+]?\d+)?"
@@ -119,8 +120,6 @@ def _length(unit: str) -> float:
     try:
         return factor(unit, "m")
     except InputError as error:
-        allowed, remedy = (
-            "a unit of length",
-            "Correct the header, or leave the bracket out and give height_unit=.",
-        )
-        raise InputError("unit in the header", repr(unit), allowed, remedy) from error
+        correct = "Correct the header"
+        remedy = advice("height_unit", "um", f"{correct}, or leave the bracket out and give", f"{correct}.")
+        raise InputError("unit in the header", repr(unit), "a unit of length", remedy) from error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -10,11 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import real, shown
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers.spelling import advice, spell
 from asperity.units import factor, quantity
 
 Surface = HeightMap | Profile
+_GIVEN = {"height_factor": "height_unit", "spacing": "pixel", "lateral_factor": "pixel_unit"}
+_HEADING = 'Save it as text with a heading, as "{}".'
 Length = str | float
 
 
@@ -47,7 +50,8 @@ class Hints:
         chosen = self.height_factor or stated
         if chosen is None:
             allowed = "a unit of the heights"
-            raise InputError(source, "heights without a unit", allowed, 'Give it, as in height_unit="um".')
+            remedy = advice("height_unit", "um", "Give it, as in", _HEADING.format("z (um)"))
+            raise InputError(source, "heights without a unit", allowed, remedy)
         return chosen
 
     def spacing_in(self, source: str, stated: tuple[float, float] | None = None) -> tuple[float, float]:
@@ -55,9 +59,8 @@ class Hints:
         chosen = self.spacing or stated
         if chosen is None:
             allowed = "the distance of neighbouring points"
-            raise InputError(
-                source, "heights without a pixel size", allowed, 'Give it, as in pixel="1.5 um".'
-            )
+            remedy = advice("pixel", "1.5 um", "Give it, as in", _HEADING.format("# pixel: 1.5 um"))
+            raise InputError(source, "heights without a pixel size", allowed, remedy)
         return chosen
 
     def refuse(self, source: str, kind: str) -> None:
@@ -65,8 +68,7 @@ class Hints:
         said = [field.name for field in fields(self) if getattr(self, field.name) is not None]
         if said:
             allowed = f"no hints, because {kind} files state their lengths and have one array"
-            given = {"height_factor": "height_unit", "spacing": "pixel", "lateral_factor": "pixel_unit"}
-            names = ", ".join(given.get(name, name) for name in said)
+            names = ", ".join(spell(_GIVEN.get(name, name)) for name in said)
             raise InputError(f"hints for {source}", names, allowed, "Leave them out.")
 
 
@@ -102,10 +104,10 @@ def checked_hints(
     InputError
         If a unit is unknown, or a length is not positive and finite.
     """
-    if decimal not in (None, ".", ","):
-        raise InputError("decimal", repr(decimal), '"." or ","', "Give one of these.")
+    if decimal is not None and decimal not in (".", ","):
+        raise InputError("decimal", shown(decimal), '"." or ","', "Give one of these.")
     if array is not None and not isinstance(array, str):
-        raise InputError("array", repr(array), "the name of an array", "Write it in quotes.")
+        raise InputError("array", shown(array), "the name of an array", "Write it in quotes.")
     lateral = _unit("pixel_unit", pixel_unit)
     spacing = None if pixel is None else _pair(pixel, lateral or 1.0)
     return Hints(array, _unit("height_unit", height_unit), spacing, lateral, decimal)
@@ -118,21 +120,16 @@ def _unit(name: str, unit: Length | None) -> float | None:
 
 
 def _pair(pixel: Length | Sequence[Length], unit: float) -> tuple[float, float]:
-    sizes = [pixel] if isinstance(pixel, str) or not isinstance(pixel, Sequence) else list(pixel)
+    sizes = list(pixel) if isinstance(pixel, list | tuple | np.ndarray) and np.ndim(pixel) == 1 else [pixel]
     if len(sizes) not in (1, 2):
-        raise InputError("pixel", pixel, "one length, or two (dx, dy)", 'Write it as "1.5 um".')
-    metres = [_positive("pixel", quantity(s, "m") if isinstance(s, str) else s, unit) for s in sizes]
-    return metres[0], metres[-1]
+        raise InputError("pixel", shown(pixel), "one length, or two (dx, dy)", 'Write it as "1.5 um".')
+    metres = [quantity(s, "m") if isinstance(s, str) else _positive("pixel", s) * unit for s in sizes]
+    return _positive("pixel", metres[0]), _positive("pixel", metres[-1])
 
 
-def _positive(name: str, value: Any, unit: float = 1.0) -> float:
-    try:
-        length = float(value) * unit
-    except (TypeError, ValueError):
-        length = math.nan
-    if not (math.isfinite(length) and length > 0):
-        raise InputError(name, value, "a finite length above zero", "Check the number and its unit.")
-    return length
+def _positive(name: str, value: object) -> float:
+    remedy = "Check the number and its unit."
+    return real(name, value, "a finite length above zero", above=0.0, remedy=remedy)
 
 
 def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) -> list[Surface]:
@@ -165,7 +162,8 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
         return [Profile(array.ravel(), spacing[0], source)]
     if array.ndim != 2:
         allowed = "1 (a line), 2 (a map) or 3 (an ensemble of maps) axes, none empty"
-        raise InputError(source, f"an array of shape {array.shape}", allowed, "Select one array=.")
+        remedy = advice("array", "name", "Select one, as in", "Keep one map or line in the file.")
+        raise InputError(source, f"an array of shape {array.shape}", allowed, remedy)
     return [HeightMap(array, spacing, source)]
 
 
@@ -192,6 +190,11 @@ def scaled(array: NDArray[Any], unit: float, source: str) -> NDArray[np.float64]
         If the array does not hold real numbers.
     """
     if array.dtype.kind not in "fiu":
-        raise InputError(source, f"data of type {array.dtype}", "real numbers", "Select another array=.")
+        raise InputError(
+            source,
+            f"data of type {array.dtype}",
+            "real numbers",
+            advice("array", "name", "Select another one, as in", "Keep numbers alone in the file."),
+        )
     with np.errstate(over="ignore", invalid="ignore"):  # infinite heights are refused by name afterwards
         return np.asarray(array.astype(np.float64) * unit)

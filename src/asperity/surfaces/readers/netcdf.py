@@ -13,6 +13,7 @@ from asperity.surfaces.readers.arrays import only_one
 from asperity.surfaces.readers.grid import uniform_step
 from asperity.surfaces.readers.guards import check_claim, hostile
 from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
+from asperity.surfaces.readers.spelling import advice
 from asperity.units import factor
 
 MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written
@@ -101,6 +102,6 @@ def _step(group: Any, dimension: str, hints: Hints, source: str) -> float | None
     coordinate = group.variables[dimension]
     unit = hints.lateral_factor or _unit(coordinate)
     if unit is None:
-        remedy = 'Give it, as in pixel_unit="um".'
+        remedy = advice("pixel_unit", "um", "Give it, as in", "Add that attribute.")
         raise InputError(f"{dimension} of {source}", "no unit", "a units attribute", remedy)
     return uniform_step(np.asarray(coordinate[...], dtype=np.float64), source, dimension) * unit

@@ -15,6 +15,7 @@ from asperity.surfaces.readers.grid import line, rasterised
 from asperity.surfaces.readers.guards import check_claim, hostile
 from asperity.surfaces.readers.headers import Header, parsed_header
 from asperity.surfaces.readers.hints import Hints, Surface, surfaces_of
+from asperity.surfaces.readers.spelling import advice, spell
 
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")
@@ -106,7 +107,8 @@ def _dialect(lines: list[str], decimal: str | None, source: str) -> Dialect:
     if len(words) > len(sample) or not all("," in word for word in words):
         return Dialect(None, True)
     received, allowed = f"numbers such as {words[-1][:40]!r}", "an unambiguous decimal mark"
-    remedy = 'Give decimal="," if the comma is the decimal mark, decimal="." if it separates columns.'
+    lead = f"Give {spell('decimal', ',')} if the comma is the decimal mark; if it separates columns, give"
+    remedy = advice("decimal", ".", lead, "Write decimal points, or semicolons between columns.")
     raise InputError(source, received, allowed, remedy)
 
 
@@ -187,10 +189,7 @@ def _lateral(stated: float | None, hints: Hints, source: str) -> float:
     unit = hints.lateral_factor or stated
     if unit is None:
         allowed = "a unit of the coordinates"
-        raise InputError(
-            source,
-            "coordinates without a unit",
-            allowed,
-            'Write it into the heading, as "x (mm)", or give pixel_unit="mm".',
-        )
+        heading = 'Write it into the heading, as "x (mm)"'
+        remedy = advice("pixel_unit", "mm", f"{heading}, or give", f"{heading}.")
+        raise InputError(source, "coordinates without a unit", allowed, remedy)
     return unit

@@ -1,0 +1,216 @@
+"""What Python callers may hand over: numbers, arrays and paths, or a message that says what came instead."""
+
+from __future__ import annotations
+
+import math
+import numbers
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+
+LONGEST = 60  # characters of a received value that a message repeats
+
+
+def shown(value: object) -> str:
+    """Write a received value for a message, shortened to what a person needs to find it again."""
+    if isinstance(value, np.ndarray) and value.ndim:
+        return f"an array of {value.dtype} of shape {value.shape}"
+    text = _written(value)
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "…"
+
+
+def _written(value: object) -> str:
+    if isinstance(value, str) and value.isprintable():
+        return f"'{value}'"  # without the double backslashes of Python
+    try:
+        return repr(value.item() if isinstance(value, np.generic) else value)
+    except ValueError:  # Python does not write out integers of many thousand digits
+        return "a huge number"
+
+
+def real(
+    what: str,
+    value: object,
+    allowed: str,
+    *,
+    above: float = -math.inf,
+    at_least: float = -math.inf,
+    at_most: float = math.inf,
+    remedy: str = "",
+) -> float:
+    """Take one finite real number.
+
+    Parameters
+    ----------
+    what : str
+        What the argument is, for the message.
+    value : object
+        What was received: a number of Python or numpy.
+    allowed : str
+        What may stand there, for the message.
+    above, at_least, at_most : float, optional
+        Limits.
+    remedy : str, optional
+        What to do; text gets the advice to leave units and quotes away.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InputError
+        If it is no finite real number, or beyond the limits. Truth values are no numbers.
+    """
+    number = _number(value)
+    if not (math.isfinite(number) and number > above and at_least <= number <= at_most):
+        if isinstance(value, str):
+            remedy = "Python takes numbers in SI, without unit and quotes."
+        raise InputError(what, shown(value), allowed, remedy)
+    return number
+
+
+def whole(what: str, value: object, allowed: str, *, at_least: int, at_most: float = math.inf) -> int:
+    """Take one whole number.
+
+    Parameters
+    ----------
+    what, value, allowed
+        As in `real`.
+    at_least, at_most : int
+        Limits.
+
+    Returns
+    -------
+    int
+        The number; one such as 8.0 counts as whole.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number, or beyond the limits.
+    """
+    number = _number(value)
+    if not (math.isfinite(number) and number == int(number) and at_least <= number <= at_most):
+        raise InputError(what, shown(value), allowed)
+    return int(number)
+
+
+def two(what: str, value: object, allowed: str) -> tuple[Any, Any]:
+    """Take two things, whatever they are.
+
+    Parameters
+    ----------
+    what, value, allowed
+        As in `real`; a list, a tuple or an array.
+
+    Returns
+    -------
+    tuple
+        The two.
+
+    Raises
+    ------
+    InputError
+        If they are not two.
+    """
+    several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim == 1)
+    if not several or len(value) != 2:  # type: ignore[arg-type]
+        raise InputError(what, shown(value), allowed)
+    return value[0], value[1]  # type: ignore[index]
+
+
+def two_lengths(what: str, value: object) -> tuple[float, float]:
+    """Take two lengths; a single one stands for both.
+
+    Parameters
+    ----------
+    what, value
+        As in `real`.
+
+    Returns
+    -------
+    tuple of float
+        (dx, dy), m.
+
+    Raises
+    ------
+    InputError
+        If they are not one or two finite numbers above zero.
+    """
+    allowed = "two positive lengths (dx, dy) in m, or one for both"
+    if isinstance(value, str) or math.isfinite(_number(value)):
+        value = (value, value)
+    dx, dy = (real(what, each, allowed, above=0.0) for each in two(what, value, allowed))
+    return dx, dy
+
+
+def real_array(what: str, values: object, allowed: str) -> NDArray[np.float64]:
+    """Take an array of real numbers; points that are masked become NaN.
+
+    Parameters
+    ----------
+    what, values, allowed
+        As in `real`; anything that numpy makes an array of.
+
+    Returns
+    -------
+    ndarray
+        Contiguous, float64.
+
+    Raises
+    ------
+    InputError
+        If it holds no real numbers.
+    """
+    if isinstance(values, np.ma.MaskedArray):
+        values = np.ma.filled(values.astype(np.float64), np.nan)
+    try:
+        array = np.asarray(values)
+    except ValueError:  # lists of unequal lengths
+        raise InputError(what, "rows of unequal length", allowed) from None
+    if array.dtype.kind not in "fiu":
+        received = shown(values) if array.ndim == 0 else f"data of type {array.dtype}"
+        raise InputError(what, received, allowed)
+    return np.asarray(array, dtype=np.float64, order="C")
+
+
+def file_path(what: str, value: object, allowed: str) -> Path:
+    """Take a path.
+
+    Parameters
+    ----------
+    what, value, allowed
+        As in `real`; text or a path object.
+
+    Returns
+    -------
+    Path
+        The path, whether or not anything is there.
+
+    Raises
+    ------
+    InputError
+        If it is no path.
+    """
+    if not isinstance(value, str | os.PathLike) or not str(value).strip():
+        raise InputError(what, shown(value), allowed)
+    return Path(value)
+
+
+def _number(value: object) -> float:
+    """A real number, or NaN for anything else."""
+    if getattr(value, "ndim", None) == 0 and hasattr(value, "item"):  # arrays of numpy and xarray
+        value = value.item()
+    if isinstance(value, bool | np.bool_) or not isinstance(value, numbers.Real):
+        return math.nan
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf

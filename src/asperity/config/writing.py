@@ -1,0 +1,47 @@
+"""Keys and values of a case as TOML text."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+
+def toml_text(data: Mapping[str, Any]) -> str:
+    """Write keys and values as TOML.
+
+    Parameters
+    ----------
+    data : mapping
+        Keys with texts, numbers, truth values, lists of these, and sections as mappings.
+
+    Returns
+    -------
+    str
+        TOML that reads as the same keys and values: those at the top, then one table for each section.
+    """
+    sections = {name: value for name, value in data.items() if isinstance(value, Mapping)}
+    lines = _lines({name: value for name, value in data.items() if name not in sections})
+    for name, section in sections.items():
+        lines += ["", f"[{_text(name)}]", *_lines(section)]
+    return "\n".join(lines).lstrip() + "\n"
+
+
+def _lines(data: Mapping[str, Any]) -> list[str]:
+    return [f"{_text(name)} = {_value(value)}" for name, value in data.items()]
+
+
+def _text(name: str) -> str:
+    bare = name.isascii() and name.replace("-", "_").isidentifier()
+    return name if bare else _value(name)
+
+
+def _value(value: object) -> str:
+    if isinstance(value, Mapping):
+        inside = ", ".join(f"{_text(name)} = {_value(item)}" for name, item in value.items())
+        return f"{{ {inside} }}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, float):
+        return repr(value)  # inf and nan, too, are spelled as in Python
+    return json.dumps(value, ensure_ascii=False, default=str).replace("\x7f", "\\u007f")

@@ -1,0 +1,103 @@
+"""Reading the measured files that a case names, with messages that speak of its keys."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from asperity.config.sections import MeasuredLine, Surface
+from asperity.errors import InputError
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers import read_surface, read_surfaces
+from asperity.surfaces.readers.spelling import in_case, spelled
+
+_MAP_KEYS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill")}
+_LINE_KEYS = {"array": "line_array", "height_unit": "line_unit", "pixel": "line_spacing"}
+
+
+def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
+    """Read the map, or all maps of an ensemble, that the surface section names.
+
+    Parameters
+    ----------
+    surface : Surface
+        The surface section of a case, with a file.
+
+    Returns
+    -------
+    sequence of HeightMap or Profile
+        As they lie in the file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    """
+    assert surface.file is not None
+    with spelled(in_case("surface", _MAP_KEYS)):
+        read = read_surfaces if surface.index is None else partial(read_surface, index=surface.index)
+        found = read(
+            surface.file,
+            array=surface.array,
+            height_unit=surface.height_unit,
+            pixel=surface.pixel,
+            fill=surface.fill,
+        )
+    return found if isinstance(found, list) else [found]
+
+
+def read_lines(section: MeasuredLine, name: str) -> HeightMap | Profile:
+    """Read the measured line, or lines side by side, that a section names.
+
+    Parameters
+    ----------
+    section : MeasuredLine
+        A section of a case, with a line.
+    name : str
+        Its name, for messages.
+
+    Returns
+    -------
+    HeightMap or Profile
+        Lines side by side are a map; the distance across is not known to it.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read.
+    """
+    assert section.line is not None
+    with spelled(in_case(name, _LINE_KEYS)):
+        return read_surface(
+            section.line, array=section.line_array, height_unit=section.line_unit, pixel=section.line_spacing
+        )
+
+
+def read_section(path: Path, key: str) -> Profile:
+    """Read a measured section across wheel or rail.
+
+    Parameters
+    ----------
+    path : Path
+        Its file.
+    key : str
+        The key that names it, for messages.
+
+    Returns
+    -------
+    Profile
+        Heights, complete.
+
+    Raises
+    ------
+    InputError
+        If the file does not hold one complete line.
+    """
+    with spelled(in_case(key.partition(".")[0], {})):
+        measured = read_surface(path)
+    if not isinstance(measured, Profile):
+        raise InputError(key, "a map of heights", "one line across the rail")
+    if measured.missing_share > 0.0:
+        raise InputError(key, "points without a height", "a complete line", "Fill it first.")
+    return measured

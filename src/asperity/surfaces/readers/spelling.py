@@ -1,0 +1,110 @@
+"""How a hint is written where the user stands: as an argument in Python, an option, or a key of a case."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+Value = str | int | bool | None
+Spelling = Callable[[str, Value], str | None]
+"""Writes a hint of `read_surface` with a value, or its name alone; None where there is no way to say it."""
+
+
+def in_python(name: str, value: Value) -> str:
+    """Write a hint as an argument: ``height_unit="um"``."""
+    if value is None:
+        return name
+    return f"{name}={json.dumps(value, ensure_ascii=False) if isinstance(value, str) else value}"
+
+
+def on_command_line(name: str, value: Value) -> str:
+    """Write a hint as an option: ``--height-unit um``."""
+    option = f"--{name.replace('_', '-')}"
+    if value is None or value is True:
+        return option
+    word = str(value)
+    return f'{option} "{word}"' if set(word) & set(" ,;") else f"{option} {word}"
+
+
+def in_case(section: str, keys: Mapping[str, str]) -> Spelling:
+    """Write a hint as a key of a case: ``height_unit = "um" in [surface]``.
+
+    Parameters
+    ----------
+    section : str
+        The section.
+    keys : mapping of str to str
+        Keys that it has, by the hints that they are; others cannot be said there.
+
+    Returns
+    -------
+    callable
+        As `in_python`.
+    """
+
+    def spelling(name: str, value: Value) -> str | None:
+        if name not in keys or value is None:
+            return keys.get(name)
+        return f"{keys[name]} = {json.dumps(value, ensure_ascii=False)} in [{section}]"
+
+    return spelling
+
+
+_spelling: ContextVar[Spelling] = ContextVar("spelling", default=in_python)
+
+
+@contextmanager
+def spelled(spelling: Spelling) -> Iterator[None]:
+    """Write hints in another way while the body of the ``with`` statement reads files.
+
+    Parameters
+    ----------
+    spelling : callable
+        As `in_python`, `on_command_line` or what `in_case` makes.
+    """
+    token = _spelling.set(spelling)
+    try:
+        yield
+    finally:
+        _spelling.reset(token)
+
+
+def advice(name: str, value: Value, lead: str, otherwise: str) -> str:
+    """Advise to give a hint, as it is written where the user stands.
+
+    Parameters
+    ----------
+    name : str
+        The hint, as `read_surface` calls it.
+    value : str, int or bool
+        An example, or the value that is meant.
+    lead : str
+        Words before it.
+    otherwise : str
+        A sentence for a place where the hint cannot be given.
+
+    Returns
+    -------
+    str
+        A sentence.
+    """
+    written = _spelling.get()(name, value)
+    return otherwise if written is None else f"{lead} {written}."
+
+
+def spell(name: str, value: Value = None) -> str:
+    """Write a hint with a value as it is written where the user stands; its bare name where it has no place.
+
+    Parameters
+    ----------
+    name, value
+        As in `advice`.
+
+    Returns
+    -------
+    str
+        As ``height_unit="um"``.
+    """
+    return _spelling.get()(name, value) or name

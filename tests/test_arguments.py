@@ -1,0 +1,234 @@
+"""Wrong types and values at the doors of Python: always a message that names what was received."""
+
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import asperity
+from asperity import HalfSpace, HeightMap, Profile, Track, read_surface, scan, study
+from asperity.arguments import real, real_array, shown, two_lengths, whole
+from asperity.errors import InputError
+from asperity.structures.moving_kernel import moving_kernel
+
+MICROMETRE = (1e-6, 1e-6)
+MAP = HeightMap(np.random.default_rng(0).normal(size=(20, 8)) * 1e-8, MICROMETRE)
+X = (np.arange(8) - 4) * 1e-6
+BALL = np.add.outer(X**2, X**2) / 2e-4
+TRACK = Track.named("x2000")
+
+NO_NUMBERS = ["1 um", b"x", [], {}, object(), 1 + 2j, np.array(["x"]), len, float("nan"), True, (1, 2, 3)]
+"""Values that stand for no single number and for no pair of them."""
+
+
+def scanned(**changes):
+    arguments = {"heights": MAP.heights, "spacing": MICROMETRE, "body": BALL, "modulus": 1e11}
+    return scan(**(arguments | {"approaches": [1e-8]} | changes))
+
+
+DOORS = {
+    "half-space shape": lambda v: HalfSpace(v, MICROMETRE, 1e11),
+    "half-space spacing": lambda v: HalfSpace((8, 8), v, 1e11),
+    "contact modulus": lambda v: HalfSpace((8, 8), MICROMETRE, v),
+    "hardness": lambda v: HalfSpace((8, 8), MICROMETRE, 1e11, v),
+    "spacing of the scan": lambda v: scanned(spacing=v),
+    "contact modulus of a scan": lambda v: scanned(modulus=v),
+    "hardness of a scan": lambda v: scanned(hardness=v),
+    "stride of the scan": lambda v: scanned(stride=v),
+    "rtol": lambda v: scanned(rtol=v),
+    "workers": lambda v: scanned(workers=v),
+    "spacing of the height map": lambda v: HeightMap(MAP.heights, v),
+    "spacing of the profile": lambda v: Profile(MAP.heights[0], v),
+    "index of a line": lambda v: MAP.line(v),
+    "start of a piece": lambda v: MAP.crop(v, (4e-6, 4e-6)),
+    "size of a piece": lambda v: MAP.crop((0.0, 0.0), v),
+    "longest wavelength": lambda v: MAP.band_limited(longest=v),
+    "pad stiffness": lambda v: Track.named("x2000", pad_stiffness=v),
+    "sleeper mass": lambda v: Track.named("x2000", sleeper_mass=v),
+    "pad damping": lambda v: Track.named("x2000", pad_damping=v),
+    "positions on the track": lambda v: TRACK.receptance(100.0, v, 0.0),
+    "speed": lambda v: moving_kernel(TRACK, v, 1e-4),
+    "time step": lambda v: moving_kernel(TRACK, 20.0, v),
+    "workers of a study": lambda v: study({"kind": "ball-on-beam"}, {"seed": [1]}, workers=v),
+}
+NEEDED = ("half-space shape", "half-space spacing", "contact modulus", "stride", "rtol", "pad stiffness")
+
+
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+@pytest.mark.parametrize("door", DOORS)
+def test_what_is_no_number_is_refused_by_name(door, value):
+    with pytest.raises(InputError, match=rf"^{door.partition(' of a s')[0]}.*: received .*; allowed: "):
+        DOORS[door](value)
+
+
+@pytest.mark.parametrize("door", [door for door in DOORS if door.startswith(NEEDED)])
+def test_what_is_needed_is_not_none(door):
+    with pytest.raises(InputError, match="received None; allowed: "):
+        DOORS[door](None)
+
+
+ARRAYS = {
+    "heights of the scan": lambda v: scanned(heights=v),
+    "body of the scan": lambda v: scanned(body=v),
+    "approaches of the scan": lambda v: scanned(approaches=v),
+    "heights": lambda v: HeightMap(v, 1e-6),
+    "frequency": lambda v: TRACK.receptance(v, 0.0, 0.0),
+}
+
+
+@pytest.mark.parametrize("value", ["a", b"x", {}, object(), [1 + 2j], ["x"], len, [[1], [1, 2]]], ids=repr)
+@pytest.mark.parametrize("door", ARRAYS)
+def test_what_is_no_array_of_numbers_is_refused_by_name(door, value):
+    with pytest.raises(InputError, match=rf"^{door}.*: received .*; allowed: "):
+        ARRAYS[door](value)
+
+
+def test_one_number_stands_for_both_spacings():
+    assert HalfSpace((8, 8), 1e-6, 1e11).spacing == MICROMETRE
+    assert HalfSpace((8, 8), np.float32(1.0), xr.DataArray(2.0)).modulus == 2.0
+    assert scanned(spacing=1e-6).equals(scanned())
+
+
+def test_text_is_told_to_leave_unit_and_quotes():
+    with pytest.raises(InputError, match=r"received '115 GPa'.*in SI, without unit and quotes"):
+        HalfSpace((8, 8), 1e-6, "115 GPa")
+
+
+def test_a_height_map_is_scanned_on_its_own_spacing():
+    expected = scanned()
+    assert scan(MAP, None, BALL, 1e11, [1e-8]).equals(expected)
+    assert scan(MAP, MICROMETRE, BALL, 1e11, 1e-8).equals(expected)
+    with pytest.raises(InputError, match=r"spacing of the scan: received 2e-06 beside a height map"):
+        scan(MAP, 2e-6, BALL, 1e11, [1e-8])
+    with pytest.raises(InputError, match="received a line of heights; allowed: a map of heights"):
+        scan(MAP.line(), 1e-6, BALL, 1e11, [1e-8])
+    holed = MAP.heights.copy()
+    holed[3, 4] = np.nan
+    with pytest.raises(InputError, match=r"1 of 160 points without a height.*Fill missing points"):
+        scan(HeightMap(holed, MICROMETRE), None, BALL, 1e11, [1e-8])
+    with pytest.raises(InputError, match="1 of 160 points without a height"):
+        scanned(heights=np.ma.masked_invalid(holed))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"cache": "folder"}, "cache: received 'folder'; allowed: an object with get and put"),
+        ({"progress": 1}, "progress: received 1; allowed: a callable"),
+        ({"device": 0}, "device: received 0; allowed: 'cpu' or 'gpu'"),
+        ({"device": ""}, "device: received ''"),
+    ],
+)
+def test_settings_of_a_scan(change, message):
+    with pytest.raises(InputError, match=message):
+        scanned(**change)
+
+
+@pytest.mark.parametrize("value", [None, 1, [], object(), True, ""], ids=repr)
+def test_what_is_no_path_is_refused(value):
+    for door in (read_surface, asperity.load, asperity.run):
+        with pytest.raises(InputError, match=r"received .*; allowed: the path of "):
+            door(value)
+    for definition, sweep in ((value, {"seed": [1]}), (value, None)):
+        with pytest.raises(InputError, match=r"received .*; allowed: the path of "):
+            study(definition, sweep)
+
+
+@pytest.mark.parametrize(
+    ("hints", "message"),
+    [
+        ({"height_unit": True}, "height_unit: received True"),
+        ({"pixel": b"x"}, "pixel: received b'x'"),
+        ({"pixel": {}}, "pixel: received {}"),
+        ({"pixel": (1e-6, True)}, "pixel: received True"),
+        ({"index": True}, "index of a sample in .*: received True; allowed: 0 to 0"),
+        ({"index": "0"}, "index of a sample in .*: received '0'"),
+        ({"fill": "no"}, "fill: received 'no'; allowed: True or False"),
+        ({"transpose": None}, "transpose: received None; allowed: True or False"),
+        ({"decimal": []}, r"decimal: received \[\]"),
+    ],
+)
+def test_hints_of_the_wrong_kind(tmp_path, hints, message):
+    np.save(tmp_path / "a.npy", MAP.heights)
+    with pytest.raises(InputError, match=message):
+        read_surface(tmp_path / "a.npy", **({"height_unit": "m", "pixel": "1 um"} | hints))
+
+
+def test_a_kernel_needs_a_track():
+    with pytest.raises(InputError, match=r"track: received 'x2000'; allowed: a Track, as Track.named"):
+        moving_kernel("x2000", 20.0, 1e-4)
+    with pytest.raises(InputError, match="track name: received None"):
+        Track.named(None)
+
+
+# --- run and study of a mapping
+
+KEYS = {
+    "kind": "ball-on-beam",
+    "duration": "0.002 s",
+    "laws": ("linear",),
+    "seed": np.int64(3),
+    "surface": {"spectrum": "iso3095"},
+}
+
+
+@pytest.fixture
+def _own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
+
+
+@pytest.mark.usefixtures("_own_cache")
+def test_a_mapping_of_keys_is_run_as_its_toml_text():
+    from asperity.config import parse_case
+
+    result = asperity.run(KEYS)
+    again = asperity.run(parse_case(result.attrs["case"]))
+    assert result["rolling/contact_force"].equals(again["rolling/contact_force"])
+    assert result.attrs["seed"] == 3
+    assert 'spectrum = "iso3095"' in result.attrs["case"]
+
+
+@pytest.mark.usefixtures("_own_cache")
+def test_a_study_of_a_mapping():
+    found = study(KEYS, {"seed": [1, 2]}, workers=1)
+    assert found["completed"].values.tolist() == [True, True]
+    with pytest.raises(InputError, match="sweep: received nothing; allowed: keys of the case"):
+        study(KEYS)
+
+
+def test_a_number_in_a_mapping_gets_its_own_unit():
+    """An SI value must not be answered with another unit, in which it would be a thousand times too small."""
+    with pytest.raises(InputError, match=r'surface.rms: received 5e-07.*"5e-07 m" if it is in SI units'):
+        asperity.run({"kind": "ball-on-beam", "surface": {"rms": 5e-7}})
+    with pytest.raises(InputError, match='kind: received nothing; allowed: "ball-on-beam"'):
+        asperity.run({})
+    with pytest.raises(InputError, match="progress: received 'yes'"):
+        asperity.run(KEYS, progress="yes")
+
+
+# --- what takes them
+
+
+def test_numbers_of_other_libraries_are_numbers():
+    for value in (np.float32(2.0), np.array(2), xr.DataArray(2.0), np.int8(2)):
+        assert real("x", value, "a number") == whole("x", value, "a number", at_least=0) == 2
+    assert two_lengths("x", np.array([1.0, 2.0])) == (1.0, 2.0)
+
+
+def test_arrays_keep_their_shape_and_masked_points_are_missing():
+    assert real_array("x", 1.0, "numbers").shape == ()
+    masked = np.ma.masked_equal([[1, 2], [3, 4]], 3)
+    assert np.isnan(real_array("x", masked, "numbers")[1, 0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(InputError, match="rows of unequal length"):
+            real_array("x", [[1], [1, 2]], "numbers")
+
+
+def test_received_values_are_shown_short_and_plain():
+    assert shown("C:\\data") == "'C:\\data'"
+    assert shown(np.zeros((3, 4))) == "an array of float64 of shape (3, 4)"
+    assert shown(np.float64(1.5)) == "1.5"
+    assert len(shown("x" * 1000)) < 70
+    assert shown(10**5000) == "a huge number"
