@@ -209,7 +209,14 @@ def test_the_template_explains_every_key_on_one_line():
 def test_every_commented_quantity_of_the_template_works():
     wanted = (
         *("corrugation", "corrugation_wavelength", "corrugation_bandwidth", "joint_depth", "joint_position"),
-        *("flat_depth", "bending_stiffness", "mass_per_length", "rail_loss_factor", "shear_stiffness"),
+        *(
+            "flat_depth",
+            "flat_length",
+            "bending_stiffness",
+            "mass_per_length",
+            "rail_loss_factor",
+            "shear_stiffness",
+        ),
         *("rotary_inertia", "pad_stiffness", "pad_damping", "sleeper_mass", "ballast_stiffness"),
         *("ballast_loss_factor", "sleeper_spacing", "points", "time_step"),
     )
@@ -218,6 +225,28 @@ def test_every_commented_quantity_of_the_template_works():
     text = "\n".join(line.removeprefix("# ") if line.startswith(prefixes) else line for line in lines)
     found = {item["key"].split(".")[-1] for item in parse_case(text).parameters() if not item["is_default"]}
     assert found == {*wanted, "spectrum", "roughness"}
+
+
+def test_a_flat_is_given_by_depth_length_or_both():
+    """l = √(8 R d): 40 mm long on a wheel of 0.46 m is 0.4348 mm deep."""
+
+    def flat(keys):
+        return parse_case(case_with(wheel=keys)).wheel.flat
+
+    assert flat("") is None
+    assert flat('flat_length = "40 mm"\nflat_position = "1 m"') == pytest.approx((0.04**2 / 3.68, 0.04))
+    assert flat('flat_depth = "0.4 mm"') == pytest.approx((0.4e-3, np.sqrt(3.68 * 0.4e-3)))
+    both = 'flat_depth = "0.4 mm"\nflat_length = "38 mm"'
+    assert flat(both) == pytest.approx((0.4e-3, np.sqrt(3.68 * 0.4e-3)))
+    worn = 'flat_depth = "0.4 mm"\nflat_length = "60 mm"\nflat_shape = "worn"'
+    assert flat(worn) == pytest.approx((0.4e-3, 0.06))
+
+
+def test_wheel_and_rail_may_be_of_own_materials():
+    own = '{ youngs_modulus = "100 GPa", poisson_ratio = 0.34, density = "8.5 g/cm^3" }'
+    case = parse_case(case_with(wheel=f"material = {own}", track=f"material = {own}"))
+    assert case.wheel.material == case.track.material
+    assert case.wheel.material.density == pytest.approx(8500.0)
 
 
 # --- what can be wrong
@@ -234,7 +263,25 @@ def test_every_commented_quantity_of_the_template_works():
         ("wheel", 'roughness = "disc"\nline = "lines.npz"', "wheel: received both roughness and line"),
         ("wheel", 'roughness = "disk"', 'Did you mean "disc"?'),
         ("wheel", 'roughness_level = "+3 dB"', "only together with roughness"),
-        ("wheel", 'flat_shape = "worn"', "only together with flat_depth"),
+        ("wheel", 'flat_shape = "worn"', "only together with flat_depth or flat_length"),
+        (
+            "wheel",
+            'flat_depth = "0.4 mm"\nflat_length = "60 mm"',
+            "wheel.flat_length: received 60 mm beside a depth of 0.4 mm; allowed: 38.37 mm, the chord "
+            "sqrt(8 radius flat_depth), within 5%. The chord of this length is 0.978 mm deep. "
+            'A worn flat may be longer: flat_shape = "worn".',
+        ),
+        (
+            "wheel",
+            'flat_depth = "0.4 mm"\nflat_length = "30 mm"\nflat_shape = "worn"',
+            "wheel.flat_length: received 30 mm beside a depth of 0.4 mm; allowed: 38.37 mm, the chord "
+            "sqrt(8 radius flat_depth), to the wheel's radius",
+        ),
+        (
+            "wheel",
+            'flat_length = "0.2 m"',
+            "wheel.flat_length: received 200 mm; allowed: at most 130.1 mm, where the depth of its chord",
+        ),
         ("wheel", 'flat_depth = "5 mm"', "received 5 mm; allowed: at most 0.01 of the radius, 4.6 mm"),
         (
             "wheel",
@@ -407,7 +454,7 @@ def test_tables_that_are_wrong(text, message, folder):
 def test_a_table_that_is_no_text_or_too_large(tmp_path):
     path = tmp_path / "levels.csv"
     path.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match="no text"):
+    with pytest.raises(InputError, match="no UTF-16 in line 1"):
         read_levels(path)
     path.write_bytes(b"#" * (10 * 2**20 + 1))
     with pytest.raises(InputError, match="more than 10 MiB"):

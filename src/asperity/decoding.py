@@ -43,5 +43,6 @@ def decoded(content: bytes, source: str, allowed: str) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
-        received = f"a byte that is no {error.encoding.upper()} in line {line}"
+        encoding = error.encoding[:6].upper()  # whatever the order of bytes
+        received = f"a byte that is no {encoding} in line {line}"
         raise InputError(source, received, allowed, remedy) from None

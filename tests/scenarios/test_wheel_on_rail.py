@@ -191,6 +191,13 @@ class TestDefects:
         assert at[np.argmin(found.trajectory)] == pytest.approx(1.0, abs=2e-3)
         assert not found.line.any()
 
+    def test_worn_flat_is_as_long_as_it_is_said(self):
+        wheel = 'flat_depth = "0.3 mm"\nflat_length = "80 mm"\nflat_shape = "worn"\nflat_position = "1 m"'
+        found = gather(case(surface="smooth = true", wheel=wheel))
+        at = found.start + 1e-3 * np.arange(len(found.line))
+        struck = at[(found.defects < 0) & (np.abs(at - 1.0) < 0.2)]
+        assert np.ptp(struck) == pytest.approx(80e-3, abs=3e-3)
+
     def test_corrugation_is_texture_and_no_defect(self):
         found = gather(case(surface='corrugation = "20 um"\ncorrugation_wavelength = "50 mm"', wheel=""))
         assert found.defects is None

@@ -3,7 +3,14 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import InputError
-from asperity.surfaces.defects import corrugation, dipped_joint, flat_geometry, flat_length, flat_trajectory
+from asperity.surfaces.defects import (
+    corrugation,
+    dipped_joint,
+    flat_depth,
+    flat_geometry,
+    flat_length,
+    flat_trajectory,
+)
 from asperity.surfaces.en15610 import roll_over
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
@@ -89,6 +96,26 @@ def test_worn_flat_is_rounded_and_shallower_to_the_wheel():
     centre = flat_trajectory(X, DEPTH, RADIUS, "worn")
     assert (centre >= geometry - 1e-9).all()
     assert -DEPTH < centre.min() < -0.3 * DEPTH
+
+
+def test_worn_flat_may_be_longer_than_its_chord():
+    """z = −d/2 (1 + cos 2πx/l): from l = π √(2 R d) on the wheel's curvature nowhere turns."""
+    length = 1.2 * np.pi * np.sqrt(2 * RADIUS * DEPTH)
+    x = np.arange(-2500, 2501) * 0.02 * MM
+    geometry = flat_geometry(x, DEPTH, RADIUS, "worn", length)
+    assert_allclose(geometry[2500], -DEPTH)
+    assert np.ptp(x[geometry < 0]) == pytest.approx(length, abs=0.1 * MM)
+    centre = flat_trajectory(x, DEPTH, RADIUS, "worn", length)
+    assert_allclose(centre.min(), -DEPTH, rtol=1e-3)
+    assert_allclose(centre, roll_over(Profile(geometry, 0.02 * MM), RADIUS).heights, atol=0.3 * UM)
+    for shape, wrong in (("fresh", length), ("worn", 0.9 * flat_length(DEPTH, RADIUS)), ("worn", np.nan)):
+        for function in (flat_geometry, flat_trajectory):
+            with pytest.raises(InputError, match="length of the wheel flat"):
+                function(x, DEPTH, RADIUS, shape, wrong)
+
+
+def test_length_and_depth_of_a_flat_belong_together():
+    assert flat_depth(flat_length(DEPTH, RADIUS), RADIUS) == pytest.approx(DEPTH)
 
 
 @pytest.mark.parametrize("depth", [0.0, -MM, np.nan, 0.1])

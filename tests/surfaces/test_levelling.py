@@ -145,7 +145,9 @@ def test_band_limit_keeps_a_constant_and_missing_points():
 
 def test_band_limit_says_what_is_wrong():
     line = Profile(np.zeros(100), UM)
-    with pytest.raises(InputError, match="shortest wavelength: received 1e-06; allowed: at least two samples, 2e-06 m"):
+    with pytest.raises(
+        InputError, match="shortest wavelength: received 1e-06; allowed: at least two samples, 2e-06 m"
+    ):
         band_limit(line, shortest=UM)
     with pytest.raises(InputError, match="shortest < longest"):
         band_limit(line, longest=10 * UM, shortest=20 * UM)

@@ -24,12 +24,13 @@ from asperity.config.keys import (
     Length,
     Mass,
     Number,
+    OwnOrNamed,
     Position,
     Section,
     Speed,
     key,
 )
-from asperity.config.sections import ContactCase, Material, Numerics, Surface
+from asperity.config.sections import ContactCase, Numerics, Surface
 from asperity.errors import InputError
 
 NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
@@ -40,7 +41,7 @@ class Ball(Section):
     """The ball that rolls: a rigid mass with its weight, or a given load."""
 
     radius: Length = key("25 mm", "radius")
-    material: Material = key("steel", "material")
+    material: OwnOrNamed = key("steel", "material")
     mass: Mass | None = key(None, "mass", otherwise="from radius and density", example='"0.51 kg"')
     load: Force | None = key(
         None, "constant force that presses the ball down", otherwise="its weight", example='"5 N"'
@@ -53,7 +54,7 @@ class Beam(Section):
     length: Length = key("1 m", "length, along the path")
     width: Length = key("50 mm", "width of the cross-section")
     height: Length = key("10 mm", "height of the cross-section")
-    material: Material = key("steel", "material")
+    material: OwnOrNamed = key("steel", "material")
     support: Annotated[str, BeforeValidator(Choice(("simply-supported", "free", "clamped")))] = key(
         "simply-supported", "both ends"
     )

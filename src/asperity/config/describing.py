@@ -167,6 +167,8 @@ def _toml(value: object) -> str:
 def _human(value: object) -> str:
     if isinstance(value, list | tuple):
         return ", ".join(map(_human, value))
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {_human(item)}" for name, item in value.items())
     if isinstance(value, bool):
         return "yes" if value else "no"
     return str(value)

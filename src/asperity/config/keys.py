@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, get_args
@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 
 from asperity.arguments import shown
 from asperity.errors import InputError
+from asperity.reference.materials import MATERIALS, Material
 from asperity.units import factor, quantity
 
 _WORDS = {
@@ -23,6 +24,7 @@ _WORDS = {
     "kg": ("a mass", "0.5 kg"),
     "N": ("a force", "5 N"),
     "Pa": ("a pressure", "3 GPa"),
+    "kg/m^3": ("a density", "2700 kg/m^3"),
     "Hz": ("a frequency", "5 kHz"),
     "N s/m": ("a damping constant", "10 N s/m"),
     "N/m": ("a stiffness", "300 MN/m"),
@@ -116,6 +118,14 @@ class Number:
         if not finite or _outside(value, self.above, self.at_least, self.at_most):
             raise InputError("number", shown(value), self.allowed)
         return value if self.whole else float(value)
+
+
+class Problems(ValueError):
+    """Several errors of one section, each an `InputError` about one key."""
+
+    def __init__(self, errors: list[InputError]) -> None:
+        self.errors = errors
+        super().__init__("; ".join(map(str, errors)))
 
 
 @dataclass(frozen=True)
@@ -220,7 +230,63 @@ class ChoiceOrFile:
             raise InputError("choice", error.received, self.allowed, remedy) from None
 
 
-Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File | ChoiceOrFile
+@dataclass(frozen=True)
+class MaterialOrName:
+    """A named material, or one of its own by numbers."""
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return (
+            f'{Choice(tuple(MATERIALS)).allowed}, or numbers: {{ youngs_modulus = "72 GPa", '
+            'poisson_ratio = 0.33, density = "2700 kg/m^3" }'
+        )
+
+    def __call__(self, value: object) -> Material:
+        """Return the material."""
+        if isinstance(value, Material):
+            return value
+        if isinstance(value, Mapping):
+            return _own_material(value)
+        if not isinstance(value, str) or value not in MATERIALS:
+            raise InputError("material", shown(value), self.allowed, nearest(value, tuple(MATERIALS)))
+        return MATERIALS[value]
+
+
+_OF_A_MATERIAL: dict[str, Quantity | Number] = {
+    "youngs_modulus": Quantity("Pa", above=0),
+    "poisson_ratio": Number(above=-1, at_most=0.5),
+    "density": Quantity("kg/m^3", above=0),
+}
+
+
+def _own_material(given: Mapping[Any, Any]) -> Material:
+    """Material of numbers with units, and of a name if there is one; all errors at once."""
+    allowed = ", ".join(("name", *_OF_A_MATERIAL))
+    errors = [
+        InputError(str(name), "an unknown key", allowed, nearest(name, [*_OF_A_MATERIAL]))
+        for name in sorted(map(str, given.keys() - {"name", *_OF_A_MATERIAL}))
+    ]
+    found: dict[str, float] = {}
+    for name, kind in _OF_A_MATERIAL.items():
+        if name not in given:
+            errors.append(InputError(name, "nothing", kind.allowed))
+            continue
+        try:
+            found[name] = kind(given[name])
+        except InputError as error:
+            errors.append(InputError(name, error.received, error.allowed, error.remedy))
+    name = given.get("name", f"{found.get('youngs_modulus', 0.0) / 1e9:.4g} GPa")
+    try:
+        Text()(name)
+    except InputError as error:
+        errors.append(InputError("name", error.received, error.allowed))
+    if errors:
+        raise Problems(errors)
+    return Material(name, **found, citation="given in the case")
+
+
+Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File | ChoiceOrFile | MaterialOrName
 
 
 def kind_of(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:
@@ -258,7 +324,7 @@ def key(default: Any, meaning: str, *, otherwise: str = "", example: str = "", g
     example : str
         How the key is written in TOML, where `default` is None.
     goes_with : str
-        The key, or ``key=value``, without which this one has no meaning.
+        The key, ``key=value``, or keys with " or " between them, without which this one has no meaning.
 
     Returns
     -------
@@ -271,14 +337,6 @@ def key(default: Any, meaning: str, *, otherwise: str = "", example: str = "", g
 def extra_of(field: FieldInfo) -> dict[str, Any]:
     """What `key` was told beyond the default and the meaning."""
     return field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
-
-
-class Problems(ValueError):
-    """Several errors of one section, each an `InputError` about one key."""
-
-    def __init__(self, errors: list[InputError]) -> None:
-        self.errors = errors
-        super().__init__("; ".join(map(str, errors)))
 
 
 class Section(BaseModel):
@@ -305,8 +363,9 @@ def is_active(section: BaseModel, name: str) -> bool:
     companion, _, value = extra_of(type(section).model_fields[name]).get("goes_with", "").partition("=")
     if not companion:
         return True
-    found = getattr(section, companion)
-    return found == value if value else found is not None
+    if value:
+        return bool(getattr(section, companion) == value)
+    return any(getattr(section, each) is not None for each in companion.split(" or "))
 
 
 def _lonely(section: BaseModel) -> Iterator[InputError]:
@@ -360,6 +419,7 @@ Damping = Annotated[float, BeforeValidator(Quantity("N s/m", at_least=0))]
 Level = Annotated[float, BeforeValidator(Quantity("dB"))]
 LengthOrInfinite = Annotated[float, BeforeValidator(Quantity("m", above=0, infinite=True))]
 Stiffness = Annotated[float, BeforeValidator(Quantity("N/m", above=0))]
+OwnOrNamed = Annotated[Material, BeforeValidator(MaterialOrName())]
 ExistingFile = Annotated[Path, BeforeValidator(File())]
 Name = Annotated[str, BeforeValidator(Text())]
 HeightUnit = Annotated[str, BeforeValidator(LengthUnit())]

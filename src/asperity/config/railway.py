@@ -16,13 +16,14 @@ from asperity.config.keys import (
     Length,
     Mass,
     Number,
+    OwnOrNamed,
     Position,
     Quantity,
     Section,
     Stiffness,
     key,
 )
-from asperity.config.sections import ContactCase, Material, Numerics
+from asperity.config.sections import ContactCase, Numerics
 from asperity.errors import InputError
 from asperity.reference.tracks import TRACKS
 
@@ -84,7 +85,7 @@ class TrackCase(Section):
         "measured shape of the rail head across the rail, instead of rail_head_radius",
         example='"rail.csv"',
     )
-    material: Material = key("steel", "material of the rail")
+    material: OwnOrNamed = key("steel", "material of the rail")
     points: tuple[Position, ...] | None = key(
         None,
         "positions at which the motion of the rail is recorded while it is passed, from the sleeper that "

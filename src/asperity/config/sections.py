@@ -27,11 +27,9 @@ from asperity.config.keys import (
     key,
 )
 from asperity.errors import InputError
-from asperity.reference.materials import MATERIALS
 
 MOST_CELLS = 2048  # along one side of the window
 
-Material = Annotated[str, BeforeValidator(Choice(tuple(MATERIALS)))]
 Index = Annotated[int, BeforeValidator(Number(at_least=0, at_most=10**9, whole=True))]
 
 

@@ -8,7 +8,7 @@ from asperity.config import BallOnBeamCase
 from asperity.contact import Hertz
 from asperity.pointforce import Law
 from asperity.progress import Progress
-from asperity.reference.materials import contact_modulus, material
+from asperity.reference.materials import contact_modulus
 from asperity.rolling.ball_on_beam import Rolling, roll
 from asperity.scenarios.beam_textures import gather
 from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
@@ -59,10 +59,9 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
         All that was computed.
     """
     store, watch = Store(), Stopwatch()
-    ball_material, beam_material = material(case.ball.material), material(case.beam.material)
-    ball = Ball(case.ball.radius, ball_material, case.ball.load, case.ball.mass)
+    ball = Ball(case.ball.radius, case.ball.material, case.ball.load, case.ball.mass)
     beam = _beam(case)
-    shape = ball_geometry(case, ball.static_load, contact_modulus(ball_material, beam_material))
+    shape = ball_geometry(case, ball.static_load, contact_modulus(case.ball.material, case.beam.material))
     textures = gather(case, window_cells(case.contact))
     watch.lap("textures")
     compile_kernels(progress)  # not before the files are known to be right
@@ -118,7 +117,7 @@ def _beam(case: BallOnBeamCase) -> Beam:
         case.beam.length,
         case.beam.width,
         case.beam.height,
-        material(case.beam.material),
+        case.beam.material,
         support=case.beam.support,
         loss_factor=case.beam.loss_factor,
         highest_frequency=MODES_BEYOND * case.numerics.highest_frequency,

@@ -47,14 +47,14 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         computed.chain,
         groups,
         caught,
-        title=_title(computed.case.ball.material, computed.case.beam.material),
+        title=_title(computed.case.ball.material.name, computed.case.beam.material.name),
         verdict=verdict(computed.chain.runs, spectra, "ball"),
         numerics=_numerics(computed),
     )
 
 
 def _title(ball: str, beam: str) -> str:
-    article = "an" if beam[0] in "aeiou" else "a"
+    article = "an" if beam[0].lower() in "aeiou8" else "a"
     return f"{ball[0].upper()}{ball[1:]} ball on {article} {beam} beam"
 
 

@@ -15,7 +15,7 @@ from asperity.config import BallOnBeamCase, Case, WheelOnRailCase
 from asperity.errors import InputError, PhysicsWarning
 from asperity.reduction.accuracy import FILTER_SHARE, in_single, rtol_for
 from asperity.reduction.scan import BLOCK
-from asperity.reference.materials import contact_modulus, material
+from asperity.reference.materials import contact_modulus
 from asperity.scenarios.ball_on_beam import ball_geometry
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry, window_cells
 from asperity.scenarios.laws import table_stride
@@ -137,8 +137,8 @@ def _geometry(case: Case) -> Geometry:
     if isinstance(case, WheelOnRailCase):
         return rail_geometry(case)
     assert isinstance(case, BallOnBeamCase)
-    ball = Ball(case.ball.radius, material(case.ball.material), case.ball.load, case.ball.mass)
-    modulus = contact_modulus(material(case.ball.material), material(case.beam.material))
+    ball = Ball(case.ball.radius, case.ball.material, case.ball.load, case.ball.mass)
+    modulus = contact_modulus(case.ball.material, case.beam.material)
     return ball_geometry(case, ball.static_load, modulus)
 
 

@@ -75,10 +75,12 @@ def defects(
         dip = dipped_joint(position - joint, surface.joint_depth, surface.joint_length)
         geometry += dip
         trajectory += roll_over(Profile(dip, spacing), wheel.radius).heights
-    if wheel.flat_depth is not None:
+    if wheel.flat is not None:
+        depth, length = wheel.flat
         around = turn * spacing
         along = np.mod(position - case.start - wheel.flat_position + 0.5 * around, around) - 0.5 * around
         shape = cast(FlatShape, wheel.flat_shape)
-        geometry += flat_geometry(along, wheel.flat_depth, wheel.radius, shape)
-        trajectory += flat_trajectory(along, wheel.flat_depth, wheel.radius, shape)
+        worn = length if shape == "worn" else None
+        geometry += flat_geometry(along, depth, wheel.radius, shape, worn)
+        trajectory += flat_trajectory(along, depth, wheel.radius, shape, worn)
     return (geometry, trajectory) if geometry.any() else (None, None)

@@ -12,7 +12,7 @@ from scipy.optimize import minimize_scalar
 from asperity.config import WheelOnRailCase
 from asperity.contact import Hertz
 from asperity.errors import InputError
-from asperity.reference.materials import contact_modulus, material
+from asperity.reference.materials import contact_modulus
 from asperity.scenarios.geometry import Geometry, across_window, geometry
 from asperity.scenarios.reading import read_section
 from asperity.surfaces.heightmap import Profile
@@ -41,7 +41,7 @@ def rail_geometry(case: WheelOnRailCase) -> Geometry:
     InputError
         If a measured section does not cover the window, or the bodies do not touch in its middle.
     """
-    modulus = contact_modulus(material(case.wheel.material), material(case.track.material))
+    modulus = contact_modulus(case.wheel.material, case.track.material)
     y = across_window(case.contact)
     tread = _section(case.wheel.profile, case.wheel.transverse_radius, "wheel.profile")
     head = _section(case.track.rail_profile, case.track.rail_head_radius, "track.rail_profile")

@@ -142,9 +142,9 @@ def wheel_of(case: WheelOnRailCase) -> Wheel:
 def _warn_of_defects(case: WheelOnRailCase, textures: Textures, shape: Geometry) -> None:
     """Say so where the window is too short for what a law shall see of a defect."""
     seen = [law for law in case.laws if law in NEED_GEOMETRY]
-    if not seen or textures.defects is None or case.wheel.flat_depth is None:
+    if not seen or textures.defects is None or case.wheel.flat is None:
         return
-    length = 2.0 * np.sqrt(2.0 * case.wheel.radius * case.wheel.flat_depth)
+    _, length = case.wheel.flat
     window, a = case.contact.window, shape.semi_axes[0]
     if length + 2 * a > window:
         warnings.warn(

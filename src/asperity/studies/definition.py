@@ -245,6 +245,8 @@ def written_out(value: object) -> str:
         return value
     if isinstance(value, list | tuple):
         return ", ".join(map(written_out, value))
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {written_out(item)}" for name, item in value.items())
     return json.dumps(value)
 
 

@@ -120,8 +120,26 @@ def flat_length(depth: float, radius: float) -> float:
     return math.sqrt(8.0 * radius * depth)
 
 
+def flat_depth(length: float, radius: float) -> float:
+    """Depth of a fresh wheel flat.
+
+    Parameters
+    ----------
+    length : float
+        Length of its chord, m.
+    radius : float
+        Of the wheel, m.
+
+    Returns
+    -------
+    float
+        Depth d = l²/8R at its middle, m.
+    """
+    return length**2 / (8.0 * radius)
+
+
 def flat_geometry(
-    x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh"
+    x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh", length: float | None = None
 ) -> NDArray[np.float64]:
     """Height of a flatted wheel against the round one.
 
@@ -134,8 +152,9 @@ def flat_geometry(
     radius : float
         Of the wheel, m.
     shape : {"fresh", "worn"}, optional
-        Fresh: a chord, -(d - x²/2R) for |x| <= l/2. Worn: rounded, -d/2 (1 + cos 2πx/l). Both have the length
-        l = √(8 R d) of the chord.
+        Fresh: a chord, -(d - x²/2R) for |x| <= l/2. Worn: rounded, -d/2 (1 + cos 2πx/l).
+    length : float, optional
+        Length l of a worn flat, m, at least that of the chord √(8 R d), which all others have.
 
     Returns
     -------
@@ -145,16 +164,26 @@ def flat_geometry(
     Raises
     ------
     InputError
-        If the depth or the shape is wrong.
+        If the depth, the shape or the length is wrong.
 
     References
     ----------
     S. G. Newton and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287-297 (chord and rounded flat).
     """
-    length = flat_length(depth, radius)
+    length = _length(depth, radius, shape, length)
     distance = np.asarray(x, dtype=np.float64)
     inside = np.abs(distance) <= length / 2.0
     return np.where(inside, _flat_shape(distance, depth, radius, length, shape), 0.0)
+
+
+def _length(depth: float, radius: float, shape: str, length: float | None) -> float:
+    chord = flat_length(depth, radius)
+    if length is None:
+        return chord
+    if shape != "worn" or not chord * (1.0 - 1e-9) <= length < math.inf:
+        allowed = f"that of a worn flat, at least its chord of {chord:.4g} m; none of a fresh one"
+        raise InputError("length of the wheel flat", f"{length} m", allowed)
+    return length
 
 
 def _flat_shape(
@@ -168,7 +197,7 @@ def _flat_shape(
 
 
 def flat_trajectory(
-    x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh"
+    x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh", length: float | None = None
 ) -> NDArray[np.float64]:
     """Height of the centre of a rigid flatted wheel that rolls on a rigid flat rail.
 
@@ -184,6 +213,8 @@ def flat_trajectory(
         See `flat_geometry`. Over a fresh flat the wheel turns about the ends of the chord in turn:
         -(l/2 - |x|)²/2R, with a kink of slope ±l/2R at the middle. For a worn flat z(s) the envelope
         max over s of z(s) - (s - x)²/2R is tabulated.
+    length : float, optional
+        See `flat_geometry`.
 
     Returns
     -------
@@ -193,18 +224,18 @@ def flat_trajectory(
     Raises
     ------
     InputError
-        If the depth or the shape is wrong.
+        If the depth, the shape or the length is wrong.
 
     References
     ----------
     T. X. Wu and D. J. Thompson, J. Sound Vib. 251 (2002) 115-139 (wheel flats).
     """
-    length = flat_length(depth, radius)
+    length = _length(depth, radius, shape, length)
     distance = np.abs(np.asarray(x, dtype=np.float64))
     if shape == "fresh":
         return np.where(distance <= length / 2.0, -((length / 2.0 - distance) ** 2) / (2.0 * radius), 0.0)
     touching = np.linspace(-length / 2.0, length / 2.0, 2 * TABLE_POINTS - 1)
-    height = flat_geometry(touching, depth, radius, shape)
+    height = flat_geometry(touching, depth, radius, shape, length if shape == "worn" else None)
     at = touching[TABLE_POINTS - 1 :]
     envelope = np.max(height - (touching - at[:, None]) ** 2 / (2.0 * radius), axis=1)
     return np.interp(distance, at, envelope, right=0.0)
