@@ -7,7 +7,7 @@ import json
 import numpy as np
 import xarray as xr
 
-LAWS = ["areal", "shifted", "printed", "table", "linear"]
+LAWS = ["areal", "shifted", "printed", "table", "linear-filtered", "linear"]
 SENSORS = [0.2, 0.35, 0.5, 0.65, 0.8]
 DATUM = 1.5e-6
 LOAD = 5.0
@@ -228,9 +228,9 @@ def rolling(rng, laws, steps, time_step):
     for row, law in enumerate(laws):
         own = np.convolve(rng.standard_normal(steps + 20), np.hanning(21), "same")[:steps]
         swing = 0.42 * shared + 0.12 * own * (1 + row / 3)
-        force[row] = LOAD + swing if law == "linear" else np.maximum(LOAD + swing, 0)
+        force[row] = LOAD + swing if law.startswith("linear") else np.maximum(LOAD + swing, 0)
     lost = force <= 0
-    lost[[law == "linear" for law in laws]] = False
+    lost[[law.startswith("linear") for law in laws]] = False
     events = (np.diff(lost.astype(int), axis=1) == 1).sum(1)
     acceleration = 3 * rng.standard_normal((len(laws), len(SENSORS), steps))
     terms = ["work of the load", "ball kinetic", "beam", "beam damping", "contact"]
@@ -262,7 +262,7 @@ def rolling(rng, laws, steps, time_step):
     )
 
 
-def spectra(rng, laws):
+def spectra(rng, laws, duration):
     frequency = np.arange(0, 6000, 4.0)
     band = 1000 * 10 ** (np.arange(-15, 8) / 10)
     resonances = sum(
@@ -286,7 +286,11 @@ def spectra(rng, laws):
         {
             "force_psd": variable(("law", "frequency"), force, "N2/Hz", "contact force PSD"),
             "force_level": variable(("law", "band"), level, "dB re 1 N", "contact force level"),
-            "force_level_difference": variable(
+            "band_time_product": variable("band", 0.23 * band * duration, "1", "B T"),
+            "force_level_difference_to_linear_filtered": variable(
+                ("law", "band"), difference("linear-filtered"), "dB", "difference to linear-filtered"
+            ),
+            "force_level_difference_to_linear": variable(
                 ("law", "band"), difference("linear"), "dB", "difference to linear"
             ),
             "force_level_difference_to_reference": variable(
@@ -323,6 +327,6 @@ def report_tree(laws=None, steps=100_000, time_step=1e-5, seed=7):
             "/surface": surface(rng),
             "/contact": contact(rng),
             "/rolling": rolling(rng, laws, steps, time_step),
-            "/spectra": spectra(rng, laws),
+            "/spectra": spectra(rng, laws, steps * time_step),
         }
     )

@@ -9,7 +9,7 @@ import xarray as xr
 
 from report_tree import contact, root_attrs, scenario, surface, texture, variable
 
-LAWS = ["areal", "shifted", "printed", "linear"]
+LAWS = ["areal", "shifted", "printed", "linear-filtered", "linear"]
 LOAD, SPEED, MASS, SLEEPERS = 65e3, 56.0, 600.0, 0.6
 PINNED = 1063.0
 BANDS = 1000 * 10 ** (np.arange(-14, 7) / 10)
@@ -101,10 +101,15 @@ def rolling(rng, laws, steps, time_step, flat=True):
     for row, law in enumerate(laws):
         own = 1.2e3 * (1 + row) * coloured(rng, steps, time_step, 800, 3000)
         swing = (
-            LOAD + 6e3 * shared + 3e3 * low + 1e3 * passing + own + knock * (0.8 if law == "linear" else 1)
+            LOAD
+            + 6e3 * shared
+            + 3e3 * low
+            + 1e3 * passing
+            + own
+            + knock * (0.8 if law.startswith("linear") else 1)
         )
-        force[row] = swing if law == "linear" else np.maximum(swing, 0)
-    lost = (force <= 0) & np.array([[law != "linear"] for law in laws])
+        force[row] = swing if law.startswith("linear") else np.maximum(swing, 0)
+    lost = (force <= 0) & np.array([[not law.startswith("linear")] for law in laws])
     events = (np.diff(lost.astype(int), axis=1) == 1).sum(1)
     approach = 78e-6 * np.maximum(force / LOAD, 0) ** (2 / 3)
     rail = 7.6e-4 * (1 + 0.03 * passing + 0.05 * low) + 4e-10 * (force - LOAD)
@@ -147,7 +152,7 @@ def noise(laws, level):
     return power, 10 * np.log10((10 ** ((power + weighting) / 10)).sum(-1))
 
 
-def spectra(rng, laws, points):
+def spectra(rng, laws, points, duration):
     frequency = np.arange(0, 10_000, 5.0)
     hump = 4e4 / (1 + ((frequency - 90) / 60) ** 2) + 3e4 / (1 + ((frequency - 700) / 350) ** 2)
     dips = sum(0.55 * np.exp(-(((frequency - PINNED - side) / 15) ** 2)) for side in (-47, 47))
@@ -157,7 +162,10 @@ def spectra(rng, laws, points):
     force[:, 0] = 0
     edges = (frequency >= BANDS[:, None] * 10**-0.05) & (frequency < BANDS[:, None] * 10**0.05)
     level = 10 * np.log10(np.maximum(force @ edges.T * 5.0, 1e-3))
-    difference = level - level[laws.index("linear")] if "linear" in laws else np.full_like(level, np.nan)
+
+    def over(law):
+        return level - level[laws.index(law)] if law in laws else np.full_like(level, np.nan)
+
     power, power_a = noise(laws, level)
     velocity = force[:, None] * 4e-12 * (1 + np.arange(len(points)))[:, None]
     rail = 3 - 6 * np.log2(0.1 / WAVELENGTHS) / 1.5
@@ -168,7 +176,17 @@ def spectra(rng, laws, points):
         {
             "force_psd": variable(per_line, force, "N2/Hz", "contact force PSD"),
             "force_level": variable(per_band, level, "dB re 1 N", "contact force level"),
-            "force_level_difference": variable(per_band, difference, "dB", "difference to linear"),
+            "force_level_difference_to_linear_filtered": variable(
+                per_band, over("linear-filtered"), "dB", "difference to linear-filtered"
+            ),
+            "force_level_difference_to_linear": variable(
+                per_band, over("linear"), "dB", "difference to linear"
+            ),
+            "band_time_product": variable("band", 0.23 * BANDS * duration, "1", "B T"),
+            "noise_band_time_product": variable("noise_band", 0.23 * BANDS * duration, "1", "B T"),
+            "surface_band_length_product": variable(
+                "surface_band", 0.12 * SPEED * duration / WAVELENGTHS, "1", "B L"
+            ),
             "linear_reference_psd": variable("frequency", 1.1 * base, "N2/Hz", "linear, frequency domain"),
             "linear_reference_level": variable("band", level[-1] + 0.4, "dB re 1 N", "linear reference"),
             "point_velocity_psd": variable(("law", "point", "frequency"), velocity, "(m/s)2/Hz", "velocity"),
@@ -282,6 +300,6 @@ def wheel_tree(laws=None, steps=40_000, time_step=2.5e-5, seed=7, flat=True):
             "/track": track(),
             "/contact": rail_contact(rng),
             "/rolling": rolled,
-            "/spectra": spectra(rng, laws, rolled["point"].values),
+            "/spectra": spectra(rng, laws, rolled["point"].values, steps * time_step),
         }
     )

@@ -239,7 +239,7 @@ def test_a_terminal_without_greek_letters_is_enough():
     ]
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = subprocess.run(program, capture_output=True, text=True, env=environment, check=True)
-    assert "1251 points 8 um apart" in done.stdout
+    assert "7501 points 8 um apart" in done.stdout
 
 
 PROGRAM = [sys.executable, "-c", "from asperity.cli import main; main(prog_name='asperity')"]
@@ -370,8 +370,8 @@ def test_check_shows_values_and_work():
         "a valid case",
         "ball.radius",
         "25 mm",
-        "1251 points 8 µm apart",
-        "1250 steps of 8 µs",
+        "7501 points 8 µm apart",
+        "0.01 s, and 0.05 s before it, 7500 steps of 8 µs",
         "less what the cache holds",
     ):
         assert text in outcome.stdout
@@ -400,8 +400,8 @@ def test_the_plan_counts_contact_solutions():
     rows = dict(plan(parse_case(laws + CASE + contact)))
     window, strip = 63, 188  # rows of 8 µm
     assert rows["contact solutions, scan for the filters"] == f"at most {2 * 2 * (strip - window)}"
-    assert rows["contact solutions, scan for the path"] == f"at most {2 * (1252 + window)}"
-    assert rows["contact solutions, direct"] == f"at most {3 * 1250}"
+    assert rows["contact solutions, scan for the path"] == f"at most {2 * (6250 + 1252 + window)}"
+    assert rows["contact solutions, direct"] == f"at most {3 * 7500}"
     smooth = CASE.replace('rms = "0.5 um"', 'spectrum = "iso3095"')
     assert not any(name.startswith("contact solutions") for name in dict(plan(parse_case(smooth))))
 

@@ -44,7 +44,7 @@ def map_file(tmp_path):
 def test_a_minimal_case_has_the_documented_defaults():
     case = parse_case(MINIMAL)
     assert case.speed == 1.0
-    assert case.laws == ("areal", "shifted", "printed", "table", "linear")
+    assert case.laws == ("areal", "shifted", "printed", "table", "linear-filtered", "linear")
     assert case.seed == 1
     assert (case.surface.rms, case.surface.hurst) == (pytest.approx(5e-7), 0.8)
     assert case.surface.band == pytest.approx((4e-4, 16e-6))
@@ -56,8 +56,8 @@ def test_a_minimal_case_has_the_documented_defaults():
     assert (case.contact.damping, case.contact.hardness, case.contact.approaches) == (0.0, None, None)
     assert (case.numerics.highest_frequency, case.numerics.rtol) == (5000.0, 1e-6)
     assert case.text == MINIMAL
-    assert case.duration is None
-    assert case.rolled_time == 1.0
+    assert case.duration is case.start is case.settling is None
+    assert (case.settled_time, case.record_start, case.rolled_time) == pytest.approx((0.2, 0.2, 0.8))
 
 
 def test_every_key_of_the_interface_is_understood(map_file):
@@ -114,9 +114,52 @@ def test_a_line_takes_laws_out_of_the_default_that_need_more_than_a_line(map_fil
     assert parse_case(case_with("", 'rms = "1 um"\nline = "line.csv"'), map_file).laws == (
         "shifted",
         "printed",
+        "linear-filtered",
         "linear",
     )
-    assert parse_case(case_with("", 'spectrum = "iso3095"\nlevel = "+10 dB"')).laws == ("hertz", "linear")
+    smooth = parse_case(case_with("", 'spectrum = "iso3095"\nlevel = "+10 dB"'))
+    assert smooth.laws == ("hertz-filtered", "linear-filtered", "linear")
+
+
+# --- the run-in of a ball
+
+
+@pytest.mark.parametrize(
+    ("top", "settled", "start", "rolled"),
+    [
+        ("", 0.2, 0.2, 0.8),
+        ('speed = "5 m/s"', 0.05, 0.25, 0.15),  # a quarter of the beam at most
+        ('duration = "30 ms"', 0.05, 0.05, 0.03),
+        ('duration = "0.12 s"', 0.12, 0.12, 0.12),
+        ('duration = "0.9 s"', 0.1, 0.1, 0.9),  # records keep their length
+        ('duration = "1 s"', 0.0, 0.0, 1.0),
+        ('start = "0.47 m"\nduration = "30 ms"', 0.05, 0.47, 0.03),
+        ('start = "20 mm"\nduration = "30 ms"', 0.02, 0.02, 0.03),  # no beam before its start
+        ('start = "0.1 m"', 0.1, 0.1, 0.9),
+        ('settling = "0.4 s"', 0.4, 0.4, 0.6),
+        ('settling = "0 s"', 0.0, 0.0, 1.0),
+        ('start = "0.6 m"\nsettling = "0.6 s"\nduration = "0.4 s"', 0.6, 0.6, 0.4),
+    ],
+)
+def test_a_ball_settles_before_its_record(top, settled, start, rolled):
+    case = parse_case(case_with(top))
+    found = (case.settled_time, case.record_start, case.rolled_time)
+    assert found == pytest.approx((settled, start, rolled))
+    first, last = case.rolled_range
+    assert first == pytest.approx(start - case.speed * settled, abs=1e-12)
+    assert -1e-12 < first < last <= 1.0 + 1e-12
+
+
+def test_a_run_in_that_begins_before_the_beam_is_refused():
+    text = case_with('start = "0.1 m"\nsettling = "0.3 s"\nduration = "0.1 s"')
+    with pytest.raises(
+        CaseError, match=r"settling: received 0\.3 s, which begins at -0\.2 m; .* at most 0\.1 s"
+    ):
+        parse_case(text)
+    with pytest.raises(
+        CaseError, match=r"start, after settling: received 2 m; allowed: a position on the beam"
+    ):
+        parse_case(case_with('settling = "2 s"'))
 
 
 # --- the template, the demonstration and the list of parameters

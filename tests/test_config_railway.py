@@ -76,7 +76,7 @@ def test_the_case_of_the_interface():
 def test_a_minimal_case_has_the_documented_defaults():
     case = parse_case(case_with())
     assert (case.speed, case.start, case.duration, case.settling, case.seed) == (56.0, 0.0, 1.0, 0.3, 1)
-    assert case.laws == ("areal", "shifted", "printed", "linear")
+    assert case.laws == ("areal", "shifted", "printed", "linear-filtered", "linear")
     assert (case.contact.spacing, case.contact.window, case.contact.cells) == pytest.approx((5e-4, 0.02, 40))
     assert case.contact.samples == 8
     assert (case.surface.lateral, case.surface.level, case.surface.continuation) == (1.0, 0.0, "refuse")

@@ -206,7 +206,7 @@ def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
         ("texture_path", "surface", ["line"]),
         ("texture_psd", "surface", ["psd_path"]),
         ("force_psd", "spectra", ["band"]),
-        ("force_bands", "spectra", ["force_level_difference", "force_level_difference_to_reference"]),
+        ("force_bands", "spectra", ["band_time_product", "force_level_difference_to_linear"]),
         ("force_envelope", "rolling", ["contact_loss_share"]),
     ],
 )
@@ -279,12 +279,12 @@ def test_differences_to_the_reference_law_are_printed(tree, text):
     for (band, cells), centre, value in zip(rows, spectra["band"].values, printed, strict=False):
         assert band == nominal_band(centre)
         shown = re.findall(r">([^<]+)</td>", cells)[column]
-        assert float(shown.replace("−", "-")) == pytest.approx(value, abs=0.051)
+        assert float(shown.strip("()").replace("−", "-")) == pytest.approx(value, abs=0.051)
 
 
 def test_laws_keep_their_colours_in_all_figures(text):
     for law in LAWS:
-        colour = f"var(--c{list(COLOURS).index(LAW_STYLES[law].colour)})"
+        colour = f"var(--c{list(COLOURS).index(LAW_STYLES[law.partition('-')[0]].colour)})"
         for name in ("force_psd", "force_bands", "acceleration_laws", "force_piece", "force_envelope"):
             figure = text[text.index(f'<figure id="{name}"') :]
             assert colour in figure[: figure.index("</figure>")]
@@ -396,3 +396,72 @@ def test_smoothing_for_the_eye_keeps_level_and_sparse_lines():
     assert np.allclose(psd, 3.0, rtol=1e-12)
     assert np.array_equal(smooth[:10], frequency[:10])
     assert len(smooth) < 300
+
+
+# --- bands that say little
+
+
+def uncertain(share, laws=("areal", "table", "linear-filtered", "linear")):
+    """Tree in which B T reaches ten after a share of the bands."""
+    tree = report_tree(list(laws), steps=1000)
+    bands = tree["spectra"].sizes["band"]
+    product = 10.0 * 10 ** ((np.arange(bands) - share * bands) / 10)
+    tree["spectra"]["band_time_product"].values[:] = product
+    return tree, product < 10.0
+
+
+def test_bands_that_say_little_are_shaded():
+    part = next(part for part in PARTS if part.name == "force_bands")
+    tree, little = uncertain(0.4)
+    edge = tree["spectra/band"].values[little].max() * 10**0.05
+    for name in ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws"):
+        part = next(part for part in PARTS if part.name == name)
+        figure = part.draw(tree)
+        for axes in figure.axes:
+            shaded = [patch.get_x() + patch.get_width() for patch in axes.patches]
+            assert shaded == pytest.approx([edge], rel=1e-6), name
+        assert any(text.get_text() == "B T < 10" for text in figure.findobj(Text))
+        assert "B T is below 10" in part.caption(tree)
+    enough, _ = uncertain(0.0)
+    assert not part.draw(enough).axes[0].patches
+    assert "B T" not in part.caption(enough)
+
+
+def test_bands_that_say_little_are_marked_in_the_table_and_not_summed_up():
+    tree, little = uncertain(0.4)
+    table = reference_table(tree)
+    column = table.head.index("areal")
+    difference = tree["spectra/force_level_difference_to_reference"].sel(law="areal").values
+    for row, doubt in zip(table.rows, little, strict=False):
+        assert ("faint" in row[0].look) == ("faint" in row[column].look) == doubt
+        assert (row[column].text[0] == "(") == doubt
+    mean, largest = (float(row[column].text.replace("−", "-")) for row in table.rows[-2:])
+    assert mean == pytest.approx(difference[~little].mean(), abs=0.051)
+    assert largest == pytest.approx(np.abs(difference[~little]).max(), abs=0.051)
+    assert "below 10; they say little" in table.note
+    nothing = reference_table(uncertain(1.0)[0])
+    assert [row[column].text for row in nothing.rows[-2:]] == ["–", "–"]
+
+
+def test_bands_that_say_little_are_marked_in_the_csv_file(tmp_path):
+    tree, little = uncertain(0.4)
+    write_report(tree, tmp_path)
+    table = read_csv(tmp_path / "force_bands.csv")
+    assert np.array_equal(table["B T of 10 or more [1]"] == 0.0, little)
+    assert np.array_equal(table["B T [1]"], tree["spectra/band_time_product"].values)
+
+
+# --- the linear laws that all others are compared with
+
+
+def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
+    part = next(part for part in PARTS if part.name == "force_bands")
+    labels = [axes.get_ylabel() for axes in part.draw(tree).axes]
+    assert labels[1:] == ["level − linear-filtered / dB", "level − linear / dB"]
+    columns = list(part.columns(tree))
+    assert columns.index("areal minus linear-filtered [dB]") < columns.index("areal minus linear [dB]")
+    spectra = tree["spectra"].to_dataset()
+    for law in ("linear-filtered", "linear"):
+        expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
+        np.testing.assert_allclose(part.columns(tree)[f"areal minus {law} [dB]"], expected)
+    assert "minus that of linear-filtered and that of linear" in part.caption(tree)

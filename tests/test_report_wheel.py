@@ -121,7 +121,7 @@ def test_attributes_may_be_missing(part):
         ("force_envelope", "rolling", ["contact_loss_share"]),
         ("force_peak", "rolling", ["position", "contact_loss_share"]),
         ("force_psd", "spectra", ["linear_reference_psd", "band"]),
-        ("force_bands", "spectra", ["linear_reference_level", "force_level_difference"]),
+        ("force_bands", "spectra", ["linear_reference_level", "force_level_difference_to_linear"]),
         ("displacement", "rolling", ["wheel_displacement", "position"]),
         ("displacement", "rolling", ["contact_force", "relative_displacement"]),
         ("rail_velocity", "rolling", ["position"]),
@@ -305,13 +305,17 @@ def test_table_of_sound_power_holds_levels_and_differences(tree, text):
     rows = re.findall(r"<tr><td>(.*?)</td>(.*?)</tr>", body[: body.index("</table>")])
     assert [law for law, _ in rows] == [*LAWS, "CNOSSOS-EU"]
     levels = tree["spectra"].to_dataset()["sound_power_level_a"]
-    linear = levels.sel(law="linear").values
     for law, cells in rows[:-1]:
         shown = [cell.replace("−", "-") for cell in re.findall(r">([^<]+)</td>", cells)]
         expected = levels.sel(law=law).values
         assert [float(cell) for cell in shown[:3]] == pytest.approx(expected, abs=0.051)
-        if law != "linear":
-            assert [float(cell) for cell in shown[3:]] == pytest.approx(expected - linear, abs=0.051)
+        for place, baseline in enumerate(("linear-filtered", "linear"), start=1):
+            differences = shown[3 * place : 3 * place + 3]
+            if law == baseline:
+                assert differences == ["–"] * 3
+                continue
+            over = expected - levels.sel(law=baseline).values
+            assert [float(cell) for cell in differences] == pytest.approx(over, abs=0.051)
 
 
 def test_bars_end_at_their_levels(tree):
@@ -340,3 +344,29 @@ def test_the_standard_stands_beside_the_laws(tree):
     assert last[0] == "CNOSSOS-EU"
     assert last[1] == f"{first[0] - 1.5:.1f}"
     assert "50 kN, 920 mm" in table.note
+
+
+@pytest.mark.parametrize(
+    ("name", "variable"),
+    [
+        ("force_bands", "band_time_product"),
+        ("sound_power_bands", "noise_band_time_product"),
+        ("roughness", "surface_band_length_product"),
+    ],
+)
+def test_bands_that_say_little_are_shaded_and_in_the_csv_file(name, variable):
+    part, tree = PARTS[name], small()
+    product = tree[f"spectra/{variable}"].values
+    product[:] = 100.0
+    assert not part.draw(tree).axes[0].patches
+    product[:4] = 9.9
+    assert len(part.draw(tree).axes[0].patches) == 1
+    assert "Shaded" in part.caption(tree)
+    columns = part.columns(tree)
+    assert columns["B T of 10 or more [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
+
+
+def test_motion_is_compared_with_practice():
+    drawn = PARTS["rail_velocity"].draw(small(("areal", "linear-filtered", "linear"))).axes[0]
+    assert {line.get_label() for line in drawn.lines} >= {"areal", "linear-filtered"}
+    assert "linear" not in {line.get_label() for line in drawn.lines}

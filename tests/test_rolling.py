@@ -454,3 +454,31 @@ def test_force_that_is_not_finite_is_reported_with_its_place():
     with pytest.raises(ComputationError, match=r"step 7, time 7e-05 s, position 0.30007 m.*smaller"):
         roll(BEAM, BALL, Failing(Shifted(HERTZ, None), kind=Broken), **ROUGH, checkpoint=shelf)
     assert shelf.saves == 0
+
+
+# --- the run-in -------------------------------------------------------------------------------
+
+
+def test_a_record_after_a_run_in_is_the_end_of_a_longer_run():
+    law = Hertz(K, rough_texture(0.05e-6))
+    whole = roll(BEAM, BALL, law, **ROUGH)
+    late = roll(BEAM, BALL, law, **ROUGH | {"start": 0.305, "duration": 0.015}, settling=0.005)
+    assert late.time[0] == 0.0
+    assert_allclose(late.position[0], 0.305)
+    assert len(late.time) == len(late.position) == len(whole.time) - 500
+    for name in ("contact_force", "relative_displacement", "ball_displacement", "acceleration"):
+        assert_allclose(getattr(late, name), getattr(whole, name)[..., 500:], rtol=1e-7, atol=1e-9)
+    assert_allclose(late.energy.load, whole.energy.load, rtol=1e-9)
+
+
+def test_a_run_in_on_a_smooth_beam_starts_at_rest():
+    """The static deflection is that of the place where the ball lies, not of where the record starts."""
+    run = roll(BEAM, BALL, Hertz(K), speed=1.0, start=0.5, duration=0.02, time_step=1e-5, sensors=[],
+               settling=0.2)  # fmt: skip
+    assert np.abs(run.contact_force - BALL.static_load).max() < 0.02 * BALL.static_load
+
+
+@pytest.mark.parametrize(("settling", "text"), [(-0.1, r"settling \(s\)"), (0.4, "path .* -0.1 to")])
+def test_a_run_in_that_cannot_be_is_refused(settling, text):
+    with pytest.raises(InputError, match=text):
+        roll(BEAM, BALL, Hertz(K), **ROUGH, settling=settling)

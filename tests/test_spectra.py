@@ -136,3 +136,29 @@ def test_a_weighting_at_zero_and_below():
     assert np.isneginf(spectra.a_weighting(0.0))
     with pytest.raises(InputError, match="0 Hz or more"):
         spectra.a_weighting([-1.0])
+
+
+@pytest.mark.parametrize(("segment", "share"), [(4000, 18 / 35), (2000, None), (500, None)])
+def test_averaging_time_is_that_of_the_scatter_of_a_band(segment, share):
+    """The variance of a band's mean square is 1/(B T): Bendat and Piersol, Random Data, ch. 8.
+
+    One Hann window over the whole record leaves (3/8)²/(35/128) = 18/35 of it.
+    """
+    samples, step = 4000, 1e-3
+    time = spectra.averaging_time(samples, step, segment=segment)
+    if share is not None:
+        assert_allclose(time, share * samples * step, rtol=1e-6)
+    assert 0.5 * samples * step < time < samples * step
+    noise = np.random.default_rng(5).standard_normal((2000, samples))
+    frequency, density = spectra.psd(noise, step, segment=segment)
+    square = spectra.band_energies(frequency, density, [100.0], [300.0])[:, 0]
+    assert_allclose(square.std() / square.mean(), 1 / np.sqrt(200.0 * time), rtol=0.05)
+
+
+def test_product_of_band_and_time_says_how_far_a_level_scatters():
+    samples, step, segment = 2000, 1e-3, 500
+    noise = np.random.default_rng(6).standard_normal((2000, samples))
+    band, level = spectra.band_levels(*spectra.psd(noise, step, segment=segment), low=100.0, high=400.0)
+    product = spectra.band_product(band, spectra.averaging_time(samples, step, segment=segment))
+    assert_allclose(product[band.searchsorted(99.0)], 23.08 * 2.0 * 0.8384, rtol=1e-3)
+    assert_allclose(level.std(axis=0), 4.34 / np.sqrt(product), rtol=0.06)

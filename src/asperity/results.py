@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra")
+BASELINES = ("linear-filtered", "linear")
+"""Laws that all others are compared with; first that of practice, as in CNOSSOS-EU and TWINS."""
 LARGEST_FILE = 16 * 2**30  # bytes
 
 
@@ -44,6 +46,22 @@ def variable(
     import xarray
 
     return xarray.Variable(dims, values, {"units": units, "long_name": long_name, **attrs})
+
+
+def difference_name(baseline: str) -> str:
+    """Name of the variable that holds the force levels over those of a law.
+
+    Parameters
+    ----------
+    baseline : str
+        The law.
+
+    Returns
+    -------
+    str
+        In the group of spectra.
+    """
+    return f"force_level_difference_to_{baseline.replace('-', '_')}"
 
 
 def checked(tree: xarray.DataTree) -> xarray.DataTree:

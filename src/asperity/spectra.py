@@ -16,6 +16,10 @@ from asperity.errors import InputError
 HALF_BAND = 10.0 ** (1.0 / 20.0)
 """Ratio of a one-third octave's upper edge to its centre, base 10 (IEC 61260-1)."""
 
+LEAST_PRODUCT = 10.0
+"""Bandwidth times averaging time B T below which a band level says little: its standard deviation,
+4.34/sqrt(B T) dB, is then above 1.4 dB (the relative error of an rms value is 1/(2 sqrt(B T)))."""
+
 
 def psd(
     signal: ArrayLike, spacing: float, *, segment: int | None = None, overlap: float = 0.5
@@ -71,6 +75,58 @@ def psd(
         axis=-1,
     )
     return frequency, density
+
+
+def averaging_time(
+    samples: int, spacing: float, *, segment: int | None = None, overlap: float = 0.5
+) -> float:
+    """Time that `psd` averages over: shorter than the record, since windows weigh its parts unequally.
+
+    Parameters
+    ----------
+    samples : int
+        Length of the record.
+    spacing : float
+        Step between samples, s or m.
+    segment, overlap
+        As in `psd`.
+
+    Returns
+    -------
+    float
+        s or m: (Σu)²/Σu² steps, where u is the sum of the squared windows of all segments. With it the
+        standard deviation of the mean square of noise in a band is 1/sqrt(B T), as long as the band is
+        some lines wide.
+
+    References
+    ----------
+    J. S. Bendat and A. G. Piersol, Random Data, 4th ed. (2010), ch. 8 (errors of mean squares).
+    """
+    length = samples if segment is None else int(segment)
+    shared = int(overlap * length)
+    window = _signal.get_window("hann", length) ** 2
+    weight = np.zeros(samples)
+    for first in range(0, samples - length + 1, length - shared):
+        weight[first : first + length] += window
+    return float(spacing * weight.sum() ** 2 / (weight**2).sum())
+
+
+def band_product(centres: ArrayLike, time: float) -> NDArray[np.float64]:
+    """Bandwidth times averaging time B T of one-third octaves.
+
+    Parameters
+    ----------
+    centres : array_like, shape (b,)
+        Band centres, Hz or cycles per metre.
+    time : float
+        From `averaging_time`, s or m.
+
+    Returns
+    -------
+    ndarray, shape (b,)
+        B T. Levels of bands below `LEAST_PRODUCT` say little.
+    """
+    return np.asarray(centres, dtype=np.float64) * (HALF_BAND - 1.0 / HALF_BAND) * time
 
 
 def _check_signal(values: NDArray[np.float64], spacing: float) -> None:

@@ -9,14 +9,17 @@ import xarray
 import asperity
 from asperity.config import parse_case
 from asperity.errors import CoarseSamplingWarning, InputError
+from asperity.pointforce.base import force
 from asperity.scenarios import ball_on_beam, run
 from asperity.scenarios.ball_on_beam import ball_geometry
+from asperity.scenarios.beam_textures import gather
 
 CASE = """
 kind = "ball-on-beam"
 laws = {laws}
 start = "0.45 m"
 duration = "20 ms"
+settling = "0 s"
 [surface]
 {surface}
 [contact]
@@ -117,10 +120,12 @@ class TestResult:
         assert np.all(variance.values < 1.3 * total.values)
         assert float(variance.sel(law="direct")) > 0.5 * float(total.sel(law="direct"))
 
-    def test_difference_to_the_linear_law(self, tree):
-        level, difference = tree["spectra/force_level"], tree["spectra/force_level_difference"]
-        expected = level - level.sel(law="linear")
-        np.testing.assert_allclose(difference.values, expected.values)
+    def test_differences_to_the_linear_laws(self, tree):
+        level = tree["spectra/force_level"]
+        for law in ("linear", "linear-filtered"):
+            difference = tree[f"spectra/force_level_difference_to_{law.replace('-', '_')}"]
+            assert difference.attrs["reference"] == law
+            np.testing.assert_allclose(difference.values, (level - level.sel(law=law)).values)
         assert tree["spectra/force_level_difference_to_reference"].attrs["reference"] == "direct"
 
     def test_file_round_trip(self, tree, tmp_path):
@@ -200,6 +205,13 @@ class TestTextures:
         surface = self.map_file(tmp_path, (1100, 40), pixel=20e-6)
         found = run(case(surface, laws=["areal", "linear"], source=tmp_path / "case.toml"))
         assert "path cut from the first" in found["surface"].attrs["source"]
+        assert "mirror image" not in found["surface"].attrs["source"]
+        longer = case(surface, laws=["areal"], source=tmp_path / "case.toml", settling='"10 ms"')
+        mirrored = gather(longer, 33)
+        path, lead = mirrored.path.rows(0, mirrored.path.shape[0]), mirrored.path.shape[0] - 1100
+        assert lead > 400
+        assert np.array_equal(path[:lead], path[2 * lead : lead : -1])
+        assert "path cut from the first, its mirror image for the run-in" in mirrored.origin
 
     def test_missing_points_are_refused_unless_filled(self, tmp_path):
         surface = self.map_file(tmp_path, pixel=20e-6, hole=True)
@@ -272,3 +284,129 @@ class TestLimits:
     def test_coarse_grid_warns(self):
         with pytest.warns(CoarseSamplingWarning, match="an eighth of the contact radius"):
             self.shape_of(load='"10 N"')
+
+
+class TestRunIn:
+    TEXT = """
+    kind = "ball-on-beam"
+    laws = ["hertz-filtered"]
+    start = "0.45 m"
+    duration = "15 ms"
+    seed = {seed}
+    {settling}
+    [surface]
+    rms = "0.06 um"
+    shortest = "60 um"
+    [ball]
+    load = "20 N"
+    [contact]
+    spacing = "20 um"
+    window = "0.66 mm"
+    samples = 1
+    """
+
+    def thirds(self, settling=""):
+        """Rms of the force in thirds of the record, over twelve paths."""
+        runs = [run(parse_case(self.TEXT.format(seed=seed, settling=settling))) for seed in range(12)]
+        force = np.concatenate([tree["rolling/contact_force"].values for tree in runs]) - 20.0
+        return [float(np.sqrt(np.mean(part**2))) for part in np.array_split(force, 3, axis=1)]
+
+    def test_a_record_is_stationary(self):
+        first, _, last = self.thirds()
+        assert first == pytest.approx(last, rel=0.15)
+
+    def test_without_a_run_in_it_is_not(self):
+        """What the test above can see: the start from rest makes the first third quiet."""
+        first, _, last = self.thirds('settling = "0 s"')
+        assert first < 0.6 * last
+
+    def test_a_record_that_holds_the_start_is_marked(self):
+        found = run(parse_case(self.TEXT.format(seed=1, settling='settling = "10 ms"')))
+        messages = [w["message"] for w in json.loads(found.attrs["warnings"])]
+        assert any(
+            "the record starts 10 ms after the ball lay at rest, less than 50 ms" in m for m in messages
+        )
+
+    def test_thirds_of_the_record_are_told(self):
+        found = run(parse_case(self.TEXT.format(seed=1, settling="")))
+        told = {entry["name"]: entry["value"] for entry in json.loads(found["scenario"].attrs["numerics"])}
+        force = found["rolling/contact_force"].values[0]
+        expected = ", ".join(f"{part.std():.3g}" for part in np.array_split(force, 3))
+        name = "rms of the contact force in thirds of the record, hertz-filtered"
+        assert told[name] == f"{expected} N"
+        assert float(found["rolling/time"][-1]) == pytest.approx(0.015)
+        assert float(found["rolling/position"][0]) == pytest.approx(0.45)
+
+    def test_before_a_measured_line_lies_its_mirror_image(self, tmp_path):
+        heights = np.random.default_rng(0).normal(0, 0.05, 2000)
+        np.savetxt(tmp_path / "line.txt", np.c_[np.arange(2000) * 0.02, heights], header="x [mm]\tz [um]",
+                   comments="", delimiter="\t")  # fmt: skip
+        text = self.TEXT.format(seed=1, settling="").replace('rms = "0.06 um"', 'line = "line.txt"')
+        text = text.replace('shortest = "60 um"', "")
+        found = gather(parse_case(text, tmp_path / "case.toml"), 33)
+        lead = found.before - 33
+        rows = len(found.line)
+        assert (lead, rows) == (pytest.approx(2500, abs=1), pytest.approx(lead + 750 + 1 + 66, abs=1))
+        assert np.array_equal(
+            found.line[rows - 2000 - 40 : rows - 2000], found.line[rows - 2000 + 40 : rows - 2000 : -1]
+        )
+        assert "its mirror image for the run-in" in found.origin
+        assert found.start == pytest.approx(0.45 - found.before * 20e-6)
+
+
+class TestBands:
+    def test_products_of_band_and_time_are_in_the_result(self, tree):
+        """20 ms in one Hann window and 2 windows of 25 ms: the bands of a short record say little."""
+        product = tree["spectra/band_time_product"]
+        assert product.dims == ("band",)
+        assert product.attrs["least"] == 10.0
+        bandwidth = tree["spectra/band"].values * (10**0.05 - 10**-0.05)
+        np.testing.assert_allclose(product, bandwidth * 18 / 35 * 0.02, rtol=1e-2)
+        assert float(product.max()) < 10.0
+
+    def test_the_verdict_keeps_quiet_of_bands_that_say_little(self, tree):
+        assert "The record is too short to compare its one-third octaves" in tree.attrs["verdict"]
+        assert "per one-third octave it is" not in tree.attrs["verdict"].lower()
+
+
+@pytest.mark.filterwarnings("ignore:the record starts 0 ms", "ignore:in .* contact solutions")
+class TestLinear:
+    def laws(self, linearise, laws=("linear-filtered", "linear"), surface=SYNTHETIC):
+        small = case(surface, laws=list(laws), contact=f'linearise = "{linearise}"')
+        return ball_on_beam.compute(small, lambda done, total, message: None).chain
+
+    def test_the_filtered_linear_contact_is_linear(self):
+        """The force grows with the approach by k alone, everywhere: the filter does not follow the state."""
+        law = self.laws("hertz").laws["linear-filtered"]
+        x = np.linspace(0.45, 0.46, 50)
+        near, far = (force(law, x, approach) for approach in (law.approach, law.approach + 1e-6))
+        np.testing.assert_allclose(far - near, law.stiffness * 1e-6, rtol=1e-9)
+        assert np.ptp(near) > 0.0
+
+    def test_secant_is_force_over_state(self):
+        """k_c = F/r of Eq. 2.3, where r counts from the datum."""
+        chain = self.laws("secant")
+        ensemble, load = chain.reduction.ensemble, chain.shape.load
+        approach = float(ensemble.curve.inverse(load))
+        for law in chain.laws.values():
+            assert law.stiffness == pytest.approx(load / (approach + ensemble.datum), rel=1e-12)
+            assert law.approach == pytest.approx(approach)
+        assert law.stiffness < 0.8 * float(ensemble.curve.stiffness(approach))
+
+    def test_secant_of_smooth_bodies_is_two_thirds_of_the_tangent(self):
+        line = 'spectrum = "iso3095"'
+        secant, tangent = (self.laws(kind, surface=line).laws["linear"] for kind in ("secant", "hertz"))
+        assert secant.stiffness == pytest.approx(2 / 3 * tangent.stiffness, rel=1e-9)
+
+    def test_the_verdict_compares_with_practice_first(self):
+        text = SYNTHETIC.replace("0.04", "0.02")
+        found = run(case(text, laws=["areal", "linear", "linear-filtered"], duration='"0.15 s"'))
+        verdict = found.attrs["verdict"]
+        assert 0 < verdict.index("over linear-filtered") < verdict.index("over linear.")
+        bands = found["spectra"].to_dataset().where(found["spectra/band_time_product"] >= 10.0, drop=True)
+        difference = bands["force_level_difference_to_linear_filtered"].sel(law="areal", band=slice(90, 5500))
+        assert f"{float(difference.min()):+.1f} dB".replace("-", "−") in verdict
+
+    def test_the_verdict_names_the_secant(self):
+        found = run(case(laws=["areal", "linear"], contact='linearise = "secant"', duration='"0.15 s"'))
+        assert "over linear (linear with the stiffness F/r)" in found.attrs["verdict"]

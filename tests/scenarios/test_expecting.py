@@ -10,6 +10,7 @@ from asperity.store import Store
 CASE = """
 kind = "ball-on-beam"
 duration = "8 ms"
+settling = "0 s"
 laws = ["table"]
 [surface]
 rms = "0.05 um"
@@ -21,6 +22,7 @@ samples = 2
 """
 
 
+@pytest.mark.filterwarnings("ignore:the record starts 0 ms")
 @pytest.mark.parametrize("spacing", ["10 um", "6 um"])
 def test_size_on_disk_and_number_of_positions(spacing, monkeypatch, tmp_path):
     """At 6 µm, an eighth of the patch is two rows."""

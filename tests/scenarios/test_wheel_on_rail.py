@@ -97,10 +97,25 @@ class TestResult:
         sunk = rolling["wheel_displacement"] - rolling["rail_displacement"]
         np.testing.assert_allclose(sunk, rolling["relative_displacement"], atol=1e-9)
 
-    def test_difference_to_the_linear_law(self, tree):
-        level, difference = tree["spectra/force_level"], tree["spectra/force_level_difference"]
-        np.testing.assert_allclose(difference.values, (level - level.sel(law="linear")).values)
+    def test_difference_to_the_linear_laws(self, tree):
+        level = tree["spectra/force_level"]
+        for law in ("linear", "linear-filtered"):
+            difference = tree[f"spectra/force_level_difference_to_{law.replace('-', '_')}"]
+            assert difference.attrs["reference"] == law
+            np.testing.assert_allclose(difference.values, (level - level.sel(law=law)).values)
         assert tree["spectra/force_level_difference_to_reference"].attrs["reference"] == "table"
+
+    def test_products_of_band_and_averaging_are_in_the_result(self, tree):
+        spectra, width = tree["spectra"], 10**0.05 - 10**-0.05
+        time = spectra["band_time_product"].values / (width * spectra["band"].values)
+        assert 18 / 35 < time[0] / float(tree["rolling/time"][-1]) < 1.0
+        np.testing.assert_allclose(time, time[0])
+        noise = spectra["noise_band_time_product"].values / (width * spectra["noise_band"].values)
+        np.testing.assert_allclose(noise, time[0])
+        length = spectra["surface_band_length_product"].values * spectra["surface_band"].values / width
+        np.testing.assert_allclose(length, length[0])
+        rolled = float(np.ptp(tree["rolling/position"].values))
+        assert 18 / 35 * rolled < length[0] < rolled
 
     def test_areal_explains_table_better_than_a_bare_line(self, tree):
         correlation = tree["rolling/contact_force"].to_pandas().T.corr()["table"]
@@ -110,7 +125,7 @@ class TestResult:
     def test_sound_power_differs_by_the_force(self, tree):
         spectra = tree["spectra"]
         change = spectra["sound_power_level"] - spectra["sound_power_level"].sel(law="linear")
-        force = spectra["force_level_difference"].interp(band=spectra["noise_band"].values)
+        force = spectra["force_level_difference_to_linear"].interp(band=spectra["noise_band"].values)
         track = change.sel(source="track").values
         inside = np.isfinite(force.values)
         assert inside.sum() > 50

@@ -68,11 +68,11 @@ def plan(case: Case) -> list[tuple[str, str]]:
 
     contact = case.contact
     states = STATES if contact.approaches is None else len(contact.approaches)
-    settling = case.settling if isinstance(case, WheelOnRailCase) else 0.0
+    settling = case.settled_time
     length = (settling + case.rolled_time) * case.speed
     points = round(length / contact.spacing) + 1
     steps = round((settling + case.rolled_time) / case.time_step)
-    where = f"{length:g} m from {case.start - settling * case.speed:g} m"
+    where = f"{length:g} m from {case.rolled_range[0]:g} m"
     run_in = f", and {settling:g} s before it" if settling else ""
     scans = expected_scans(case)
     solves = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}

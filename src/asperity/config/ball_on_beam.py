@@ -19,6 +19,7 @@ from asperity.config.case import (
 from asperity.config.keys import (
     Choice,
     Duration,
+    DurationOrZero,
     Force,
     Frequency,
     Length,
@@ -32,9 +33,16 @@ from asperity.config.keys import (
 )
 from asperity.config.sections import ContactCase, Numerics, Surface
 from asperity.errors import InputError
+from asperity.results import BASELINES
 
 NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
 NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line
+
+SETTLING = (0.05, 0.2)
+"""Shortest and longest run-in that is chosen, s: after the first the force varies as in a long run, within
+some per cent, after the second it does so in every one-third octave from 40 Hz on."""
+SETTLING_SHARE = 0.25
+"""Share of the beam that a chosen run-in takes at most, where the record lasts until its end."""
 
 
 class Ball(Section):
@@ -100,12 +108,23 @@ class BallOnBeamCase(Case):
     kind: Annotated[str, BeforeValidator(Choice(("ball-on-beam",)))] = key("ball-on-beam", "what rolls")
     speed: Speed = key("1 m/s", "rolling speed")
     laws: tuple[Law, ...] = key(
-        ("areal", "shifted", "printed", "table", "linear"),
+        ("areal", "shifted", "printed", "table", "linear-filtered", "linear"),
         "laws of the contact force; the first is the main one",
     )
-    start: Position = key("0 m", "where on the beam the ball starts")
+    start: Position | None = key(
+        None,
+        "where on the beam the record starts",
+        otherwise="after the run-in, which begins at the beam's start",
+        example='"0.2 m"',
+    )
     duration: Duration | None = key(
-        None, "time that is computed", otherwise="until the end of the beam, or of the line", example='"1 s"'
+        None, "time that is recorded", otherwise="until the end of the beam, or of the line", example='"1 s"'
+    )
+    settling: DurationOrZero | None = key(
+        None,
+        "time that is rolled before the record starts, so that the start from rest is forgotten",
+        otherwise="as long as the record, 50 ms to 0.2 s, as far as there is room before it",
+        example='"0.2 s"',
     )
     surface: Surface = key({}, "what is rolled over: a measured map, or synthesised roughness")
     ball: Ball = key({}, "the ball that rolls")
@@ -122,8 +141,8 @@ class BallOnBeamCase(Case):
         surface = data["surface"]
         if not {"line", "spectrum"} & surface.keys():
             return data
-        reduced = ["shifted", "printed", "linear"]
-        return {**data, "laws": reduced if {"file", "rms"} & surface.keys() else ["hertz", "linear"]}
+        rough = {"file", "rms"} & surface.keys()
+        return {**data, "laws": [*(["shifted", "printed"] if rough else ["hertz-filtered"]), *BASELINES]}
 
     @property
     def time_step(self) -> float:
@@ -138,9 +157,30 @@ class BallOnBeamCase(Case):
         return time_step_on_grid(wanted, per_cell)
 
     @property
+    def record_start(self) -> float:
+        """Position in m on the beam where the record starts: as given, or after the run-in."""
+        return self.start if self.start is not None else self.speed * self.settled_time
+
+    @property
+    def settled_time(self) -> float:
+        """Time in s that is rolled before the record starts.
+
+        As given; else as long as the record within `SETTLING`, as far as there is room on the beam.
+        """
+        if self.settling is not None:
+            return self.settling
+        (shortest, longest), whole = SETTLING, self.beam.length / self.speed
+        before = whole if self.start is None else self.start / self.speed
+        if self.duration is None:
+            return min(longest, before, SETTLING_SHARE * whole)
+        return max(min(max(self.duration, shortest), longest, before, whole - self.duration), 0.0)
+
+    @property
     def rolled_time(self) -> float:
-        """Time in s that is computed: as given, or until the end of the beam."""
-        return self.duration if self.duration is not None else (self.beam.length - self.start) / self.speed
+        """Time in s that is recorded: as given, or until the end of the beam."""
+        if self.duration is not None:
+            return self.duration
+        return (self.beam.length - self.record_start) / self.speed
 
     def problems(self) -> Iterator[InputError]:
         """What must fit together across the sections."""
@@ -171,15 +211,20 @@ def _problems_of_laws(case: BallOnBeamCase) -> Iterator[InputError]:
 
 
 def _problems_of_path(case: BallOnBeamCase) -> Iterator[InputError]:
-    length = case.beam.length
-    if case.start >= length:
-        yield InputError("start", f"{case.start:g} m", f"a position on the beam, less than {length:g} m")
-    elif case.duration is not None and case.start + case.speed * case.duration > length * (1 + 1e-9):
-        received = f"{case.duration:g} s, which ends at {case.start + case.speed * case.duration:g} m"
-        allowed = f"at most {(length - case.start) / case.speed:.6g} s, where the beam of {length:g} m ends"
+    length, start, rolled = case.beam.length, case.record_start, case.rolled_time
+    if start >= length:
+        what = "start" if case.start is not None else "start, after settling"
+        yield InputError(what, f"{start:g} m", f"a position on the beam, less than {length:g} m")
+    elif case.speed * case.settled_time > start * (1 + 1e-9):
+        received = f"{case.settled_time:g} s, which begins at {case.rolled_range[0]:g} m"
+        allowed = f"at most {start / case.speed:.6g} s, so that the run-in begins on the beam"
+        yield InputError("settling", received, allowed, "Shorten it, or start farther along the beam.")
+    elif start + case.speed * rolled > length * (1 + 1e-9):
+        received = f"{rolled:g} s, which ends at {start + case.speed * rolled:g} m"
+        allowed = f"at most {(length - start) / case.speed:.6g} s, where the beam of {length:g} m ends"
         yield InputError("duration", received, allowed)
     else:
-        yield from problem_of_steps(case, case.rolled_time)
+        yield from problem_of_steps(case, case.settled_time + rolled)
 
 
 def _listed(words: set[str] | tuple[str, ...]) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BeforeValidator, PrivateAttr
 
 from asperity.config.describing import parameters
-from asperity.config.keys import Choice, Duration, Position, Section, Speed, key
+from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Section, Speed, key
 from asperity.config.sections import ContactCase, Index, Numerics, Surface
 from asperity.errors import InputError
 
@@ -40,8 +40,9 @@ class Case(Section):
     speed: Speed
     laws: tuple[Law, ...]
     seed: Index = key(1, "seed of everything random")
-    start: Position
+    start: Position | None
     duration: Duration | None
+    settling: DurationOrZero | None
     surface: Surface
 
     if TYPE_CHECKING:  # each kind declares these two after the sections of its own
@@ -86,9 +87,25 @@ class Case(Section):
         raise NotImplementedError
 
     @property
-    def rolled_time(self) -> float:
-        """Time in s that is recorded."""
+    def record_start(self) -> float:
+        """Position in m where the record starts."""
         raise NotImplementedError
+
+    @property
+    def settled_time(self) -> float:
+        """Time in s that is rolled before the record starts."""
+        raise NotImplementedError
+
+    @property
+    def rolled_time(self) -> float:
+        """Time in s that is recorded; the run-in comes before it."""
+        raise NotImplementedError
+
+    @property
+    def rolled_range(self) -> tuple[float, float]:
+        """First and last position of the contact in m, from the start of the run-in."""
+        first = self.record_start - self.speed * self.settled_time
+        return first, self.record_start + self.speed * self.rolled_time
 
 
 def problems_of_laws(case: Case) -> Iterator[InputError]:

@@ -197,8 +197,9 @@ class ContactCase(Section):
         "low-wavenumber",
         "what the filter is 1 at: its own low wavenumbers (as printed), or the tangent stiffness",
     )
-    linearise: Annotated[str, BeforeValidator(Choice(("hertz", "rough")))] = key(
-        "hertz", "which stiffness at the load the linear law has"
+    linearise: Annotated[str, BeforeValidator(Choice(("hertz", "rough", "secant")))] = key(
+        "hertz",
+        "stiffness of the linear laws under the load: dF/dr of smooth bodies, dF/dr of rough ones, or F/r",
     )
     filter_degree: Annotated[int, BeforeValidator(Number(at_least=1, at_most=20, whole=True))] = key(
         6, "degree of the polynomial fitted to each filter, in dB over wavenumber"

@@ -42,7 +42,7 @@ class WheelOnRailCase(Case):
     kind: Annotated[str, BeforeValidator(Choice(("wheel-on-rail",)))] = key("wheel-on-rail", "what rolls")
     speed: Speed = key("56 m/s", "rolling speed")
     laws: tuple[Law, ...] = key(
-        ("areal", "shifted", "printed", "linear"),
+        ("areal", "shifted", "printed", "linear-filtered", "linear"),
         "laws of the contact force; the first is the main one",
     )
     start: Position = key("0 m", "where the record starts, from a sleeper")
@@ -73,14 +73,19 @@ class WheelOnRailCase(Case):
         return found if 1 / CLOSE <= found / wanted <= CLOSE else wanted
 
     @property
+    def record_start(self) -> float:
+        """Position in m, from a sleeper, where the record starts."""
+        return self.start
+
+    @property
+    def settled_time(self) -> float:
+        """Time in s that is rolled before the record starts."""
+        return self.settling
+
+    @property
     def rolled_time(self) -> float:
         """Time in s that is recorded; `settling` comes before it."""
         return self.duration
-
-    @property
-    def rolled_range(self) -> tuple[float, float]:
-        """First and last position of the contact on the rail in m, from the start of the run-in."""
-        return self.start - self.speed * self.settling, self.start + self.speed * self.duration
 
     @property
     def point_positions(self) -> tuple[float, ...]:

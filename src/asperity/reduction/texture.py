@@ -65,6 +65,27 @@ class StateTexture:
         """
         return cls(np.atleast_2d(np.asarray(heights, dtype=float)), np.zeros(1), start, spacing)
 
+    def held_at(self, approach: float) -> StateTexture:
+        """One line texture for all states: that of a given one.
+
+        Parameters
+        ----------
+        approach : float
+            Approach of the state, m.
+
+        Returns
+        -------
+        StateTexture
+            The texture with a single state.
+        """
+        states = self.approaches
+        above = int(np.clip(np.searchsorted(states, approach), 1, max(len(states) - 1, 1)))
+        lower, upper = above - 1, min(above, len(states) - 1)
+        step = states[upper] - states[lower]
+        share = float(np.clip((approach - states[lower]) / step, 0.0, 1.0)) if step else 0.0
+        heights = (1.0 - share) * self.heights[lower] + share * self.heights[upper]
+        return StateTexture.unfiltered(heights, self.spacing, self.start)
+
     def at(self, positions: ArrayLike) -> NDArray:
         """Texture at given positions, by cubic splines along the path.
 

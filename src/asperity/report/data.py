@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from xarray import DataArray, DataTree
+
+from asperity.results import BASELINES, difference_name
+from asperity.spectra import LEAST_PRODUCT
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -83,6 +86,33 @@ def of_law(tree: DataTree, path: str, law: str, *dims: str) -> NDArray[np.float6
         raise KeyError(path)
     row = [str(name) for name in found["law"].values].index(law)
     return np.asarray(found.isel(law=row).transpose(*dims).values, dtype=float)
+
+
+def baselines(names: Sequence[str]) -> list[str]:
+    """Those of the laws `names` that all others are compared with, the one of practice first."""
+    return [name for name in BASELINES if name in names]
+
+
+def differences(tree: DataTree) -> dict[str, str]:
+    """Variables of force level differences to the linear laws, with the law each compares with."""
+    paths = {f"spectra/{difference_name(name)}": name for name in BASELINES}
+    return {path: name for path, name in paths.items() if present(tree, path)}
+
+
+PRODUCTS = {
+    "band": "spectra/band_time_product",
+    "noise_band": "spectra/noise_band_time_product",
+    "surface_band": "spectra/surface_band_length_product",
+}
+"""Bandwidth times averaging time, by the dimension of the bands."""
+
+
+def doubtful(tree: DataTree, dim: str) -> NDArray[np.bool_]:
+    """Bands along `dim` whose levels say little, because too few of their waves were averaged."""
+    count = tree["spectra"].sizes[dim]
+    if not present(tree, PRODUCTS[dim]):
+        return np.zeros(count, dtype=bool)
+    return values(tree, PRODUCTS[dim], dim) < LEAST_PRODUCT
 
 
 def sensor_labels(tree: DataTree, path: str) -> list[str]:

@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import laws, of_law, present, values, variable
+from asperity.report.data import baselines, laws, of_law, present, values, variable
 from asperity.report.marks import (
     draw_marks,
     draw_sleepers,
@@ -130,12 +130,12 @@ def _around_passing(tree: DataTree, point: int) -> tuple[slice, float | None]:
 
 def _main_and_linear(tree: DataTree, path: str) -> list[str]:
     names = laws(tree, path)
-    return [law for law in ("linear", names[0]) if law in names] if names[0] != "linear" else names[:1]
+    return [*(name for name in baselines(names)[:1] if name != names[0]), names[0]]
 
 
 @styled()
 def velocity_figure(tree: DataTree) -> Figure:
-    """Velocity of the rail at the passed points, around the passing, by the main law and by linear."""
+    """Velocity of the rail at the passed points, around the passing, by the main law and by a linear one."""
     drawn = _points(tree, VELOCITY)[:POINTS]
     figure = new_figure(0.6 + 1.7 * len(drawn))
     panels = figure.subplots(len(drawn), 1, squeeze=False)[:, 0]

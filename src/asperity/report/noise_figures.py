@@ -9,8 +9,9 @@ from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import laws, of_law, values, variable
+from asperity.report.data import doubtful, laws, of_law, values, variable
 from asperity.report.part import Columns, Part
+from asperity.report.spectrum_figures import doubtful_words, product_columns
 from asperity.report.style import (
     INK,
     LAW_STYLES,
@@ -21,6 +22,7 @@ from asperity.report.style import (
     legend_above,
     level_limits,
     new_figure,
+    shade_doubtful,
     styled,
 )
 from asperity.spectra import a_weighting
@@ -68,6 +70,7 @@ def band_figure(tree: DataTree) -> Figure:
             axes.plot(bands, level, color=MUTED, linestyle=dashes, label=f"{source}, {share}", linewidth=1.2)
     level_limits(axes, levels, span=60.0)
     band_axis(axes, bands)
+    shade_doubtful(axes, bands, doubtful(tree, "noise_band"))
     axes.set_ylabel("sound power level / dB(A) re 1 pW")
     legend_above(axes, columns=6)
     return figure
@@ -77,6 +80,7 @@ def band_columns(tree: DataTree) -> Columns:
     """Sound power per band, law and source, unweighted, beside the A-weighting."""
     bands = values(tree, BAND)
     columns: Columns = {"band centre [Hz]": bands, "A-weighting [dB]": a_weighting(bands)}
+    columns |= product_columns(tree, "noise_band")
     for law in laws(tree, POWER):
         rows = of_law(tree, POWER, law, "source", "noise_band")
         columns |= {
@@ -93,7 +97,7 @@ def _band_caption(tree: DataTree) -> str:
         "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare texture. "
         "The other laws add their difference of the contact force level to linear, band by band, which holds "
         "what the contact filters. "
-        f"Grey: the shares of track and wheel by {share}."
+        f"Grey: the shares of track and wheel by {share}.{doubtful_words(tree, 'noise_band')}"
     )
 
 

@@ -9,10 +9,19 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import engineering, nominal_band, number, values, variable
+from asperity.report.data import doubtful, engineering, nominal_band, number, values, variable
 from asperity.report.marks import speed
 from asperity.report.part import Columns, Part
-from asperity.report.style import INK, LAW_STYLES, MUTED, level_limits, new_figure, styled
+from asperity.report.spectrum_figures import doubtful_words, product_columns
+from asperity.report.style import (
+    INK,
+    LAW_STYLES,
+    MUTED,
+    level_limits,
+    new_figure,
+    shade_doubtful,
+    styled,
+)
 
 ROUGHNESS, BAND = "spectra/roughness_level", "spectra/surface_band"
 SPAN = 60.0
@@ -63,6 +72,8 @@ def roughness_figure(tree: DataTree) -> Figure:
     if pace:
         _frequency_on_top(axes, wavelength, pace)
     _mark_contact(axes, tree)
+    kept = np.isin(values(tree, BAND), wavelength)
+    shade_doubtful(axes, wavelength, doubtful(tree, "surface_band")[kept])
     axes.legend(loc="best")
     return figure
 
@@ -110,7 +121,7 @@ def _mark_contact(axes: Axes, tree: DataTree) -> None:
 
 def roughness_columns(tree: DataTree) -> Columns:
     """Roughness levels per wavelength band and part."""
-    columns: Columns = {"wavelength [m]": values(tree, BAND)}
+    columns: Columns = {"wavelength [m]": values(tree, BAND)} | product_columns(tree, "surface_band")
     return columns | {f"{name} [dB re 1 µm]": level for name, level in _parts(tree).items()}
 
 
@@ -120,6 +131,7 @@ def _caption(tree: DataTree) -> str:
         "Roughness levels per one-third octave of wavelength, re 1 µm, of the textures that were rolled, "
         f"before any contact filter.{combined} Left out: bands that the texture "
         f"does not hold, and levels more than {SPAN:.0f} dB below the highest."
+        + doubtful_words(tree, "surface_band").replace("time B T", "length B T")
     )
 
 

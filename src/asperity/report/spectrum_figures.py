@@ -11,7 +11,17 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import laws, of_law, present, sensor_labels, values, variable
+from asperity.report.data import (
+    PRODUCTS,
+    differences,
+    doubtful,
+    laws,
+    of_law,
+    present,
+    sensor_labels,
+    values,
+    variable,
+)
 from asperity.report.part import Columns, Part
 from asperity.report.style import (
     INK,
@@ -25,12 +35,14 @@ from asperity.report.style import (
     level_limits,
     new_figure,
     sequence,
+    shade_doubtful,
     smooth_on_log_axis,
     styled,
 )
+from asperity.spectra import LEAST_PRODUCT
 
 FORCE, ACCELERATION = "spectra/force_psd", "spectra/acceleration_psd"
-LEVEL, DIFFERENCE = "spectra/force_level", "spectra/force_level_difference"
+LEVEL = "spectra/force_level"
 LINEAR_REFERENCE = "spectra/linear_reference_level"  # by the frequency domain
 ACCELERATION_REFERENCE = 1e-6  # m/s²
 _SENSOR_DASHES = ("-", (0, (6, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (3, 1.5)), (0, (1.5, 1.5)), "-")
@@ -67,6 +79,15 @@ def narrow_level(tree: DataTree, psd: NDArray[np.float64], reference: float) -> 
     return smooth, decibels(power, reference)
 
 
+def _shade(axes: Axes, tree: DataTree) -> None:
+    if present(tree, "spectra/band"):
+        shade_doubtful(axes, values(tree, "spectra/band"), doubtful(tree, "band"))
+
+
+def _shaded_words(tree: DataTree) -> str:
+    return doubtful_words(tree, "band") if present(tree, "spectra/band") else ""
+
+
 @styled()
 def force_figure(tree: DataTree) -> Figure:
     """Power spectral densities of the contact force of all laws on one axis."""
@@ -77,6 +98,7 @@ def force_figure(tree: DataTree) -> Figure:
     for law, (frequency, level) in spectra.items():
         axes.plot(frequency, level, label=law, **law_style(law, names[0]))
     frequency_axis(axes, *frequency_range(tree))
+    _shade(axes, tree)
     level_limits(axes, [level for _, level in spectra.values()])
     axes.set_ylabel("contact force PSD / dB re 1 N²/Hz")
     legend_above(axes)
@@ -93,20 +115,23 @@ def force_columns(tree: DataTree) -> Columns:
 
 @styled()
 def band_figure(tree: DataTree) -> Figure:
-    """One-third-octave levels of the contact force, and below them the difference to the linear law."""
-    with_difference = present(tree, DIFFERENCE)
-    figure = new_figure(6.4 if with_difference else 4.0)
-    panels = figure.subplots(2 if with_difference else 1, 1, sharex=True, squeeze=False)[:, 0]
+    """One-third-octave levels of the contact force, and below them the differences to the linear laws."""
+    compared = differences(tree)
+    figure = new_figure(4.0 + 2.4 * len(compared))
+    heights = [3.4, *(2.4 for _ in compared)]
+    panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     _draw_bands(panels[0], tree, LEVEL, laws(tree, LEVEL), span=100.0, step=10.0)
     if present(tree, LINEAR_REFERENCE):
         panels[0].plot(values(tree, "spectra/band"), values(tree, LINEAR_REFERENCE), **REFERENCE_STYLE)
     panels[0].set_ylabel("contact force level / dB re 1 N")
     legend_above(panels[0])
-    if with_difference:
-        _draw_bands(panels[1], tree, DIFFERENCE, laws(tree, DIFFERENCE), span=np.inf, step=5.0)
-        panels[1].axhline(0, color=MUTED, linewidth=0.9)
-        panels[1].set_ylabel("level − level of linear / dB")
-        panels[0].set_xlabel("")
+    for axes, (path, name) in zip(panels[1:], compared.items(), strict=True):
+        _draw_bands(axes, tree, path, laws(tree, path), span=np.inf, step=5.0)
+        axes.axhline(0, color=MUTED, linewidth=0.9)
+        axes.set_ylabel(f"level − {name} / dB")
+    for axes in panels:
+        shade_doubtful(axes, values(tree, "spectra/band"), doubtful(tree, "band"), labelled=axes is panels[0])
+        axes.label_outer()
     return figure
 
 
@@ -122,14 +147,23 @@ def _draw_bands(
     band_axis(axes, bands)
 
 
+def product_columns(tree: DataTree, dim: str) -> Columns:
+    """Bandwidth times averaging time of bands, and whether their levels say something."""
+    if not present(tree, PRODUCTS[dim]):
+        return {}
+    return {
+        "B T [1]": values(tree, PRODUCTS[dim], dim),
+        f"B T of {LEAST_PRODUCT:g} or more [1]": (~doubtful(tree, dim)).astype(float),
+    }
+
+
 def band_columns(tree: DataTree) -> Columns:
     """Levels per one-third octave and law, and the differences."""
-    columns: Columns = {"band centre [Hz]": values(tree, "spectra/band")}
-    for path, label, unit in (
-        (LEVEL, "{}", "dB re 1 N"),
-        (DIFFERENCE, "{} minus linear", "dB"),
-        ("spectra/force_level_difference_to_reference", "{} minus reference", "dB"),
-    ):
+    columns: Columns = {"band centre [Hz]": values(tree, "spectra/band")} | product_columns(tree, "band")
+    compared = {path: f"{{}} minus {name}" for path, name in differences(tree).items()}
+    compared["spectra/force_level_difference_to_reference"] = "{} minus reference"
+    for path, label in {LEVEL: "{}", **compared}.items():
+        unit = "dB re 1 N" if path == LEVEL else "dB"
         for law in laws(tree, path):
             columns[f"{label.format(law)} [{unit}]"] = of_law(tree, path, law, "band")
     if present(tree, LINEAR_REFERENCE):
@@ -151,6 +185,7 @@ def _acceleration_level(tree: DataTree, law: str, sensor: int) -> Spectrum:
 
 def _finish_acceleration(axes: Axes, tree: DataTree, spectra: Sequence[Spectrum]) -> None:
     frequency_axis(axes, *frequency_range(tree))
+    _shade(axes, tree)
     level_limits(axes, [level for _, level in spectra])
     axes.set_ylabel("acceleration PSD / dB re (1 µm/s²)²/Hz")
     legend_above(axes)
@@ -214,25 +249,40 @@ DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than tha
 def _force_caption(tree: DataTree) -> str:
     return (
         f"Contact force of all laws, one-sided PSD, {DRAWN}; thick: the main law, {laws(tree, FORCE)[0]}. "
-        "Ticks stand at the one-third octaves."
+        "Ticks stand at the one-third octaves." + _shaded_words(tree)
     )
 
 
 def _band_caption(tree: DataTree) -> str:
-    below = " Below: level minus that of the linear law; positive where linear contact underestimates."
-    dashed = " Dashed: the linear contact solved in the frequency domain."
-    return "Levels per one-third octave (IEC 61260-1, base 10)." + (
-        (dashed if present(tree, LINEAR_REFERENCE) else "") + (below if present(tree, DIFFERENCE) else "")
+    text = ["Levels per one-third octave (IEC 61260-1, base 10)."]
+    if present(tree, LINEAR_REFERENCE):
+        text.append("Dashed: the linear contact solved in the frequency domain.")
+    if compared := list(differences(tree).values()):
+        named = " and that of ".join(compared)
+        text.append(f"Below: level minus that of {named}; positive where linear contact underestimates.")
+    return " ".join(text) + doubtful_words(tree, "band")
+
+
+def doubtful_words(tree: DataTree, dim: str) -> str:
+    """Say what shaded bands are, where there are any; a blank comes first."""
+    if not doubtful(tree, dim).any():
+        return ""
+    scatter = 4.34 / np.sqrt(LEAST_PRODUCT)
+    return (
+        f" Shaded: bandwidth times averaging time B T is below {LEAST_PRODUCT:g}; a level there has a "
+        f"standard deviation of 4.34/√(B T) dB, more than {scatter:.1f} dB, and says little."
     )
 
 
 def _sensors_caption(tree: DataTree) -> str:
     main = laws(tree, ACCELERATION)[0]
-    return f"Acceleration at all sensors by the main law, {main}, positive downwards; {DRAWN}."
+    text = f"Acceleration at all sensors by the main law, {main}, positive downwards; {DRAWN}."
+    return text + _shaded_words(tree)
 
 
 def _one_sensor_caption(tree: DataTree) -> str:
-    return f"Acceleration at {sensor_labels(tree, ACCELERATION)[_middle_sensor(tree)]} by all laws; {DRAWN}."
+    label = sensor_labels(tree, ACCELERATION)[_middle_sensor(tree)]
+    return f"Acceleration at {label} by all laws; {DRAWN}.{_shaded_words(tree)}"
 
 
 _ACCELERATION_NEEDS = (ACCELERATION, "spectra/frequency")

@@ -17,6 +17,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLo
 from numpy.typing import NDArray
 
 from asperity.report.data import engineering, nominal_band, power_of_ten
+from asperity.spectra import LEAST_PRODUCT
 
 WIDTH = 9.6  # inches; a figure as wide as the page
 INK, MUTED, GRID = "#1c2126", "#5b6670", "#dfe3e7"
@@ -200,6 +201,19 @@ def band_axis(axes: Axes, bands: NDArray[np.float64], label: str = "one-third oc
     if len(bands) > 14:
         axes.tick_params(axis="x", labelrotation=90)
     axes.set_xlabel(label)
+
+
+def shade_doubtful(
+    axes: Axes, bands: NDArray[np.float64], doubtful: NDArray[np.bool_], labelled: bool = True
+) -> None:
+    """Shade the bands (by their centres) whose levels say little, for too few waves were averaged."""
+    if not doubtful.any():
+        return
+    edge = 10**0.05
+    shaded = bands[doubtful]
+    axes.axvspan(shaded.min() / edge, shaded.max() * edge, color=GRID, alpha=0.6, linewidth=0, zorder=0)
+    if labelled:
+        note_at(axes, axes.get_xlim()[0], 0.03, f"B T < {LEAST_PRODUCT:g}", va="bottom")  # low bands are left
 
 
 def power_axis(axis: Any) -> None:

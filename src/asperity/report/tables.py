@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.report.data import (
+    baselines,
+    doubtful,
     engineering,
     entries,
     group_attrs,
@@ -18,6 +21,7 @@ from asperity.report.data import (
     values,
     variable,
 )
+from asperity.spectra import LEAST_PRODUCT
 
 REFERENCE = "spectra/force_level_difference_to_reference"
 
@@ -93,18 +97,26 @@ def reference_table(tree: DataTree) -> Table | None:
     names = [law for law in laws(tree, REFERENCE) if law != reference]
     if reference is None or not names or not present(tree, "spectra/band"):
         return None
-    differences = np.array([of_law(tree, REFERENCE, law, "band") for law in names])
-    bands = values(tree, "spectra/band")
+    found = np.array([of_law(tree, REFERENCE, law, "band") for law in names])
+    bands, faint = values(tree, "spectra/band"), doubtful(tree, "band")
     rows = [
-        [Cell(nominal_band(f), "number"), *map(_difference, column)]
-        for f, column in zip(bands, differences.T, strict=True)
+        [
+            Cell(nominal_band(f), "number faint" if doubt else "number"),
+            *(_difference(d, doubt) for d in column),
+        ]
+        for f, column, doubt in zip(bands, found.T, faint, strict=True)
     ]
-    with np.errstate(invalid="ignore"):
-        largest = np.nanmax(np.abs(differences), axis=1)
-        mean = np.nanmean(differences, axis=1)
-    rows.append([Cell("mean", "total"), *(Cell(_signed(d), "number total") for d in mean)])
-    rows.append([Cell("largest size", "total"), *(Cell(f"{d:.1f}", "number total") for d in largest)])
+    told = [row[np.isfinite(row) & ~faint] for row in found]
+    mean = [_signed(row.mean()) if row.size else "–" for row in told]
+    largest = [f"{np.abs(row).max():.1f}" if row.size else "–" for row in told]
+    rows.append([Cell("mean", "total"), *(Cell(text, "number total") for text in mean)])
+    rows.append([Cell("largest size", "total"), *(Cell(text, "number total") for text in largest)])
     note = "Shaded: more than 1 dB, more than 3 dB away."
+    if faint.any():
+        note += (
+            " In grey and in brackets: bands whose bandwidth times averaging time is below "
+            f"{LEAST_PRODUCT:g}; they say little, and are not in the last two rows."
+        )
     title = f"Contact force level minus that of {reference}, in dB"
     return Table("reference", title, ["band / Hz", *names], rows, note)
 
@@ -114,8 +126,10 @@ def _signed(difference: float) -> str:
     return "–" if not np.isfinite(difference) else f"{rounded:+.1f}".replace("-", "−") if rounded else "0.0"
 
 
-def _difference(value: float) -> Cell:
+def _difference(value: float, doubt: bool) -> Cell:
     size = abs(value)
+    if doubt:
+        return Cell(f"({_signed(value)})", "number faint")
     look = " far" if size > 3 else " off" if size > 1 else ""
     return Cell(_signed(value), "number" + look)
 
@@ -172,7 +186,9 @@ def energy_table(tree: DataTree) -> Table | None:
             row.append(Cell(f"{float(of_law(tree, 'rolling/energy_residual', law)):.1e}", "number"))
         rows.append(row)
     meaning = residual.attrs.get("long_name") if residual is not None else None
-    note = "Energies at the end of the run." + (f" Residual: {meaning}." if meaning else "")
+    note = "Energies from the start of the run-in to the end of the run." + (
+        f" Residual: {meaning}." if meaning else ""
+    )
     head = ["law", *terms, *(["relative residual"] if residual is not None else [])]
     return Table(
         "energy_balance",
@@ -184,30 +200,28 @@ def energy_table(tree: DataTree) -> Table | None:
 
 
 def sound_power_table(tree: DataTree) -> Table | None:
-    """A-weighted sound power per law and source, and its difference to the linear law."""
+    """A-weighted sound power per law and source, and its differences to the linear laws."""
     path = "spectra/sound_power_level_a"
     names, found = laws(tree, path), variable(tree, path)
     if found is None:
         return None
     sources = [str(source) for source in found["source"].values]
     levels = {law: of_law(tree, path, law, "source") for law in names}
+    compared = baselines(names)
     head = ["law", *(f"{source} / dB(A)" for source in sources)]
-    if "linear" in names:
-        head += [f"{source} − linear / dB" for source in sources]
-    rows = []
-    for law, level in levels.items():
-        row = [_text(law), *(Cell(_level(value), "number") for value in level)]
-        if "linear" in names:
-            row += [Cell(_signed(d) if law != "linear" else "–", "number") for d in level - levels["linear"]]
-        rows.append(row)
+    head += [f"{source} − {name} / dB" for name in compared for source in sources]
+
+    def row(label: str, level: NDArray[np.float64]) -> list[Cell]:
+        cells = [_text(label), *(Cell(_level(value), "number") for value in level)]
+        for name in compared:
+            cells += [Cell(_signed(d) if label != name else "–", "number") for d in level - levels[name]]
+        return cells
+
+    rows = [row(law, level) for law, level in levels.items()]
     note = "Re 1 pW, over the bands that were computed. Positive differences: linear contact underestimates."
     standard = variable(tree, "spectra/cnossos_sound_power_level_a")
     if standard is not None:
-        level = standard.sel(source=found["source"]).values
-        row = [_text("CNOSSOS-EU"), *(Cell(_level(value), "number") for value in level)]
-        if "linear" in names:
-            row += [Cell(_signed(d), "number") for d in level - levels["linear"]]
-        rows.append(row)
+        rows.append(row("CNOSSOS-EU", standard.sel(source=found["source"]).values))
         name = standard.attrs.get("contact_filter", "")
         note += f" CNOSSOS-EU: the same roughness with its own contact filter ({name})."
     return Table("sound_power_table", "A-weighted sound power", head, rows, note)

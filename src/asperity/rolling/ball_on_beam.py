@@ -40,7 +40,7 @@ class Rolling:
     Parameters
     ----------
     time : ndarray (n,)
-        s, uniform from zero.
+        s, uniform from zero, after the run-in.
     position : ndarray (n,)
         Of the contact on the beam, m.
     contact_force : ndarray (n,)
@@ -56,11 +56,9 @@ class Rolling:
     contact_loss : list of ContactLoss
         Flights.
     energy : EnergyBalance
-        Where the work of the load went.
-    evaluations : int
-        Evaluations of the law.
-    unconverged_steps : int
-        Time steps whose contact force missed the tolerance.
+        Where the work of the load went, in run-in and run.
+    evaluations, unconverged_steps : int
+        Evaluations of the law, and time steps whose contact force missed the tolerance, of run-in and run.
     outcome : Outcome
         Whether all steps converged.
     """
@@ -100,11 +98,12 @@ def roll(
     duration: float,
     time_step: float,
     sensors: ArrayLike,
+    settling: float = 0.0,
     highest_frequency: float | None = None,
     progress: Progress | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> Rolling:
-    """Roll a ball over a beam at constant speed, from static equilibrium.
+    """Roll a ball over a beam at constant speed, from static equilibrium, and keep what follows the run-in.
 
     The beam is advanced exactly mode by mode and the ball exactly, for a contact force that varies
     linearly over a step; the force at the end of each step solves the contact law implicitly. The
@@ -117,14 +116,16 @@ def roll(
     speed : float
         m/s.
     start : float
-        Position of the contact on the beam at time zero, m. The law reads its texture at the same
-        coordinate.
+        Position of the contact on the beam at time zero, after the run-in, m. The law reads its texture
+        at the same coordinate.
     duration : float
         s.
     time_step : float
         s.
     sensors : array_like (k,)
         Positions of the accelerometers on the beam, m.
+    settling : float, optional
+        Run-in before time zero, s; not kept.
     highest_frequency : float, optional
         Highest frequency of interest, Hz, checked against the time step.
     progress : callable, optional
@@ -153,27 +154,28 @@ def roll(
     UnconvergedWarning
         If contact forces missed the tolerance.
     """
-    positions, at = _path(beam, speed, start, duration, time_step), np.atleast_1d(np.asarray(sensors, float))
+    positions, settled = _path(beam, speed, start, duration, settling, time_step)
+    at = np.atleast_1d(np.asarray(sensors, float))
     prepared = law.prepare(positions)
     system = _system(beam, ball, at, speed, time_step)
     relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
     approach, stiffness = static_approach(evaluation(prepared, 0), ball.static_load, relative)
     _warn_if_coarse(time_step, stiffness, ball.mass, beam, highest_frequency)
-    motion, record = _at_rest(system, beam, start, approach, len(positions))
+    motion, record = _at_rest(system, beam, positions[0], approach, len(positions))
     beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])
     stepper = BeamStepper(system, motion, record, beam, positions)
     restore(checkpoint, stepper, prepared)
     run(stepper, prepared, law.damping, progress, checkpoint)
-    apart = flying(prepared, record.force, record.approach)
+    apart = flying(prepared, record.force, record.approach)[settled:]
     warn_after(law.name, motion.counts, prepared, record.approach)
     return Rolling(
-        time=time_step * np.arange(len(positions)),
-        position=positions,
-        contact_force=record.force,
-        relative_displacement=record.approach,
-        ball_displacement=record.ball,
-        beam_displacement=record.beam,
-        acceleration=record.acceleration,
+        time=time_step * np.arange(len(positions) - settled),
+        position=positions[settled:],
+        contact_force=record.force[settled:],
+        relative_displacement=record.approach[settled:],
+        ball_displacement=record.ball[settled:],
+        beam_displacement=record.beam[settled:],
+        acceleration=record.acceleration[:, settled:],
         in_contact=~apart,
         contact_loss=contact_losses(apart, time_step),
         energy=balance(
@@ -189,8 +191,10 @@ def roll(
     )
 
 
-def _path(beam: Beam, speed: float, start: float, duration: float, time_step: float) -> NDArray:
-    """Positions of the contact at every time step, checked."""
+def _path(
+    beam: Beam, speed: float, start: float, duration: float, settling: float, time_step: float
+) -> tuple[NDArray, int]:
+    """Positions of the contact at every time step of run-in and record, checked, and steps of the run-in."""
     for what, value in (
         ("speed (m/s)", speed),
         ("duration (s)", duration),
@@ -198,17 +202,20 @@ def _path(beam: Beam, speed: float, start: float, duration: float, time_step: fl
     ):
         if not (np.isfinite(value) and value > 0.0):
             raise InputError(what, value, "a finite positive number")
-    steps = int(np.floor(duration / time_step * (1.0 + 1e-12)))
+    if not (np.isfinite(settling) and settling >= 0.0):
+        raise InputError("settling (s)", settling, "zero or a finite positive number")
+    steps, settled = (int(np.floor(time / time_step * (1.0 + 1e-12))) for time in (duration, settling))
     if steps < 1:
         raise InputError("duration (s)", duration, f"at least one time step of {time_step:.6g} s")
-    end = start + speed * steps * time_step
-    if not (start >= 0.0 and end <= beam.length * (1.0 + 1e-9)):
+    step = speed * time_step
+    first, end = start - step * settled, start + step * steps
+    if not (first >= -1e-9 * beam.length and end <= beam.length * (1.0 + 1e-9)):
         longest = (beam.length - start) / speed
-        remedy = f"From there the beam ends after {longest:.6g} s." if start >= 0.0 else "Start on the beam."
+        remedy = f"From there the beam ends after {longest:.6g} s." if first >= 0.0 else "Start on the beam."
         raise InputError(
-            "path (m)", f"{start:.6g} to {end:.6g}", f"0 to {beam.length:.6g}, on the beam", remedy
+            "path (m)", f"{first:.6g} to {end:.6g}", f"0 to {beam.length:.6g}, on the beam", remedy
         )
-    return start + speed * time_step * np.arange(steps + 1)
+    return start + step * np.arange(-settled, steps + 1), settled
 
 
 def _system(beam: Beam, ball: Ball, sensors: NDArray, speed: float, time_step: float) -> System:

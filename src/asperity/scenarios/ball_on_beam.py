@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 from asperity.config import BallOnBeamCase
+from asperity.config.ball_on_beam import SETTLING
 from asperity.contact import Hertz
+from asperity.errors import ShortRecordWarning
 from asperity.pointforce import Law
 from asperity.progress import Progress
 from asperity.reference.materials import contact_modulus
@@ -66,9 +69,9 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
     watch.lap("textures")
     compile_kernels(progress)  # not before the files are known to be right
     watch.lap("compiled functions")
-    travel = (len(textures.line[textures.recorded]) - 1) * case.contact.spacing
-    duration = min(case.rolled_time, travel / case.speed)
-
+    pace = case.contact.spacing / case.speed
+    duration = min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace)
+    _warn_of_start(case.settled_time)
     checkpoint = Checkpoint(store, _run_key(case, textures, duration)) if "direct" in case.laws else None
 
     def roll_law(law: Law) -> Rolling:
@@ -77,8 +80,9 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
             ball,
             law,
             speed=case.speed,
-            start=case.start,
+            start=case.record_start,
             duration=duration,
+            settling=case.settled_time,
             time_step=case.time_step,
             sensors=case.beam.sensor_positions,
             highest_frequency=case.numerics.highest_frequency,
@@ -125,11 +129,22 @@ def _beam(case: BallOnBeamCase) -> Beam:
     )
 
 
+def _warn_of_start(settling: float) -> None:
+    if settling < SETTLING[0] * (1 - 1e-9):
+        warnings.warn(
+            f"the record starts {settling * 1e3:.3g} ms after the ball lay at rest, less than "
+            f"{SETTLING[0] * 1e3:.3g} ms: its levels hold the start. Start farther along the beam, or "
+            "shorten the duration, so that there is room for settling.",
+            ShortRecordWarning,
+            stacklevel=3,
+        )
+
+
 def _run_key(case: BallOnBeamCase, textures: Textures, duration: float) -> str:
     """Name of a direct run: everything that its motion depends on."""
     assert textures.path is not None
     scalars = [
-        case.speed, case.start, duration, case.time_step, case.numerics.rtol,
+        case.speed, case.record_start, case.settled_time, duration, case.time_step, case.numerics.rtol,
         case.numerics.highest_frequency, case.contact.hardness, case.contact.damping,
         list(case.beam.sensor_positions),
     ]  # fmt: skip

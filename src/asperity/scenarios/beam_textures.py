@@ -16,6 +16,8 @@ from asperity.scenarios.textures import (
     Textures,
     measured_maps,
     middle_line,
+    mirrored_before,
+    mirrored_words,
     path_of,
     strip_rows,
     strips_of,
@@ -50,7 +52,8 @@ def gather(case: BallOnBeamCase, margin: int) -> Textures:
     """
     seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
     ny, spacing = window_cells(case.contact), case.contact.spacing
-    rows = math.ceil(case.rolled_time * case.speed / spacing) + 1 + 2 * margin
+    lead = math.ceil(case.settled_time * case.speed / spacing)
+    rows = lead + math.ceil(case.rolled_time * case.speed / spacing) + 1 + 2 * margin
     missing, origin = 0.0, ""
     maps: tuple[HeightMap, ...] = ()
     strips: tuple[HeightMap, ...] = ()
@@ -58,7 +61,7 @@ def gather(case: BallOnBeamCase, margin: int) -> Textures:
     if case.surface.file is not None:
         maps, missing = measured_maps(case.surface, spacing)
         strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
-        path, path_origin = path_of(maps, (rows, ny), seeds[0])
+        path, path_origin = path_of(maps, (rows, ny), seeds[0], run_in=lead)
         origin = f"{len(maps)} measured from {case.surface.file.name}; {strip_origin}; {path_origin}"
     elif case.surface.rms is not None:
         size = (strip_rows(case.contact), ny)
@@ -66,22 +69,26 @@ def gather(case: BallOnBeamCase, margin: int) -> Textures:
         maps, path = strips, synthesised_path(case.surface, spacing, (rows, ny), seeds[0])
         origin = "samples and path synthesised: self-affine, Gaussian"
     if case.surface.has_line:
-        line, line_origin = _line(case, rows, 2 * margin + 2, seeds[0])
+        line, line_origin = _line(case, rows - lead, 2 * margin + 2, lead, seeds[0])
         path, origin = None, "; ".join(filter(None, [origin, line_origin]))
     elif path is not None:
         line = middle_line(path)
-    start = case.start - margin * spacing
-    return Textures(maps, strips, path, line, start, margin, margin, missing, origin)
+    before = margin + lead
+    start = case.record_start - before * spacing
+    return Textures(maps, strips, path, line, start, before, margin, missing, origin)
 
 
-def _line(case: BallOnBeamCase, rows: int, least: int, seed: int) -> tuple[NDArray[np.float64], str]:
+def _line(
+    case: BallOnBeamCase, rows: int, least: int, lead: int, seed: int
+) -> tuple[NDArray[np.float64], str]:
+    """Line of the path: `lead` points for the run-in, then `rows`, at least `least`, for the record."""
     spacing = case.contact.spacing
     if case.surface.spectrum is not None:
         wavelengths, levels = iso_3095_limit()
         # a line that closes on itself: longer than the path and than the longest band
-        points = max(rows, math.ceil(1.2 * wavelengths.max() / spacing))
+        points = max(rows + lead, math.ceil(1.2 * wavelengths.max() / spacing))
         profile = from_bands(points, spacing, wavelengths, levels + case.surface.level, seed)
-        return profile.heights[:rows], f"path of ISO 3095:2013 limit {case.surface.level:+g} dB"
+        return profile.heights[: rows + lead], f"path of ISO 3095:2013 limit {case.surface.level:+g} dB"
     assert case.surface.line is not None
     measured = read_lines(case.surface, "surface")
     if not isinstance(measured, Profile):
@@ -100,4 +107,6 @@ def _line(case: BallOnBeamCase, rows: int, least: int, seed: int) -> tuple[NDArr
             f"at least {max(rows, least) * spacing:.4g} m: the path and a window at both ends",
             "Give a shorter duration, or a longer line.",
         )
-    return profile.heights[:rows], f"path measured, {case.surface.line.name}"
+    held = profile.heights[: rows + lead]
+    origin = f"path measured, {case.surface.line.name}{mirrored_words(held, rows + lead)}"
+    return mirrored_before(held, rows + lead), origin

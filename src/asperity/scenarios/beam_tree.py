@@ -12,12 +12,17 @@ from asperity.results import variable
 from asperity.scenarios.ball_on_beam import Computed
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
-from asperity.scenarios.tree import assembled, law_coordinate, level_differences, loss_variables
+from asperity.scenarios.tree import (
+    assembled,
+    law_coordinate,
+    level_differences,
+    loss_variables,
+    product_variable,
+    spectrum_segment,
+)
 from asperity.scenarios.verdict import verdict
-from asperity.spectra import band_levels, psd
+from asperity.spectra import averaging_time, band_levels, psd
 
-SEGMENT = 0.2
-"""Longest segment of the spectra, s: lines 5 Hz apart."""
 ACCELERATION_REFERENCE = 1e-6
 
 
@@ -48,7 +53,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         groups,
         caught,
         title=_title(computed.case.ball.material.name, computed.case.beam.material.name),
-        verdict=verdict(computed.chain.runs, spectra, "ball"),
+        verdict=verdict(computed.chain, spectra, "ball"),
         numerics=_numerics(computed),
     )
 
@@ -73,7 +78,7 @@ def _rolling(computed: Computed) -> xarray.Dataset:
         {
             "law": law_coordinate(computed.chain),
             "sensor": variable("sensor", sensors, "m", "position of the accelerometer on the beam"),
-            "time": variable("time", runs[0].time, "s", "time"),
+            "time": variable("time", runs[0].time, "s", "time since the run-in"),
             "position": variable("time", runs[0].position, "m", "position of the contact on the beam"),
             "contact_force": variable(("law", "time"), stack("contact_force"), "N", "contact force"),
             "relative_displacement": variable(
@@ -101,7 +106,7 @@ def _rolling(computed: Computed) -> xarray.Dataset:
                 "displacement of the beam under the ball, positive downwards",
             ),
             "energy_term": variable("energy_term", np.array(terms), "1", "term of the energy balance"),
-            "energy": variable(("law", "energy_term"), energy, "J", "energy since the start"),
+            "energy": variable(("law", "energy_term"), energy, "J", "energy since the start of the run-in"),
             "energy_residual": variable(
                 "law",
                 np.array([run.energy.residual for run in runs]),
@@ -117,7 +122,7 @@ def _spectra(computed: Computed) -> xarray.Dataset:
     step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
     laws, stack = list(computed.chain.runs), computed.chain.stacked
     samples = len(computed.chain.runs[laws[0]].time)
-    segment = min(samples, round(SEGMENT / step))
+    segment = spectrum_segment(samples, step)
     frequency, force = psd(stack("contact_force"), step, segment=segment)
     _, acceleration = psd(stack("acceleration"), step, segment=segment)
     band, force_level = band_levels(frequency, force, high=highest)
@@ -131,6 +136,7 @@ def _spectra(computed: Computed) -> xarray.Dataset:
         ),
         "frequency": variable("frequency", frequency[shown], "Hz", "frequency"),
         "band": variable("band", band, "Hz", "one-third-octave band centre"),
+        "band_time_product": product_variable("band", band, averaging_time(samples, step, segment=segment)),
         "force_psd": variable(by_law, force[:, shown], "N2/Hz", "PSD of the contact force, one-sided"),
         "force_level": variable(("law", "band"), force_level, "dB re 1 N", "contact force level"),
         "acceleration_psd": variable(

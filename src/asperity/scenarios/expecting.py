@@ -93,8 +93,8 @@ def expected_scans(case: Case) -> dict[str, Expected]:
         rows = contact.samples * max(strip_rows(contact) - window, 1)
         result["filters"] = _expected(case, shape, rows, filter_stride(shape), FILTER_SHARE)
     if "table" in case.laws:
-        settling = case.settling if isinstance(case, WheelOnRailCase) else 0.0
-        rows = math.ceil((settling + case.rolled_time) * case.speed / contact.spacing) + 2 + window
+        pace = case.speed / contact.spacing
+        rows = math.ceil(case.settled_time * pace) + math.ceil(case.rolled_time * pace) + 2 + window
         result["path"] = _expected(case, shape, rows, table_stride(shape))
     return result
 

@@ -89,6 +89,8 @@ class Workshop:
         return Hertz(self.shape.hertz.stiffness_constant, texture, damping, name)
 
     def _linear(self, texture: StateTexture, damping: float, name: str) -> Law:
+        if self.reduction is not None:  # a filter that changed with the state would not be linear
+            texture = texture.held_at(float(self.reduction.ensemble.curve.inverse(self.shape.load)))
         approach, stiffness = working_point(self.contact, self.shape, self.reduction)
         return Linear(self.shape.load, stiffness, approach, texture, damping, name)
 
@@ -186,12 +188,12 @@ def table_stride(shape: Geometry) -> int:
 
 
 def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | None) -> tuple[float, float]:
-    """Approach and tangent stiffness under the working load, of the smooth or the rough contact.
+    """Approach under the working load, and the stiffness that a linear contact has there.
 
     Parameters
     ----------
     contact : ContactCase
-        The contact section of the case, which says of which.
+        The contact section of the case, which says which stiffness.
     shape : Geometry
         What presses on what.
     reduction : Reduction or None
@@ -200,14 +202,18 @@ def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | 
     Returns
     -------
     approach, stiffness : float
-        m and N/m.
+        m and N/m: dF/dr of the smooth or the rough contact, or F/r of the rough one (thesis Eq. 2.3), of the
+        smooth one where there are no samples.
     """
-    if contact.linearise == "rough" and reduction is not None:
-        curve = reduction.ensemble.curve
-        approach = float(curve.inverse(shape.load))
-        return approach, float(curve.stiffness(approach))
-    approach = shape.hertz.approach(shape.load)
-    return approach, shape.hertz.tangent_stiffness(approach)
+    if contact.linearise == "hertz" or reduction is None:
+        approach = shape.hertz.approach(shape.load)
+        tangent = shape.hertz.tangent_stiffness(approach)
+        return approach, shape.load / approach if contact.linearise == "secant" else tangent
+    ensemble = reduction.ensemble
+    approach = float(ensemble.curve.inverse(shape.load))
+    if contact.linearise == "secant":
+        return approach, shape.load / (approach + ensemble.datum)
+    return approach, float(ensemble.curve.stiffness(approach))
 
 
 def punch_taps(hertz: HertzContact, load: float, spacing: float) -> NDArray[np.float64]:

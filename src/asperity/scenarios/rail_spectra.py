@@ -12,14 +12,17 @@ from asperity.results import variable
 from asperity.rolling.linear_reference import linear_force_psd
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.rail_noise import noise_variables
-from asperity.scenarios.tree import law_coordinate, level_differences
+from asperity.scenarios.tree import (
+    law_coordinate,
+    level_differences,
+    product_variable,
+    spectrum_segment,
+)
 from asperity.scenarios.wheel_on_rail import Computed
-from asperity.spectra import band_levels, psd
+from asperity.spectra import averaging_time, band_levels, psd
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
 
-SEGMENT = 0.2
-"""Longest segment of the spectra, s: lines 5 Hz apart."""
 VELOCITY_REFERENCE = 1e-9
 
 
@@ -39,7 +42,8 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
     step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
     laws = list(computed.chain.runs)
     samples = len(computed.chain.runs[laws[0]].time)
-    segment = min(samples, round(SEGMENT / step))
+    segment = spectrum_segment(samples, step)
+    time = averaging_time(samples, step, segment=segment)
     frequency, force = psd(computed.chain.stacked("contact_force"), step, segment=segment)
     band, force_level = band_levels(frequency, force, high=highest)
     shown = (frequency > 0.0) & (frequency <= 1.13 * highest)
@@ -49,6 +53,7 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
         "law": law_coordinate(computed.chain),
         "frequency": variable("frequency", frequency[shown], "Hz", "frequency"),
         "band": variable("band", band, "Hz", "one-third-octave band centre"),
+        "band_time_product": product_variable("band", band, time),
         "force_psd": variable(
             ("law", "frequency"), force[:, shown], "N2/Hz", "PSD of the contact force, one-sided"
         ),
@@ -68,6 +73,9 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
     }
     variables |= level_differences(laws, force_level) | _points(computed, segment)
     variables |= _roughness(computed) | noise_variables(computed, band, force_level)
+    if "noise_band" in variables:
+        centres = variables["noise_band"].values
+        variables["noise_band_time_product"] = product_variable("noise_band", centres, time)
     return xarray.Dataset(variables, attrs=_attributes(computed))
 
 
@@ -148,9 +156,11 @@ def _roughness(computed: Computed) -> dict[str, xarray.Variable]:
     found = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
     wavelength = found["combined"][0]
     levels = np.stack([level for _, level in found.values()])
+    averaged = averaging_time(len(textures.line), spacing)
     return {
         "part": variable("part", np.array(list(found)), "1", "what bears the texture"),
         "surface_band": variable("surface_band", wavelength, "m", "wavelength of the one-third octave"),
+        "surface_band_length_product": product_variable("surface_band", 1.0 / wavelength, averaged, "length"),
         "roughness_level": variable(
             ("part", "surface_band"),
             np.where(np.isfinite(levels), levels, np.nan),

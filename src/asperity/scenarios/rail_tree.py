@@ -47,7 +47,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         groups,
         caught,
         title=f"Wheel on rail at {computed.case.speed:.3g} m/s",
-        verdict=verdict(computed.chain.runs, spectra, "wheel"),
+        verdict=verdict(computed.chain, spectra, "wheel"),
         numerics=_numerics(computed),
         citations=(*computed.track.sources, CITATION),
     )

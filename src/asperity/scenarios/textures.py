@@ -185,7 +185,9 @@ def strips_of(
     return strips, "filter strips synthesised in their likeness"
 
 
-def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> tuple[Strip, str]:
+def path_of(
+    maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int, run_in: int = 0
+) -> tuple[Strip, str]:
     """Take the path from maps.
 
     Parameters
@@ -196,6 +198,8 @@ def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> t
         (rows, ny) of the path.
     seed : int
         Of the synthesis.
+    run_in : int
+        Rows at the start that a map need not hold: they are mirrored where it is too short.
 
     Returns
     -------
@@ -206,14 +210,40 @@ def path_of(maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int) -> t
         Which of the two.
     """
     first = maps[0]
-    if first.shape[0] >= shape[0] and first.shape[1] >= shape[1]:
+    if first.shape[0] >= shape[0] - run_in and first.shape[1] >= shape[1]:
         middle = (first.shape[1] - shape[1]) // 2
         heights = first.heights[: shape[0], middle : middle + shape[1]]
-        return HeightMap(heights - heights.mean(), first.spacing, first.source), "path cut from the first"
+        origin = "path cut from the first" + mirrored_words(heights, shape[0])
+        path = mirrored_before(heights - heights.mean(), shape[0])
+        return HeightMap(path, first.spacing, first.source), origin
     origin = "path synthesised in their likeness"
     if shape[0] * shape[1] > HELD_POINTS:
         return long_strip_like(maps, shape, seed), f"{origin}, in pieces"
     return from_map(maps, shape, seed), origin
+
+
+def mirrored_before(heights: NDArray[np.float64], rows: int) -> NDArray[np.float64]:
+    """Put the mirror image of a texture before it, for a run-in over what was not measured.
+
+    Parameters
+    ----------
+    heights : ndarray, shape (n, ...)
+        Heights along the path, m.
+    rows : int
+        Points along the path that are wanted.
+
+    Returns
+    -------
+    ndarray, shape (rows, ...)
+        The texture at the end, mirrored at its first point as often as it takes.
+    """
+    before = [(max(rows - len(heights), 0), 0), *((0, 0) for _ in heights.shape[1:])]
+    return np.pad(heights, before, mode="reflect")
+
+
+def mirrored_words(heights: NDArray[np.float64], rows: int) -> str:
+    """Say that a run-in is mirrored, where it is."""
+    return ", its mirror image for the run-in" if len(heights) < rows else ""
 
 
 def middle_line(strip: Strip) -> NDArray[np.float64]:

@@ -16,9 +16,12 @@ from asperity import __version__
 from asperity.contact.device import find_device
 from asperity.errors import PhysicsWarning
 from asperity.pointforce import LAWS
-from asperity.results import checked, variable
+from asperity.results import BASELINES, checked, difference_name, variable
 from asperity.scenarios.chain import Chain
+from asperity.spectra import LEAST_PRODUCT, band_product
 
+SEGMENT = (0.025, 0.2)
+"""Shortest and longest segment of the spectra, s: lines 40 Hz and 5 Hz apart."""
 CITATIONS = (
     "O. Lundberg, State-dependent nonlinear contact modelling, licentiate thesis, KTH Stockholm (2014).",
     "A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377 (influence coefficients).",
@@ -118,6 +121,9 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
         precision = "single" if chain.scan.single else "double"
         yield "contacts solved for the table", f"{chain.scan.solved} in {precision} precision"
         yield "contacts of the table not converged", f"{chain.scan.unconverged}"
+    main, first = next(iter(chain.runs.items()))
+    thirds = ", ".join(f"{np.std(third):.3g}" for third in np.array_split(first.contact_force, 3))
+    yield f"rms of the contact force in thirds of the record, {main}", f"{thirds} N"
     for name, run in chain.runs.items():
         yield f"time steps not converged, {name}", f"{run.unconverged_steps}"
 
@@ -161,8 +167,55 @@ def loss_variables(chain: Chain[Any]) -> dict[str, xarray.Variable]:
     }
 
 
+def spectrum_segment(samples: int, step: float) -> int:
+    """Length of the segments that spectra are averaged over.
+
+    Parameters
+    ----------
+    samples : int
+        Length of the record.
+    step : float
+        Time step, s.
+
+    Returns
+    -------
+    int
+        Time steps: a quarter of the record within `SEGMENT`, so that windows leave most of it.
+    """
+    shortest, longest = (round(length / step) for length in SEGMENT)
+    return min(max(samples // 4, shortest), longest, samples)
+
+
+def product_variable(name: str, centres: np.ndarray, time: float, what: str = "time") -> xarray.Variable:
+    """Lay out the product B T of bands, from which one sees which levels say little.
+
+    Parameters
+    ----------
+    name : str
+        Dimension of the bands.
+    centres : ndarray, shape (b,)
+        Band centres, Hz or cycles per metre.
+    time : float
+        Averaging time, s, or length, m.
+    what : str
+        Which of the two.
+
+    Returns
+    -------
+    xarray.Variable
+        By band; the least product of a level that says something is in its attributes.
+    """
+    return variable(
+        name,
+        band_product(centres, time),
+        "1",
+        f"bandwidth times averaging {what}; a level has a standard deviation of 4.34/sqrt of it, dB",
+        least=LEAST_PRODUCT,
+    )
+
+
 def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xarray.Variable]:
-    """Differences of the force levels to the linear law, and to a reference if there is one.
+    """Differences of the force levels to the linear laws, and to a reference if there is one.
 
     Parameters
     ----------
@@ -176,16 +229,17 @@ def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xar
     dict of str to Variable
         Differences in dB, by law and band.
     """
-    variables = {}
-    if "linear" in laws:
-        difference = force_level - force_level[laws.index("linear")]
-        variables["force_level_difference"] = variable(
-            ("law", "band"), difference, "dB", "force level over that of the linear contact"
-        )
+    compared = {difference_name(name): name for name in BASELINES if name in laws}
     reference = next((name for name in ("direct", "table") if name in laws), None)
     if reference is not None:
-        difference = force_level - force_level[laws.index(reference)]
-        variables["force_level_difference_to_reference"] = variable(
-            ("law", "band"), difference, "dB", f"force level over that of {reference}", reference=reference
+        compared["force_level_difference_to_reference"] = reference
+    return {
+        name: variable(
+            ("law", "band"),
+            force_level - force_level[laws.index(law)],
+            "dB",
+            f"force level over that of {law}",
+            reference=law,
         )
-    return variables
+        for name, law in compared.items()
+    }

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray
 
-from asperity.scenarios.chain import Run
+from asperity.results import BASELINES, difference_name
+from asperity.scenarios.chain import Chain, Run
+from asperity.spectra import LEAST_PRODUCT
 
 COMPARED = (100.0, 5000.0)
 """Band centres between which laws are compared, Hz."""
 
 
-def verdict(runs: Mapping[str, Run], spectra: xarray.Dataset, body: str) -> str:
+def verdict(chain: Chain[Any], spectra: xarray.Dataset, body: str) -> str:
     """Say in a few words how the main law's contact went, and how far it is from the others.
 
     Parameters
     ----------
-    runs : mapping of str to Run
-        Runs by law; the first is the main one.
+    chain : Chain
+        What was computed; the first law is the main one.
     spectra : Dataset
         The spectra group of the result.
     body : str
@@ -30,25 +33,42 @@ def verdict(runs: Mapping[str, Run], spectra: xarray.Dataset, body: str) -> str:
     str
         One or two sentences.
     """
-    main, run = next(iter(runs.items()))
+    main, run = next(iter(chain.runs.items()))
     dynamic = float(np.std(run.contact_force))
-    parts = [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
-    bands = (spectra["band"] >= COMPARED[0] * 0.9) & (spectra["band"] <= COMPARED[1] * 1.1)
-    if "force_level_difference" in spectra and main != "linear" and bool(bands.any()):
-        difference = spectra["force_level_difference"].sel(law=main).where(bands, drop=True)
-        parts.append(f"against the linear contact it is {_range(difference)} per one-third octave")
-    if "force_level_difference_to_reference" in spectra and bool(bands.any()):
-        difference = spectra["force_level_difference_to_reference"]
-        reference = difference.attrs["reference"]
-        if reference != main:
-            distance = float(abs(difference.sel(law=main).where(bands, drop=True)).max())
-            parts.append(f"and at most {distance:.1f} dB from {reference}")
-    if "sound_power_level_a" in spectra and "linear" in spectra["law"].values and main != "linear":
+    sentences = [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
+    secant = " (linear with the stiffness F/r)" if chain.case.contact.linearise == "secant" else ""
+    baselines = [name for name in BASELINES if difference_name(name) in spectra and name != main]
+    shown = _shown(spectra)
+    if not shown.any():
+        sentences.append("The record is too short to compare its one-third octaves with those of other laws")
+    elif compared := list(_compared(spectra.isel(band=shown), main, baselines)):
+        sentences.append(f"Per one-third octave it is {' and '.join(compared)}{secant}")
+    if "sound_power_level_a" in spectra and baselines:
         level = spectra["sound_power_level_a"].sel(source="total")
-        louder = float(level.sel(law=main) - level.sel(law="linear"))
-        change = f"{louder:+.1f} dB".replace("-", "−")
-        parts.append(f"which changes the A-weighted sound power by {change}")
-    return ", ".join(parts) + "."
+        changes = [f"{_signed(level.sel(law=main) - level.sel(law=name))} over {name}" for name in baselines]
+        sentences.append(f"Its A-weighted sound power is {' and '.join(changes)}{secant}")
+    return ". ".join(sentences) + "."
+
+
+def _shown(spectra: xarray.Dataset) -> np.ndarray:
+    """Bands in which laws are compared: those that are averaged enough."""
+    low, high = COMPARED
+    inside = (spectra["band"] >= low * 0.9) & (spectra["band"] <= high * 1.1)
+    return np.asarray((inside & (spectra["band_time_product"] >= LEAST_PRODUCT)).values)
+
+
+def _compared(bands: xarray.Dataset, main: str, baselines: list[str]) -> Iterator[str]:
+    """Distance to the linear laws, the one of practice first, and to the reference."""
+    for name in baselines:
+        yield f"{_range(bands[difference_name(name)].sel(law=main))} over {name}"
+    to_reference = bands.get("force_level_difference_to_reference")
+    if to_reference is not None and to_reference.attrs["reference"] != main:
+        distance = float(abs(to_reference.sel(law=main)).max())
+        yield f"at most {distance:.1f} dB from {to_reference.attrs['reference']}"
+
+
+def _signed(difference: float | xarray.DataArray) -> str:
+    return f"{float(difference):+.1f} dB".replace("-", "−")
 
 
 def _force(newtons: float) -> str:
@@ -63,8 +83,5 @@ def _contact(run: Run, body: str) -> str:
 
 
 def _range(difference: xarray.DataArray) -> str:
-    low, high = float(difference.min()), float(difference.max())
-    low_at, high_at = (
-        float(difference.band[int(i)]) for i in (difference.values.argmin(), difference.values.argmax())
-    )
-    return f"{low:+.1f} dB ({low_at:.0f} Hz) to {high:+.1f} dB ({high_at:.0f} Hz)".replace("-", "−")
+    ends = (int(difference.values.argmin()), int(difference.values.argmax()))
+    return " to ".join(f"{_signed(difference[i])} ({float(difference.band[i]):.0f} Hz)" for i in ends)

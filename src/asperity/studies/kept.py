@@ -14,7 +14,9 @@ from asperity.results import variable
 
 KEPT = {
     "force_level": "spectra",
-    "force_level_difference": "spectra",
+    "band_time_product": "spectra",
+    "force_level_difference_to_linear_filtered": "spectra",
+    "force_level_difference_to_linear": "spectra",
     "force_level_difference_to_reference": "spectra",
     "acceleration_level": "spectra",
     "point_velocity_level": "spectra",

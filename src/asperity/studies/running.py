@@ -51,10 +51,11 @@ def study(
     xarray.Dataset
         The swept keys are the first dimensions of every variable. `completed` tells which members have
         results. By law: `mean_force`, `rms_force`, `contact_loss_share`, `contact_loss_events`,
-        `longest_loss`; by law and band: `force_level`, `force_level_difference` (to the linear law),
-        `force_level_difference_to_reference`, `acceleration_level` (ball on beam), `point_velocity_level`
-        and `sound_power_level` (wheel on rail). NaN where a member failed or has no such value. The
-        attributes ``failures`` and ``warnings`` are JSON lists of what members met, grouped.
+        `longest_loss`; by law and band: `force_level`, `force_level_difference_to_linear_filtered`,
+        `force_level_difference_to_linear`, `force_level_difference_to_reference`, `acceleration_level` (ball
+        on beam), `point_velocity_level` and `sound_power_level` (wheel on rail); by band:
+        `band_time_product`, below 10 where a level says little. NaN where a member failed or has no such
+        value. The attributes ``failures`` and ``warnings`` are JSON lists of what members met, grouped.
 
     Raises
     ------
