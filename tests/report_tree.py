@@ -139,6 +139,9 @@ def surface(rng):
             "sample_heights": variable(("x", "y"), sample, "m", "heights of the first sample"),
             "path_heights": variable(("path_x", "path_y"), path, "m", "heights of the path"),
             "line": variable("distance", line, "m", "centre line of the path"),
+            "path_height_density": variable(
+                "path_height", np.exp(-0.5 * np.linspace(-3, 3, 80) ** 2), "1/m", "density of the heights"
+            ),
             "psd_sample": variable(
                 "surface_wavenumber", psd * rng.gamma(8, 1 / 8, 400), "m3", "PSD of the samples"
             ),
@@ -152,6 +155,7 @@ def surface(rng):
             "path_x": ("path_x", spacing * np.arange(2000), {"units": "m"}),
             "path_y": ("path_y", spacing * np.arange(64), {"units": "m"}),
             "distance": ("distance", spacing * np.arange(20000), {"units": "m"}),
+            "path_height": ("path_height", 0.3e-6 * np.linspace(-3, 3, 80), {"units": "m"}),
             "surface_wavenumber": ("surface_wavenumber", wavenumber, {"units": "1/m"}),
         },
         attrs={

@@ -600,6 +600,29 @@ def test_a_file_that_is_missing_is_named_once(ensemble):
     assert "received a folder" in call("run", ".", code=2).stderr
 
 
+def test_lines_measured_side_by_side_are_no_map():
+    lines = np.random.default_rng(0).normal(0.0, [[2.0], [4.0], [6.0]], (3, 900))
+    lines[1, 850:] = np.nan
+    np.save("lines.npy", lines)
+    hints = ["surface", "lines.npy", "--height-unit", "um", "--pixel", "1 mm"]
+    shown = call(*hints).stdout
+    assert "lines.npy: 3 parallel lines, each of 900 points, 900 mm, 1 mm apart, 1.85% without" in shown
+    assert "--map takes it for a map" in shown
+    assert "wavelengths 2 mm to 900 mm" in shown
+    measured = re.search(r"Rq +([\d.]+) µm  rms height \(([\d.]+) µm to ([\d.]+) µm\)", shown)
+    assert [float(number) for number in measured.groups()] == pytest.approx([4.0, 2.0, 6.0], rel=0.05)
+    assert "Sal" not in shown
+    assert Path("lines-surface.png").read_bytes().startswith(b"\x89PNG")
+    assert "--map" not in call(*hints, "--lines").stdout
+    refused = call(*hints, "--map", code=2).stderr  # a map of three rows has no slopes
+    assert "3 points along axis 0" in refused
+
+
+def test_a_map_may_be_taken_for_lines(ensemble):
+    shown = call(*ensemble, "--array", "polished", "--index", "0", "--lines").stdout
+    assert "32 parallel lines, each of 40 points, 80 µm" in shown.replace("0.08 mm", "80 µm")
+
+
 def test_surface_writes_pictures_only(ensemble):
     message = "allowed: a name that ends in .png, .pdf, .svg"
     assert message in call(*ensemble, "--array", "polished", "-o", "picture.doc", code=2).stderr

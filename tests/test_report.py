@@ -11,7 +11,7 @@ import pytest
 from matplotlib.text import Text
 
 from asperity.errors import ComputationError
-from asperity.report import surface_picture, write_report
+from asperity.report import lines_picture, surface_picture, write_report
 from asperity.report.csv_files import csv_text
 from asperity.report.data import engineering, nominal_band, power_of_ten
 from asperity.report.page import BALL_ON_BEAM, drawable_parts, page
@@ -202,8 +202,8 @@ def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
         ("contact_filter", "contact", ["filter_std", "filter_signed", "filter_theory"]),
         ("contact_force", "contact", ["force_std", "stiffness", "hertz_force"]),
         ("contact_force", "contact", ["stiffness_std", "tangent_stiffness", "hertz_stiffness"]),
-        ("texture_sample", "surface", ["path_heights"]),
-        ("texture_path", "surface", ["line"]),
+        ("texture_sample", "surface", ["path_height_density"]),
+        ("texture_path", "surface", ["path_heights"]),
         ("texture_psd", "surface", ["psd_path"]),
         ("force_psd", "spectra", ["band"]),
         ("force_bands", "spectra", ["band_time_product", "force_level_difference_to_linear"]),
@@ -317,6 +317,44 @@ def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
     assert drawable_parts(loaded) == list(PARTS)
     for part in PARTS:
         assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
+
+
+def test_the_line_of_the_path_is_drawn_and_written_from_end_to_end(folder, tree):
+    table = read_csv(folder / "texture_path.csv")
+    line = tree["surface/line"].values
+    assert table["x [m]"][-1] > 0.99 * float(tree["surface/distance"][-1])
+    assert (table["lowest z [m]"].min(), table["highest z [m]"].max()) == (line.min(), line.max())
+
+
+def test_heights_of_the_whole_path_are_drawn_beside_the_sample():
+    part = next(part for part in PARTS if part.name == "texture_sample")
+    tree = small()
+    surface = tree["surface"].to_dataset()
+    tree["surface"] = surface.assign_coords(path_height=20 * surface["path_height"])
+    histogram = part.draw(tree).axes[1]
+    assert "path, whole" in [text.get_text() for text in histogram.get_legend().get_texts()]
+    assert histogram.get_xlim()[0] < -9.0  # µm; no height of the sample is as low
+
+
+def test_maps_that_lines_were_laid_out_as_say_so():
+    tree = small()
+    tree["surface"].attrs["across"] = "lines"
+    for name in ("texture_sample", "texture_path"):
+        part = next(part for part in PARTS if part.name == name)
+        titles = [axes.get_title(loc="left") for axes in part.draw(tree).axes]
+        assert any(title.endswith("as laid out between lines") for title in titles)
+
+
+@pytest.mark.parametrize("lengths", [[400, 400, 300], [3000] * 10])
+def test_picture_of_lines_side_by_side(lengths):
+    rng = np.random.default_rng(0)
+    lines = [rng.normal(0, 1e-5, n) for n in lengths]
+    lines[0][5:9] = np.nan
+    figure = lines_picture(lines, 1e-3, HOSTILE)
+    assert len(figure.axes[0].get_yticks()) == len(lengths)
+    file = BytesIO()
+    figure.savefig(file, format="png", dpi=60)
+    assert file.getvalue().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(

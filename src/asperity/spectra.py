@@ -138,6 +138,38 @@ def _check_signal(values: NDArray[np.float64], spacing: float) -> None:
         raise InputError("spacing", spacing, "a positive finite step")
 
 
+def nominal(centre: float) -> float:
+    """Nominal value of a one-third octave's centre.
+
+    Parameters
+    ----------
+    centre : float
+        Exact centre, of a power of 10^(1/10).
+
+    Returns
+    -------
+    float
+        As 3150 for 3162.28 (IEC 61260-1:2014, annex E).
+    """
+    tenths = round(10.0 * np.log10(centre))
+    mantissa = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)[tenths % 10]
+    return float(f"{mantissa}e{tenths // 10}")
+
+
+def nominal_frequency(centre: float) -> str:
+    """Nominal name of a one-third octave in text: ``"3.15 kHz"`` for the centre 3162.28 Hz."""
+    name = nominal(centre)
+    return f"{name / 1000:g} kHz" if name >= 1000 else f"{name:g} Hz"
+
+
+def nominal_length(centre: float) -> str:
+    """Nominal name of a one-third octave of wavelength in text: ``"3.15 mm"`` for the centre 3.16228 mm."""
+    for size, unit in ((1.0, "m"), (1e-3, "mm")):
+        if nominal(centre) >= size * 0.999:
+            return f"{nominal(centre / size):g} {unit}"
+    return f"{nominal(centre / 1e-6):g} µm"
+
+
 def third_octave_bands(
     f_low: float, f_high: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

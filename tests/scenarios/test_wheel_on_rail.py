@@ -68,6 +68,42 @@ def tree():
 
 
 class TestResult:
+    def test_statistics_and_line_are_those_of_the_whole_path(self, monkeypatch):
+        """A flat 2 m along the path, beyond what is kept to be looked at from above."""
+        monkeypatch.setattr("asperity.scenarios.surface_group.PATH_ROWS", 100)
+        found = run(case(wheel='flat_depth = "0.3 mm"\nflat_position = "1 m"', laws=["linear"]))["surface"]
+        assert found["path_heights"].shape[0] == 100
+        assert found["line"].size == round(56 * 40e-3 / 1e-3) + 1
+        statistics = {s["symbol"]: s for s in json.loads(found.attrs["statistics"]) if s["surface"] == "path"}
+        assert statistics["Sz"]["value"] > 0.29e-3
+        assert statistics["Sku"]["value"] > 20.0
+        assert statistics["Sq"]["bandwidth"].endswith("2.24 m")
+        assert float(found["path_height"].min()) < -0.27e-3  # about the mean
+        assert float(found["line"].min()) < -0.25e-3  # with the texture there
+        width = float(found["path_height"][1] - found["path_height"][0])
+        assert float(found["path_height_density"].sum()) * width == pytest.approx(1.0)
+
+    def test_lines_side_by_side_have_statistics_of_lines(self, tmp_path):
+        """Interpolated between lines 5 mm apart, a strip has no correlation length of its own."""
+        rng, turn = np.random.default_rng(0), round(2 * np.pi * 460)
+        np.save(tmp_path / "lines.npy", rng.normal(0.0, 10.0, (3, turn)))
+        wheel = 'line = "lines.npy"\nline_unit = "um"\nline_spacing = "1 mm"\nline_distance = "5 mm"'
+        found = run(case(wheel=wheel, laws=["linear"], source=tmp_path / "case.toml"))["surface"]
+        statistics = json.loads(found.attrs["statistics"])
+        assert {s["surface"] for s in statistics} == {"middle line of the path", "3 lines of the wheel, mean"}
+        assert all(s["symbol"].startswith("R") for s in statistics)
+        mean = next(s for s in statistics if s["symbol"] == "Rq" and "mean" in s["surface"])
+        assert mean["value"] == pytest.approx(10e-6, rel=0.05)
+        assert found.attrs["across"] == "lines"
+
+    def test_what_is_the_same_all_across_has_statistics_of_lines(self):
+        for surface in (
+            'spectrum = "iso3095"\nlateral = "inf"',
+            'corrugation = "20 um"\ncorrugation_wavelength = "50 mm"',
+        ):
+            found = run(case(surface=surface, wheel="", laws=["linear"]))["surface"]
+            assert all(s["symbol"].startswith("R") for s in json.loads(found.attrs["statistics"]))
+
     def test_groups_and_fixed_variables(self, tree):
         assert set(tree.children) == {"scenario", "surface", "track", "contact", "rolling", "spectra"}
         assert tree["contact/filter"].dims == ("approach", "wavenumber")

@@ -196,6 +196,11 @@ def sweep(
 @click.option("--transpose", is_flag=True, help="Exchange x and y: roll along the other direction.")
 @click.option("--fill", is_flag=True, help="Fill points without a height.")
 @click.option(
+    "--lines/--map",
+    default=None,
+    help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
+)
+@click.option(
     "-o",
     "--output",
     "picture",
@@ -212,6 +217,7 @@ def surface(
     decimal: str | None,
     transpose: bool,
     fill: bool,
+    lines: bool | None,
     picture: Path | None,
 ) -> None:
     """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture."""
@@ -222,6 +228,7 @@ def surface(
         picture,
         array=array,
         index=index,
+        lines=lines,
         height_unit=height_unit,
         pixel=pixel,
         pixel_unit=pixel_unit,

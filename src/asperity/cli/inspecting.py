@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,12 +15,20 @@ from asperity.store import atomic_write
 from asperity.surfaces.readers.spelling import on_command_line, spelled
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from asperity.surfaces.heightmap import HeightMap, Profile
     from asperity.surfaces.statistics import Statistic
 
 
 def inspect(
-    file: Path, picture: Path | None, *, array: str | None = None, index: int | None = None, **hints: Any
+    file: Path,
+    picture: Path | None,
+    *,
+    array: str | None = None,
+    index: int | None = None,
+    lines: bool | None = None,
+    **hints: Any,
 ) -> None:
     """Print what is in a measured file, and draw it.
 
@@ -33,6 +43,8 @@ def inspect(
         Name of the array.
     index : int, optional
         Which map of an ensemble.
+    lines : bool, optional
+        Whether an array of two dimensions holds lines measured side by side; by default its shape tells.
     **hints
         What else the file does not say itself, as `read_surface` takes it.
     """
@@ -49,6 +61,9 @@ def inspect(
     with spelled(on_command_line):
         surfaces = read(file, index, array=array, **hints)
     title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
+    if side_by_side := _as_lines(surfaces, lines):
+        _inspect_lines(side_by_side, title, picture, told=lines is not None)
+        return
     click.echo(f"{title}: {described(surfaces)}")
     first = surfaces[0].levelled()
     if len(surfaces) > 1:
@@ -57,6 +72,35 @@ def inspect(
     for line in statistics_lines(first):
         click.echo(line)
     click.echo(f"Picture: {draw(first, title, picture).resolve()}")
+
+
+def _as_lines(surfaces: list[HeightMap | Profile], told: bool | None) -> tuple[Profile, ...]:
+    """Lines side by side, where the user or the shape of an array says so; else none."""
+    from asperity.surfaces.heightmap import HeightMap
+    from asperity.surfaces.parallel_lines import are_lines, lines_of
+
+    first = surfaces[0]
+    if len(surfaces) > 1 or not isinstance(first, HeightMap):
+        return ()
+    return lines_of(first) if (are_lines(first) if told is None else told) else ()
+
+
+def _inspect_lines(lines: tuple[Profile, ...], title: str, picture: Path, *, told: bool) -> None:
+    """Print what is in lines side by side, and draw them."""
+    from asperity.report import lines_picture
+    from asperity.surfaces.statistics import line_statistics
+
+    click.echo(f"{title}: {described_lines(lines)}")
+    if not told:
+        click.echo("Taken for lines measured side by side, by its shape; --map takes it for a map.")
+    levelled = [line.levelled() for line in lines]
+    found = line_statistics(levelled)
+    click.echo(f"Each line levelled; wavelengths {_band(found[0][0])}; mean (lowest to highest of a line):")
+    for item, low, high in found:
+        spread = " to ".join(_scaled(replace(item, value=value)) for value in (low, high))
+        click.echo(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning} ({spread})")
+    figure = lines_picture([line.heights for line in levelled], lines[0].spacing, title)
+    click.echo(f"Picture: {_saved(figure, picture).resolve()}")
 
 
 def read(file: Path, index: int | None = None, **hints: Any) -> list[HeightMap | Profile]:
@@ -96,10 +140,26 @@ def described(surfaces: list[HeightMap | Profile]) -> str:
     kind = "map" if len(sizes) == 2 else "line"
     many = f"{len(surfaces)} {kind}s, each" if len(surfaces) > 1 else f"a {kind} of"
     points = " × ".join(map(str, first.shape))
-    area = " × ".join(f"{size * 1e3:.4g}" for size in sizes)
-    apart = " × ".join(f"{spacing * 1e6:.4g}" for spacing in spacings)
+    extent = f"{_lengths(sizes)}, {_lengths(spacings)} apart"
     missing = max(surface.missing_share for surface in surfaces)
-    return f"{many} {points} points, {area} mm, {apart} µm apart, {missing:.2%} without a height"
+    return f"{many} {points} points, {extent}, {missing:.2%} without a height"
+
+
+def described_lines(lines: tuple[Profile, ...]) -> str:
+    """Say in one line what lines side by side are."""
+    first, missing = lines[0], sum(line.missing_share for line in lines) / len(lines)
+    return (
+        f"{len(lines)} parallel lines, each of {len(first.heights)} points, {_lengths([first.size])}, "
+        f"{_lengths([first.spacing])} apart, {missing:.2%} without a height"
+    )
+
+
+def _lengths(metres: Iterable[float]) -> str:
+    """Lengths in the one unit that suits the largest: ``"0.8 × 0.4 mm"``."""
+    found = list(metres)
+    units = ((1.0, 1.0, "m"), (0.05e-3, 1e3, "mm"), (0.0, 1e6, "µm"))
+    scale, unit = next((scale, unit) for least, scale, unit in units if max(found) >= least)
+    return " × ".join(f"{each * scale:.4g}" for each in found) + f" {unit}"
 
 
 def statistics_lines(surface: HeightMap | Profile) -> list[str]:
@@ -112,9 +172,12 @@ def statistics_lines(surface: HeightMap | Profile) -> list[str]:
         found = areal_statistics(surface)
     else:
         found = profile_statistics(surface)
-    shortest, longest = found[0].bandwidth
-    head = f"Levelled; wavelengths {shortest * 1e6:.3g} µm to {longest * 1e3:.3g} mm:"
+    head = f"Levelled; wavelengths {_band(found[0])}:"
     return [head, *(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}" for item in found)]
+
+
+def _band(item: Statistic) -> str:
+    return " to ".join(_lengths([float(f"{wavelength:.3g}")]) for wavelength in item.bandwidth)
 
 
 def _scaled(item: Statistic) -> str:
@@ -142,7 +205,10 @@ def draw(surface: HeightMap | Profile, title: str, picture: Path) -> Path:
     from asperity.surfaces.heightmap import HeightMap
 
     spacing = surface.spacing if isinstance(surface, HeightMap) else (surface.spacing, surface.spacing)
-    figure = surface_picture(surface.heights, spacing, title)
+    return _saved(surface_picture(surface.heights, spacing, title), picture)
+
+
+def _saved(figure: Figure, picture: Path) -> Path:
     return atomic_write(
         picture, lambda file: figure.savefig(file, format=picture.suffix[1:].lower(), dpi=150)
     )

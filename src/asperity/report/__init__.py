@@ -3,11 +3,12 @@
 | name | what |
 |---|---|
 | `write_report` | ``report.html`` and one CSV file per figure |
-| `surface_picture` | picture of a measured surface |
+| `surface_picture`, `lines_picture` | picture of a measured surface, or of lines side by side |
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from xarray import DataTree
 
-__all__ = ["surface_picture", "write_report"]
+__all__ = ["lines_picture", "surface_picture", "write_report"]
 
 
 def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
@@ -72,3 +73,25 @@ def surface_picture(heights: NDArray[Any], spacing: tuple[float, float], title: 
     from asperity.report.texture import surface_picture as draw
 
     return draw(heights, spacing, title)
+
+
+def lines_picture(lines: Sequence[NDArray[Any]], spacing: float, title: str) -> Figure:
+    """Draw lines that were measured side by side, and the distribution of their heights.
+
+    Parameters
+    ----------
+    lines : sequence of (n,) arrays
+        Levelled heights in m, positive out of the material; NaN where missing.
+    spacing : float
+        Distance of neighbouring points along the lines in m.
+    title : str
+        Heading, as the name of the file.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Save it with ``savefig``.
+    """
+    from asperity.report.texture import lines_picture as draw
+
+    return draw(lines, spacing, title)

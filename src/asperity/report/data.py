@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from xarray import DataArray, DataTree
 
 from asperity.results import BASELINES, difference_name
-from asperity.spectra import LEAST_PRODUCT
+from asperity.spectra import LEAST_PRODUCT, nominal
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -159,7 +159,5 @@ def power_of_ten(value: float) -> str:
 
 def nominal_band(centre: float) -> str:
     """Nominal name of the one-third octave with the exact `centre` in Hz (IEC 61260-1), as ``"31.5"``."""
-    index = round(10 * math.log10(centre))
-    mantissa = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)[index % 10]
-    nominal = mantissa * 10.0 ** (index // 10)
-    return f"{nominal / 1000:.4g}k" if nominal >= 1000 else f"{nominal:.4g}"
+    name = nominal(centre)
+    return f"{name / 1000:g}k" if name >= 1000 else f"{name:g}"

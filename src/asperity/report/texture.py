@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,7 @@ from asperity.report.style import (
 )
 
 SLENDER = 2.5  # times longer than wide: such a map gets the whole width
+STRETCHES = 1200  # of the envelope of a long line
 PIXELS = 320  # along each side of a drawn map; denser maps show every n-th point
 _BLUE, _ORANGE = LAW_STYLES["areal"].colour, LAW_STYLES["shifted"].colour
 
@@ -79,20 +82,33 @@ def height_scale(heights: NDArray[np.float64]) -> tuple[float, str, dict[str, An
     return size, symbol, {"vmin": (middle - reach) / size, "vmax": (middle + reach) / size, "cmap": "cividis"}
 
 
-def height_histogram(axes: Axes, named: dict[str, NDArray[np.float64]], unit: tuple[float, str]) -> None:
+Distribution = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Edges of bins of height, m, and the probability density in them, 1/m."""
+
+
+def distribution(heights: NDArray[np.float64]) -> Distribution:
+    """Distribution of heights in m; missing points are left out."""
+    finite = heights[np.isfinite(heights)]
+    bins = int(np.clip(2 * len(finite) ** (1 / 3), 10, 80))  # Rice's rule
+    low, high = finite.min(), finite.max()
+    if low == high:
+        low, high = low - 0.5e-9, high + 0.5e-9
+    density, edges = np.histogram(finite, bins=bins, range=(low, high), density=True)
+    return edges, density
+
+
+def height_histogram(axes: Axes, named: dict[str, Distribution], unit: tuple[float, str]) -> None:
     """Draw how often each height occurs, per series in `named`, with the normal distribution of the first."""
     colours = [_BLUE, _ORANGE]
-    for (name, heights), colour in zip(named.items(), colours, strict=False):
-        finite = heights[np.isfinite(heights)] / unit[0]
-        bins = int(np.clip(2 * len(finite) ** (1 / 3), 10, 80))  # Rice's rule
-        density, edges = np.histogram(finite, bins=bins, density=True)
-        axes.stairs(density, edges, color=colour, label=name, linewidth=1.4)
-    first = next(iter(named.values()))
-    finite = first[np.isfinite(first)] / unit[0]
-    z = np.linspace(finite.min(), finite.max(), 200)
-    spread = finite.std() or 1.0
-    normal = np.exp(-((z - finite.mean()) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi))
-    axes.plot(z, normal, color=MUTED, linewidth=0.9, linestyle="--", label="normal")
+    for (name, (edges, density)), colour in zip(named.items(), colours, strict=False):
+        axes.stairs(density * unit[0], edges / unit[0], color=colour, label=name, linewidth=1.4)
+    edges, density = next(iter(named.values()))
+    middle, share = (edges[1:] + edges[:-1]) / 2, density * np.diff(edges)
+    mean = float(np.sum(middle * share))
+    spread = float(np.sqrt(np.sum((middle - mean) ** 2 * share))) or unit[0]
+    z = np.linspace(edges[0], edges[-1], 200)
+    normal = np.exp(-((z - mean) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi)) * unit[0]
+    axes.plot(z / unit[0], normal, color=MUTED, linewidth=0.9, linestyle="--", label="normal")
     axes.xaxis.set_major_locator(MaxNLocator(6))
     axes.set_yscale("log")
     axes.set_ylim(normal.max() * 1e-4, normal.max() * 4)
@@ -121,14 +137,22 @@ def sample_figure(tree: DataTree) -> Figure:
     size, symbol, colours = height_scale(heights)
     figure, left, right = _map_and_histogram(bool(np.ptp(x) > SLENDER * np.ptp(y)))
     image = draw_map(left, x, y, heights / size, length_unit(np.ptp(x)), **colours)
-    left.set_title("first sample")
+    left.set_title("first sample" + _between(tree))
     figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9, pad=0.02)
-    named = {"sample": heights}
-    if present(tree, "surface/path_heights"):
-        named["path"] = values(tree, "surface/path_heights", "path_x", "path_y")
+    named = {"sample": distribution(heights)}
+    if present(tree, "surface/path_height_density"):
+        middle = values(tree, "surface/path_height")
+        half = (middle[1] - middle[0]) / 2
+        edges = np.append(middle - half, middle[-1] + half)
+        named["path, whole"] = (edges, values(tree, "surface/path_height_density"))
     height_histogram(right, named, (size, symbol))
     right.set_title("heights")
     return figure
+
+
+def _between(tree: DataTree) -> str:
+    """What to add to the title of a map that lines were laid out as."""
+    return ", as laid out between lines" if tree["surface"].attrs.get("across") == "lines" else ""
 
 
 def sample_columns(tree: DataTree) -> Columns:
@@ -160,7 +184,7 @@ def _draw_strip(axes: Axes, tree: DataTree) -> None:
     x, y = values(tree, "surface/path_x"), values(tree, "surface/path_y")
     size, symbol, colours = height_scale(heights)
     image = draw_map(axes, x, y, heights / size, length_unit(np.ptp(x)), equal=False, **colours)
-    axes.set_title("a piece of the path, seen from above (y stretched)")
+    axes.set_title(f"a piece of the path, seen from above (y stretched){_between(tree)}")
     axes.figure.colorbar(image, ax=axes, label=f"height / {symbol}", extend="both", pad=0.01)
 
 
@@ -168,22 +192,22 @@ def _draw_line(axes: Axes, tree: DataTree) -> None:
     distance, line = values(tree, "surface/distance"), values(tree, "surface/line")
     along, along_symbol = length_unit(np.ptp(distance))
     size, symbol = length_unit(np.nanmax(np.abs(line)) or 1e-9)
-    starts, low, high = envelope(line / size, 1200)
+    starts, low, high = envelope(line / size, STRETCHES)
     axes.fill_between(distance[starts] / along, low, high, color=_BLUE, linewidth=0.4)
     axes.set_xlim(distance[0] / along, distance[-1] / along)
     axes.set_xlabel(f"distance / {along_symbol}")
     axes.set_ylabel(f"height / {symbol}")
-    axes.set_title("middle line of the path (envelope)")
+    axes.set_title("middle line of the whole path (envelope)")
 
 
 _PATH_PANELS = {"surface/path_heights": _draw_strip, "surface/line": _draw_line}
 
 
 def path_columns(tree: DataTree) -> Columns:
-    """Heights of the piece of the path, one row per x and one column per y; or of its line."""
-    if not present(tree, "surface/path_heights"):
-        return {"x [m]": values(tree, "surface/distance"), "z [m]": values(tree, "surface/line")}
-    return _matrix(tree, "surface/path_heights", "path_x", "path_y", "z", "m")
+    """Lowest and highest point of the middle line of the path, in the stretches that are drawn."""
+    distance, line = values(tree, "surface/distance"), values(tree, "surface/line")
+    starts, low, high = envelope(line, STRETCHES)
+    return {"x [m]": distance[starts], "lowest z [m]": low, "highest z [m]": high}
 
 
 _SPECTRA = {
@@ -262,14 +286,14 @@ TEXTURE = (
     Part(
         "texture_path",
         "Texture of the path",
-        (),
+        ("surface/line", "surface/distance"),
         path_figure,
         path_columns,
         lambda tree: (
-            "Heights of the path, positive out of the material."
-            + (" The CSV file holds the piece seen from above." if "path_heights" in tree["surface"] else "")
+            "Heights of the path, positive out of the material. The CSV file holds the envelope of its "
+            "middle line; run.nc has every point of it"
+            + (", and the piece seen from above." if "path_heights" in tree["surface"] else ".")
         ),
-        ("surface/path_heights", "surface/line"),
     ),
     Part(
         "texture_psd",
@@ -315,7 +339,7 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
     x = spacing[0] * np.arange(heights.shape[0], dtype=np.float64)
     unit = length_unit(np.ptp(x))
     if heights.ndim == 1:
-        starts, low, high = envelope(heights / size, 1200)
+        starts, low, high = envelope(heights / size, STRETCHES)
         left.fill_between(x[starts] / unit[0], low, high, color=_BLUE, linewidth=0.6)
         left.set_xlabel(f"x / {unit[1]}")
         left.set_ylabel(f"height / {symbol}")
@@ -325,5 +349,46 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
         image = draw_map(left, x, y, heights / size, unit, equal=not extreme, **colours)
         figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9)
     left.xaxis.set_major_locator(MaxNLocator(6))
-    height_histogram(right, {"heights": heights}, (size, symbol))
+    height_histogram(right, {"heights": distribution(heights)}, (size, symbol))
+    return figure
+
+
+@styled()
+def lines_picture(lines: Sequence[NDArray[np.float64]], spacing: float, title: str) -> Figure:
+    """Draw lines that were measured side by side, one above the other, and the distribution of their heights.
+
+    Parameters
+    ----------
+    lines : sequence of (n,) arrays
+        Levelled heights in m, positive out of the material; NaN where missing.
+    spacing : float
+        Distance of neighbouring points along the lines in m.
+    title : str
+        Heading, as the name of the file.
+
+    Returns
+    -------
+    Figure
+    """
+    together = np.concatenate(lines)
+    size, symbol, _ = height_scale(together)
+    reach = np.ptp(np.nanpercentile(together, [0.1, 99.9])) / size
+    figure = new_figure(2.4 + 0.42 * len(lines))
+    figure.set_facecolor("white")  # it goes to a file of its own
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+    left, right = figure.subplots(1, 2, width_ratios=[2.4, 1])
+    longest = max(map(len, lines)) * spacing
+    unit = length_unit(longest)
+    for row, (line, colour) in enumerate(zip(lines, cycle((_BLUE, _ORANGE)), strict=False)):
+        starts, low, high = envelope(line / size, STRETCHES)
+        at = starts * spacing / unit[0]
+        left.fill_between(at, low - row * reach, high - row * reach, color=colour, linewidth=0.5)
+    left.set_xlim(0, longest / unit[0])
+    left.set_ylim(-(len(lines) - 0.4) * reach, 0.6 * reach)
+    left.set_yticks([-row * reach for row in range(len(lines))], [f"{n + 1}" for n in range(len(lines))])
+    left.set_xlabel(f"distance along the lines / {unit[1]}")
+    left.set_ylabel("line")
+    left.set_title(f"lines, {reach:.3g} {symbol} apart")
+    height_histogram(right, {"heights": distribution(together)}, (size, symbol))
+    right.set_title("heights of all lines")
     return figure

@@ -19,7 +19,7 @@ from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.levels import check_levels
-from asperity.surfaces.parallel_lines import common_length, register, strip_from_lines
+from asperity.surfaces.parallel_lines import common_length, lines_of, register, strip_from_lines
 
 FULL_TURN = 0.02
 """Share of the circumference that a measured line around a wheel may lack or exceed."""
@@ -57,7 +57,7 @@ def rail_lines(surface: RailSurface, grid: Grid) -> Record:
         origin += f", {surface.continuation}ed"
     how = cast(Continuation, surface.continuation)
     extended = extend(lines.T, grid.rows, how, spacing=grid.spacing, what="rail's record").T
-    return Record(_across(extended, surface, grid), origin)
+    return Record(_across(extended, surface, grid), origin, areal=False, lines=tuple(profiles))
 
 
 def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
@@ -118,7 +118,8 @@ def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
     fine = np.array([resample(Profile(line, spacing), grid.spacing).heights for line in lines])
     if check:
         _check(fine, grid, "wheel's lines")
-    return Record(_across(close(fine.T, round(JOIN / grid.spacing)).T, wheel, grid), origin)
+    heights = _across(close(fine.T, round(JOIN / grid.spacing)).T, wheel, grid)
+    return Record(heights, origin, areal=False, lines=tuple(profiles))
 
 
 def _measured(section: MeasuredLines, name: str, *, degree: int) -> tuple[list[Profile], str]:
@@ -131,12 +132,7 @@ def _measured(section: MeasuredLines, name: str, *, degree: int) -> tuple[list[P
         # ends are trimmed and gaps refused below
         warnings.simplefilter("ignore", MissingPointsWarning)
         measured = read_lines(section, name)
-    if isinstance(measured, Profile):
-        raw = [measured]
-    else:  # lines lie along the longer side
-        along = int(np.argmax(measured.heights.shape))
-        heights = measured.heights if along == 1 else measured.heights.T
-        raw = [Profile(line, measured.spacing[along], f"line {i}") for i, line in enumerate(heights, 1)]
+    raw = (measured,) if isinstance(measured, Profile) else lines_of(measured)
     if len(raw) > 1 and section.line_distance is None:
         raise InputError(
             f"{name}.line_distance",

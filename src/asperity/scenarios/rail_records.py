@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.config.tables import read_levels
 from asperity.errors import InputError
 from asperity.reference import cnossos
-from asperity.spectra import HALF_BAND
+from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces.bands import strip_from_bands
+from asperity.surfaces.heightmap import Profile
 
 
 @dataclass(frozen=True)
@@ -42,10 +43,16 @@ class Record:
         m, peaks positive.
     origin : str
         Where it comes from.
+    areal : bool
+        Whether heights beside a line are a texture of their own, not carried over from it.
+    lines : tuple of Profile
+        Measured lines that heights are interpolated between, m; none of an areal texture.
     """
 
     heights: NDArray[np.float64]
     origin: str
+    areal: bool = True
+    lines: tuple[Profile, ...] = ()
 
 
 def spectrum_strip(
@@ -91,7 +98,8 @@ def spectrum_strip(
         seed=seed,
     )
     kept = given[held]
-    return Record(strip.heights, f"{name}, bands of {kept.max() * 1e3:.4g} to {kept.min() * 1e3:.4g} mm")
+    bands = f"{name}, bands of {nominal_length(kept.max())} to {nominal_length(kept.min())}"
+    return Record(strip.heights, bands, areal=bool(np.isfinite(lateral)))
 
 
 def rail_levels(spectrum: str | Path) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:

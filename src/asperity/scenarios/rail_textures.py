@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +72,7 @@ def gather(case: WheelOnRailCase) -> Textures:
     start = case.start - before * contact.spacing
     at = start + contact.spacing * np.arange(rows, dtype=np.float64)
     geometry, trajectory = defects(case, at, len(turn.heights))
+    lines = {name: body.lines for name, body in (("rail", rail), ("wheel", turn)) if body.lines}
     parts = {
         "rail": rail.heights[:, middle] + on_rail,
         "wheel": turn.heights[around, middle],
@@ -88,6 +90,8 @@ def gather(case: WheelOnRailCase) -> Textures:
         parts,
         geometry,
         trajectory,
+        areal=(rail.areal or turn.areal) and not lines,
+        lines=lines,
     )
 
 
@@ -114,7 +118,9 @@ def _rail(case: WheelOnRailCase, grid: Grid, maps: tuple[HeightMap, ...], seed: 
         longer = Grid(max(grid.rows, math.ceil(LEAST_LENGTH / grid.spacing)), grid.lines, grid.spacing)
         levels = levels + surface.level
         strip = spectrum_strip(wavelength, levels, longer, lateral=surface.lateral, seed=seed, name=name)
-        return Record(strip.heights[: grid.rows], f"{strip.origin}, {surface.level:+g} dB")
+        return replace(
+            strip, heights=strip.heights[: grid.rows], origin=f"{strip.origin}, {surface.level:+g} dB"
+        )
     if surface.line is not None:
         return rail_lines(surface, grid)
     if surface.rms is not None:
@@ -122,7 +128,7 @@ def _rail(case: WheelOnRailCase, grid: Grid, maps: tuple[HeightMap, ...], seed: 
     if maps:
         path, origin = path_of(maps, shape, seed)
         return Record(path.rows(0, path.shape[0]), origin)
-    return Record(np.zeros(shape), "smooth")
+    return Record(np.zeros(shape), "smooth", areal=False)
 
 
 def _wheel(case: WheelOnRailCase, grid: Grid, seed: int) -> Record:
@@ -134,10 +140,10 @@ def _wheel(case: WheelOnRailCase, grid: Grid, seed: int) -> Record:
         levels = levels + wheel.roughness_level
         lateral = case.surface.lateral
         strip = spectrum_strip(wavelength, levels, turn, lateral=lateral, seed=seed, name=name)
-        return Record(strip.heights, f"{strip.origin}, {wheel.roughness_level:+g} dB")
+        return replace(strip, origin=f"{strip.origin}, {wheel.roughness_level:+g} dB")
     if wheel.line is not None:
         return wheel_lines(wheel, turn, check=not case.surface.accept_levels)
-    return Record(np.zeros((turn.rows, turn.lines)), "smooth")
+    return Record(np.zeros((turn.rows, turn.lines)), "smooth", areal=False)
 
 
 def _cut(heights: NDArray[np.float64], case: WheelOnRailCase) -> tuple[HeightMap, ...]:

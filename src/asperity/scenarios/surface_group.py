@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,14 +14,22 @@ from numpy.typing import NDArray
 from asperity.errors import ShortRecordWarning
 from asperity.results import variable
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.textures import Textures
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.statistics import Statistic, areal_statistics, profile_statistics, psd_1d
+from asperity.surfaces.statistics import (
+    Statistic,
+    areal_statistics,
+    line_statistics,
+    profile_statistics,
+    psd_1d,
+)
+from asperity.surfaces.strip_statistics import BINS, survey
 
 PATH_ROWS = 2000
-LINE_POINTS = 20000
-SPECTRUM_ROWS = 2**16
-"""Rows of a path, at most, that its spectrum is made of."""
+"""Rows of a path, at most, that are kept to be looked at from above."""
+FEWEST_POINTS = 16
+"""Points of a segment of a line's spectrum, at least."""
 
 
 def surface_group(chain: Chain[Any]) -> xarray.Dataset:
@@ -29,12 +38,13 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
     Parameters
     ----------
     chain : Chain
-        What was chain.
+        What was computed.
 
     Returns
     -------
     xarray.Dataset
-        First sample, a piece of the path, its line, spectra and statistics.
+        First sample, a piece of the path, its line, and of the whole path distribution, spectrum and
+        statistics.
     """
     textures, dx = chain.textures, chain.shape.spacing[0]
     variables: dict[str, xarray.Variable] = {}
@@ -46,39 +56,111 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
             "y": variable("y", np.arange(first.shape[1]) * dx, "m", "across"),
             "sample_heights": variable(("x", "y"), first.heights, "m", "height of the first sample"),
         }
-        statistics += _areal(first, "samples")
+        statistics += _areal(first) if textures.areal else []
+    recorded = textures.recorded
     if textures.path is not None:
-        recorded = textures.recorded
         piece = textures.surface.rows(recorded.start, min(recorded.stop, recorded.start + PATH_ROWS))
         variables |= {
             "path_x": variable("path_x", np.arange(len(piece)) * dx, "m", "rolling direction"),
             "path_y": variable("path_y", np.arange(piece.shape[1]) * dx, "m", "across"),
             "path_heights": variable(("path_x", "path_y"), piece, "m", "height of the path"),
         }
-        statistics += _areal(HeightMap(piece, textures.path.spacing), "path")
-    else:
-        statistics += _listed(profile_statistics(Profile(textures.line, dx)), "path")
-    line = textures.followed[textures.recorded][:LINE_POINTS]
+    line = textures.followed[recorded]
     variables["distance"] = variable("distance", np.arange(len(line)) * dx, "m", "distance along the path")
     variables["line"] = variable("distance", line, "m", "height along the middle of the path")
-    variables |= _texture_spectra(chain)
+    path = _path(chain)
+    variables |= _distribution(path) | _spectra(chain, path)
+    statistics += path.statistics + _of_lines(textures)
     attrs = {
         "statistics": json.dumps(statistics, ensure_ascii=False),
         "source": textures.origin,
         "missing_share": textures.missing_share,
+        "across": "areal" if textures.areal else "lines",
     }
     return xarray.Dataset(variables, attrs=attrs)
 
 
-def _areal(surface: HeightMap, where: str) -> list[dict[str, Any]]:
-    """Statistics of a surface; a smooth one has none, one narrower than its waves no texture ratio."""
+@dataclass(frozen=True, eq=False)
+class _Path:
+    """Statistics of the whole path, the distribution of its heights (m), and its spectrum (m³ over 1/m)."""
+
+    statistics: list[dict[str, Any]]
+    edges: NDArray[np.float64]
+    density: NDArray[np.float64]
+    wavenumber: NDArray[np.float64]
+    spectrum: NDArray[np.float64]
+
+
+def _path(chain: Chain[Any]) -> _Path:
+    """Survey the recorded path, as a surface or, where nothing is known beside it, as a line."""
+    textures, recorded = chain.textures, chain.textures.recorded
+    segment = min(_segment(textures), recorded.stop - recorded.start)
+    if textures.path is None or not textures.areal:
+        return _along_line(textures, chain.shape.spacing[0], segment)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ShortRecordWarning)
+        found = survey(textures.surface, segment, recorded.start, recorded.stop)
+        rough = (
+            found
+            if textures.defects is None
+            else survey(textures.path, segment, recorded.start, recorded.stop)
+        )
+    statistics = _without_bounds(found.statistics, caught)
+    return _Path(_listed(statistics, "path"), found.edges, found.density, rough.wavenumber, rough.spectrum)
+
+
+def _along_line(textures: Textures, dx: float, segment: int) -> _Path:
+    line, rough = textures.followed[textures.recorded], textures.line[textures.recorded]
+    statistics = profile_statistics(Profile(line, dx)) if np.ptp(line) else []
+    edges = np.linspace(line.min(), line.max() or 1e-12, BINS + 1) - line.mean()
+    density = np.histogram(line - line.mean(), edges, density=True)[0] if np.ptp(line) else np.zeros(BINS)
+    wavenumber, spectrum = psd(rough, dx, segment=segment)
+    return _Path(_listed(statistics, "middle line of the path"), edges, density, wavenumber, spectrum)
+
+
+def _segment(textures: Textures) -> int:
+    """Points of a segment of the spectrum: the length of the samples."""
+    return textures.maps[0].shape[0] if textures.maps else max(FEWEST_POINTS, len(textures.line) // 8)
+
+
+def _areal(surface: HeightMap) -> list[dict[str, Any]]:
+    """Statistics of the samples; a smooth one has none."""
     if not np.ptp(surface.heights):
         return []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ShortRecordWarning)
         found = areal_statistics(surface)
+    return _listed(_without_bounds(found, caught), "first sample")
+
+
+def _without_bounds(found: list[Statistic], caught: list[warnings.WarningMessage]) -> list[Statistic]:
+    """Leave out the texture ratio of what is narrower than its waves: it would be a bound."""
     bounds = {"Str"} if any(issubclass(w.category, ShortRecordWarning) for w in caught) else set()
-    return _listed([s for s in found if s.symbol not in bounds], where)
+    return [item for item in found if item.symbol not in bounds]
+
+
+def _of_lines(textures: Textures) -> list[dict[str, Any]]:
+    """Statistics of measured lines side by side: means over them."""
+    return [
+        item
+        for body, lines in textures.lines.items()
+        if len(lines) > 1
+        for item in _listed(
+            [mean for mean, _, _ in line_statistics(lines)], f"{len(lines)} lines of the {body}, mean"
+        )
+    ]
+
+
+def _distribution(path: _Path) -> dict[str, xarray.Variable]:
+    if not path.density.any():
+        return {}
+    middle = 0.5 * (path.edges[1:] + path.edges[:-1])
+    return {
+        "path_height": variable("path_height", middle, "m", "height of the path about its mean"),
+        "path_height_density": variable(
+            "path_height", path.density, "1/m", "probability density of the heights of the path"
+        ),
+    }
 
 
 def _listed(statistics: list[Statistic], where: str) -> list[dict[str, Any]]:
@@ -101,28 +183,17 @@ def _length(metres: float) -> str:
     return f"{metres * 1e3:.3g} mm" if metres >= 1e-3 else f"{metres * 1e6:.3g} µm"
 
 
-def _texture_spectra(chain: Chain[Any]) -> dict[str, xarray.Variable]:
+def _spectra(chain: Chain[Any], path: _Path) -> dict[str, xarray.Variable]:
     """Spectra of samples and path in the rolling direction, on the samples' wavenumbers."""
-    textures, dx = chain.textures, chain.shape.spacing[0]
+    textures, dims, units = chain.textures, "surface_wavenumber", "m3"
     result: dict[str, xarray.Variable] = {}
-    wavenumber: NDArray[np.floating[Any]]
-    units, dims = "m3", "surface_wavenumber"
+    wavenumber = path.wavenumber
     if textures.maps:
         spectra = [psd_1d(m)[1] for m in textures.maps]
         wavenumber = psd_1d(textures.maps[0])[0]
         sampled = np.mean([s[1:] for s in spectra if s.shape == spectra[0].shape], axis=0)
         result["psd_sample"] = variable(dims, sampled, units, "PSD of the samples along the path, one-sided")
-        segment = textures.maps[0].shape[0]
-    else:
-        segment = max(16, len(textures.line) // 8)
-        wavenumber = np.fft.rfftfreq(segment, dx)
-    path = textures.path
-    lines = textures.line if path is None else path.rows(0, min(path.shape[0], SPECTRUM_ROWS)).T
-    if segment <= lines.shape[-1]:
-        k, density = psd(np.ascontiguousarray(lines), dx, segment=segment)
-        mean = np.atleast_2d(density).mean(axis=0)
-        along = np.interp(wavenumber[1:], k, mean)
-        result["psd_path"] = variable(dims, along, units, "PSD of the path along it, one-sided")
-    if result:
-        result[dims] = variable(dims, wavenumber[1:], "1/m", "wavenumber, cycles per metre")
+    along = np.interp(wavenumber[1:], path.wavenumber[1:], path.spectrum[1:], left=np.nan)
+    result["psd_path"] = variable(dims, along, units, "PSD of the path along it, one-sided")
+    result[dims] = variable(dims, wavenumber[1:], "1/m", "wavenumber, cycles per metre")
     return result

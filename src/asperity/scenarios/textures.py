@@ -13,7 +13,7 @@ from asperity.config.sections import ContactCase, Surface
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.reading import read_maps
-from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.strip import Raised, Strip
 from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
@@ -54,6 +54,10 @@ class Textures:
     defects, trajectory : ndarray, shape (rows,), or None
         Heights of defects along the path, and of the rolling body's centre over them, m; neither in
         `line` nor in `path`.
+    areal : bool
+        Whether heights beside the line are a texture of their own, not carried over from lines.
+    lines : dict
+        Measured lines that a texture is interpolated between, by the body that bears them, m.
     """
 
     maps: tuple[HeightMap, ...]
@@ -68,6 +72,8 @@ class Textures:
     parts: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     defects: NDArray[np.float64] | None = None
     trajectory: NDArray[np.float64] | None = None
+    areal: bool = True
+    lines: dict[str, tuple[Profile, ...]] = field(default_factory=dict)
 
     @property
     def recorded(self) -> slice:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft, interpolate
 
 from asperity.errors import InputError, ShortRecordWarning
-from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.heightmap import HeightMap, Profile
 
 FULL_LINE = 0.95
 """Share of the longest line from which a line counts as a full turn."""
@@ -20,6 +20,50 @@ NEAR = 0.01
 """Share of a turn by which the starts of neighbouring lines differ, unless others fit `CLEARLY` better."""
 CLEARLY = 0.2
 """Gain in correlation that speaks for a start farther away."""
+
+
+MOST_LINES = 32
+"""Lines side by side, at most, that a bare array is taken for without being told."""
+SLENDER = 20.0
+"""Times longer than wide, in points, that such an array is at least."""
+
+
+def are_lines(surface: HeightMap) -> bool:
+    """Judge by its shape whether an array holds lines measured side by side rather than a map.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        As a file gave it, which knows no distance across of lines.
+
+    Returns
+    -------
+    bool
+        True for at most 32 lines, each with at least 20 times as many points.
+    """
+    few, many = sorted(surface.shape)
+    return few <= MOST_LINES and many >= SLENDER * few
+
+
+def lines_of(surface: HeightMap) -> tuple[Profile, ...]:
+    """Take an array as lines side by side, which lie along its longer side.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Heights, m.
+
+    Returns
+    -------
+    tuple of Profile
+        The lines, with missing points where the array has them.
+    """
+    along = int(np.argmax(surface.shape))
+    heights = surface.heights if along == 1 else surface.heights.T
+    return tuple(
+        Profile(line, surface.spacing[along], f"{surface.source}, line {i}".lstrip(", "))
+        for i, line in enumerate(heights, 1)
+    )
 
 
 @dataclass(frozen=True, eq=False)

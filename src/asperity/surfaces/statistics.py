@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ __all__ = [
     "areal_statistics",
     "autocorrelation",
     "autocorrelation_lengths",
+    "line_statistics",
     "profile_statistics",
     "psd_1d",
     "psd_2d",
@@ -81,18 +83,44 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     """
     band = bandwidth or (2.0 * min(surface.spacing), max(surface.size))
     dx, dy = surface.spacing
-    square = _slope(surface.heights, dx, 0) ** 2 + _slope(surface.heights, dy, 1) ** 2
-    shortest, longest = autocorrelation_lengths(surface)
+    square = slope(surface.heights, dx, 0) ** 2 + slope(surface.heights, dy, 1) ** 2
+    slopes = (float(np.nanmean(square)), float(np.nanmean(np.sqrt(1.0 + square)) - 1.0))
+    lengths = autocorrelation_lengths(surface)
+    return areal_parameters(*_amplitudes(surface.heights), slopes, lengths, band)
+
+
+def areal_parameters(
+    powers: NDArray[np.float64],
+    total: float,
+    slopes: tuple[float, float],
+    lengths: tuple[float, float],
+    band: tuple[float, float],
+) -> list[Statistic]:
+    """Name areal roughness parameters.
+
+    Parameters
+    ----------
+    powers : ndarray, shape (4,)
+        Means of |z|, z², z³ and z⁴ about the mean, m to m⁴.
+    total : float
+        Highest peak to lowest valley, m.
+    slopes : tuple of float
+        Mean square slope, and the developed area beyond the plane's over it.
+    lengths : tuple of float
+        Shortest and longest lag at which the autocorrelation falls to 0.2, m.
+    band : tuple of float
+        Shortest and longest wavelength, m.
+
+    Returns
+    -------
+    list of Statistic
+        In the order of `areal_statistics`.
+    """
+    shortest, longest = lengths
     return [
-        *_amplitudes("S", surface.heights, band),
-        Statistic("Sdq", float(np.sqrt(np.nanmean(square))), "1", band, "rms slope"),
-        Statistic(
-            "Sdr",
-            float(np.nanmean(np.sqrt(1.0 + square)) - 1.0),
-            "1",
-            band,
-            "developed area beyond the plane's",
-        ),
+        *_named("S", powers, total, band),
+        Statistic("Sdq", float(np.sqrt(slopes[0])), "1", band, "rms slope"),
+        Statistic("Sdr", slopes[1], "1", band, "developed area beyond the plane's"),
         Statistic("Sal", shortest, "m", band, "shortest lag at which the autocorrelation falls to 0.2"),
         Statistic("Str", shortest / longest, "1", band, "shortest over longest such lag; 1 is isotropic"),
     ]
@@ -125,40 +153,97 @@ def profile_statistics(profile: Profile, bandwidth: tuple[float, float] | None =
     height over the evaluation length.
     """
     band = bandwidth or (2.0 * profile.spacing, profile.size)
-    slope = _slope(profile.heights, profile.spacing, 0)
-    rms_slope = float(np.sqrt(np.nanmean(slope**2)))
+    rms_slope = float(np.sqrt(np.nanmean(slope(profile.heights, profile.spacing, 0) ** 2)))
     return [
-        *_amplitudes("R", profile.heights, band),
+        *_named("R", *_amplitudes(profile.heights), band),
         Statistic("Rdq", rms_slope, "1", band, "rms slope"),
     ]
 
 
-def _amplitudes(letter: str, heights: NDArray[np.float64], band: tuple[float, float]) -> list[Statistic]:
+def line_statistics(lines: Sequence[Profile]) -> list[tuple[Statistic, float, float]]:
+    """Roughness parameters of lines side by side: their means over the lines, and between what they lie.
+
+    Parameters
+    ----------
+    lines : sequence of Profile
+        Levelled heights, m.
+
+    Returns
+    -------
+    list of (Statistic, float, float)
+        As `profile_statistics`; lowest and highest value of a single line.
+
+    Raises
+    ------
+    InputError
+        If all lines are flat or too short.
+
+    References
+    ----------
+    ISO 21920-2:2021: parameters are means over the evaluation lengths.
+    """
+    rough = [line for line in lines if np.nanmax(line.heights) > np.nanmin(line.heights)] or list(lines[:1])
+    each = [profile_statistics(line) for line in rough]
+    found = []
+    for same in zip(*each, strict=True):
+        values = [item.value for item in same]
+        found.append((replace(same[0], value=float(np.mean(values))), min(values), max(values)))
+    return found
+
+
+def _amplitudes(heights: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+    """Means of |z|, z², z³ and z⁴, and the total height."""
     z = heights[np.isfinite(heights)]
     z = z - z.mean()
-    rms = float(np.sqrt(np.mean(z**2)))
-    if rms == 0.0:
+    if not z.any():
         raise InputError("surface", "equal heights everywhere", "a surface with roughness")
+    return np.array([np.abs(z).mean(), *(np.mean(z**n) for n in (2, 3, 4))]), float(np.ptp(z))
+
+
+def _named(
+    letter: str, powers: NDArray[np.float64], total: float, band: tuple[float, float]
+) -> list[Statistic]:
+    rms = float(np.sqrt(powers[1]))
     values = [
         ("q", rms, "m", "rms height"),
-        ("a", float(np.mean(np.abs(z))), "m", "mean absolute height"),
-        ("sk", float(np.mean((z / rms) ** 3)), "1", "skewness; negative for valleys in a plateau"),
-        ("ku", float(np.mean((z / rms) ** 4)), "1", "kurtosis; 3 for normally distributed heights"),
-        ("z", float(np.ptp(z)), "m", "highest peak to lowest valley"),
+        ("a", float(powers[0]), "m", "mean absolute height"),
+        ("sk", float(powers[2] / rms**3), "1", "skewness; negative for valleys in a plateau"),
+        ("ku", float(powers[3] / rms**4), "1", "kurtosis; 3 for normally distributed heights"),
+        ("z", total, "m", "highest peak to lowest valley"),
     ]
     return [Statistic(letter + name, value, unit, band, meaning) for name, value, unit, meaning in values]
 
 
-def _slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np.float64]:
-    """Seven-point derivative at the points that have three neighbours on either side, others NaN."""
+def slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np.float64]:
+    """Seven-point derivative at the points that have three neighbours on either side, others NaN.
+
+    Parameters
+    ----------
+    heights : ndarray
+        Heights, m.
+    spacing : float
+        Along the axis, m.
+    axis : int
+        Axis of the derivative.
+
+    Returns
+    -------
+    ndarray
+        Slope, of the shape of `heights`.
+
+    Raises
+    ------
+    InputError
+        If fewer than seven points, or no seven valid ones in a row, lie along the axis.
+    """
     z = np.moveaxis(heights, axis, 0)
     if z.shape[0] < 7:
         raise InputError("surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
     n = z.shape[0] - 6
     weights = (-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0)
-    slope = np.full(z.shape, np.nan)
-    slope[3:-3] = sum(w * z[k : k + n] for k, w in enumerate(weights) if w) / (60.0 * spacing)
-    if np.isnan(slope).all():
+    found = np.full(z.shape, np.nan)
+    found[3:-3] = sum(w * z[k : k + n] for k, w in enumerate(weights) if w) / (60.0 * spacing)
+    if np.isnan(found).all():
         received = f"no seven valid points in a row along axis {axis}"
         raise InputError("surface", received, "enough valid points for slopes", "Use fill first.")
-    return np.moveaxis(slope, 0, axis)
+    return np.moveaxis(found, 0, axis)
