@@ -200,7 +200,7 @@ def contact(rng):
             "stiffness_std": variable("approach", 0.05 * force / r, "N/m", "its spread"),
             "tangent_stiffness": variable("approach", np.gradient(force, approach), "N/m", "dF/dδ"),
             "hertz_force": variable("approach", hertz, "N", "Hertz"),
-            "hertz_stiffness": variable("approach", hertz / r, "N/m", "F/r of smooth bodies, at r − d0"),
+            "hertz_stiffness": variable("approach", hertz / r, "N/m", "F/r of smooth bodies, at r − d₀"),
             "filter": variable(("approach", "wavenumber"), np.abs(noisy), "1", "contact filter, magnitude"),
             "filter_std": variable(("approach", "wavenumber"), 0.05 + 0 * noisy, "1", "its spread"),
             "filter_signed": variable(("approach", "wavenumber"), noisy, "1", "contact filter, signed"),
@@ -220,6 +220,7 @@ def contact(rng):
             "working_load": LOAD,
             "working_approach": 0.55e-6,
             "hertz_radius": 1.25e-4,
+            "hertz_constant": 4 / 3 * MODULUS * np.sqrt(RADIUS),
             "contact_area": 3.1e-8,
         },
     )

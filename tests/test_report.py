@@ -8,6 +8,7 @@ from io import BytesIO
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from asperity.errors import ComputationError
@@ -16,7 +17,14 @@ from asperity.report.csv_files import csv_text
 from asperity.report.data import engineering, nominal_band, power_of_ten
 from asperity.report.page import BALL_ON_BEAM, drawable_parts, page
 from asperity.report.spectrum_figures import SPECTRUM
-from asperity.report.style import COLOURS, LAW_STYLES, envelope, smooth_on_log_axis
+from asperity.report.style import (
+    COLOURS,
+    LAW_STYLES,
+    envelope,
+    narrow_page,
+    smooth_on_log_axis,
+    styled,
+)
 from asperity.report.tables import reference_table
 from asperity.report.time_figures import TIME, piece
 from asperity.results import load, save
@@ -100,7 +108,7 @@ def test_same_result_same_page():
 
 def test_verdict_warnings_and_provenance_are_shown(tree, text):
     shown = "".join(Reader(text).text)
-    assert tree.attrs["verdict"] in shown
+    assert tree.attrs["verdict"] in shown.replace("\u00a0", " ")
     for warning in json.loads(tree.attrs["warnings"]):
         assert warning["message"] in shown
         assert warning["category"] in shown
@@ -317,6 +325,103 @@ def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
     assert drawable_parts(loaded) == list(PARTS)
     for part in PARTS:
         assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
+
+
+def test_hertz_is_drawn_in_closed_form_and_not_below_its_touch():
+    part = next(part for part in PARTS if part.name == "contact_force")
+    tree = small()
+    constant = tree["contact"].attrs["hertz_constant"]
+    for axes, power, unit in zip(part.draw(tree).axes, (1.5, 0.5), (1.0, 1e6), strict=False):
+        line = next(line for line in axes.lines if line.get_label() == "Hertz")
+        approach, drawn = line.get_data()
+        assert approach[0] == 0.0
+        assert len(approach) > 10 * tree["contact"].sizes["approach"]
+        assert np.allclose(drawn, constant * (approach * 1e-6) ** power / unit)
+
+
+def with_force(*series):
+    """Tree whose laws, the first of them the main one, have these forces."""
+    tree = report_tree(["areal", "shifted", "linear"][: len(series)], steps=len(series[0]))
+    force, share = np.array(series), [float((each <= 0).mean()) for each in series]
+    rolling = tree["rolling"].to_dataset()
+    tree["rolling"] = rolling.assign(
+        contact_force=(("law", "time"), force), contact_loss_share=("law", share)
+    )
+    return tree
+
+
+@pytest.mark.parametrize("name", ["force_piece", "force_envelope"])
+def test_a_wild_law_does_not_flatten_the_main_one(name):
+    part = next(part for part in PARTS if part.name == name)
+    wave = np.sin(np.arange(1000) * 0.1)
+    tree = with_force(60 + 10 * wave, 60 + 30 * wave, 60 + 400 * wave)
+    low, high = part.draw(tree).axes[0].get_ylim()
+    assert high - low < 2.2 * 20.0
+    assert low < 50.0 < 70.0 < high
+    caption = part.caption(tree)
+    assert "beyond it: shifted (30.0 N to 90.0 N)" in caption
+    assert ("linear (−340 N to 460 N)" in caption) == (name == "force_piece")  # elsewhere on its own axis
+
+
+def test_an_axis_that_suits_all_says_nothing():
+    part = next(part for part in PARTS if part.name == "force_piece")
+    wave = np.sin(np.arange(1000) * 0.1)
+    assert "beyond" not in part.caption(with_force(60 + 10 * wave, 60 + 12 * wave, 60 + 9 * wave))
+    flying = with_force(np.maximum(5 + 10 * wave, 0.0), 5 + 4 * wave)
+    assert part.draw(flying).axes[0].get_ylim()[0] < 0.0  # zero is where contact is lost
+
+
+def test_no_contact_is_drawn_where_there_is_any():
+    part = next(part for part in PARTS if part.name == "force_piece")
+    wave = np.sin(np.arange(1000) * 0.1)
+    calm, flying = with_force(60 + wave), with_force(np.maximum(wave, 0.0))
+    assert (len(part.draw(calm).axes), len(part.draw(flying).axes)) == (1, 2)
+    assert "Bars below" not in part.caption(calm)
+    assert "Bars below" in part.caption(flying)
+
+
+def test_every_figure_is_drawn_for_a_phone_too(text):
+    """At 360 px, 4.5 inches are as wide as the page: their letters of 9 points are as high as on paper."""
+    boxes = [float(box.split()[2]) for box in re.findall(r'viewBox="([^"]*)"', text)]
+    assert sorted(boxes) == pytest.approx(sorted([72 * 9.6, 72 * 4.5] * len(PARTS)))
+    assert text.count('class="drawing wide"') == text.count('class="drawing narrow"') == len(PARTS)
+    assert "min-width: 40rem" not in text
+    assert re.search(r"@media screen and \(max-width: \d+rem\) {\s+.narrow { display: block; }", text)
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.name)
+def test_figures_for_a_phone_have_room_for_all_that_is_in_them(tree, part):
+    with styled(), narrow_page():
+        figure = part.draw(tree)
+        FigureCanvasAgg(figure)
+        figure.get_layout_engine().execute(figure)  # warns, and thereby fails, where there is none
+        width = figure.bbox.width
+        for axes in figure.axes:
+            assert axes.bbox.width > 0.35 * width or len(axes.get_xticklabels()) == 0 or axes.bbox.width < 20
+            box = axes.get_tightbbox()
+            assert box.x0 > -0.01 * width
+            assert box.x1 < 1.01 * width
+
+
+def test_the_page_is_made_for_paper(text, tree):
+    assert "@page { size: A4;" in text
+    assert "<details" not in text
+    reader = Reader(text)
+    case = tree.attrs["case"]
+    assert case.strip() in "".join(reader.text)
+    printed = text[text.index("@media print") : text.index("</style>")]
+    assert ".case-file { max-height: none; overflow: visible; }" in printed
+
+
+def test_numbers_keep_their_units_on_the_line():
+    tree = contact_only()
+    tree.attrs["verdict"] = "It varies by 8.35 kN rms, −18.0 dB (3.15 kHz), 2.1 % of the time; 3 seconds"
+    assert "8.35\u00a0kN rms, −18.0\u00a0dB (3.15\u00a0kHz), 2.1\u00a0% of the time; 3 seconds" in page(tree)
+
+
+def test_the_datum_is_written_in_one_way(text, tree):
+    assert "d₀" in text
+    assert not re.search(r"\bd_?0\b", "".join(Reader(text).text))
 
 
 def test_the_line_of_the_path_is_drawn_and_written_from_end_to_end(folder, tree):

@@ -8,6 +8,26 @@ from asperity import spectra
 from asperity.errors import InputError
 
 
+def test_nominal_names_are_those_of_the_standard():
+    """IEC 61260-1:2014, annex E: 3162.28 Hz is called 3.15 kHz."""
+    assert [spectra.nominal_frequency(1000 * 10 ** (n / 10)) for n in (-16, -15, 0, 1, 5, 7)] == [
+        "25 Hz",
+        "31.5 Hz",
+        "1 kHz",
+        "1.25 kHz",
+        "3.15 kHz",
+        "5 kHz",
+    ]
+    assert [spectra.nominal_length(10 ** (n / 10)) for n in (4, 0, -2, -15, -29, -31)] == [
+        "2.5 m",
+        "1 m",
+        "630 mm",
+        "31.5 mm",
+        "1.25 mm",
+        "800 µm",
+    ]
+
+
 def test_psd_of_a_sine_holds_half_the_squared_amplitude():
     time = np.arange(4096) / 1000.0
     frequency, density = spectra.psd(3.0 * np.sin(2 * np.pi * 125.0 * time), 1e-3, segment=512)

@@ -1,6 +1,7 @@
 """The whole chain on small cases: groups and names of the result, resuming, refusing."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from asperity.pointforce.base import force
 from asperity.scenarios import ball_on_beam, run
 from asperity.scenarios.ball_on_beam import ball_geometry
 from asperity.scenarios.beam_textures import gather
+from asperity.spectra import nominal_frequency
 
 CASE = """
 kind = "ball-on-beam"
@@ -403,6 +405,9 @@ class TestLinear:
         found = run(case(text, laws=["areal", "linear", "linear-filtered"], duration='"0.15 s"'))
         verdict = found.attrs["verdict"]
         assert 0 < verdict.index("over linear-filtered") < verdict.index("over linear.")
+        named = re.findall(r"\(([^()]*Hz)\)", verdict)
+        assert named
+        assert set(named) <= {nominal_frequency(float(band)) for band in found["spectra/band"]}
         bands = found["spectra"].to_dataset().where(found["spectra/band_time_product"] >= 10.0, drop=True)
         difference = bands["force_level_difference_to_linear_filtered"].sel(law="areal", band=slice(90, 5500))
         assert f"{float(difference.min()):+.1f} dB".replace("-", "−") in verdict

@@ -9,7 +9,7 @@ from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import engineering, force_unit, number, plain, present, values, variable
+from asperity.report.data import engineering, force_unit, number, plain, present, values
 from asperity.report.part import Columns, Part
 from asperity.report.style import (
     INK,
@@ -17,6 +17,7 @@ from asperity.report.style import (
     MUTED,
     new_figure,
     sequence,
+    side_by_side,
     styled,
     wavenumber_axis,
 )
@@ -25,6 +26,8 @@ from asperity.report.texture import draw_map, length_unit
 _BLUE, _ORANGE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "shifted", "table"))
 FLOOR = -40.0  # dB, lowest level of a drawn filter
 MOST_FILTERS = 6
+CURVE_POINTS = 200
+"""Points of a closed form."""
 
 
 def _centre(axis: NDArray[np.float64]) -> float:
@@ -35,8 +38,7 @@ def _centre(axis: NDArray[np.float64]) -> float:
 def pressure_figure(tree: DataTree) -> Figure:
     """Pressure and, if known, gap at the working load, with the outline of Hertz's contact."""
     with_gap = present(tree, "contact/gap")
-    figure = new_figure(4.1)
-    panels = figure.subplots(1, 2)
+    figure, panels = side_by_side(4.1, (1, 1))
     x, y = values(tree, "contact/px"), values(tree, "contact/py")
     pressure = values(tree, "contact/pressure", "px", "py")
     unit = length_unit(np.ptp(x))
@@ -134,8 +136,7 @@ def _pressure_caption(tree: DataTree) -> str:
 @styled()
 def force_figure(tree: DataTree) -> Figure:
     """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
-    figure = new_figure(4.2)
-    panels = figure.subplots(1, 2)
+    figure, panels = side_by_side(4.2, (1, 1))
     approach = values(tree, "contact/approach")
     rough = present(tree, "contact/force_std") and bool(np.nanmax(values(tree, "contact/force_std")) > 0)
     size, symbol = force_unit(float(np.nanmax(values(tree, "contact/force"))))
@@ -148,9 +149,9 @@ def force_figure(tree: DataTree) -> Figure:
             "o",
             size,
         ),
-        ("hertz_force", "Hertz", INK, (0, (4, 2)), "", size),
     )
     _curves(panels[0], tree, approach, forces)
+    _hertz(panels[0], tree, approach, 1.5, size)
     panels[0].set_ylabel(f"contact force F / {symbol}")
     stiffnesses = (
         (
@@ -162,9 +163,9 @@ def force_figure(tree: DataTree) -> Figure:
             1e6,
         ),
         ("tangent_stiffness", "tangent dF/dδ", _GREEN, (0, (1.5, 1.5)), "", 1e6),
-        ("hertz_stiffness", "Hertz", INK, (0, (4, 2)), "", 1e6),
     )
     _curves(panels[1], tree, approach, stiffnesses)
+    _hertz(panels[1], tree, approach, 0.5, 1e6)
     panels[1].set_ylabel("stiffness / (MN/m)")
     for axes in panels:
         _approach_axis(axes, tree, approach)
@@ -185,6 +186,22 @@ def _curves(axes: Axes, tree: DataTree, approach: NDArray[np.float64], draw: tup
             axes.fill_between(
                 approach * 1e6, mean - spread, mean + spread, color=colour, alpha=0.25, linewidth=0
             )
+
+
+def _hertz(axes: Axes, tree: DataTree, approach: NDArray[np.float64], power: float, size: float) -> None:
+    """Draw Hertz's closed form K δ^power from where the smooth bodies touch: there is none below."""
+    constant = number(tree, "contact", "hertz_constant")
+    if constant is None or approach.max() <= 0:
+        return
+    closed = np.linspace(0.0, approach.max(), CURVE_POINTS)
+    axes.plot(
+        closed * 1e6,
+        constant * closed**power / size,
+        color=INK,
+        linestyle=(0, (4, 2)),
+        label="Hertz",
+        zorder=3,
+    )
 
 
 def _approach_axis(axes: Axes, tree: DataTree, approach: NDArray[np.float64]) -> None:
@@ -227,12 +244,10 @@ def _force_caption(tree: DataTree) -> str:
     common = (
         f"one common datum d₀ = {engineering(datum, 'm')}" if datum is not None else "no common datum stated"
     )
-    hertz = variable(tree, "contact/hertz_stiffness")
-    smooth = "" if hertz is None else f" Stiffness of Hertz: {hertz.attrs.get('long_name', 'secant')}."
     return (
         "Approach of the mean surfaces, positive closing; rough contact starts below zero. The state r "
-        f"counts from {common}; Hertz's smooth contact is drawn at r − d₀. k_c is the secant F/r (Eq. 2.3), "
-        f"the tangent is what small vibration feels.{smooth}"
+        f"counts from {common}. k_c is the secant F/r (Eq. 2.3), the tangent is what small vibration feels. "
+        "Hertz: smooth bodies in closed form, F = K δ^1.5 and their secant F/δ, at δ = r − d₀."
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ from asperity.report.style import (
     new_figure,
     styled,
 )
-from asperity.report.time_figures import time_unit
+from asperity.report.time_figures import beyond_limits, main_limits, time_unit
 
 MOTIONS = {
     "rolling/rail_displacement": "rail",
@@ -69,13 +70,29 @@ def displacement_figure(tree: DataTree) -> Figure:
         for law in names:
             motion = of_law(tree, path, law, "time")[part] / size
             axes.plot(time / unit, motion, label=law, **law_style(law, names[0]))
+        low, high = main_limits(_motions(tree, path, part))
+        axes.set_ylim(high / size, low / size)  # downwards
         axes.set_ylabel(f"{MOTIONS[path]} / {length}")
-        axes.invert_yaxis()
         draw_sleepers(axes, tree, time[0], time[-1], unit)
     panels[0].set_xlim(time[0] / unit, time[-1] / unit)
     panels[-1].set_xlabel(f"time / {symbol}")
     legend_above(panels[0])
     return figure
+
+
+def _motions(tree: DataTree, path: str, part: slice) -> dict[str, NDArray[np.float64]]:
+    return {law: of_law(tree, path, law, "time")[part] for law in laws(tree, path)}
+
+
+def _displaced_beyond(tree: DataTree) -> str:
+    """Say which laws leave the axes."""
+    part = _piece(tree)
+    words = ""
+    for path in _moved(tree):
+        motions = _motions(tree, path, part)
+        outside = beyond_limits(motions, main_limits(motions), "m")
+        words += outside.replace("The axis suits", f"{MOTIONS[path].capitalize()}: the axis suits")
+    return words
 
 
 def displacement_columns(tree: DataTree) -> Columns:
@@ -95,7 +112,7 @@ def _displacement_caption(tree: DataTree) -> str:
     return (
         "Motion at the contact around the largest force, positive downwards and drawn downwards; from the "
         "unloaded track, so that the static deflection is in. The approach of wheel and rail is positive "
-        f"closing.{sleepers}"
+        f"closing.{sleepers}{_displaced_beyond(tree)}"
     )
 
 
@@ -109,6 +126,13 @@ def point_labels(tree: DataTree) -> list[str]:
         name = ", mid-span" if abs(place - 0.5) < 0.02 else name
         found.append(f"x = {point:.4g} m{name}")
     return found
+
+
+def _name(axes: Axes, label: str) -> None:
+    """Write the name of a panel into its upper right corner."""
+    axes.annotate(
+        label, (0.99, 0.96), xycoords="axes fraction", va="top", ha="right", fontsize=9, fontweight="bold"
+    )
 
 
 def _points(tree: DataTree, path: str) -> list[int]:
@@ -153,7 +177,7 @@ def velocity_figure(tree: DataTree) -> Figure:
         axes.set_xlim(time[0] * 1e3, time[-1] * 1e3)
         axes.yaxis.set_major_locator(MaxNLocator(5))
         axes.set_ylabel("velocity / (mm/s)")
-        axes.set_title(labels[point], loc="right")
+        _name(axes, labels[point])
     panels[-1].set_xlabel("time since the wheel passed / ms" if speed(tree) else "time / ms")
     handles, texts = panels[0].get_legend_handles_labels()
     panels[0].legend(
@@ -201,7 +225,7 @@ def velocity_psd_figure(tree: DataTree) -> Figure:
             axes.plot(frequency, level, label=law, **law_style(law, names[0]))
             levels.append(level)
         axes.set_ylabel("velocity PSD / dB re (1 nm/s)²/Hz", fontsize=8.5)
-        axes.set_title(labels[point], loc="right")
+        _name(axes, labels[point])
     frequency_axis(panels[-1], *frequency_range(tree))
     level_limits(panels[0], levels)
     for axes in panels:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -19,7 +20,7 @@ from asperity.report.part import Part
 from asperity.report.rail_force_figures import FORCE_PEAK, FORCE_PSD
 from asperity.report.roughness_levels import ROUGHNESS_LEVELS
 from asperity.report.spectrum_figures import FORCE_BANDS, SPECTRUM
-from asperity.report.style import colour_variables, law_style, svg
+from asperity.report.style import colour_variables, law_style, narrow_page, svg
 from asperity.report.tables import (
     Table,
     energy_table,
@@ -76,12 +77,13 @@ def chapters(tree: DataTree) -> tuple[Chapter, ...]:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure ready for the page: its SVG element, heading and caption."""
+    """A figure ready for the page: its SVG elements, for a wide and a narrow page, heading and caption."""
 
     name: str
     title: str
     caption: str
     svg: Markup
+    narrow: Markup
 
 
 @dataclass(frozen=True)
@@ -99,13 +101,14 @@ def drawable_parts(tree: DataTree) -> list[Part]:
 
 
 def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
-    return [
-        Picture(
-            part.name, part.title, part.caption(tree), Markup(svg(part.draw(tree), part.name, part.title))
-        )
-        for part in parts
-        if part.drawable(tree)
-    ]
+    return [_picture(tree, part) for part in parts if part.drawable(tree)]
+
+
+def _picture(tree: DataTree, part: Part) -> Picture:
+    wide = svg(part.draw(tree), part.name, part.title)
+    with narrow_page():
+        narrow = svg(part.draw(tree), f"{part.name}-narrow", part.title)
+    return Picture(part.name, part.title, part.caption(tree), Markup(wide), Markup(narrow))
 
 
 def sections(tree: DataTree) -> list[Section]:
@@ -142,6 +145,9 @@ def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[
     return list(groups.items())
 
 
+_UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
+
+
 @cache
 def _template() -> Template:
     environment = Environment(
@@ -151,7 +157,13 @@ def _template() -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["unbroken"] = _unbroken
     return environment.get_template("report.html.jinja")
+
+
+def _unbroken(text: str) -> str:
+    """Keep numbers and their units on one line."""
+    return re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
 
 
 def page(tree: DataTree) -> str:

@@ -15,7 +15,7 @@ from asperity.report.part import Columns, Part
 from asperity.report.spectrum_figures import FORCE as PSD
 from asperity.report.spectrum_figures import REFERENCE_STYLE, Spectrum
 from asperity.report.style import decibels, law_style, legend_above, level_limits, new_figure, styled
-from asperity.report.time_figures import FORCE, columns_of_piece, draw_flights, draw_forces, lost
+from asperity.report.time_figures import FORCE, bars_words, columns_of_piece, cut_off, forces_with_flights
 
 AROUND_PEAK = 0.024
 """Length of the piece around the largest force, s."""
@@ -38,20 +38,7 @@ def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
 @styled()
 def peak_figure(tree: DataTree) -> Figure:
     """Contact force of all laws around the largest force of the main law."""
-    part, names = around_peak(tree), laws(tree, FORCE)
-    flies = _flies(tree, part)
-    figure = new_figure(3.9 + 0.16 * len(names) if flies else 3.9)
-    rows = [1, 0.06 * len(names) + 0.04] if flies else [1]
-    panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False, height_ratios=rows)[:, 0]
-    draw_forces(panels[0], tree, part)
-    if flies:
-        panels[0].set_xlabel("")
-        draw_flights(panels[1], tree, part)
-    return figure
-
-
-def _flies(tree: DataTree, part: slice) -> bool:
-    return any(lost(tree, law)[part].any() for law in laws(tree, FORCE))
+    return forces_with_flights(tree, around_peak(tree))
 
 
 def peak_columns(tree: DataTree) -> Columns:
@@ -66,8 +53,9 @@ def _peak_caption(tree: DataTree) -> str:
     where = f"{engineering(force[peak], 'N')} at {values(tree, 'rolling/time')[peak]:.4f} s"
     if present(tree, "rolling/position"):
         where += f", {values(tree, 'rolling/position')[peak]:.3f} m along the rail"
-    bars = " Bars below: no contact (F ≤ 0); linear never lets go." if _flies(tree, around_peak(tree)) else ""
-    return f"Around the largest force of the main law, {main}: {where}. Every time step.{bars}"
+    part = around_peak(tree)
+    words = f"{bars_words(tree, part)}{cut_off(tree, part)}"
+    return f"Around the largest force of the main law, {main}: {where}. Every time step.{words}"
 
 
 @styled()

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+import warnings
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from io import StringIO
 from typing import Any
@@ -19,7 +22,7 @@ from numpy.typing import NDArray
 from asperity.report.data import engineering, nominal_band, power_of_ten
 from asperity.spectra import LEAST_PRODUCT
 
-WIDTH = 9.6  # inches; a figure as wide as the page
+WIDE, NARROW = 9.6, 4.5  # inches; a figure as wide as the page, and as that of a phone
 INK, MUTED, GRID = "#1c2126", "#5b6670", "#dfe3e7"
 
 # The page replaces every colour of this table by a CSS variable, with a second value for dark screens.
@@ -65,6 +68,7 @@ LAW_STYLES = {
     "hertz": LineStyle("#2a93c4", (0, (1.5, 1.5)), "P"),
     "linear": LineStyle("#96700a", (0, (3, 1.5)), "X"),
 }
+NARROW_LETTERS, HANDLE_LETTERS = 66, 10  # in one row of a legend, and what a handle takes of them
 VARIANT_DASHES: Dashes = (0, (8, 1.5, 1, 1.5, 1, 1.5))  # of a law with a suffix, as "linear-filtered"
 _OTHER = LineStyle("#6f7a85", (0, (4, 1, 1, 1, 1, 1)), "<")
 
@@ -102,7 +106,7 @@ RC: dict[Any, Any] = {
     "lines.linewidth": 1.3,
     "lines.markersize": 4,
     "path.simplify": True,
-    "path.simplify_threshold": 0.2,
+    "path.simplify_threshold": 0.2,  # of a pixel
     "image.interpolation": "nearest",
 }
 
@@ -112,9 +116,36 @@ def styled() -> Any:
     return rc_context(RC)
 
 
-def new_figure(height: float, width: float = WIDTH) -> Figure:
-    """Empty figure of `width` by `height` inches."""
-    return Figure(figsize=(width, height))
+_width: ContextVar[float] = ContextVar("width", default=WIDE)
+
+
+@contextmanager
+def narrow_page() -> Iterator[None]:
+    """Draw figures for the width of a phone while the body of the ``with`` statement runs."""
+    token = _width.set(NARROW)
+    try:
+        yield
+    finally:
+        _width.reset(token)
+
+
+def is_narrow() -> bool:
+    """Whether figures are drawn for the width of a phone."""
+    return _width.get() == NARROW
+
+
+def new_figure(height: float) -> Figure:
+    """Empty figure, as wide as the page and `height` inches high."""
+    return Figure(figsize=(_width.get(), height))
+
+
+def side_by_side(height: float, widths: Sequence[float]) -> tuple[Figure, list[Axes]]:
+    """Figure with panels of the relative `widths` in a row; beneath each other where the page is narrow."""
+    if is_narrow():
+        figure = new_figure(0.85 * height * len(widths))
+        return figure, list(figure.subplots(len(widths), 1))
+    figure = new_figure(height)
+    return figure, list(figure.subplots(1, len(widths), width_ratios=widths))
 
 
 def law_style(law: str, main: str) -> dict[str, Any]:
@@ -145,10 +176,13 @@ def svg(figure: Figure, name: str, title: str) -> str:
     """
     FigureCanvasSVG(figure)
     text = StringIO()
-    with rc_context(RC):
+    coarser = {"path.simplify_threshold": 0.5} if is_narrow() else {}  # half a page needs fewer points
+    with rc_context(RC | coarser):
         engine = figure.get_layout_engine()
         if engine is not None:  # lay out once; saving with an engine would draw everything twice
-            engine.execute(figure)
+            with warnings.catch_warnings():  # names may be longer than a narrow page is wide
+                warnings.filterwarnings("ignore", "constrained_layout not applied", UserWarning)
+                engine.execute(figure)
             figure.set_layout_engine("none")
         figure.savefig(text, format="svg", dpi=110, transparent=False, metadata={"Date": None})
     body = text.getvalue()
@@ -163,7 +197,7 @@ def svg(figure: Figure, name: str, title: str) -> str:
         text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
         for index, colour in enumerate(COLOURS):
             text = text.replace(colour, f"var(--c{index})")
-        return text
+        return re.sub(r"(\d\.\d\d)\d+", r"\1", text)  # a hundredth of a point is finer than any screen
 
     inner = re.sub(r"<[^<>]+>", rewritten, inner)
     label = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
@@ -235,7 +269,8 @@ def wavenumber_axis(axes: Axes, low: float, high: float) -> None:
     top.set_xscale("log")
     top.set_xlim(low, high)
     top.grid(visible=False)
-    steps = _series(1 / high, 1 / low, (1.0,) if high / low > 3000 else (1.0, 2.0, 5.0))
+    many = 300 if is_narrow() else 3000
+    steps = _series(1 / high, 1 / low, (1.0,) if high / low > many else (1.0, 2.0, 5.0))
     top.xaxis.set_major_locator(FixedLocator([1 / step for step in steps]))
     top.xaxis.set_major_formatter(FuncFormatter(lambda k, _: engineering(1 / k, "m", 1)))
     top.xaxis.set_minor_locator(NullLocator())
@@ -269,13 +304,15 @@ def decibels(power: NDArray[np.float64], reference: float = 1.0) -> NDArray[np.f
 
 
 def note_at(axes: Axes, x: float, height: float, text: str, va: str) -> None:
-    """Write `text` right of `x`, at the share `height` of the axes, a little away from a line at `x`."""
+    """Write `text` beside `x`, where there is more room, at the share `height` of the axes."""
+    place = axes.transAxes.inverted().transform(axes.transData.transform((x, axes.get_ylim()[0])))[0]
     axes.annotate(
         text,
         (x, height),
         xycoords=axes.get_xaxis_transform(),
-        xytext=(5, 0),
+        xytext=(5 if place < 0.5 else -5, 0),
         textcoords="offset points",
+        ha="left" if place < 0.5 else "right",
         va=va,
         fontsize=8.5,
         color=MUTED,
@@ -283,10 +320,21 @@ def note_at(axes: Axes, x: float, height: float, text: str, va: str) -> None:
 
 
 def legend_above(axes: Axes, columns: int = 7) -> None:
-    """Legend in one row above the axes, clear of the data."""
+    """Legend in one row above the axes, clear of the data; in more rows where the page is narrow."""
+    if is_narrow():
+        columns = _columns(axes.get_legend_handles_labels()[1], columns)
     axes.legend(
         loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=columns, handlelength=2.6, columnspacing=1.6
     )
+
+
+def _columns(labels: Sequence[str], most: int) -> int:
+    """Columns of a legend that a narrow page has room for."""
+    for columns in range(min(most, len(labels)), 1, -1):
+        widest = [max(map(len, column)) for column in np.array_split(labels, columns)]
+        if sum(widest) + HANDLE_LETTERS * len(widest) <= NARROW_LETTERS:
+            return columns
+    return 1
 
 
 def envelope(

@@ -24,6 +24,7 @@ from asperity.report.style import (
     new_figure,
     note_at,
     power_axis,
+    side_by_side,
     smooth_on_log_axis,
     styled,
     wavenumber_axis,
@@ -124,8 +125,7 @@ def _map_and_histogram(slender: bool) -> tuple[Figure, Axes, Axes]:
         figure = new_figure(4.6)
         upper, lower = figure.subplots(2, 1, height_ratios=[1, 1.4])
         return figure, upper, lower
-    figure = new_figure(4.2)
-    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
+    figure, (left, right) = side_by_side(4.2, (1.25, 1))
     return figure, left, right
 
 
@@ -233,11 +233,11 @@ def psd_figure(tree: DataTree) -> Figure:
         k, level = smooth_on_log_axis(wavenumber[kept], psd[kept])
         axes.loglog(k, level, color=colour, linestyle=dashes, label=label, linewidth=1.5)
         drawn.append((k, level))
-    _mark_contact(axes, tree)
     if drawn:
         levels = np.concatenate([level for _, level in drawn])
         axes.set_ylim(max(levels.min() / 2, levels.max() * 1e-8), levels.max() * 4)
         wavenumber_axis(axes, min(k[0] for k, _ in drawn), max(k[-1] for k, _ in drawn))
+    _mark_contact(axes, tree)
     power_axis(axes.yaxis)
     axes.set_ylabel("one-sided PSD / m³")
     axes.legend(loc="lower left")
@@ -373,10 +373,9 @@ def lines_picture(lines: Sequence[NDArray[np.float64]], spacing: float, title: s
     together = np.concatenate(lines)
     size, symbol, _ = height_scale(together)
     reach = np.ptp(np.nanpercentile(together, [0.1, 99.9])) / size
-    figure = new_figure(2.4 + 0.42 * len(lines))
+    figure, (left, right) = side_by_side(2.4 + 0.42 * len(lines), (2.4, 1))
     figure.set_facecolor("white")  # it goes to a file of its own
     figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
-    left, right = figure.subplots(1, 2, width_ratios=[2.4, 1])
     longest = max(map(len, lines)) * spacing
     unit = length_unit(longest)
     for row, (line, colour) in enumerate(zip(lines, cycle((_BLUE, _ORANGE)), strict=False)):

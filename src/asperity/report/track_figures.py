@@ -21,6 +21,7 @@ from asperity.report.style import (
     new_figure,
     power_axis,
     sequence,
+    side_by_side,
     styled,
 )
 
@@ -169,8 +170,7 @@ def _until_quiet(lag: NDArray[np.float64], kernel: NDArray[np.float64]) -> float
 @styled()
 def kernel_figure(tree: DataTree) -> Figure:
     """Response under the load to an impulse at some start positions: at first, and until it is quiet."""
-    figure = new_figure(3.9)
-    panels = figure.subplots(1, 2, width_ratios=[1, 1.25])
+    figure, panels = side_by_side(3.9, (1, 1.25))
     lag = values(tree, "track/lag")
     kernel = values(tree, "track/moving_kernel", "start_position", "lag") * 1e6
     position = values(tree, "track/start_position")

@@ -32,6 +32,7 @@ def contact_group(chain: Chain[Any]) -> xarray.Dataset:
         "hertz_radius_across": shape.semi_axes[1],
         "working_load": shape.load,
         "contact_modulus": shape.modulus,
+        "hertz_constant": shape.hertz.stiffness_constant,  # N/m^1.5
     }
     if reduction is None:
         return _hertz_only(chain, attrs)
@@ -63,7 +64,7 @@ def contact_group(chain: Chain[Any]) -> xarray.Dataset:
             "approach",
             hertz / touching,
             "N/m",
-            "F/δ of smooth bodies (Hertz), at δ = r − d0",
+            "F/δ of smooth bodies (Hertz), at δ = r − d₀",
         ),
         "contact_radius": variable(
             "approach", reduction.semi_axes[:, 0], "m", "radius of the nominal patch at the mean force"

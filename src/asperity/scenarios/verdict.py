@@ -10,7 +10,7 @@ import xarray
 
 from asperity.results import BASELINES, difference_name
 from asperity.scenarios.chain import Chain, Run
-from asperity.spectra import LEAST_PRODUCT
+from asperity.spectra import LEAST_PRODUCT, nominal_frequency
 
 COMPARED = (100.0, 5000.0)
 """Band centres between which laws are compared, Hz."""
@@ -84,4 +84,6 @@ def _contact(run: Run, body: str) -> str:
 
 def _range(difference: xarray.DataArray) -> str:
     ends = (int(difference.values.argmin()), int(difference.values.argmax()))
-    return " to ".join(f"{_signed(difference[i])} ({float(difference.band[i]):.0f} Hz)" for i in ends)
+    return " to ".join(
+        f"{_signed(difference[i])} ({nominal_frequency(float(difference.band[i]))})" for i in ends
+    )
