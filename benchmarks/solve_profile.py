@@ -1,10 +1,9 @@
 # ruff: noqa: E402 (the threads are set before numpy is imported)
 """Where the time of a contact solution goes, and how it grows.
 
-Per grid: iterations and convolutions of a scan's solution, time per iteration against the convolutions that
-it makes (bare: the same box again and again), and the share of what lies around the compiled loop. Then the
-time of a scan against grid, path and number of approaches, drawn beside straight lines of the expected
-slopes. One thread, CPU time, the least of some rounds.
+Per grid: time and iterations of a scan's solution, time of an iteration against that of its convolution (bare:
+the same box again and again). Then the time of a scan against grid, path and number of approaches, drawn beside
+straight lines of the expected slopes. One thread, CPU time, the least of some rounds.
 
     python benchmarks/solve_profile.py --figure benchmarks/growth.svg
 """
@@ -30,12 +29,12 @@ from scan_step import MODULUS, problem
 from asperity.contact import halfspace
 from asperity.kernels import contact, scanning
 from asperity.kernels import projected_cg as cg
+from asperity.kernels.box import Box
 from asperity.kernels.convolution import Convolution, convolve
 from asperity.kernels.lanes import width
 from asperity.reduction.scan import scan_forces
 
 ROUNDS = 5
-FIELDS = ("overlap", "pressure", "residual", "previous", "direction", "response", "z", "masked")
 
 
 def least(work: Callable[[], Any], rounds: int = ROUNDS) -> float:
@@ -69,21 +68,20 @@ def scan_time(cells: int, positions: int = 64, approaches: int = 1, rounds: int 
 
 
 @njit(_nrt=False)
-def bare(c: Convolution, b: cg.Box, times: int) -> None:
+def bare(c: Convolution, b: Box, times: int) -> None:
     """Convolve again and again."""
     for _ in range(times):
-        convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
+        convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)
 
 
 @njit(_nrt=False)  # as what is timed is compiled
-def repeated(start: Any, times: int, c: Any, mirrored: Any, taps: Any, outer: Any, row: int, column: int,
-             b: Any, cap: float, tolerance: float, limit: int) -> tuple[int, bool]:  # fmt: skip
+def repeated(start: Any, residual: Any, times: int, c: Any, taps: Any, b: Any, task: Any) -> tuple[int, bool]:
     """Solve again and again from the same start."""
     result = (0, True)
     for _ in range(times):
         for q in range(len(start)):
-            outer.pressure[q] = start[q]
-        result = cg.solve(c, mirrored, taps, outer, row, column, b, cap, tolerance, limit)
+            b.pressure[q], b.residual[q] = start[q], residual[q]
+        result = cg.solve(c, taps, b, task, 0)
     return result
 
 
@@ -93,59 +91,29 @@ def interpreted(kernel: Any) -> FunctionType:
     return FunctionType(kernel.py_func.__code__, known)
 
 
-class Counted:
-    """Stands for the compiled solution: times it, then does it again in steps and counts convolutions."""
+class Timed:
+    """Stands for the compiled solution: times it next to its convolutions, one for every iteration."""
 
     def __init__(self) -> None:
         self.seconds, self.convolving = 0.0, 0.0
-        self.iterations = self.convolutions = self.solutions = 0
+        self.iterations = self.solutions = 0
 
-    def __call__(
-        self, c: Any, mirrored: Any, taps: Any, outer: Any, row: int, column: int, b: Any, *limits: Any
-    ) -> tuple[int, bool]:
+    def __call__(self, c: Any, taps: Any, b: Any, task: Any, done: int) -> tuple[int, bool]:
         """Solve, timed."""
-        start, empty = outer.pressure.copy(), b._replace(**{f: getattr(b, f).copy() for f in FIELDS})
-        arguments = (c, mirrored, taps, outer, row, column, b, *limits)
-        self.seconds += least(lambda: repeated(start, 5, *arguments), 2) / 5
-        result = repeated(start, 1, *arguments)
-        solution, outer.pressure[:] = outer.pressure.copy(), start
-        count = self.count(c, taps, outer, row, column, empty, limits[0], result[0])
-        outer.pressure[:] = solution
-        self.convolving += count * least(lambda: bare(c, b, 40), 2) / 40
-        self.iterations, self.convolutions = self.iterations + result[0], self.convolutions + count
-        self.solutions += 1
-        return result
-
-    def count(
-        self, c: Any, taps: Any, outer: Any, row: int, column: int, b: Any, cap: float, times: int
-    ) -> int:
-        """Convolutions of the same iterations: one each, another where many cells are clipped."""
-        count, rho = times, 0.0
-        for name in ("overlap", "pressure", "residual"):
-            inner, whole = getattr(b, name), getattr(outer, name)
-            part = whole[: outer.nx * outer.pitch].reshape(outer.nx, -1)[
-                row : row + b.nx, column : column + b.ny
-            ]
-            inner[: b.nx * b.pitch].reshape(b.nx, -1)[:, : b.ny] = part
-        for _ in range(times):
-            cg._free(b.pressure, b, cap, 0.0)
-            before = rho
-            rho, change = cg._precondition(b, taps)
-            slope = cg._turn(b, max(0.0, change / before) if before > 0.0 else 0.0)
-            convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
-            clipped = cg._advance(b, -slope / cg._dot(b.direction, b.response), cap)
-            count += clipped > cg.FEW
-            if clipped:
-                cg._true_residual(c, b)
-        return count
+        arguments = (b.pressure.copy(), b.residual.copy(), c, taps, b, task)
+        self.seconds += least(lambda: repeated(*arguments[:2], 5, *arguments[2:]), 2) / 5
+        iterations, moving = repeated(*arguments[:2], 1, *arguments[2:])
+        self.convolving += iterations * least(lambda: bare(c, b, 40), 2) / 40
+        self.iterations, self.solutions = self.iterations + iterations, self.solutions + 1
+        return done + iterations, moving
 
 
 def profile(cells: int) -> None:
     """Print a line of the table of one grid."""
-    total, counted = scan_time(cells), Counted()
+    total, timed = scan_time(cells), Timed()
     p = problem(cells, options())
     with (
-        patch.object(contact, "solve", counted),
+        patch.object(contact, "solve", timed),
         patch.object(contact, "convolution", interpreted(contact.convolution)),
         patch.object(contact, "empty_box", interpreted(contact.empty_box)),
         patch.object(scanning, "solve_contact", contact.solve_contact.py_func),
@@ -155,11 +123,11 @@ def profile(cells: int) -> None:
             p["heights"], (float(p["spacing"]),) * 2, p["body"], MODULUS, p["approaches"][:1],
             stride=int(p["offsets"][1]), rtol=1e-8, workers=1,
         )  # fmt: skip
-    n, iterations = counted.solutions, counted.iterations
+    iterations = timed.iterations
     print(
-        f"| {cells}² | {1e3 * total / 64:.3f} | {iterations / n:.1f} | {counted.convolutions / n:.1f} "
-        f"| {1e6 * counted.seconds / iterations:.1f} | {1e6 * counted.convolving / iterations:.1f} "
-        f"| {counted.seconds / counted.convolving:.2f} |"
+        f"| {cells}² | {1e3 * total / 64:.3f} | {iterations / timed.solutions:.1f} "
+        f"| {1e6 * timed.seconds / iterations:.1f} | {1e6 * timed.convolving / iterations:.1f} "
+        f"| {timed.seconds / timed.convolving:.2f} |"
     )
 
 
@@ -197,8 +165,8 @@ def main() -> None:
     parser.add_argument("--cells", type=int, nargs="+", default=[64, 128, 256])
     parser.add_argument("--figure", metavar="FILE", help="measure growth, too, and draw it here")
     chosen = parser.parse_args()
-    print("| grid | ms per solve | iterations | convolutions | us per iteration | of it convolving | ratio |")
-    print("|---|---:|---:|---:|---:|---:|---:|")
+    print("| grid | ms per solve | iterations | us per iteration | of it convolving | ratio |")
+    print("|---|---:|---:|---:|---:|---:|")
     for cells in chosen.cells:
         profile(cells)
     if chosen.figure:

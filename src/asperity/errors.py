@@ -104,7 +104,7 @@ class Outcome(Enum):
 
     CONVERGED = "converged"
     ITERATION_LIMIT = "the iteration limit was reached; try a larger `rtol` or a finer grid"
-    SINGULAR = "the search direction broke down; try a larger `rtol`, and check the gap for outliers"
+    STALLED = "rounding allows no better solution; try a larger `rtol`, and check the gap for outliers"
     NO_CONTACT = "the bodies do not touch at this approach"
     STEPS_UNCONVERGED = "the contact force did not converge in some time steps; try a smaller time step"
 

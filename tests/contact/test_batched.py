@@ -56,9 +56,9 @@ def on_device(value):
 class StrictModule:
     """The functions of numpy that batches use, all of which CuPy has, on arrays of a device of its own."""
 
-    MAKING = ("arange", "asarray", "zeros")
+    MAKING = ("arange", "asarray", "ones", "zeros")
     USING = (
-        "abs", "ascontiguousarray", "concatenate", "maximum", "minimum", "nonzero", "sqrt", "where",
+        "abs", "ascontiguousarray", "clip", "concatenate", "maximum", "minimum", "nonzero", "sqrt", "where",
         "zeros_like",
     )  # fmt: skip
     int64 = np.int64

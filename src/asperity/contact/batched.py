@@ -184,7 +184,7 @@ def _solve_batch(
 ) -> None:
     """Solve positions first … last at all approaches, and write what was found."""
     xp, cap, taps = device.xp, half_space.pressure_cap, tuple(half_space.influence.taps.tolist())
-    pressure = xp.zeros_like(gap)
+    pressure, softest = xp.zeros_like(gap), half_space.influence.softest
     for i, approach in enumerate(approaches):
         members = np.flatnonzero(boxes.touching[i, span[0] : span[1]])
         if not len(members):
@@ -200,7 +200,9 @@ def _solve_batch(
         if bool(fresh.any()):
             guess = first_guess(overlap, spectrum, my, cap, xp)
             p = xp.where(fresh[:, None, None], guess, p)
-        iterations, worst = solve(overlap, spectrum, my, taps, p, cap, rtol * largest, MAX_ITERATIONS, xp)
+        iterations, worst = solve(
+            overlap, spectrum, my, taps, p, cap, softest, rtol * largest, MAX_ITERATIONS, xp
+        )
         pressure[cells] = p
         at = span[0] + members
         force = p.sum(axis=(1, 2))

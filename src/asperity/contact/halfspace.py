@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import real, two, two_lengths, whole
 from asperity.errors import InputError, Outcome, UnconvergedWarning
-from asperity.kernels.contact import displace, indent, room
+from asperity.kernels.contact import REACH, displace, indent, room
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.influence import Influence, influence, is_prepared, prepared
 from asperity.kernels.love import influence_table
-from asperity.kernels.overlap import box_of_positive
-from asperity.kernels.projected_cg import inverse_stencil
+from asperity.kernels.overlap import box_of_positive, foundation_approach
+from asperity.kernels.preconditioner import inverse_stencil
 from asperity.kernels.scanning import Block, solve_positions
 
 MAX_ITERATIONS = 2000
@@ -279,16 +279,27 @@ class HalfSpace:
         Contact
             The solution; look at `converged`.
         """
+        return self._single_contact(gap, approach, start, rtol)
+
+    def _single_contact(
+        self,
+        gap: NDArray[np.float64],
+        approach: float,
+        start: NDArray[np.float64] | None,
+        rtol: float,
+        total: float = -1.0,
+    ) -> Contact:
         flat, here = np.zeros(self.shape), np.zeros(1)
-        block = self.at_positions(flat, gap, here, np.array([approach]), 0, rtol, start)
+        block = self.at_positions(flat, gap, here, np.array([approach]), 0, rtol, start, load=total)
         pressure, iterations = block.pressures[0, 0], int(block.counts[1])
         outcome = Outcome.CONVERGED if block.counts[0] else Outcome.NO_CONTACT
         if block.counts[2]:
-            outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.SINGULAR
-        force = float(block.totals[0, 0]) * self.cell_area
-        area = int(np.count_nonzero(pressure)) * self.cell_area
-        residual = float(block.residuals[0, 0])
-        return Contact(pressure, force, approach, area, iterations, residual, outcome, self, gap)
+            outcome = Outcome.ITERATION_LIMIT if iterations >= MAX_ITERATIONS else Outcome.STALLED
+        return Contact(
+            pressure, float(block.totals[0, 0]) * self.cell_area, approach + float(block.levels[0, 0]),
+            int(np.count_nonzero(pressure)) * self.cell_area, iterations, float(block.residuals[0, 0]),
+            outcome, self, gap,
+        )  # fmt: skip
 
     def at_positions(
         self,
@@ -300,6 +311,7 @@ class HalfSpace:
         rtol: float,
         start: NDArray[np.float64] | None = None,
         single: bool = False,
+        load: float = -1.0,
     ) -> Block:
         """Solve at positions of a body on a surface, unchecked and silent.
 
@@ -313,6 +325,8 @@ class HalfSpace:
             Pressure to start from at the first position and approach, Pa.
         single : bool
             Whether to iterate in single precision: half again as fast, down to a tolerance of about 1e-6.
+        load : float
+            As in `asperity.kernels.scanning.Block`.
 
         Returns
         -------
@@ -325,10 +339,10 @@ class HalfSpace:
         if single:
             known = self._single or influence(known.table, known.taps, np.float32)
         block = Block(
-            rows, body, planes, approaches, stride, self.pressure_cap, rtol, MAX_ITERATIONS,
+            rows, body, planes, approaches, stride, load, self.pressure_cap, rtol, MAX_ITERATIONS,
             room(known, *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
-            np.zeros(4, dtype=np.int64),
+            np.zeros(size), np.zeros(4, dtype=np.int64),
         )  # fmt: skip
         if start is not None:
             block.pressures[1, 0], block.solved[0] = start, 1
@@ -347,50 +361,19 @@ class HalfSpace:
     def _at_load(
         self, gap: NDArray[np.float64], load: float, start: NDArray[np.float64] | None, rtol: float
     ) -> Contact:
-        """Find the approach by a safeguarded secant on F^(2/3), which is nearly linear in the approach."""
-        touch = float(gap.min())
+        """Solve at a given load, where the overlap at an estimated approach is all that needs a grid."""
+        lowest = float(gap.min())
         if load == 0.0:
-            return self.at_approach(gap, touch, None, rtol)
-        low, high = touch, math.inf
-        approach, previous, iterations = self._estimated_approach(gap, load), (touch, 0.0), 0
-        goal = load ** (2.0 / 3.0)
-        for attempt in range(120):
-            accuracy = max(rtol, 1e-3) if attempt == 0 else rtol
-            contact = self.at_approach(gap, approach, start, accuracy)
+            return self.at_approach(gap, lowest, None, rtol)
+        estimate = foundation_approach(gap, load, self.modulus, self.cell_area, self.pressure_cap)
+        iterations = 0
+        while True:
+            reach = lowest + REACH * (estimate - lowest)
+            contact = self._single_contact(gap, reach, start, rtol, load / self.cell_area)
             iterations += contact.iterations
-            if not contact.converged:
-                break
-            if accuracy == rtol and abs(contact.force - load) <= 0.1 * rtol * load:
-                break
-            start = contact.pressure
-            low, high = (approach, high) if contact.force < load else (low, approach)
-            if high - low <= 4.0 * np.finfo(float).eps * max(abs(low), abs(approach)):
-                break
-            transformed = contact.force ** (2.0 / 3.0)
-            rise = transformed - previous[1]
-            slope = rise / (approach - previous[0]) if approach != previous[0] else 0.0
-            previous = (approach, transformed)
-            following = approach + (goal - transformed) / slope if slope > 0.0 else math.nan
-            stalled = attempt > 8 and attempt % 2  # F(δ) has steps where cells flow: halve the bracket
-            if not low < following < high or (stalled and math.isfinite(high)):
-                following = 0.5 * (low + high) if math.isfinite(high) else touch + 2.0 * (approach - touch)
-            approach = following
-        outcome = contact.outcome
-        if contact.converged and abs(contact.force - load) > 10.0 * rtol * load:
-            outcome = Outcome.ITERATION_LIMIT
-        return replace(contact, iterations=iterations, outcome=outcome)
-
-    def _estimated_approach(self, gap: NDArray[np.float64], load: float) -> float:
-        """Approach at which E* √A × (mean overlap on A) reaches the load: within a few per cent for Hertz."""
-        ordered = np.sort(gap, axis=None)
-        n = np.arange(1, ordered.size + 1)
-        # force when the approach equals the next gap value: overlap area n dA, mean overlap δ − mean gap
-        mean_gap = np.cumsum(ordered) / n
-        foundation = self.modulus * np.sqrt(n * self.cell_area)
-        force = foundation * (ordered - mean_gap)
-        i = int(np.searchsorted(np.maximum.accumulate(force), load))
-        i = min(max(i, 1), ordered.size - 1) if ordered.size > 1 else 0
-        return float(mean_gap[i] + load / foundation[i])
+            if contact.approach <= reach:
+                return replace(contact, iterations=iterations)
+            estimate, start = contact.approach, contact.pressure
 
 
 @lru_cache

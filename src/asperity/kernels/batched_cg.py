@@ -2,7 +2,8 @@
 
 Written on an array module `xp` (numpy or CuPy): positions are the first axis of every array, nothing is
 compiled and nothing leaves the device but a few counts. The iteration of each member is that of
-`projected_cg.solve`; members that have converged are frozen, and left out as soon as half of a batch has.
+`projected_cg.solve` at a given approach; members that have converged are frozen, and left out as soon as half
+of a batch has.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from asperity.kernels.padded import convolve
+from asperity.kernels.projected_cg import LEAST, MOST, OFTEN, PATIENCE, WHOLE
 
 Array = Any
 """An array of the module `xp`."""
@@ -29,6 +31,7 @@ class _Members(NamedTuple):
     previous: Array
     direction: Array
     rho: Array
+    length: Array
     iterations: Array
     worst: Array
     active: Array
@@ -61,6 +64,7 @@ def solve(
     taps: tuple[float, ...],
     pressure: Array,
     hardness: float,
+    softest: float,
     tolerance: Array,
     max_iterations: int,
     xp: Any,
@@ -76,11 +80,13 @@ def solve(
     my : int
         ``padded_length(ny)``.
     taps : tuple of float
-        The six of `projected_cg.inverse_stencil`, Pa/m.
+        The six of `preconditioner.inverse_stencil`, Pa/m.
     pressure : array, shape (b, nx, ny)
         Starts within the bounds; on return the solutions, Pa.
     hardness : float
         Upper bound of the pressure, Pa (may be infinite).
+    softest : float
+        No pressure of unit norm displaces by more, m/Pa.
     tolerance : array, shape (b,)
         Largest complementarity residual of each, m.
     max_iterations : int
@@ -101,7 +107,7 @@ def solve(
     worst = _complementarity(pressure, residual, hardness, xp)
     members = _Members(
         xp.arange(count), overlap, tolerance, pressure.copy(), residual, xp.zeros_like(residual),
-        xp.zeros_like(residual), xp.zeros(count), iterations.copy(), worst, worst > tolerance,
+        xp.zeros_like(residual), xp.zeros(count), xp.ones(count), iterations.copy(), worst, worst > tolerance,
     )  # fmt: skip
     for _ in range(max_iterations):
         running = int(members.active.sum())
@@ -110,7 +116,7 @@ def solve(
         if _capacity(running) < len(members.active):
             _record(members, pressure, iterations, reached)
             members = _compacted(members, _capacity(running), xp)
-        members = _iterate(members, spectrum, my, taps, hardness, xp)
+        members = _iterate(members, spectrum, my, taps, hardness, softest, xp)
     _record(members, pressure, iterations, reached)
     return iterations, reached
 
@@ -134,31 +140,76 @@ def _compacted(members: _Members, size: int, xp: Any) -> _Members:
 
 
 def _iterate(
-    members: _Members, spectrum: Array, my: int, taps: tuple[float, ...], hardness: float, xp: Any
+    members: _Members,
+    spectrum: Array,
+    my: int,
+    taps: tuple[float, ...],
+    hardness: float,
+    softest: float,
+    xp: Any,
 ) -> _Members:
     """One iteration of every active member."""
-    m = members
+    m, count = members, members.iterations + members.active
     z = _precondition(m.pressure, m.residual, hardness, taps, xp)
-    direction, rho, slope = _direction(m, z, xp)
-    response = convolve(direction, spectrum, my, xp)
-    curvature = _dot(direction, response)
-    moving = m.active & (curvature > 0.0)
-    step = xp.where(moving, -slope / xp.where(curvature > 0.0, curvature, 1.0), 0.0)[:, None, None]
-    raised = m.pressure + step * direction
-    pressure = xp.minimum(xp.maximum(raised, 0.0), hardness)
-    clipped = (pressure != raised).any(axis=(1, 2))
-    residual = m.residual + step * response
-    residual = _true_residual(moving & clipped, pressure, m.overlap, residual, spectrum, my, xp)
+    rho = _dot(m.residual, z)
+    beta = _conjugate(m, z, rho, xp)
+    due = m.active & (count > PATIENCE) & (count % OFTEN == 0)
+    direction = (beta[:, None, None] * m.direction - z) * (z != 0.0)
+    step, work, clipped = _project(m, direction, m.length, hardness, xp)
+    idle = m.active & ~due & (work >= 0.0)
+    if bool(idle.any()):
+        direction = xp.where(idle[:, None, None], -z, direction)
+        step, work, clipped = _project(m, direction, m.length, hardness, xp)
+    steepest = due | (m.active & (work >= 0.0))
+    if bool(steepest.any()):
+        chosen = steepest[:, None, None]
+        direction = xp.where(chosen, -m.residual, direction)
+        step, work, clipped = _project(
+            m, direction, xp.where(steepest, 1.0 / softest, m.length), hardness, xp
+        )
+    response = convolve(step, spectrum, my, xp)
+    curvature = _dot(step, response)
+    moving = m.active & (work < 0.0) & (curvature > 0.0)
+    share = xp.where(moving, -work / xp.where(curvature > 0.0, curvature, 1.0), 0.0)
+    length = xp.where(steepest, m.length, xp.clip(m.length * share, LEAST, MOST))
+    share = _bounded(m.pressure, step, share, clipped, hardness, xp)[:, None, None]
+    pressure = xp.clip(m.pressure + share * step, 0.0, hardness)
+    residual = m.residual + share * response
     worst = _complementarity(pressure, residual, hardness, xp)
-    claiming = moving & ~clipped & (worst <= m.tolerance)
+    claiming = moving & (worst <= m.tolerance)
     if bool(claiming.any()):  # the recurrence says converged: let the true residual confirm it
         residual = _true_residual(claiming, pressure, m.overlap, residual, spectrum, my, xp)
         worst = _complementarity(pressure, residual, hardness, xp)
     worst = xp.where(moving, worst, m.worst)
     return m._replace(
-        pressure=pressure, residual=residual, previous=m.residual, direction=direction, rho=rho,
-        iterations=m.iterations + m.active, worst=worst, active=moving & (worst > m.tolerance),
+        pressure=pressure, residual=residual, previous=m.residual, direction=direction,
+        rho=xp.where(steepest, 0.0, rho), length=length, iterations=count, worst=worst,
+        active=moving & (worst > m.tolerance),
     )  # fmt: skip
+
+
+def _conjugate(m: _Members, z: Array, rho: Array, xp: Any) -> Array:
+    """Share of the last direction in the next one (Polak–Ribière)."""
+    change, known = rho - _dot(m.previous, z), m.rho > 0.0
+    return xp.where(known, xp.maximum(change / xp.where(known, m.rho, 1.0), 0.0), 0.0)
+
+
+def _project(
+    m: _Members, direction: Array, length: Array, hardness: float, xp: Any
+) -> tuple[Array, Array, Array]:
+    """Step of a length along a direction, projected on the bounds; its work; whether they held it back."""
+    wanted = m.pressure + length[:, None, None] * direction
+    kept = xp.clip(wanted, 0.0, hardness)
+    step = kept - m.pressure
+    return step, _dot(m.residual, step), (kept != wanted).any(axis=(1, 2))
+
+
+def _bounded(pressure: Array, step: Array, share: Array, clipped: Array, hardness: float, xp: Any) -> Array:
+    """Share of a step that leads to least energy, as far as the bounds allow."""
+    reached = pressure + share[:, None, None] * step
+    leaves = ((reached < 0.0) | (reached > hardness)).any(axis=(1, 2))
+    share = xp.where(clipped & (share >= WHOLE), 1.0, share)
+    return xp.where(~clipped & leaves, xp.minimum(share, 1.0), share)
 
 
 def _precondition(
@@ -181,19 +232,6 @@ def _precondition(
     z += taps[5] * (at(0, -2) + at(0, 2))
     z *= free
     return z
-
-
-def _direction(m: _Members, z: Array, xp: Any) -> tuple[Array, Array, Array]:
-    """Search direction (Polak–Ribière), residual·z and residual·direction."""
-    rho = _dot(m.residual, z)
-    change = rho - _dot(m.previous, z)
-    known = m.rho > 0.0
-    beta = xp.where(known, xp.maximum(change / xp.where(known, m.rho, 1.0), 0.0), 0.0)
-    direction = (beta[:, None, None] * m.direction - z) * (z != 0.0)
-    slope = _dot(m.residual, direction)
-    # not a descent direction any more: restart from the preconditioned gradient
-    restart = slope >= 0.0
-    return xp.where(restart[:, None, None], -z, direction), rho, xp.where(restart, -rho, slope)
 
 
 def _true_residual(

@@ -7,17 +7,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.kernels.at_load import carry
+from asperity.kernels.box import Box, box_room, cut, empty_box, paste
 from asperity.kernels.convolution import convolve
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
-from asperity.kernels.lanes import width
+from asperity.kernels.lanes import VECTOR_BYTES, lanes, width
 from asperity.kernels.options import INNER, LOOP, ONCE, compiled
 from asperity.kernels.overlap import overlap_box
-from asperity.kernels.projected_cg import Box, box_room, empty_box, solve, survey, unit_indentation
+from asperity.kernels.projected_cg import Task, solve, survey, true_residual, unit_indentation
 
 MARGIN = 3
 """Cells left around pressure and overlap of what a solution starts from."""
-NO_CONTACT, CONVERGED, ITERATION_LIMIT, SINGULAR, UNPREPARED = range(5)
+NO_CONTACT, CONVERGED, ITERATION_LIMIT, STALLED, UNPREPARED = range(5)
 """How a solution can end."""
+REACH = 1.3
+"""How far beyond the expected approach a solution at a given load may go."""
+NOTHING = 1e-12
+"""Share of the pressure that the overlap lets expect below which a start is taken for zero."""
+TRUSTED = 1e-10
+"""Tolerance down to which a residual in double precision need not be computed anew."""
 
 
 class Solution(NamedTuple):
@@ -33,6 +41,8 @@ class Solution(NamedTuple):
         Largest complementarity residual relative to the largest overlap.
     total : float
         Sum of the pressure over the cells, Pa.
+    level : float
+        At a given load, by how much the approach is beyond the one that was given, m.
     nx, ny : int
         Box of the overlap, or the one that is not prepared.
     """
@@ -41,6 +51,7 @@ class Solution(NamedTuple):
     iterations: int
     residual: float
     total: float
+    level: float
     nx: int
     ny: int
 
@@ -87,6 +98,7 @@ def solve_contact(
     known: Influence,
     gap: NDArray[np.float64],
     approach: float,
+    load: float,
     start: NDArray[np.float64],
     hardness: float,
     rtol: float,
@@ -103,7 +115,10 @@ def solve_contact(
     gap : ndarray, shape (nx, ny)
         Separation of the undeformed bodies at zero approach, m.
     approach : float
-        Approach, m, positive closing.
+        Approach, m, positive closing; at a given load, REACH times what is expected beyond first touch.
+    load : float
+        Sum of the pressure over the cells, Pa, less than the hardness over all that overlap; negative if the
+        approach is given.
     start : ndarray, shape (nx, ny)
         Pressure to start from, Pa, within the bounds; zero on all of the overlap if nothing is known.
     hardness : float
@@ -125,37 +140,45 @@ def solve_contact(
     largest, first, end, left, right = overlap_box(gap, approach, room.lowest)
     nx, ny = end - first, right - left
     if nx > 0 and not is_prepared(known, nx, ny):
-        return Solution(UNPREPARED, 0, 0.0, 0.0, nx, ny)
+        return Solution(UNPREPARED, 0, 0.0, 0.0, 0.0, nx, ny)
     if nx == 0:
         _clear(pressure)
-        return Solution(NO_CONTACT, 0, 0.0, 0.0, 0, 0)
+        return Solution(NO_CONTACT, 0, 0.0, 0.0, 0.0, 0, 0)
+    task = Task(hardness, load, largest, rtol, known.softest, max_iterations)
     outer, everywhere = empty_box(nx, ny, room.outer), convolution(known, nx, ny)
-    guessed = not _enter(outer, gap, approach, start, first, left)
+    guessed = not _enter(outer, gap, approach, start, first, left, NOTHING * known.taps[0] * largest)
     if guessed:
-        _guess(outer, largest, known.taps[0])
-    iterations, tolerance, definite = 0, rtol * largest, True
-    while True:
-        worst, top, bottom, near, far = survey(everywhere, outer, hardness)
-        if guessed:
-            _scale(outer, hardness)
-            guessed = False
-            continue
-        if worst <= tolerance or iterations >= max_iterations or not definite:
-            break
+        _guess(outer, largest, largest / REACH if load >= 0.0 else largest, known.taps[0])
+    if load >= 0.0:
+        carry(outer, hardness, load, known.taps[0])
+    true_residual(everywhere, outer)
+    if guessed and load < 0.0 and not _scale(outer, hardness):
+        true_residual(everywhere, outer)
+    worst, level, top, bottom, near, far = survey(outer, task)
+    iterations, moving, last = 0, True, (0, 0, 0, 0)
+    while moving and worst > rtol * (largest + level) and iterations < max_iterations:
         row, rows = _grown(known, top, bottom, nx)
         column, columns = _grown(known, near, far, ny)
         if not is_prepared(known, rows, columns):
-            return Solution(UNPREPARED, 0, 0.0, 0.0, rows, columns)
-        done, definite = solve(
-            convolution(known, rows, columns), known.mirrored, known.taps, outer, row, column,
-            empty_box(rows, columns, room.inner), hardness, tolerance, max_iterations - iterations,
-        )  # fmt: skip
-        iterations += done
+            return Solution(UNPREPARED, 0, 0.0, 0.0, 0.0, rows, columns)
+        before, again = worst, last == (row, column, rows, columns)
+        last = (row, column, rows, columns)
+        part, b = rows < nx or columns < ny, outer
+        if part:
+            b = empty_box(rows, columns, room.inner)
+            cut(outer, row, column, b)
+        iterations, moving = solve(convolution(known, rows, columns), known.taps, b, task, iterations)
+        if part:
+            paste(b, outer, row, column)
+        if part or not _recurs(outer, rtol):
+            true_residual(everywhere, outer)
+        worst, level, top, bottom, near, far = survey(outer, task)
+        moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, pressure, first, left)
     status = CONVERGED
-    if not worst <= tolerance:
-        status = ITERATION_LIMIT if iterations >= max_iterations else SINGULAR
-    return Solution(status, iterations, worst / largest, total, nx, ny)
+    if not worst <= rtol * (largest + level):
+        status = STALLED if not moving else ITERATION_LIMIT
+    return Solution(status, iterations, worst / (largest + level), total, level, nx, ny)
 
 
 @compiled(**LOOP, nogil=True)
@@ -220,34 +243,49 @@ def indent(
 
 
 @compiled(**INNER)
-def _enter(b: Box, gap: NDArray, approach: float, start: NDArray, first: int, left: int) -> bool:
-    """Set overlap and pressure; return whether there is any pressure."""
-    started = False
+def _enter(
+    b: Box, gap: NDArray, approach: float, start: NDArray, first: int, left: int, least: float
+) -> bool:
+    """Set overlap and pressure, if it is not too small to matter; return whether there is any."""
+    added = 0.0
     for i in range(b.nx):
+        here, row, known = i * b.pitch, gap[first + i], start[first + i]
         for j in range(b.ny):
-            q = i * b.pitch + j
-            b.overlap[q] = approach - gap[first + i, left + j]
-            b.pressure[q] = start[first + i, left + j]
-            started |= b.pressure[q] > 0.0
-    return started
+            b.overlap[here + j] = approach - row[left + j]
+            p = known[left + j] if known[left + j] > least else 0.0
+            b.pressure[here + j] = p
+            added += p
+    return added > 0.0
 
 
 @compiled(**INNER)
-def _guess(b: Box, largest: float, stiffness: float) -> None:
-    """Set a pressure of Hertzian form over the deeper half of the overlap, of about the right size."""
+def _guess(b: Box, largest: float, expected: float, stiffness: float) -> None:
+    """Set a pressure of Hertzian form over the deeper half of the overlap that is expected."""
+    edge = largest - 0.5 * expected
     for q in range(len(b.pressure)):
-        b.pressure[q] = stiffness * np.sqrt(largest * max(b.overlap[q] - 0.5 * largest, 0.0))
+        b.pressure[q] = stiffness * np.sqrt(expected * max(b.overlap[q] - edge, 0.0))
 
 
 @compiled(**INNER)
-def _scale(b: Box, hardness: float) -> None:
-    """Scale a pressure whose residual is known to least energy."""
+def _scale(b: Box, hardness: float) -> bool:
+    """Scale a pressure and its residual to least energy; return whether the residual is still its own."""
     done, stored = 0.0, 0.0
     for q in range(len(b.pressure)):
         done += b.pressure[q] * b.overlap[q]
         stored += b.pressure[q] * (b.residual[q] + b.overlap[q])
+    factor, capped = done / stored, 0
     for q in range(len(b.pressure)):
-        b.pressure[q] = min(b.pressure[q] * (done / stored), hardness)
+        p = factor * b.pressure[q]
+        capped += p > hardness
+        b.pressure[q] = min(p, hardness)
+        b.residual[q] = factor * (b.residual[q] + b.overlap[q]) - b.overlap[q]
+    return capped == 0
+
+
+@compiled(**INNER)
+def _recurs(b: Box, rtol: float) -> bool:
+    """Whether a residual that was carried on from step to step is good enough."""
+    return rtol >= TRUSTED and lanes(b.residual) == VECTOR_BYTES // 8
 
 
 @compiled(**INNER)

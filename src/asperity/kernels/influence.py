@@ -25,10 +25,10 @@ class Influence(NamedTuple):
     ----------
     table : ndarray, shape (≥ nx, ≥ ny)
         Displacement per pressure at non-negative separations, m/Pa.
-    mirrored : ndarray, shape (≥ nx, ≥ 2 whole(ny) − 1)
-        The same at separations of both signs along y, zero in the middle column.
+    softest : float
+        No pressure of unit norm displaces by more, m/Pa.
     taps : ndarray, shape (6,)
-        Preconditioner, from `projected_cg.inverse_stencil`, Pa/m.
+        Preconditioner, from `preconditioner.inverse_stencil`, Pa/m.
     lengths : ndarray of int, shape (k,)
         Length in which n cells are convolved, at ⌈n / UNIT⌉.
     radices : ndarray of int, shape (RADICES k,)
@@ -44,7 +44,7 @@ class Influence(NamedTuple):
     """
 
     table: NDArray[np.float64]
-    mirrored: NDArray[np.float64]
+    softest: float
     taps: NDArray[np.float64]
     lengths: NDArray[np.int64]
     radices: NDArray[np.int64]
@@ -81,15 +81,14 @@ def influence(
     for length in fast.tolist():
         split = factors(length)
         radices[length // UNIT, : len(split)] = split
-    filled = np.pad(table, ((0, 0), (0, -table.shape[1] % width(dtype))))  # idle columns are read, too
-    mirrored = np.concatenate([filled[:, :0:-1], filled], axis=1)
+    softest = 4.0 * float(np.abs(table).sum())  # over separations of both signs: no row of K adds up to more
     known_roots = np.concatenate([roots(n) for n in fast.tolist()])
     turns = np.concatenate([quarter_turn(n) for n in fast.tolist()])
-    given = (mirrored, taps, known_roots, turns, np.zeros(0))
-    mirrored, taps, known_roots, turns, spectra = (a.astype(dtype) for a in given)
+    given = (taps, known_roots, turns, np.zeros(0))
+    taps, known_roots, turns, spectra = (a.astype(dtype) for a in given)
     places = np.full((count, count), -1)
     return Influence(
-        table, mirrored, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra
+        table, softest, taps, lengths, radices.ravel(), starts, known_roots, turns, places, spectra
     )
 
 

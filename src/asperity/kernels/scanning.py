@@ -31,8 +31,8 @@ class Block(NamedTuple):
         Increasing approaches, m.
     stride : int
         Rows between positions.
-    hardness, rtol : float
-        As in `contact.solve_contact`.
+    load, hardness, rtol : float
+        As in `contact.solve_contact`; at a given load there is one approach, an upper estimate.
     max_iterations : int
         As there.
     room : Room
@@ -49,6 +49,8 @@ class Block(NamedTuple):
         Receives the sum of the pressure over the cells, Pa.
     residuals : ndarray, shape (k, positions)
         Receives the largest complementarity residual relative to the largest overlap.
+    levels : ndarray, shape (k, positions)
+        Receives by how much the approach is beyond that estimate, m; zero unless the load is given.
     counts : ndarray of int, shape (4,)
         Solutions, iterations, unconverged and truncated solutions so far.
     """
@@ -58,6 +60,7 @@ class Block(NamedTuple):
     planes: NDArray[np.float64]
     approaches: NDArray[np.float64]
     stride: int
+    load: float
     hardness: float
     rtol: float
     max_iterations: int
@@ -69,6 +72,7 @@ class Block(NamedTuple):
     solved: NDArray[np.int64]
     totals: NDArray[np.float64]
     residuals: NDArray[np.float64]
+    levels: NDArray[np.float64]
     counts: NDArray[np.int64]
 
 
@@ -105,12 +109,13 @@ def solve_positions(
             _set_start(b, m, i, touch)
             pressure = b.pressures[m % 2, i]
             found = solve_contact(
-                known, b.gap, b.approaches[i], b.start, b.hardness, b.rtol, b.max_iterations, b.room, pressure
-            )
+                known, b.gap, b.approaches[i], b.load, b.start, b.hardness, b.rtol, b.max_iterations, b.room,
+                pressure,
+            )  # fmt: skip
             if found.status == UNPREPARED:
                 return m, i, found.nx, found.ny
             b.solved[i] += 1
-            b.totals[i, m], b.residuals[i, m] = found.total, found.residual
+            b.totals[i, m], b.residuals[i, m], b.levels[i, m] = found.total, found.residual, found.level
             b.counts[0] += 1
             b.counts[1] += found.iterations
             b.counts[2] += found.status != CONVERGED

@@ -1,0 +1,203 @@
+"""What a contact solution does to keep a load: the sum of the pressure, whose multiplier is the approach."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.kernels.box import FAR, REACH, Box
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
+
+EXACT, SHIFTS = 1e-13, 100
+"""Accuracy of the sum, and how often it is tried to reach it."""
+
+
+@compiled(**INNER, **REASSOCIATE)
+def find_level(b: Box, hardness: float) -> float:
+    """Find the approach beyond that of the overlap: the mean residual of the cells between the bounds.
+
+    Parameters
+    ----------
+    b : Box
+        Holds pressure and residual.
+    hardness : float
+        Upper bound of the pressure, Pa.
+
+    Returns
+    -------
+    float
+        Approach, m.
+    """
+    added, count = 0.0, 0.0
+    for q in range(len(b.pressure)):
+        p = b.pressure[q]
+        between = p > 0.0 and p < hardness
+        added += b.residual[q] if between else 0.0
+        count += 1.0 if between else 0.0
+    return added / count if count > 0.0 else _between_bounds(b)
+
+
+@compiled(**LOOP)
+def _between_bounds(b: Box) -> float:
+    """Level between the residuals of those cells that are at the one and the other bound."""
+    capped, empty = -FAR, FAR
+    for i in range(b.nx):
+        for q in range(i * b.pitch, i * b.pitch + b.ny):
+            if b.pressure[q] > 0.0:
+                capped = max(capped, b.residual[q])
+            else:
+                empty = min(empty, b.residual[q])
+    return 0.5 * (capped + empty) if empty < FAR else capped
+
+
+@compiled(**INNER)
+def mark_free(b: Box, hardness: float, level: float) -> None:
+    """Mask ones with the free set: cells that no bound holds.
+
+    Parameters
+    ----------
+    b : Box
+        Holds pressure and residual.
+    hardness : float
+        Upper bound of the pressure, Pa.
+    level : float
+        Approach beyond that of the overlap, m.
+    """
+    target = b.masked[REACH * b.pitch :]
+    for q in range(len(b.pressure)):
+        p, r = b.pressure[q], b.residual[q] - level
+        target[q] = 1.0 if (p > 0.0 or r < 0.0) and (p < hardness or r > 0.0) else 0.0
+
+
+@compiled(**INNER, **REASSOCIATE)
+def balance(b: Box, share: float, level: float) -> tuple[float, float]:
+    """Take a share of `unit` off z.
+
+    Parameters
+    ----------
+    b : Box
+        Holds z, `unit`, the masked free set, and the residual.
+    share : float
+        The share, m.
+    level : float
+        Approach beyond that of the overlap, m.
+
+    Returns
+    -------
+    product, change : float
+        As of `preconditioner.precondition`.
+    """
+    rho, change, free = 0.0, 0.0, b.masked[REACH * b.pitch :]
+    for q in range(len(b.z)):
+        z = b.z[q] - share * b.unit[q]
+        g = (b.residual[q] - level) * free[q]
+        b.z[q] = z
+        rho += g * z
+        change += (g - b.previous[q]) * z
+    return rho, change
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _shift(
+    b: Box, length: float, shift: float, level: float, hardness: float
+) -> tuple[float, float, float, float]:
+    """Set the step to a length along the direction and one along `unit`, projected on the bounds.
+
+    Returns the sum of the pressure after it, how that grows with the shift, its work against the residual,
+    and how many cells the bounds held back.
+    """
+    total, growth, work, clipped = 0.0, 0.0, 0.0, 0.0
+    for q in range(len(b.z)):
+        p, unit = b.pressure[q], b.unit[q]
+        wanted = p + length * b.direction[q] + shift * unit
+        kept = min(max(wanted, 0.0), hardness)
+        growth += unit if kept == wanted else 0.0
+        clipped += 1.0 if kept != wanted else 0.0
+        step = kept - p
+        b.step[q] = step
+        total += kept
+        work += (b.residual[q] - level) * step
+    return total, growth, work, clipped
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _sum(values: NDArray[np.float64]) -> float:
+    total = 0.0
+    for q in range(len(values)):
+        total += values[q]
+    return total
+
+
+@compiled(**LOOP)
+def project_at_load(
+    b: Box, length: float, level: float, hardness: float, total: float
+) -> tuple[float, float, bool]:
+    """Set the step to a length along the direction, projected on the bounds and on the load.
+
+    What the projection takes is shifted along `unit`: the sum grows along straight lines with the shift, so
+    that a Newton iteration within a bracket finds it.
+
+    Parameters
+    ----------
+    b : Box
+        Holds pressure, direction, `unit` and residual; receives the step.
+    length : float
+        Length along the direction.
+    level : float
+        Approach beyond that of the overlap, m.
+    hardness : float
+        Upper bound of the pressure, Pa.
+    total : float
+        Sum of the pressure after the step, Pa.
+
+    Returns
+    -------
+    work : float
+        Work of the step against the residual; zero if there is no such shift.
+    clipped : float
+        Cells that the bounds held back.
+    found : bool
+        Whether there is such a shift.
+    """
+    low, high, shift, reach = -np.inf, np.inf, 0.0, 0.0
+    for _ in range(SHIFTS):
+        reached, growth, work, clipped = _shift(b, length, shift, level, hardness)
+        missing = total - reached
+        if abs(missing) <= EXACT * total:
+            return work, clipped, True
+        low, high = (shift, high) if missing > 0.0 else (low, shift)
+        following = shift + missing / growth if growth > 0.0 else np.nan
+        if not low < following < high:
+            if low > -np.inf and high < np.inf:
+                following = 0.5 * (low + high)
+            else:  # the bounds hold all cells back
+                reach = 4.0 * reach if reach > 0.0 else total / _sum(b.unit)
+                following = shift + (reach if missing > 0.0 else -reach)
+        shift = following
+    return 0.0, 0.0, False
+
+
+@compiled(**LOOP)
+def carry(b: Box, hardness: float, total: float, stiffness: float) -> None:
+    """Scale the pressure to the load, within the bounds.
+
+    Parameters
+    ----------
+    b : Box
+        Holds the overlap and about the pressure.
+    hardness : float
+        Upper bound of the pressure, Pa.
+    total : float
+        Sum of the pressure, Pa, which the overlapping cells can carry.
+    stiffness : float
+        Pressure per overlap, Pa/m: what is scaled if that pressure acts on too few cells.
+    """
+    for q in range(len(b.pressure)):
+        b.direction[q] = b.unit[q] = b.pressure[q]
+        b.pressure[q] = 0.0
+    if not project_at_load(b, 1.0, 0.0, hardness, total)[2]:
+        for q in range(len(b.pressure)):
+            b.direction[q], b.unit[q] = stiffness * b.overlap[q], stiffness
+        project_at_load(b, 1.0, 0.0, hardness, total)
+    for q in range(len(b.pressure)):
+        b.pressure[q] = b.step[q]
