@@ -81,7 +81,7 @@ def cold(n: int) -> None:
         approach = (share * x[-1]) ** 2 / RADIUS
         iterations = half_space.solve(gap, approach=approach).iterations
         seconds = inside(half_space, gap, approach, 300)
-        outside = least(lambda: half_space.solve(gap, approach=approach), 300) - seconds
+        outside = least(lambda a=approach: half_space.solve(gap, approach=a), 300) - seconds
         print(
             f"| {n}² | {share} | {iterations} | {1e3 * seconds:.3f} | {1e3 * outside:.3f} "
             f"| {1e6 * convolving:.1f} | {seconds / convolving:.1f} |"
@@ -124,14 +124,13 @@ def under_load(n: int, rtol: float) -> tuple[list[float], list[float]]:
 
 
 def main() -> None:
-    print("| grid | contact radius to half window | iterations | inside, ms | outside, ms | a convolution, us |"
-          " convolutions inside |")  # fmt: skip
+    print(
+        "| grid | radius to half window | iterations | inside, ms | outside, ms | convolution, us | ratio |"
+    )
     print("|---|---:|---:|---:|---:|---:|---:|")
     cold(64)
     cold(128)
-    print(
-        "\n| grid | rtol | time under a load to that at its approach: median | worst | iterations: median | worst |"
-    )
+    print("\n| grid | rtol | time, median | worst | iterations, median | worst |")
     print("|---|---:|---:|---:|---:|---:|")
     for n, rtol in itertools.product((64, 128), (1e-6, 1e-8)):
         times, iterations = under_load(n, rtol)

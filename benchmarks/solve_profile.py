@@ -1,9 +1,9 @@
 # ruff: noqa: E402 (the threads are set before numpy is imported)
 """Where the time of a contact solution goes, and how it grows.
 
-Per grid: time and iterations of a scan's solution, time of an iteration against that of its convolution (bare:
-the same box again and again). Then the time of a scan against grid, path and number of approaches, drawn beside
-straight lines of the expected slopes. One thread, CPU time, the least of some rounds.
+Per grid: time and iterations of a scan's solution, time of an iteration against that of its convolution
+(bare: the same box again and again). Then the time of a scan against grid, path and number of approaches,
+drawn beside straight lines of the expected slopes. One thread, CPU time, the least of some rounds.
 
     python benchmarks/solve_profile.py --figure benchmarks/growth.svg
 """

@@ -103,8 +103,8 @@ class Outcome(Enum):
     """How an iterative computation ended, with advice."""
 
     CONVERGED = "converged"
-    ITERATION_LIMIT = "the iteration limit was reached; try a larger `rtol` or a finer grid"
-    STALLED = "rounding allows no better solution; try a larger `rtol`, and check the gap for outliers"
+    ITERATION_LIMIT = "the iteration limit was reached; try a larger `rtol`, and check the gap for spikes"
+    STALLED = "rounding allows no better solution; try a larger `rtol`, and check the gap for spikes"
     NO_CONTACT = "the bodies do not touch at this approach"
     STEPS_UNCONVERGED = "the contact force did not converge in some time steps; try a smaller time step"
 
