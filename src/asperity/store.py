@@ -7,6 +7,7 @@ import json
 import os
 import secrets
 import sys
+import tempfile
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping
@@ -210,13 +211,69 @@ class Store:
 
 
 def default_root() -> Path:
-    """Folder of the cache: ``$ASPERITY_CACHE``, else ``asperity`` in the user's cache folder."""
+    """Folder of the cache.
+
+    Returns
+    -------
+    Path
+        ``$ASPERITY_CACHE``, else ``asperity`` in the user's cache folder; where the user has no home, one of
+        the user's own among the temporary files.
+
+    Raises
+    ------
+    InputError
+        If that one belongs to somebody else.
+    """
     if chosen := os.environ.get("ASPERITY_CACHE"):
         return Path(chosen)
+    try:
+        if sys.platform == "win32":
+            local = os.environ.get("LOCALAPPDATA")
+            return Path(local or Path.home() / "AppData" / "Local") / "asperity" / "cache"
+        if sys.platform == "darwin":
+            return Path.home() / "Library" / "Caches" / "asperity"
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "asperity"
+    except RuntimeError:  # no home: a container, or an account without an entry
+        folder = temporary_folder()
+        if folder.exists() and not is_private(folder):
+            raise InputError(
+                "cache", folder, "a folder that you alone can write to", "Set $ASPERITY_CACHE to another."
+            ) from None
+        return folder
+
+
+def temporary_folder() -> Path:
+    """Folder of this user's own among the temporary files.
+
+    Returns
+    -------
+    Path
+        It need not exist.
+    """
+    return Path(tempfile.gettempdir()).absolute() / f"asperity-{_user()}"
+
+
+def _user() -> int:
+    return os.getuid() if sys.platform != "win32" else 0
+
+
+def is_private(folder: Path) -> bool:
+    """Whether nobody but the user, and the administrator, can write to a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    bool
+        False also if there is no such folder. On Windows every folder counts as private.
+    """
+    try:
+        status = folder.stat()
+    except OSError:
+        return False
     if sys.platform == "win32":
-        return (
-            Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "asperity" / "cache"
-        )
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "asperity"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "asperity"
+        return folder.is_dir()
+    return folder.is_dir() and status.st_uid in (0, _user()) and not status.st_mode & 0o022

@@ -7,12 +7,12 @@ nothing is left of the calls (``forceinline``).
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from numba import njit
+
+from asperity.kernels.kept import Kept
 
 LOOP: dict[str, Any] = {"cache": True, "_nrt": False}
 """For a loop over time steps, called from Python."""
@@ -24,40 +24,41 @@ REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}
 """Lets sums over poles be vectorised; NaN stays NaN."""
 
 
-def _stamp() -> bytes:
-    digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.read_bytes())
-    return digest.digest()
-
-
-SOURCES = _stamp()
-"""What all kernels are made of."""
-
-
 def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a kernel with numba, and keep it until the source of any kernel changes.
 
     Parameters
     ----------
     **options
-        As of `numba.njit`.
+        As of `numba.njit`; ``cache`` keeps it where `asperity.kernels.kept` says.
 
     Returns
     -------
     callable
         Decorator.
-
-    Notes
-    -----
-    Numba looks at a function's own file alone. A kernel kept from before a change of another one that it
-    calls, as by a new version of the package, would write where that one no longer expects it.
     """
+    keep = options.pop("cache", False)
 
     def decorate(function: Callable[..., Any]) -> Any:
         kernel = njit(**options)(function)
-        if options.get("cache"):
-            kernel._cache._cache_file._source_stamp = SOURCES
+        if keep:
+            kernel._cache = Kept(function)
         return kernel
 
     return decorate
+
+
+def is_kept(kernel: Any) -> bool:
+    """Whether the machine code of a kernel is on disk, for any signature.
+
+    Parameters
+    ----------
+    kernel : callable
+        From `compiled`.
+
+    Returns
+    -------
+    bool
+        False also if it is not to be kept.
+    """
+    return isinstance(kernel._cache, Kept) and kernel._cache.is_kept()

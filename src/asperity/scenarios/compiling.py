@@ -8,7 +8,6 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
 from asperity.kernels import modal, rail
+from asperity.kernels.options import is_kept
 from asperity.pointforce import Hertz
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
@@ -69,8 +69,7 @@ def _beside(stepping: Any, name: str) -> Iterator[None]:
 
     The compiler takes one function at a time in a process; what the second one compiles, the first loads.
     """
-    kept = Path(stepping.stats.cache_path or ".").glob(f"*.{stepping.__name__}-*.nbi")
-    if processors() < 2 or any(kept):
+    if processors() < 2 or is_kept(stepping):
         yield
         return
     code = f"from asperity.scenarios import compiling; compiling.{name}(); compiling.indent()"

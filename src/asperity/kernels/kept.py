@@ -1,0 +1,199 @@
+"""Compiled kernels, kept on disk: verified before they are used, compiled again where there is a doubt.
+
+What numba keeps are pickles, and machine code that is run as it is. So only files are read whose digest is
+right, in a folder that nobody but the user can write to. A file is named by all that it depends on: what is
+damaged, incomplete or of another version counts as missing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import re
+import secrets
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import llvmlite  # type: ignore[import-untyped]
+import numba
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+from asperity.store import default_root, is_private, temporary_folder
+
+VARIABLE = "ASPERITY_KERNELS"
+"""Names the folder of kept kernels; by default they lie in the cache."""
+DIGEST = 32
+"""Bytes of a digest."""
+
+
+def _stamp() -> str:
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__} {sys.version}".encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+SOURCES = _stamp()
+"""What all kernels are made of: one that is called by another is compiled into it."""
+
+
+def folders() -> Iterator[Path]:
+    """Folders in which kernels may lie, in the order in which they are tried.
+
+    Yields
+    ------
+    Path
+        ``$ASPERITY_KERNELS``, or that in the cache; then one for temporary files.
+    """
+    with suppress(OSError, ValueError):
+        yield Path(os.environ.get(VARIABLE) or default_root() / "kernels").absolute()
+    with suppress(OSError):
+        yield temporary_folder() / "kernels"
+
+
+class Kept:
+    """What numba asks for the machine code of a function, and hands it to, signature by signature.
+
+    Parameters
+    ----------
+    function : callable
+        The function in Python.
+
+    Notes
+    -----
+    Stands for `numba.core.caching.FunctionCache`, which trusts what it finds and fails where it cannot write.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.name = re.sub(r"[^\w.]", "", f"{function.__module__}.{function.__qualname__}")
+        own = Path(function.__code__.co_filename)
+        self.source = own.read_bytes() if own.is_file() else b""
+
+    @property
+    def cache_path(self) -> str:
+        """The first of the folders."""
+        return str(next(folders(), ""))
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """Load the machine code of a signature.
+
+        Parameters
+        ----------
+        signature : numba signature
+            Of the function.
+        context : target context of numba
+            Which it is for.
+
+        Returns
+        -------
+        CompileResult or None
+            None if it has to be compiled.
+        """
+        context.refresh()
+        name = self.file_name(signature, context.codegen())
+        for folder in folders():
+            payload = _verified(folder / SOURCES, name)
+            if payload is not None:
+                return CompileResult._rebuild(context, *pickle.loads(payload))  # noqa: S301 (our own, see above)
+        return None
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Keep the machine code of a signature, in the first folder that takes it.
+
+        Parameters
+        ----------
+        signature : numba signature
+            Of the function.
+        result : CompileResult
+            The code.
+        """
+        if result.lifted or result.library.has_dynamic_globals:
+            return
+        name, payload = self.file_name(signature, result.codegen), dumps(result._reduce())
+        if not any(_written(folder, name, payload) for folder in folders()):
+            _warn_unkept()
+
+    def file_name(self, signature: Any, codegen: Any) -> str:
+        """Name of the file that holds the machine code of a signature.
+
+        Parameters
+        ----------
+        signature : numba signature
+            Of the function.
+        codegen : code generator of numba
+            Which knows the processor.
+
+        Returns
+        -------
+        str
+            The function's name, and a digest of all that the code depends on.
+        """
+        known = repr((self.name, str(signature), codegen.magic_tuple())).encode()
+        return f"{self.name}-{hashlib.sha256(known + self.source).hexdigest()[:24]}"
+
+    def is_kept(self) -> bool:
+        """Whether there is a file of the function, for any signature."""
+        return any(any((f / SOURCES).glob(f"{self.name}-*")) for f in folders())
+
+    def enable(self) -> None:
+        """Do nothing: it is always enabled."""
+
+    def disable(self) -> None:
+        """Do nothing: it is always enabled."""
+
+    def flush(self) -> None:
+        """Do nothing: what is out of date is not found."""
+
+
+def _digest(name: str, payload: bytes) -> bytes:
+    """Digest that tells a file from a damaged one, and from that of another kernel."""
+    return hashlib.sha256(name.encode() + b"\0" + payload).digest()
+
+
+def _verified(folder: Path, name: str) -> bytes | None:
+    """Contents of a file, without its digest; None if there is none, or none that can be trusted."""
+    if not is_private(folder):
+        return None
+    try:
+        contents = (folder / name).read_bytes()
+    except OSError:
+        return None
+    digest, payload = contents[:DIGEST], contents[DIGEST:]
+    return payload if digest == _digest(name, payload) else None
+
+
+def _written(root: Path, name: str, payload: bytes) -> bool:
+    """Write a file completely or not at all; return whether it is there."""
+    folder = root / SOURCES
+    temporary = folder / f".{name}.{secrets.token_hex(4)}.part"
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if not is_private(folder):
+            return False
+        temporary.write_bytes(_digest(name, payload) + payload)
+        os.replace(temporary, folder / name)
+    except OSError:
+        return False
+    finally:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+    return True
+
+
+@cache
+def _warn_unkept() -> None:
+    """Warn, once."""
+    tried = " or ".join(str(folder) for folder in folders()) or "any folder"
+    warnings.warn(
+        f"compiled functions cannot be kept in {tried}: every start compiles them again, some 10 s. Let "
+        f"${VARIABLE} name a folder that you alone can write to.",
+        RuntimeWarning,
+        stacklevel=2,
+    )
