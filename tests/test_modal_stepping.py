@@ -80,6 +80,7 @@ def flight_system(modes=3, h=1e-4):
         4.9,
         h,
         1.0,
+        0.0,
     )
     return system, omega, zeta
 
@@ -91,6 +92,7 @@ def motion_at(modes, ball, velocity, q):
         np.zeros(modes),
         np.array([ball, velocity]),
         np.zeros(2),
+        np.full(2, ball - sum(q)),
         np.zeros(5),
         np.zeros(5),
         np.zeros(3, dtype=np.int64),
@@ -107,7 +109,7 @@ def test_flight_is_a_parabola_and_the_beam_rings_freely():
     motion, record = motion_at(3, -1.0, 0.3, [1e-3, -5e-4, 2e-4]), records(n + 1)
     shapes = np.ones((n + 1, 3))
     law = Hertz(1e10).prepare(np.zeros(n + 1))
-    assert roll_steps(system, motion, record, law, shapes, np.zeros_like(shapes), 0, n)
+    assert roll_steps(system, motion, record, law, shapes, np.zeros_like(shapes), 0, n, np.inf)
     t = system.time_step * np.arange(1, n + 1)
     assert_allclose(record.force, 0.0, atol=0.0)
     assert_allclose(record.ball[1:], -1.0 + 0.3 * t + 0.5 * (4.9 / 0.5) * t**2, rtol=1e-12)
@@ -126,7 +128,9 @@ def test_ball_bounces_elastically():
         n = int(0.0652 / h)
         motion, record = motion_at(3, -1e-3, 0.0, np.zeros(3)), records(n + 1)
         nodes = np.zeros((n + 1, 3))  # over a node of all modes the beam does not give
-        assert roll_steps(system, motion, record, Hertz(1e9).prepare(np.zeros(n + 1)), nodes, nodes, 0, n)
+        assert roll_steps(
+            system, motion, record, Hertz(1e9).prepare(np.zeros(n + 1)), nodes, nodes, 0, n, np.inf
+        )
         landed = int(np.argmax(record.force > 0))
         heights.append(record.ball[landed:].min())
         assert motion.counts[1] == 0
@@ -151,7 +155,9 @@ def test_force_that_is_not_finite_stops_the_run():
     system, _, _ = flight_system()
     motion, record = motion_at(3, np.nan, 0.0, np.zeros(3)), records(11)
     shapes = np.ones((11, 3))
-    assert not roll_steps(system, motion, record, Hertz(1e9).prepare(np.zeros(11)), shapes, shapes, 0, 10)
+    assert not roll_steps(
+        system, motion, record, Hertz(1e9).prepare(np.zeros(11)), shapes, shapes, 0, 10, 1e9
+    )
 
 
 @pytest.mark.parametrize("phase", [0.01, 1.0, 20.0])

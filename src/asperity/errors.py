@@ -83,6 +83,10 @@ class CoarseSamplingWarning(PhysicsWarning):
     """A spacing or a time step is too coarse for the wavelengths or frequencies asked for."""
 
 
+class LargeDeflectionWarning(PhysicsWarning):
+    """A beam leaves the small slopes of beam theory."""
+
+
 class ExtrapolationWarning(PhysicsWarning):
     """A state left the range that was computed; the edge of the range was used beyond it."""
 

@@ -37,6 +37,8 @@ class System(NamedTuple):
         Of the ball, kg and N.
     time_step, speed : float
         s, m/s.
+    softening : float
+        Compliance in series with the contact, m/N, that keeps a step stable which is too long for it.
     """
 
     coefficients: NDArray
@@ -47,6 +49,7 @@ class System(NamedTuple):
     load: float
     time_step: float
     speed: float
+    softening: float
 
 
 class Motion(NamedTuple):
@@ -60,8 +63,8 @@ class Motion(NamedTuple):
         Of the modal coordinates.
     ball : ndarray (2,)
         Displacement, m, and velocity, m/s, of the ball.
-    force : ndarray (2,)
-        Contact force now and one step ago, N.
+    force, approach : ndarray (2,)
+        Contact force, N, and approach as the law sees it, m, now and one step ago.
     power : ndarray (5,)
         Powers now, W, in the order of `ledger`.
     ledger : ndarray (5,)
@@ -76,6 +79,7 @@ class Motion(NamedTuple):
     acceleration: NDArray
     ball: NDArray
     force: NDArray
+    approach: NDArray
     power: NDArray
     ledger: NDArray
     counts: NDArray
@@ -150,7 +154,7 @@ def _exponential(matrices: NDArray) -> NDArray:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no-untyped-def]
+def free_step(system, motion, shape, next_shape):  # type: ignore[no-untyped-def]
     """Where a step ends without the force at its end, and what that force does.
 
     Parameters
@@ -159,36 +163,47 @@ def free_step(system, motion, shape, next_shape, next_slope):  # type: ignore[no
         Constants.
     motion : Motion
         State at the start.
-    shape, next_shape, next_slope : ndarray (modes,)
-        Mode shapes under the contact at the start and the end, and their slopes at the end.
+    shape, next_shape : ndarray (modes,)
+        Mode shapes under the contact at the start and the end.
 
     Returns
     -------
     approach, rate : float
-        Approach, m, and its total time derivative, m/s, at the end, for zero force there.
+        Approach, m, and its rate, m/s, at the end, for zero force there: see `backward`.
     compliance, rate_compliance : float
         How much they fall per force at the end, m/N and m/(s N).
     """
     h, force, a = system.time_step, motion.force[0], system.coefficients
-    beam, beam_rate, compliance, rate_compliance = 0.0, 0.0, 0.0, 0.0
+    beam, compliance = 0.0, 0.0
     for j in range(shape.shape[0]):
         q, v, p = motion.displacement[j], motion.velocity[j], shape[j] * force
-        free = a[0, j] * q + a[1, j] * v + a[2, j] * p
-        free_rate = a[4, j] * q + a[5, j] * v + a[6, j] * p
-        # the contact moves along the beam: total derivative
-        convected = system.speed * next_slope[j]
-        beam += next_shape[j] * free
-        beam_rate += next_shape[j] * free_rate + convected * free
+        beam += next_shape[j] * (a[0, j] * q + a[1, j] * v + a[2, j] * p)
         compliance += next_shape[j] ** 2 * a[3, j]
-        rate_compliance += next_shape[j] * (next_shape[j] * a[7, j] + convected * a[3, j])
     ball = motion.ball[0] + h * motion.ball[1] + h * h / system.mass * (0.5 * system.load - force / 3.0)
-    ball_rate = motion.ball[1] + h / system.mass * (system.load - 0.5 * force)
-    return (
-        ball - beam,
-        ball_rate - beam_rate,
-        compliance + h * h / (6.0 * system.mass),
-        rate_compliance + 0.5 * h / system.mass,
-    )
+    compliance += h * h / (6.0 * system.mass) + system.softening
+    return backward(ball - beam, compliance, motion.approach, h)
+
+
+@compiled(**INNER)
+def backward(approach, compliance, before, time_step):  # type: ignore[no-untyped-def]
+    """Add the rate of the approach by the backward difference of second order, which damps at any step.
+
+    Parameters
+    ----------
+    approach, compliance : float
+        Approach at the end of a step for zero force there, m, and how much it falls per force, m/N.
+    before : ndarray (2,)
+        Approach at the start, and one step earlier, m.
+    time_step : float
+        s.
+
+    Returns
+    -------
+    approach, rate, compliance, rate_compliance : float
+        As of `free_step`.
+    """
+    rate = (1.5 * approach - 2.0 * before[0] + 0.5 * before[1]) / time_step
+    return approach, rate, compliance, 1.5 * compliance / time_step
 
 
 @compiled(**INNER)
@@ -323,7 +338,7 @@ def complete_step(system, motion, record, step, shape, next_shape, next_slope, f
     step : int
         Index of the step's end.
     shape, next_shape, next_slope : ndarray (modes,)
-        As in `free_step`.
+        Mode shapes under the contact at the start and the end, and their slopes at the end.
     force : float
         Contact force at the end, N.
     evaluations : int
@@ -348,6 +363,10 @@ def complete_step(system, motion, record, step, shape, next_shape, next_slope, f
     for k in range(motion.ledger.shape[0]):
         motion.ledger[k] += 0.5 * h * motion.power[k]
     observe(system, motion, record, step, next_shape, next_slope)
+    motion.approach[1], motion.approach[0] = (
+        motion.approach[0],
+        record.approach[step] - system.softening * force,
+    )
     for k in range(motion.ledger.shape[0]):
         motion.ledger[k] += 0.5 * h * motion.power[k]
     motion.counts[0] = step
@@ -356,7 +375,7 @@ def complete_step(system, motion, record, step, shape, next_shape, next_slope, f
 
 
 @compiled(**LOOP)
-def roll_steps(system, motion, record, law, shapes, slopes, offset, stop):  # type: ignore[no-untyped-def]
+def roll_steps(system, motion, record, law, shapes, slopes, offset, stop, largest):  # type: ignore[no-untyped-def]
     """Roll a compiled law from the state's step to another.
 
     Parameters
@@ -369,21 +388,23 @@ def roll_steps(system, motion, record, law, shapes, slopes, offset, stop):  # ty
         Mode shapes and slopes under the contact, row 0 belonging to step `offset`.
     offset, stop : int
         First step of the shapes, and the step at which to stop.
+    largest : float
+        Largest force that makes sense, N.
 
     Returns
     -------
     bool
-        False if the force is no longer finite; the state then stands at that step.
+        False if the force is larger, or not a number; the state then stands at that step.
     """
     for step in range(motion.counts[0] + 1, stop + 1):
         row = step - offset
         shape, next_shape, next_slope = shapes[row - 1], shapes[row], slopes[row]
-        free = free_step(system, motion, shape, next_shape, next_slope)
+        free = free_step(system, motion, shape, next_shape)
         guess = 2.0 * motion.force[0] - motion.force[1]
         force, evaluations, converged = solve_contact(law, step, free, system.load, guess)
         complete_step(
             system, motion, record, step, shape, next_shape, next_slope, force, evaluations, converged
         )
-        if not np.isfinite(force):
+        if not abs(force) <= largest:
             return False
     return True

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.modal import solve_contact
+from asperity.kernels.modal import backward, solve_contact
 from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 
 
@@ -35,6 +35,8 @@ class Vehicle(NamedTuple):
         Twice the real part of the sum of the last, m/N.
     mass, load, time_step : float
         Of the wheel, kg and N; s.
+    softening : float
+        Compliance in series with the contact, m/N, that keeps a step stable which is too long for it.
     first, stride : float
         Position at step zero and distance rolled in a step, in sleeper bays.
     """
@@ -50,6 +52,7 @@ class Vehicle(NamedTuple):
     mass: float
     load: float
     time_step: float
+    softening: float
     first: float
     stride: float
 
@@ -68,7 +71,7 @@ class Motion(NamedTuple):
     wheel : ndarray (2,)
         Rigid displacement, m, and velocity, m/s.
     force, approach : ndarray (2,)
-        Contact force, N, and approach, m, now and one step ago.
+        Contact force, N, and approach as the law sees it, m, now and one step ago.
     free : ndarray (2,)
         Displacements of rail and flexible wheel at the end of the step without its last force, m.
     counts : ndarray (3,) of int
@@ -231,7 +234,7 @@ def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
     Returns
     -------
     approach, rate, compliance, rate_compliance : float
-        As in `asperity.kernels.modal.free_step`; the rate is the second-order backward difference.
+        As of `asperity.kernels.modal.free_step`.
     """
     h, force = vehicle.time_step, motion.force[0]
     motion.free[0] = advance_rail(vehicle, motion, step - 1, force)
@@ -244,8 +247,7 @@ def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
     wheel = motion.wheel[0] + h * motion.wheel[1] + h * h / vehicle.mass * (0.5 * vehicle.load - force / 3.0)
     approach = wheel + flexible - motion.free[0]
     compliance = direct_at(vehicle, step) + h * h / (6.0 * vehicle.mass) + vehicle.flexible_compliance
-    rate = (1.5 * approach - 2.0 * motion.approach[0] + 0.5 * motion.approach[1]) / h
-    return approach, rate, compliance, 1.5 * compliance / h
+    return backward(approach, compliance + vehicle.softening, motion.approach, h)
 
 
 @compiled(**INNER)
@@ -274,7 +276,7 @@ def complete_step(vehicle, motion, record, step, force, evaluations, converged):
     rail = motion.free[0] + direct_at(vehicle, step) * force
     wheel = motion.wheel[0] + motion.free[1] - vehicle.flexible_compliance * force
     motion.force[1], motion.force[0] = before, force
-    motion.approach[1], motion.approach[0] = motion.approach[0], wheel - rail
+    motion.approach[1], motion.approach[0] = motion.approach[0], wheel - rail - vehicle.softening * force
     record.force[step], record.approach[step] = force, wheel - rail
     record.wheel[step], record.rail[step] = wheel, rail
     motion.counts[0] = step
@@ -283,7 +285,7 @@ def complete_step(vehicle, motion, record, step, force, evaluations, converged):
 
 
 @compiled(**LOOP)
-def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-def]
+def roll_steps(vehicle, motion, record, law, stop, largest):  # type: ignore[no-untyped-def]
     """Roll a compiled law from the state's step to another.
 
     Parameters
@@ -294,18 +296,20 @@ def roll_steps(vehicle, motion, record, law, stop):  # type: ignore[no-untyped-d
         The law on the whole path.
     stop : int
         The step at which to stop.
+    largest : float
+        Largest force that makes sense, N.
 
     Returns
     -------
     bool
-        False if the force is no longer finite; the state then stands at that step.
+        False if the force is larger, or not a number; the state then stands at that step.
     """
     for step in range(motion.counts[0] + 1, stop + 1):
         free = free_step(vehicle, motion, step)
         guess = 2.0 * motion.force[0] - motion.force[1]
         force, evaluations, converged = solve_contact(law, step, free, vehicle.load, guess)
         complete_step(vehicle, motion, record, step, force, evaluations, converged)
-        if not np.isfinite(force):
+        if not abs(force) <= largest:
             return False
     return True
 

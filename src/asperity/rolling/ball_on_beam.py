@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.errors import (
     CoarseSamplingWarning,
     InputError,
+    LargeDeflectionWarning,
     Outcome,
 )
 from asperity.kernels.modal import (
     Motion,
     Record,
     System,
-    modal_coefficients,
     observe,
 )
 from asperity.kernels.pointforce import Prepared
@@ -28,9 +28,20 @@ from asperity.rolling.energy import EnergyBalance, balance, beam_energy
 from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.events import ContactLoss, contact_losses
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
+from asperity.rolling.stability import (
+    PLACES,
+    beam_step,
+    largest_force,
+    largest_stiffness,
+    modes_and_ball,
+    softening,
+)
 from asperity.rolling.stepping import Checkpoint, restore, run
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+
+LARGEST_DEFLECTION = 0.02
+"""Share of the length up to which a beam may be displaced: slopes are then below about 0.06."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,8 +117,9 @@ def roll(
     """Roll a ball over a beam at constant speed, from static equilibrium, and keep what follows the run-in.
 
     The beam is advanced exactly mode by mode and the ball exactly, for a contact force that varies
-    linearly over a step; the force at the end of each step solves the contact law implicitly. The
-    step is therefore bound by accuracy only, which is of second order.
+    linearly over a step; the force at the end of each step solves the contact law implicitly, to second
+    order. A step that is too long to be stable is kept so by a softened contact, with a warning
+    (`asperity.rolling.stability`).
 
     Parameters
     ----------
@@ -143,7 +155,7 @@ def roll(
     InputError
         If a number is not positive, the path leaves the beam, or the checkpoint is of another run.
     ComputationError
-        If the load cannot be carried, or the motion is no longer finite.
+        If the load cannot be carried, or the motion runs away.
 
     Warns
     -----
@@ -151,23 +163,31 @@ def roll(
         If the time step is coarse for the contact, the modes or the highest frequency.
     ExtrapolationWarning
         If the law was continued beyond its data.
+    LargeDeflectionWarning
+        If the beam leaves the range of beam theory.
     UnconvergedWarning
         If contact forces missed the tolerance.
     """
     positions, settled = _path(beam, speed, start, duration, settling, time_step)
     at = np.atleast_1d(np.asarray(sensors, float))
     prepared = law.prepare(positions)
-    system = _system(beam, ball, at, speed, time_step)
     relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
     approach, stiffness = static_approach(evaluation(prepared, 0), ball.static_load, relative)
     _warn_if_coarse(time_step, stiffness, ball.mass, beam, highest_frequency)
+    system = _system(beam, ball, at, speed, time_step)
+    shapes = beam.shapes(positions[:: max(1, len(positions) // PLACES)])[0]
+    alternating = modes_and_ball(system.coefficients, shapes, ball.mass, time_step)
+    stiffest, strongest = largest_stiffness(prepared, (approach, stiffness))
+    system = system._replace(softening=softening(alternating, stiffest, law.damping, stiffness, time_step))
     motion, record = _at_rest(system, beam, positions[0], approach, len(positions))
     beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])
     stepper = BeamStepper(system, motion, record, beam, positions)
     restore(checkpoint, stepper, prepared)
-    run(stepper, prepared, law.damping, progress, checkpoint)
-    apart = flying(prepared, record.force, record.approach)[settled:]
-    warn_after(law.name, motion.counts, prepared, record.approach)
+    run(stepper, prepared, law.damping, largest_force(ball.static_load, strongest), progress, checkpoint)
+    seen = record.approach - system.softening * record.force
+    apart = flying(prepared, record.force, seen)[settled:]
+    warn_after(law.name, motion.counts, prepared, seen)
+    _warn_if_bent(record.beam, beam)
     return Rolling(
         time=time_step * np.arange(len(positions) - settled),
         position=positions[settled:],
@@ -222,7 +242,7 @@ def _system(beam: Beam, ball: Ball, sensors: NDArray, speed: float, time_step: f
     natural = 2.0 * np.pi * beam.natural_frequencies
     ratio = np.full(natural.shape, beam.damping_ratio)
     return System(
-        modal_coefficients(natural, ratio, time_step),
+        beam_step(natural, ratio, time_step),
         natural**2,
         2.0 * ratio * natural,
         beam.shapes(sensors)[0] if sensors.size else np.zeros((0, natural.size)),
@@ -230,6 +250,7 @@ def _system(beam: Beam, ball: Ball, sensors: NDArray, speed: float, time_step: f
         float(ball.static_load),
         float(time_step),
         float(speed),
+        0.0,
     )
 
 
@@ -244,8 +265,9 @@ def _at_rest(
         displacement,
         np.zeros(modes),
         np.zeros(modes),
-        np.array([approach + float(shape @ displacement), 0.0]),
+        np.array([approach + system.softening * system.load + float(shape @ displacement), 0.0]),
         np.full(2, system.load),
+        np.full(2, approach),
         np.zeros(5),
         np.zeros(5),
         np.zeros(3, dtype=np.int64),
@@ -259,6 +281,19 @@ def _at_rest(
     )
     observe(system, motion, record, 0, shape, slope)
     return motion, record
+
+
+def _warn_if_bent(deflection: NDArray, beam: Beam) -> None:
+    """Compare the deflection with what beam theory allows."""
+    share = float(np.abs(deflection).max()) / beam.length
+    if share > LARGEST_DEFLECTION:
+        warnings.warn(
+            f"the beam is displaced by up to {share * beam.length:.3g} m under the contact, "
+            f"{100 * share:.2g} % of its length: beam theory needs small slopes, as up to "
+            f"{100 * LARGEST_DEFLECTION:.0f} %; check load, section, length and support of the beam",
+            LargeDeflectionWarning,
+            stacklevel=3,
+        )
 
 
 def _warn_if_coarse(

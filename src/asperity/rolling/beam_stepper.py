@@ -48,19 +48,26 @@ class BeamStepper:
             self._offset = offset
         return end
 
-    def roll(self, law: Prepared, stop: int) -> bool:
+    def roll(self, law: Prepared, stop: int, largest: float) -> bool:
         """Advance to a step under a compiled law."""
         return bool(
             roll_steps(
-                self.system, self.motion, self.record, law, self._shapes, self._slopes, self._offset, stop
+                self.system,
+                self.motion,
+                self.record,
+                law,
+                self._shapes,
+                self._slopes,
+                self._offset,
+                stop,
+                largest,
             )
         )
 
     def free(self, step: int) -> Free:
         """Where a step ends without the force at its end."""
         row = step - self._offset
-        shapes, slopes = self._shapes, self._slopes
-        result: Free = free_step(self.system, self.motion, shapes[row - 1], shapes[row], slopes[row])
+        result: Free = free_step(self.system, self.motion, self._shapes[row - 1], self._shapes[row])
         return result
 
     def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:

@@ -33,9 +33,9 @@ class RailStepper:
         """Step up to which it is advanced in one go."""
         return min(int(self.motion.counts[0]) + CHUNK, self.total)
 
-    def roll(self, law: Prepared, stop: int) -> bool:
+    def roll(self, law: Prepared, stop: int, largest: float) -> bool:
         """Advance to a step under a compiled law."""
-        return bool(roll_steps(self.vehicle, self.motion, self.record, law, stop))
+        return bool(roll_steps(self.vehicle, self.motion, self.record, law, stop, largest))
 
     def free(self, step: int) -> Free:
         """Advance all but the last force of a step."""

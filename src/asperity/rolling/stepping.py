@@ -65,8 +65,8 @@ class Stepper(Protocol):
         """Step up to which it can be advanced in one go from where it stands."""
         ...
 
-    def roll(self, law: Prepared, stop: int) -> bool:
-        """Advance to a step under a compiled law; False if the force is no longer finite."""
+    def roll(self, law: Prepared, stop: int, largest: float) -> bool:
+        """Advance to a step under a compiled law; False if the force exceeds what makes sense."""
         ...
 
     def free(self, step: int) -> Free:
@@ -86,6 +86,7 @@ def run(
     stepper: Stepper,
     prepared: Prepared | SteppedLaw,
     damping: float,
+    largest: float,
     progress: Progress | None,
     checkpoint: Checkpoint | None,
 ) -> None:
@@ -99,6 +100,8 @@ def run(
         The law on the path.
     damping : float
         Contact damping of a `SteppedLaw`, N s/m.
+    largest : float
+        Largest force that makes sense, N.
     progress : callable or None
         Called with steps done, steps in all, and a message.
     checkpoint : Checkpoint or None
@@ -107,22 +110,23 @@ def run(
     Raises
     ------
     ComputationError
-        If the motion is no longer finite.
+        If the force exceeds that, or is not a number: the motion has run away.
     """
     motion, saved = stepper.motion, time.monotonic()
     try:
         while motion.counts[0] < stepper.total:
             end = stepper.bound()
             if isinstance(prepared, Prepared):
-                finite = stepper.roll(prepared, end)
+                sane = stepper.roll(prepared, end, largest)
             else:
                 stop = min(int(motion.counts[0]) + STEPPED_BLOCK, end)
-                finite = _step_from_python(stepper, prepared, damping, stop)
-            if not finite:
+                sane = _step_from_python(stepper, prepared, damping, stop, largest)
+            if not sane:
                 step = int(motion.counts[0])
                 raise ComputationError(
-                    f"the contact force is not finite at step {step}, {stepper.where(step)}",
-                    "a smaller time step, and check the force curve and the texture there",
+                    f"the motion runs away: at step {step}, {stepper.where(step)}, the contact force is "
+                    f"{motion.force[0]:.3g} N under a load of {stepper.load:.4g} N",
+                    "a smaller time step, and check masses, damping and the texture there",
                 )
             if progress is not None:
                 progress(int(motion.counts[0]), stepper.total, "rolling")
@@ -131,11 +135,11 @@ def run(
                 saved = time.monotonic()
     finally:
         # at the end, and whatever stopped the run: it goes on from the last step done
-        if checkpoint is not None and np.isfinite(motion.force[0]):
+        if checkpoint is not None and abs(motion.force[0]) <= largest:
             checkpoint.save(_snapshot(stepper, prepared))
 
 
-def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: int) -> bool:
+def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: int, largest: float) -> bool:
     """The loop of `Stepper.roll` for a law that Python evaluates."""
     motion = stepper.motion
     for step in range(int(motion.counts[0]) + 1, stop + 1):
@@ -144,7 +148,7 @@ def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: i
         force, evaluations, converged = _solve_from_python(law, step, free, stepper.load, guess, damping)
         law.accept(step)
         stepper.complete(step, force, evaluations, converged)
-        if not np.isfinite(force):
+        if not abs(force) <= largest:
             return False
     return True
 

@@ -17,6 +17,13 @@ from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.events import ContactLoss, contact_losses
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
 from asperity.rolling.rail_stepper import RailStepper
+from asperity.rolling.stability import (
+    largest_force,
+    largest_stiffness,
+    rail_and_wheel,
+    softening,
+    wheel_step,
+)
 from asperity.rolling.stepping import Checkpoint, restore, run
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailPoles, over_the_bay
@@ -96,8 +103,8 @@ def roll(
 
     Before the run-in the load alone has rolled long enough for the rail to be steady. Rail and wheel
     are advanced exactly for a contact force that varies linearly over a step, and the force at the end of
-    each step solves the contact law implicitly. The step is therefore bound by accuracy only, which is
-    of second order.
+    each step solves the contact law implicitly, to second order. A step that is too long to be stable is kept
+    so by a softened contact, with a warning (`asperity.rolling.stability`).
 
     Parameters
     ----------
@@ -130,7 +137,7 @@ def roll(
     InputError
         If a number is not positive, or the checkpoint is of another run.
     ComputationError
-        If the load cannot be carried, or the motion is no longer finite.
+        If the load cannot be carried, or the motion runs away.
 
     Warns
     -----
@@ -150,12 +157,15 @@ def roll(
     relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
     approach, stiffness = static_approach(evaluation(prepared, 0), wheel.load, relative)
     _warn_if_coarse(step, stiffness, kernel, highest_frequency)
-    stepper = RailStepper(*_at_rest(rail, wheel, origin, approach, len(positions)), positions)
+    stiffest, strongest = largest_stiffness(prepared, (approach, stiffness))
+    softer = softening(rail_and_wheel(kernel, wheel), stiffest, law.damping, stiffness, step)
+    stepper = RailStepper(*_at_rest(rail, wheel, origin, approach, softer, len(positions)), positions)
     restore(checkpoint, stepper, prepared)
-    run(stepper, prepared, law.damping, progress, checkpoint)
+    run(stepper, prepared, law.damping, largest_force(wheel.load, strongest), progress, checkpoint)
     record, motion = stepper.record, stepper.motion
-    apart = flying(prepared, record.force, record.approach)[settled:]
-    warn_after(law.name, motion.counts, prepared, record.approach)
+    seen = record.approach - softer * record.force
+    apart = flying(prepared, record.force, seen)[settled:]
+    warn_after(law.name, motion.counts, prepared, seen)
     return WheelRolling(
         time=np.asarray(step * np.arange(steps + 1)),
         position=positions[settled:],
@@ -185,40 +195,42 @@ def _steps(duration: float, settling: float, step: float) -> tuple[int, int]:
     return steps, int(np.floor(settling / step * (1.0 + 1e-12)))
 
 
-def _vehicle(rail: RailPoles | MovingKernel, wheel: Wheel, origin: float) -> Vehicle:
+def _vehicle(rail: RailPoles | MovingKernel, wheel: Wheel, origin: float, softening: float) -> Vehicle:
     """Constants of wheel and rail for the kernels."""
     kernel = rail.kernel if isinstance(rail, RailPoles) else rail
     step = kernel.time_step
     poles, residues, scattered = np.zeros(0, complex), np.zeros((1, 0), complex), kernel.weights
     if isinstance(rail, RailPoles):
         poles, residues, scattered = rail.poles, over_the_bay(rail.residues), np.zeros((0, 0))
-    # exact step of q' = s q + r F for a force linear over the step; the wheel feels −F
-    phase = wheel.poles * step
-    growth = np.expm1(phase)
-    now = wheel.residues * (growth - phase) / (wheel.poles * phase)
-    before = wheel.residues * growth / wheel.poles - now
+    decay, before, now = wheel_step(wheel, step)
     return Vehicle(
         np.concatenate([poles.real, poles.imag]),
         np.concatenate([residues.real, residues.imag], axis=1),
         over_the_bay(kernel.weights[:, 0]),
         np.ascontiguousarray(scattered),
-        np.exp(phase).astype(complex),
-        before.astype(complex),
-        now.astype(complex),
+        decay,
+        before,
+        now,
         float(2.0 * now.real.sum()),
         float(wheel.mass),
         float(wheel.load),
         float(step),
+        float(softening),
         float(origin / kernel.spacing),
         float(kernel.speed * step / kernel.spacing),
     )
 
 
 def _at_rest(
-    rail: RailPoles | MovingKernel, wheel: Wheel, origin: float, approach: float, samples: int
+    rail: RailPoles | MovingKernel,
+    wheel: Wheel,
+    origin: float,
+    approach: float,
+    softening: float,
+    samples: int,
 ) -> tuple[Vehicle, Motion, Record]:
     """Constants, state and records with the load rolling steadily on a smooth rail."""
-    vehicle = _vehicle(rail, wheel, origin)
+    vehicle, closer = _vehicle(rail, wheel, origin, softening), approach + softening * wheel.load
     kernel = rail.kernel if isinstance(rail, RailPoles) else rail
     states, taps = len(vehicle.decay), vehicle.scattered.shape[1]
     flexible = -wheel.load * (-wheel.residues / wheel.poles)
@@ -234,12 +246,12 @@ def _at_rest(
     )
     now, before = preload(vehicle, motion, wheel.load, int(PRELOAD * kernel.weights.shape[1]))
     direct = float(direct_at(vehicle, 0))
-    motion.wheel[0] = now + direct * wheel.load + approach - 2.0 * flexible.real.sum()
+    motion.wheel[0] = now + direct * wheel.load + closer - 2.0 * flexible.real.sum()
     motion.wheel[1] = (now - before) / vehicle.time_step
     record = Record(*(np.zeros(samples) for _ in Record._fields))
-    record.force[0], record.approach[0] = wheel.load, approach
+    record.force[0], record.approach[0] = wheel.load, closer
     record.rail[0] = now + direct * wheel.load
-    record.wheel[0] = record.rail[0] + approach
+    record.wheel[0] = record.rail[0] + closer
     return vehicle, motion, record
 
 

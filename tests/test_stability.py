@@ -1,0 +1,204 @@
+"""A coupled step is stable whatever masses, stiffness and damping; a motion that runs away is told."""
+
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflectionWarning
+from asperity.kernels.modal import modal_coefficients
+from asperity.pointforce import Hertz, Linear
+from asperity.reduction.texture import StateTexture
+from asperity.reference.materials import material
+from asperity.rolling import ball_on_beam, stability, wheel_on_rail
+from asperity.structures.ball import Ball
+from asperity.structures.beam import Beam
+from asperity.structures.moving_kernel import moving_kernel
+from asperity.structures.rail_poles import rail_poles
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+STEEL = material("steel")
+BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)
+STEPS = 1500
+
+
+def bump(spacing, start, height):
+    """A texture with one rise at its beginning: what comes after rings freely."""
+    texture = np.zeros(STEPS)
+    texture[: STEPS // 10] = height * np.hanning(STEPS // 10)
+    return StateTexture.unfiltered(texture, spacing, start)
+
+
+def grows(force, load, share):
+    """Whether a disturbance has grown beyond itself, and a share of the load that moving loads explain."""
+    swing = np.abs(force - load)
+    return swing[-STEPS // 4 :].max() > 2.0 * swing[: STEPS // 4].max() + share * load
+
+
+def powers(low, high):
+    return st.floats(low, high).map(lambda exponent: 10.0**exponent)
+
+
+@settings(max_examples=120, deadline=None)
+@given(powers(-7, 3), powers(3, 13), st.one_of(st.just(0.0), powers(-2, 10)), powers(-6, -4))
+def test_no_step_of_a_ball_grows(mass, stiffness, damping, time_step):
+    ball, speed = Ball(0.025, STEEL, load=5.0, given_mass=mass), 1e-3
+    texture = bump(speed * time_step, 0.3, 1e-3 / stiffness)
+    law = Linear(5.0, stiffness, 0.0, texture, damping)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CoarseSamplingWarning)
+        run = ball_on_beam.roll(
+            BEAM, ball, law, speed=speed, start=0.3, duration=(STEPS - 2) * time_step,
+            time_step=time_step, sensors=[0.5],
+        )  # fmt: skip
+    assert not grows(run.contact_force, 5.0, 0.01)
+
+
+TRACK = Track(
+    bending_stiffness=4.725e6, mass_per_length=60.0, rail_loss_factor=0.004, pad_stiffness=300e6,
+    pad_damping=18e3, sleeper_mass=150.0, ballast_stiffness=150e6, ballast_damping=48e3, sleeper_spacing=0.6,
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def poles():
+    return rail_poles(moving_kernel(TRACK, 56.0, 50e-6), 100)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.data())
+def test_no_step_of_a_wheel_grows(poles, data):
+    mass, stiffness = data.draw(powers(-3, 5)), data.draw(powers(5, 13))
+    damping = data.draw(st.one_of(st.just(0.0), powers(0, 10)))
+    modes = data.draw(st.integers(0, 3))
+    wheel = Wheel.rigid(mass, 65e3)
+    if modes:
+        frequencies = data.draw(st.lists(st.floats(100.0, 2e4), min_size=modes, max_size=modes))
+        masses = data.draw(st.lists(powers(-2, 3), min_size=modes, max_size=modes))
+        wheel = Wheel.from_modes(mass, 65e3, frequencies, [0.01] * modes, masses)
+    texture = bump(56.0 * 50e-6, 0.0, 1.0 / stiffness)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", CoarseSamplingWarning)
+        run = wheel_on_rail.roll(
+            poles, wheel, Linear(65e3, stiffness, 0.0, texture, damping),
+            start=0.0, duration=(STEPS - 2) * 50e-6, settling=0.0,
+        )  # fmt: skip
+    assert not grows(run.contact_force, 65e3, 0.1)
+
+
+class TestAlternatingCompliance:
+    """What a force that alternates from step to step does, against closed forms and a long run."""
+
+    def test_free_mass(self):
+        # Newmark's β = 1/6 at the highest frequency: −h²/12m; a mode far below that frequency is such a mass
+        h, mass = 1e-4, 0.3
+        a = modal_coefficients(np.array([1e-3]), np.array([0.0]), h)
+        found = stability.modes_and_ball(a, np.array([[1.0 / np.sqrt(mass)]]), 0.7, h)
+        assert found == pytest.approx(-(h**2) / 12 * (1 / mass + 1 / 0.7), rel=1e-6)
+
+    def test_stiff_mode(self):
+        # a mode far above it answers statically
+        a = modal_coefficients(np.array([1e7]), np.array([0.5]), 1e-3)
+        found = stability.modes_and_ball(a, np.array([[2.0]]), 1e30, 1e-3)
+        assert found == pytest.approx(4.0 / 1e14, rel=1e-3)
+
+    def test_modes_stepped_for_long(self):
+        h, natural = 2e-4, 2 * np.pi * np.array([90.0, 1300.0, 2700.0])
+        a, shape = modal_coefficients(natural, np.full(3, 0.3), h), np.array([1.0, -0.7, 0.4])
+        q, v, force = np.zeros(3), np.zeros(3), 1.0
+        for _ in range(4000):
+            p = shape * force
+            q, v = a[0] * q + a[1] * v + (a[2] - a[3]) * p, a[4] * q + a[5] * v + (a[6] - a[7]) * p
+            force = -force
+        assert stability.modes_and_ball(a, shape[None], 1e30, h) == pytest.approx(
+            force * (shape @ q), rel=1e-9
+        )
+
+    def test_a_wheel_stepped_for_long(self):
+        kernel = moving_kernel(TRACK, 56.0, 50e-6)
+        rigid = stability.rail_and_wheel(kernel, Wheel.rigid(1e30, 65e3))
+        alternating = min(row @ (-1.0) ** np.arange(row.size) for row in kernel.weights)
+        assert rigid == pytest.approx(alternating, rel=1e-12)
+        wheel = Wheel.from_modes(1e30, 65e3, [3000.0], [0.2], [20.0])
+        # the mode by itself, as an oscillator that the force pushes the other way
+        a = modal_coefficients(np.array([2 * np.pi * 3000.0]), np.array([0.2]), 50e-6)
+        mode = stability.modes_and_ball(a, np.array([[1.0 / np.sqrt(20.0)]]), 1e30, 50e-6)
+        assert stability.rail_and_wheel(kernel, wheel) - rigid == pytest.approx(mode, rel=1e-6)
+
+
+def test_modes_too_fast_for_the_step_answer_statically():
+    natural = np.array([1e3, 4e4])
+    coefficients = stability.beam_step(natural, np.full(2, 0.01), 1e-4)
+    np.testing.assert_array_equal(
+        coefficients[:, 0], modal_coefficients(natural, np.full(2, 0.01), 1e-4)[:, 0]
+    )
+    assert coefficients[:, 1].tolist() == [0.0, 0.0, 0.0, 1 / 1.6e9, 0.0, 0.0, 0.0, 0.0]
+    wheel = Wheel.from_modes(600.0, 65e3, [4e4 / (2 * np.pi)], [0.01], [20.0])
+    decay, before, now = stability.wheel_step(wheel, 1e-4)
+    assert not decay.any()
+    assert not before.any()
+    assert 2 * now.sum().real == pytest.approx(1 / (20.0 * 1.6e9))
+
+
+def test_a_step_that_resolves_the_contact_is_not_touched():
+    assert stability.softening(-1e-12, 4e11, 0.0, 1e11, 1e-5) == 0.0
+    with pytest.warns(CoarseSamplingWarning, match=r"softening the contact by 10 %.*take at most 7.9e-06 s"):
+        assert stability.softening(-1e-12, 8e11, 0.0, 1e11, 1e-5) == 1e-12
+
+
+def test_softened_contact_has_the_frequency_of_newmark():
+    """A mass on a spring: the average acceleration method turns its phase by 2 atan(ω h / 2) in a step."""
+    h, mass, stiffness = 1e-4, 0.5, 0.5 * (2 * np.pi * 4500.0) ** 2  # ω h = 2.8
+    heavy = Beam(1.0, 4e12, 1e8, highest_frequency=5e3)
+    texture = bump(1e-3 * h, 0.3, 1e-3 / stiffness)
+    with pytest.warns(CoarseSamplingWarning):
+        run = ball_on_beam.roll(
+            heavy, Ball(0.025, STEEL, 5.0, mass), Linear(5.0, stiffness, 0.0, texture), speed=1e-3, start=0.3,
+            duration=(STEPS - 2) * h, time_step=h, sensors=[0.5],
+        )  # fmt: skip
+    free = run.contact_force[STEPS // 8 :] - 5.0
+    turned = np.arccos(np.clip((free[2:] + free[:-2]) @ free[1:-1] / (2 * free[1:-1] @ free[1:-1]), -1, 1))
+    assert turned == pytest.approx(2 * np.arctan(np.sqrt(stiffness / mass) * h / 2), rel=1e-3)
+
+
+def test_a_motion_that_runs_away_is_told():
+    texture = StateTexture.unfiltered(np.r_[np.zeros(50), np.full(50, -0.5)], 1e-5, 0.3)  # a step of 0.5 m
+    with pytest.raises(ComputationError, match=r"the motion runs away: at step \d+.*under a load of 5 N"):
+        ball_on_beam.roll(
+            BEAM, Ball(0.025, STEEL, 5.0, 0.5), Hertz(1e12, texture), speed=1.0, start=0.3, duration=9e-4,
+            time_step=1e-5, sensors=[0.5],
+        )  # fmt: skip
+
+
+def test_a_strong_damper_stays_below_what_a_rigid_contact_does():
+    """A damper of 1e9 N s/m holds wheel and rail together; it does not pump."""
+    pole_model = rail_poles(moving_kernel(TRACK, 56.0, 50e-6), 60)
+    spacing = 56.0 * 50e-6
+    texture = StateTexture.unfiltered(
+        1e-6 * np.sin(2 * np.pi * np.arange(2000) * spacing / 0.5), spacing, 0.0
+    )
+    forces = []
+    for damping in (1e8, 1e10):
+        law = Hertz(9.413e10, texture, damping)
+        with pytest.warns(CoarseSamplingWarning, match=r"softening the contact by 2.3 %"):
+            run = wheel_on_rail.roll(
+                pole_model, Wheel.rigid(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0
+            )
+        assert run.contact_loss_share == 0.0
+        forces.append(run.contact_force)
+    assert forces[1].std() == pytest.approx(forces[0].std(), rel=0.02)
+
+
+def test_a_beam_that_bends_too_far_is_told():
+    soft = Beam.rectangular(30.0, 0.05, 0.01, STEEL, highest_frequency=100.0)
+    static = 20.0 * 30.0**3 / (48.0 * soft.bending_stiffness)
+    with pytest.warns(
+        LargeDeflectionWarning, match=f"up to {static:.3g} m under the contact, 43 % of its length"
+    ):
+        ball_on_beam.roll(
+            soft, Ball(0.025, STEEL, 20.0), Hertz(1e10), speed=1.0, start=15.0, duration=1e-3, time_step=1e-5,
+            sensors=[0.5],
+        )  # fmt: skip
