@@ -636,3 +636,23 @@ def test_cache_is_shown_and_cleared(own_folder):
     assert call("cache").stdout == f"{own_folder / 'cache'}: 1 results, 1.0 MiB\n"
     assert "1 results deleted, 1.0 MiB" in call("cache", "--clear").stdout
     assert Store().files() == []
+
+
+def test_surface_says_whether_a_map_is_the_same_everywhere_and_which_way_it_runs():
+    rng = np.random.default_rng(3)
+    ridges = np.repeat(rng.normal(size=64), 2)[:, None] + 0.5 * rng.normal(size=(128, 128))
+    np.save("even.npy", ridges)
+    np.save("trend.npy", ridges * np.linspace(0.3, 2.0, 128))
+    even, trend = (
+        call("surface", name, "--height-unit", "um", "--pixel", "2 um").stdout
+        for name in ("even.npy", "trend.npy")
+    )
+    direction = int(re.search(r"Std +(\d+)°  direction from x", even)[1])
+    assert min(direction, 180 - direction) <= 2
+    assert "the same everywhere, as far as chance tells" in even
+    assert "(p = 0.025): not the same everywhere" in trend
+    ridges[3, 4] = np.nan
+    np.save("hole.npy", ridges)
+    hole = call("surface", "hole.npy", "--height-unit", "um", "--pixel", "2 um").stdout
+    assert re.search(r"Std +–", hole)
+    assert "Homogeneity and Std are those of a complete map: --fill" in hole

@@ -25,7 +25,7 @@ from asperity.report.style import (
     smooth_on_log_axis,
     styled,
 )
-from asperity.report.tables import reference_table
+from asperity.report.tables import reference_table, validity_table
 from asperity.report.time_figures import TIME, piece
 from asperity.results import load, save
 from report_reading import HOSTILE, Reader, read_csv
@@ -608,3 +608,50 @@ def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
         expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
         np.testing.assert_allclose(part.columns(tree)[f"areal minus {law} [dB]"], expected)
     assert "minus that of linear-filtered and that of linear" in part.caption(tree)
+
+
+# --- the range of validity
+
+
+def graded():
+    """Tree with a warning of each grade, and quantities inside and outside their range."""
+    tree = small()
+    tree.attrs["warnings"] = json.dumps(
+        [
+            {"category": "OutOfRangeWarning", "message": "a third", "grade": "out of range", "count": 1},
+            {"category": "PhysicsWarning", "message": "two of them", "grade": "warning", "count": 1},
+            {"category": "PhysicsWarning", "message": "one more", "grade": "warning", "count": 1},
+            {"category": "PhysicsWarning", "message": "hardly any", "grade": "note", "count": 1},
+        ]
+    )
+    entry = {"value": "0.31", "limit": "from 0.9 on", "meaning": "It is rough.", "remedy": "Take `table`."}
+    tree["contact"].attrs["validity"] = json.dumps(
+        [
+            entry | {"quantity": "area", "grade": "out of range"},
+            entry | {"quantity": "slope", "grade": "warning"},
+            entry | {"quantity": "cells", "grade": ""},
+        ]
+    )
+    return tree
+
+
+def test_warnings_are_shown_by_their_grade():
+    text = page(graded())
+    assert "1 out of range, 2 warnings, 1 note on the physics" in "".join(Reader(text).text)
+    rows = re.findall(r'<li class="(\w*)"><strong>(.*?): (\w+)</strong>', text)
+    assert rows == [
+        ("out", "Out of range", "OutOfRangeWarning"),
+        ("", "Warning", "PhysicsWarning"),
+        ("", "Warning", "PhysicsWarning"),
+        ("note", "Note", "PhysicsWarning"),
+    ]
+
+
+def test_quantities_are_tabulated_with_their_range():
+    table = validity_table(graded())
+    looks = [[cell.look for cell in row] for row in table.rows]
+    assert [look[1] for look in looks] == ["number far", "number off", "number"]
+    assert [row[3].text for row in table.rows] == ["It is rough. Take `table`."] * 2 + ["in range"]
+    assert [row[2].text for row in table.rows] == ["from 0.9 on"] * 3
+    assert validity_table(small()) is None
+    assert 'id="validity"' in page(graded())

@@ -67,8 +67,38 @@ class ComputationError(AsperityError):
         super().__init__(f"{what}. Try: {remedy}.")
 
 
+class Grade(Enum):
+    """How much a warning on the physics matters."""
+
+    NOTE = "note"
+    WARNING = "warning"
+    OUT = "out of range"
+
+    @classmethod
+    def of_share(cls, share: float) -> Grade:
+        """Grade what befell a share of all contact solutions or time steps: from 1 % and from 10 % on."""
+        return cls.OUT if share >= 0.1 else cls.WARNING if share >= 0.01 else cls.NOTE
+
+
+def percent(share: float) -> str:
+    """Write a share for a message, as ``"0.32 %"``."""
+    return f"{100 * share:.0f} %" if share >= 0.0995 else f"{100 * share:.2g} %"
+
+
 class PhysicsWarning(UserWarning):
-    """Base of the warnings that are collected in the report: the result stands on doubtful ground."""
+    """Base of the warnings that are collected in the report: the result stands on doubtful ground.
+
+    Parameters
+    ----------
+    message : str
+        What was found, its limit, what it means and what to do.
+    grade : Grade
+        How much it matters.
+    """
+
+    def __init__(self, message: str, grade: Grade = Grade.WARNING) -> None:
+        self.grade = grade
+        super().__init__(message)
 
 
 class HalfSpaceWarning(PhysicsWarning):
@@ -89,6 +119,14 @@ class LargeDeflectionWarning(PhysicsWarning):
 
 class ExtrapolationWarning(PhysicsWarning):
     """A state left the range that was computed; the edge of the range was used beyond it."""
+
+
+class OutOfRangeWarning(PhysicsWarning):
+    """A contact law or the contact itself is used outside the range in which it is known to hold."""
+
+
+class InhomogeneousWarning(PhysicsWarning):
+    """A texture is not the same everywhere, so that samples of it do not stand for all of it."""
 
 
 class MissingPointsWarning(PhysicsWarning):

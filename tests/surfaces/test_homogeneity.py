@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.homogeneity import anisotropy, homogeneity
+from asperity.surfaces.homogeneity import anisotropy, homogeneity, more_than_chance
 from asperity.surfaces.synthesis import self_affine
 
 UM = 1e-6
@@ -66,3 +66,31 @@ def test_aspect_ratio_of_stretched_and_isotropic_texture():
     stretched = anisotropy(texture(3, anisotropy=4.0, longest=40 * UM))
     assert stretched.aspect_ratio < 0.4
     assert abs(np.degrees(stretched.direction) - 90.0) < 12.0
+
+
+def test_large_maps_are_tested_on_fewer_points():
+    """A trend of ± 40 % over a map of 500 points a side is found, and the map itself passes."""
+    surface = self_affine((500, 500), (UM, UM), rms=UM, hurst=0.8, longest=40 * UM, shortest=4 * UM, seed=1)
+    assert homogeneity(surface).homogeneous
+    trend = surface.heights * np.linspace(0.6, 1.4, 500)[:, None]
+    found = homogeneity(HeightMap(trend, surface.spacing))
+    assert found.p_value == 1 / 40
+    whole = np.sqrt(np.mean(trend**2))
+    assert_allclose(np.sqrt(np.mean(found.tile_rms**2)), whole, rtol=0.02)  # of all points
+
+
+@pytest.mark.parametrize(
+    ("failed", "maps", "more"),
+    [
+        (0, 5, False),
+        (1, 1, True),
+        (1, 2, False),
+        (2, 2, True),
+        (1, 5, False),
+        (2, 5, True),
+        (2, 8, False),
+        (3, 8, True),
+    ],
+)
+def test_more_maps_fail_than_chance_makes_fail(failed, maps, more):
+    assert more_than_chance([0.05] * failed + [0.5] * (maps - failed)) == more

@@ -1,3 +1,5 @@
+import warnings
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -193,3 +195,22 @@ def test_statistics_say_what_is_wrong():
         psd_2d(HeightMap(holed, (1.0, 1.0)))
     with pytest.raises(InputError, match="axis: received 2"):
         psd_1d(flat, 2)
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 90, 150])
+def test_direction_is_among_the_areal_statistics(degrees):
+    """Std: ridges that run across the direction in which the heights vary."""
+    angle = np.radians(degrees)
+    x, y = np.meshgrid(np.arange(128), np.arange(128), indexing="ij")
+    rng = np.random.default_rng(1)
+    across = x * np.cos(angle) + y * np.sin(angle)
+    heights = sum(np.sin(2 * np.pi * across / w + rng.uniform(0, 6)) for w in (5.0, 7.0, 11.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ShortRecordWarning)
+        found = by_symbol(areal_statistics(HeightMap(heights, (1.0, 1.0))))
+    assert found["Std"].unit == "rad"
+    assert abs((np.degrees(found["Std"].value) - degrees + 90) % 180 - 90) <= 2.0
+    heights[3, 4] = np.nan
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ShortRecordWarning)
+        assert np.isnan(by_symbol(areal_statistics(HeightMap(heights, (1.0, 1.0))))["Std"].value)

@@ -46,7 +46,8 @@ class Watched:
 
 def test_one_piece_has_the_statistics_of_a_map(surface):
     found, expected = values(survey(surface, 500).statistics), values(areal_statistics(surface))
-    assert list(found) == list(expected)
+    assert [*found, "Std"] == list(expected)  # a direction is not found piece by piece
+    del expected["Std"]
     for symbol, value in expected.items():
         assert found[symbol] == pytest.approx(value, rel=1e-9), symbol
 

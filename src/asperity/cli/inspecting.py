@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable
 from dataclasses import replace
@@ -70,6 +71,8 @@ def inspect(
         click.echo(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
         title += f", the first of {len(surfaces)} maps"
     for line in statistics_lines(first):
+        click.echo(line)
+    if line := homogeneity_line(first):
         click.echo(line)
     click.echo(f"Picture: {draw(first, title, picture).resolve()}")
 
@@ -181,7 +184,33 @@ def _band(item: Statistic) -> str:
 
 
 def _scaled(item: Statistic) -> str:
+    if not math.isfinite(item.value):
+        return "–"
+    if item.unit == "rad":
+        return f"{math.degrees(item.value):.0f}°"
     return f"{item.value * 1e6:.4g} µm" if item.unit == "m" else f"{item.value:.4g}"
+
+
+def homogeneity_line(surface: HeightMap | Profile) -> str:
+    """Say whether the texture of a map is the same everywhere; nothing of a line."""
+    import numpy as np
+
+    from asperity.surfaces.heightmap import HeightMap
+    from asperity.surfaces.homogeneity import TILES, homogeneity
+
+    if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(TILES):
+        return ""
+    if not np.isfinite(surface.heights).all():
+        return "Homogeneity and Std are those of a complete map: --fill fills points without a height."
+    found = homogeneity(surface)
+    tiles = " × ".join(map(str, found.tile_rms.shape))
+    verdict = "the same everywhere, as far as chance tells"
+    if not found.homogeneous:
+        verdict = "not the same everywhere: a piece of it does not stand for another"
+    return (
+        f"Homogeneity: mean squares of {tiles} tiles vary by {100 * found.variation:.0f} %, of stationary "
+        f"textures like it by {100 * found.expected:.0f} % (p = {found.p_value:.2g}): {verdict}"
+    )
 
 
 def draw(surface: HeightMap | Profile, title: str, picture: Path) -> Path:

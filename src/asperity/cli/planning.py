@@ -89,10 +89,26 @@ def plan(case: Case) -> list[tuple[str, str]]:
             "contact",
             f"{contact.cells} × {contact.cells} cells, {contact.samples} samples, {states} approaches",
         ),
+        *_real_contact(case),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items()),
         *([("scan of the path", described_scan(scans["path"]))] if "path" in scans else []),
         ("work", f"in the order of {duration(seconds)}, less what the cache holds"),
     ]
+
+
+def _real_contact(case: Case) -> list[tuple[str, str]]:
+    """Expected real contact, and which laws it takes out of their range."""
+    from asperity.scenarios.expecting import expected_area_ratio
+    from asperity.scenarios.validity import AREA, SCANNED
+
+    ratio = expected_area_ratio(case)
+    if ratio is None:
+        return []
+    text = f"about {100 * ratio:.0f} % of the area of smooth bodies"
+    averaged = [law for law in case.laws if law not in SCANNED]
+    if ratio < AREA[0] and averaged:
+        text += f": below {100 * AREA[0]:.0f} % {', '.join(averaged)} are out of range; take table"
+    return [("real contact", text)]
 
 
 def described_scan(scan: Expected) -> str:

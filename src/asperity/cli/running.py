@@ -43,7 +43,8 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
         tree = run(case, progress=progress)
     for warning in json.loads(tree.attrs.get("warnings", "[]")):
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
-        click.echo(f"Warning: {warning['message']}{times}", err=True)
+        grade = warning.get("grade", "warning").capitalize()
+        click.echo(f"{grade}: {warning['message']}{times}", err=True)
     written = save(tree, directory / "run.nc")
     if verdict := tree.attrs.get("verdict"):
         click.echo(verdict)

@@ -216,7 +216,8 @@ def _report(found: xarray.Dataset) -> None:
     """Print what members met, each kind of warning and failure once."""
     count = found["completed"].size
     for warning in json.loads(found.attrs["warnings"]):
-        click.echo(f"Warning ({warning['members']} of {count} members): {warning['message']}", err=True)
+        grade = warning.get("grade", "warning").capitalize()
+        click.echo(f"{grade} ({warning['members']} of {count} members): {warning['message']}", err=True)
     for failure in json.loads(found.attrs["failures"]):
         names = failure["members"]
         click.echo(f"Failed ({len(names)} of {count} members): {failure['message']}", err=True)

@@ -11,7 +11,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import InputError
 from asperity.pointforce.base import check_damping
-from asperity.reduction.scan import TRUNCATED, warn_of_flaws
+from asperity.reduction.scan import TRUNCATED, warn_of_flaws, window_for
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +104,7 @@ class DirectOnPath:
     solves: int = 0
     unconverged: int = 0
     truncated: int = 0
+    overlap: float = 0.0
     _gap: tuple[int, NDArray[np.float64]] | None = None
     _trial: Contact | None = None
     _pressure: NDArray[np.float64] | None = None
@@ -117,6 +118,8 @@ class DirectOnPath:
             self._gap_at(step), approach, self._start_at(step), self.law.rtol
         )
         self._trial = contact
+        self.truncated += contact.edge_share > TRUNCATED
+        self.overlap = max(self.overlap, approach - float(self._gap_at(step).min()))
         self.iterations += contact.iterations
         self.solves += contact.force > 0.0
         self.unconverged += not contact.converged
@@ -127,25 +130,27 @@ class DirectOnPath:
         if self._trial is not None:
             self._pressure = self._trial.pressure
             self._row = round(self.offsets[step])
-            self.truncated += self._trial.edge_share > TRUNCATED
         self._trial = None
 
     def state(self) -> dict[str, NDArray]:
         """What `restore` needs to go on from here exactly."""
         counts = [self.iterations, self.solves, self.unconverged, self.truncated, self._row]
         pressure = np.zeros((0, 0)) if self._pressure is None else self._pressure
-        return {"counts": np.array(counts), "pressure": pressure}
+        return {"counts": np.array(counts), "pressure": pressure, "overlap": np.array(self.overlap)}
 
     def restore(self, state: dict[str, NDArray]) -> None:
         """Go on from a saved state."""
         counts = (int(c) for c in state["counts"])
         self.iterations, self.solves, self.unconverged, self.truncated, self._row = counts
+        self.overlap = float(state["overlap"])
         self._pressure = state["pressure"] if state["pressure"].size else None
         self._gap, self._trial, self._start = None, None, (-1, None)
 
     def warn_of_flaws(self) -> None:
         """Warn of contacts that did not converge or were cut off."""
-        warn_of_flaws(self.solves, self.unconverged, self.truncated, "the direct law")
+        window = window_for(self.law.body, self.law.spacing, self.overlap)
+        remedy = f'contact.window = "{window * 1e3:.3g} mm" holds them.'
+        warn_of_flaws(self.solves, self.unconverged, self.truncated, "the direct law", remedy)
 
     def _gap_at(self, step: int) -> NDArray[np.float64]:
         if self._gap is None or self._gap[0] != step:

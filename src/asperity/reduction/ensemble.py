@@ -27,11 +27,14 @@ class StiffnessEnsemble:
     datum : float
         d0, m: the state is r = approach + d0, one offset for all samples, no less than the highest
         first touch, so that F(r = 0) = 0 for each of them.
+    held : int
+        Number of states, from the lowest, in which the window holds the contacts of all samples.
     """
 
     approaches: NDArray[np.float64]
     forces: NDArray[np.float64]
     datum: float
+    held: int
 
     @property
     def mean_force(self) -> NDArray[np.float64]:
@@ -145,6 +148,7 @@ def stiffness_ensemble(
     rtol: float = 1e-6,
     workers: int | None = None,
     progress: Callable[[int, int, str], None] | None = None,
+    remedy: str = "Enlarge the window.",
 ) -> StiffnessEnsemble:
     """Press the body on each sample, stepping the approach up.
 
@@ -158,6 +162,8 @@ def stiffness_ensemble(
         Approaches, m, increasing.
     datum : float
         d0, m.
+    remedy : str
+        What to do about contacts that the window cuts off.
 
     Returns
     -------
@@ -176,6 +182,7 @@ def stiffness_ensemble(
     for scanned in in_order(load, samples, workers):
         scans.append(scanned)
         report(len(scans), len(samples), "pressing the samples")
-    warn_of_scans(scans, "the loading curves")
+    warn_of_scans(scans, "the loading curves", remedy)
     forces = np.array([scanned.forces[:, 0] for scanned in scans])
-    return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), forces, datum)
+    held = len(approaches) - max(s.truncated for s in scans)  # contacts grow: the highest states are cut off
+    return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), forces, datum, held)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import real, real_array, shown, two_lengths, whole
 from asperity.contact.device import Device, find_device
-from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
+from asperity.errors import Grade, InputError, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.reduction import batched_scan
 from asperity.reduction.accuracy import in_single
 from asperity.reduction.blocks import TRUNCATED, Contacts, solve_block
@@ -130,7 +130,11 @@ def scan(
         z - z.mean(), (dx, dy), shape, stiff, delta, cap,
         stride=step, rtol=rtol, workers=workers, cache=cache, progress=progress, device=device,
     )  # fmt: skip
-    warn_of_scans([result], "the scan")
+    remedy = ""
+    if result.truncated:
+        overlap = delta[-1] - float(first_touch(z - z.mean(), shape, step).min())
+        remedy = f"A window of {window_for(shape, (dx, dy), overlap) * 1e3:.3g} mm holds them."
+    warn_of_scans([result], "the scan", remedy)
     position = np.arange(result.forces.shape[1]) * step * dx
     return xarray.DataArray(
         result.forces,
@@ -399,7 +403,9 @@ def _cells(shape: tuple[int, ...]) -> str:
     return f"{shape[0]} × {shape[1]} cells"
 
 
-def warn_of_scans(scans: Sequence[ScannedForces[Any]], what: str) -> None:
+def warn_of_scans(
+    scans: Sequence[ScannedForces[Any]], what: str, remedy: str = "Enlarge the window."
+) -> None:
     """Warn, once for all of them, of solutions that did not converge or were cut off.
 
     Parameters
@@ -408,13 +414,18 @@ def warn_of_scans(scans: Sequence[ScannedForces[Any]], what: str) -> None:
         Scans.
     what : str
         What they were made for, as ``"the scan"``.
+    remedy : str
+        What to do about contacts that are cut off.
     """
     solved = sum(s.solved for s in scans)
-    warn_of_flaws(solved, sum(s.unconverged for s in scans), sum(s.truncated for s in scans), what)
+    unconverged, truncated = sum(s.unconverged for s in scans), sum(s.truncated for s in scans)
+    warn_of_flaws(solved, unconverged, truncated, what, remedy)
 
 
-def warn_of_flaws(solved: int, unconverged: int, truncated: int, what: str) -> None:
-    """Warn of contact solutions that did not converge or were cut off.
+def warn_of_flaws(
+    solved: int, unconverged: int, truncated: int, what: str, remedy: str = "Enlarge the window."
+) -> None:
+    """Warn of contact solutions that did not converge or were cut off, graded by their share.
 
     Parameters
     ----------
@@ -422,22 +433,61 @@ def warn_of_flaws(solved: int, unconverged: int, truncated: int, what: str) -> N
         Number of solutions in contact, and of those that missed the tolerance or reached the edge.
     what : str
         What they were made for.
+    remedy : str
+        What to do about contacts that are cut off.
     """
     if unconverged:
+        share = unconverged / max(solved, 1)
         warnings.warn(
-            f"{unconverged} of {solved} contact solutions of {what} missed their tolerance; their "
-            "forces are approximate. Try a larger `rtol`, and check the surface for outliers.",
-            UnconvergedWarning,
+            UnconvergedWarning(
+                f"{unconverged} of {solved} contact solutions of {what} ({percent(share)}) missed their "
+                "tolerance; their forces are approximate. Try a larger `rtol`, and check the surface for "
+                "outliers.",
+                Grade.of_share(share),
+            ),
             stacklevel=4,
         )
     if truncated:
+        share = truncated / max(solved, 1)
         warnings.warn(
-            f"in {truncated} of {solved} contact solutions of {what} more than {100 * TRUNCATED:.0f} % of "
-            "the force acts on the window's edge: the contact is cut off and its force too small. Enlarge "
-            "the window.",
-            TruncatedContactWarning,
+            TruncatedContactWarning(
+                f"in {truncated} of {solved} contact solutions of {what} ({percent(share)}) more than "
+                f"{100 * TRUNCATED:.0f} % of the force acts on the window's edge: the contact is cut off and "
+                f"its force too small{_MEANING[Grade.of_share(share)]}. {remedy}",
+                Grade.of_share(share),
+            ),
             stacklevel=4,
         )
+
+
+_MEANING = {
+    Grade.NOTE: ", too seldom to matter",
+    Grade.WARNING: "",
+    Grade.OUT: ", so often that levels are wrong",
+}
+
+
+def window_for(body: NDArray[np.float64], spacing: tuple[float, float], overlap: float) -> float:
+    """Side of a square window that holds a contact.
+
+    Parameters
+    ----------
+    body : ndarray, shape (nx, ny)
+        Shape of the body, m, zero at its lowest point; it goes on outwards as a parabola.
+    spacing : tuple of float
+        (dx, dy), m.
+    overlap : float
+        Largest overlap of the undeformed bodies, with the highest peak, m.
+
+    Returns
+    -------
+    float
+        m: Hertz's patch of smooth bodies at that overlap, and a tenth more for peaks beyond it.
+    """
+    middle = [n // 2 for n in body.shape]
+    edges = min(body[0, middle[1]], body[-1, middle[1]]), min(body[middle[0], 0], body[middle[0], -1])
+    grown = [np.sqrt(max(0.5 * overlap / edge, 0.0)) if edge > 0.0 else 1.0 for edge in edges]
+    return 1.1 * float(max(n * d * g for n, d, g in zip(body.shape, spacing, grown, strict=True)))
 
 
 def first_touch(

@@ -133,6 +133,8 @@ def engineering(value: float, unit: str, digits: int = 3) -> str:
         return "–"
     if unit in ("", "1"):
         return plain(value, digits)
+    if unit == "rad":
+        return f"{math.degrees(value):.0f}°"
     power = 2 if unit == "m²" else 1  # a prefix on a squared unit is squared with it
     value += 0.0  # no minus before zero
     exponent = 0 if value == 0 else 3 * math.floor(math.floor(math.log10(abs(value))) / (3 * power))

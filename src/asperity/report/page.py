@@ -24,10 +24,12 @@ from asperity.report.style import colour_variables, law_style, narrow_page, svg
 from asperity.report.tables import (
     Table,
     energy_table,
+    homogeneity_table,
     loss_table,
     reference_table,
     sound_power_table,
     statistics_table,
+    validity_table,
 )
 from asperity.report.texture import TEXTURE
 from asperity.report.time_figures import FORCE_ENVELOPE, TIME
@@ -44,17 +46,17 @@ class Chapter:
     tables: tuple[Callable[[DataTree], Table | None], ...] = ()
 
 
-_CONTACT = Chapter("contact", "Contact", CONTACT)
+_CONTACT = Chapter("contact", "Contact", CONTACT, (validity_table,))
 
 BALL_ON_BEAM = (
-    Chapter("texture", "Texture", TEXTURE, (statistics_table,)),
+    Chapter("texture", "Texture", TEXTURE, (statistics_table, homogeneity_table)),
     _CONTACT,
     Chapter("force", "Contact force", (*TIME, *SPECTRUM[:2]), (reference_table, loss_table)),
     Chapter("acceleration", "Acceleration", SPECTRUM[2:]),
     Chapter("energy", "Energy", (), (energy_table,)),
 )
 WHEEL_ON_RAIL = (
-    Chapter("texture", "Texture", (ROUGHNESS_LEVELS, *TEXTURE), (statistics_table,)),
+    Chapter("texture", "Texture", (ROUGHNESS_LEVELS, *TEXTURE), (statistics_table, homogeneity_table)),
     Chapter("track", "Track and wheel", TRACK),
     _CONTACT,
     Chapter(
@@ -128,6 +130,23 @@ def _records(attrs: Mapping[Any, Any], name: str) -> list[dict[str, Any]]:
     return [entry for entry in entries(attrs, name, []) if isinstance(entry, dict)]
 
 
+_GRADES = {"out of range": ("out", "out of range"), "warning": ("", "warnings"), "note": ("note", "notes")}
+"""Look and plural of the grades of warnings, the gravest first."""
+
+
+def _warnings(root: Mapping[Any, Any]) -> list[dict[str, Any]]:
+    """Warnings on the physics with their grade and its look."""
+    graded = [{"grade": "warning", **warning} for warning in _records(root, "warnings")]
+    return [warning | {"look": _GRADES.get(warning["grade"], ("", ""))[0]} for warning in graded]
+
+
+def _graded(warnings: list[dict[str, Any]]) -> str:
+    """Say how many warnings there are of each grade, as ``"1 out of range, 2 warnings"``."""
+    counts = {grade: sum(w["grade"] == grade for w in warnings) for grade in _GRADES}
+    named = [f"{n} {grade if n == 1 else _GRADES[grade][1]}" for grade, n in counts.items() if n]
+    return ", ".join(named) or f"{len(warnings)} warnings"
+
+
 def _law_key(tree: DataTree) -> list[dict[str, str]]:
     meanings = entries(group_attrs(tree, "scenario"), "laws", {})
     return [
@@ -181,6 +200,7 @@ def page(tree: DataTree) -> str:
     """
     root, scenario = dict(tree.attrs), group_attrs(tree, "scenario")
     parameters = _records(scenario, "parameters")
+    warnings = _warnings(root)
     return _template().render(
         title=root.get("title") or scenario.get("kind") or "Rolling contact",
         verdict=root.get("verdict", ""),
@@ -190,7 +210,8 @@ def page(tree: DataTree) -> str:
         case=root.get("case", ""),
         kind=scenario.get("kind", ""),
         citations=[str(text) for text in entries(root, "citations", [])],
-        warnings=_records(root, "warnings"),
+        warnings=warnings,
+        graded=_graded(warnings),
         case_groups=_case_groups(parameters),
         changed=sum(not parameter.get("is_default", True) for parameter in parameters),
         numerics=_records(scenario, "numerics"),

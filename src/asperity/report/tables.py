@@ -24,6 +24,8 @@ from asperity.report.data import (
 from asperity.spectra import LEAST_PRODUCT
 
 REFERENCE = "spectra/force_level_difference_to_reference"
+SIGNIFICANCE = 0.05
+"""Of the test for homogeneity."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,45 @@ def statistics_table(tree: DataTree) -> Table | None:
         rows,
         note,
     )
+
+
+def homogeneity_table(tree: DataTree) -> Table | None:
+    """Whether the measured maps are the same everywhere."""
+    names = ("tile_variation", "tile_variation_expected", "homogeneity_p")
+    if not present(tree, *(f"surface/{name}" for name in names)):
+        return None
+    columns = [values(tree, f"surface/{name}", "sample") for name in names]
+    rows = []
+    for number, (variation, expected, p) in enumerate(zip(*columns, strict=True), start=1):
+        same = bool(p > SIGNIFICANCE)
+        cells = [_percent(variation), _percent(expected), f"{p:.2g}"]
+        look = "number" if same else "number off"
+        told = "as far as chance tells" if same else "no"
+        rows.append([Cell(str(number), "number"), *(Cell(text, look) for text in cells), _text(told)])
+    note = (
+        "Coefficient of variation of the mean squares of tiles; p: share of stationary textures with the "
+        "same spectrum and heights that vary as much. At p ≤ "
+        f"{SIGNIFICANCE:g} a map is not the same everywhere; one in twenty is so by chance."
+    )
+    head = ["map", "tiles vary by", "by chance", "p", "same everywhere?"]
+    return Table("homogeneity", "Homogeneity of the measured maps", head, rows, note)
+
+
+def validity_table(tree: DataTree) -> Table | None:
+    """Quantities that bound the range in which the laws hold, with their limits."""
+    found = [e for e in entries(group_attrs(tree, "contact"), "validity", []) if isinstance(e, dict)]
+    if not found:
+        return None
+    looks = {"out of range": "number far", "warning": "number off"}
+    rows = []
+    for entry in found:
+        grade = str(entry.get("grade", ""))
+        told = f"{entry.get('meaning', '')} {entry.get('remedy', '')}" if grade else "in range"
+        names = [str(entry.get(name, "")) for name in ("quantity", "value", "limit")]
+        value = Cell(names[1], looks.get(grade, "number"))
+        rows.append([_text(names[0]), value, _text(names[2]), _text(told)])
+    note = "Shaded: outside the range in which the laws are known to hold, and far outside."
+    return Table("validity", "Range of validity", ["quantity", "here", "in range", "meaning"], rows, note)
 
 
 def reference_law(tree: DataTree) -> str | None:

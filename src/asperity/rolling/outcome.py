@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.errors import ExtrapolationWarning, UnconvergedWarning
+from asperity.errors import ExtrapolationWarning, Grade, UnconvergedWarning, percent
 from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all
 from asperity.pointforce.base import SteppedLaw
 
@@ -83,10 +83,13 @@ def warn_after(
     """
     steps = max(int(counts[0]), 1)
     if counts[1]:
+        share = int(counts[1]) / steps
         warnings.warn(
-            f"{name}: {counts[1]} of {steps} time steps missed the tolerance on the contact force: "
-            "their force is uncertain; take a smaller time step",
-            UnconvergedWarning,
+            UnconvergedWarning(
+                f"{name}: {counts[1]} of {steps} time steps ({percent(share)}) missed the tolerance on "
+                "the contact force: their force is uncertain; take a smaller time step",
+                Grade.of_share(share),
+            ),
             stacklevel=4,
         )
     if not isinstance(prepared, Prepared):
@@ -95,8 +98,11 @@ def warn_after(
     beyond = count_beyond(prepared, approach)
     if beyond:
         warnings.warn(
-            f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
-            "steps: the force there is a continuation; compute larger approaches",
-            ExtrapolationWarning,
+            ExtrapolationWarning(
+                f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
+                f"steps ({percent(beyond / steps)}): the force there is a continuation; compute larger "
+                "approaches",
+                Grade.of_share(beyond / steps),
+            ),
             stacklevel=4,
         )

@@ -20,6 +20,7 @@ from asperity.scenarios.tree import (
     product_variable,
     spectrum_segment,
 )
+from asperity.scenarios.validity import findings, warn_of
 from asperity.scenarios.verdict import verdict
 from asperity.spectra import averaging_time, band_levels, psd
 
@@ -42,9 +43,11 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         Groups scenario, surface, contact, rolling, spectra.
     """
     spectra = _spectra(computed)
+    found = findings(computed.chain)
+    warn_of(found)
     groups = {
         "/surface": surface_group(computed.chain),
-        "/contact": contact_group(computed.chain),
+        "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),
         "/spectra": spectra,
     }
@@ -53,7 +56,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         groups,
         caught,
         title=_title(computed.case.ball.material.name, computed.case.beam.material.name),
-        verdict=verdict(computed.chain, spectra, "ball"),
+        verdict=verdict(computed.chain, spectra, found, "ball"),
         numerics=_numerics(computed),
     )
 

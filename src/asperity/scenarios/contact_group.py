@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,15 +13,18 @@ from numpy.typing import NDArray
 from asperity.reduction.filter import punch_filter
 from asperity.results import variable
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.validity import Finding, rms_slope_of
 
 
-def contact_group(chain: Chain[Any]) -> xarray.Dataset:
+def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset:
     """Lay out the reduced contact of a case.
 
     Parameters
     ----------
     chain : Chain
-        What was chain.
+        What was computed.
+    found : sequence of Finding
+        What holds it to the range of its laws.
 
     Returns
     -------
@@ -41,6 +46,10 @@ def contact_group(chain: Chain[Any]) -> xarray.Dataset:
         "datum": ensemble.datum,
         "working_approach": reduction.working_approach,
         "contact_area": working.area,
+        "contact_area_ratio": reduction.area_ratio,
+        "isolated_share": reduction.isolated_share,
+        "rms_slope": rms_slope_of(chain),
+        "validity": json.dumps([_row(finding) for finding in found], ensure_ascii=False),
         "samples": len(ensemble.forces),
         "normalise": reduction.contact_filter.normalise,
     }
@@ -78,6 +87,14 @@ def contact_group(chain: Chain[Any]) -> xarray.Dataset:
         "gap": variable(("px", "py"), working.gap, "m", "gap after deformation at the working load"),
     }
     return xarray.Dataset(variables | _filters(chain), attrs=attrs)
+
+
+def _row(finding: Finding) -> dict[str, str]:
+    grade = "" if finding.grade is None else finding.grade.value
+    return {
+        **{k: getattr(finding, k) for k in ("quantity", "value", "limit", "meaning", "remedy")},
+        "grade": grade,
+    }
 
 
 def _filters(chain: Chain[Any]) -> dict[str, xarray.Variable]:

@@ -14,15 +14,19 @@ from numpy.typing import NDArray
 from asperity.config import BallOnBeamCase, Case, WheelOnRailCase
 from asperity.errors import InputError, PhysicsWarning
 from asperity.reduction.accuracy import FILTER_SHARE, in_single, rtol_for
+from asperity.reduction.real_contact import expected_area_ratio as expected_area_ratio_of
 from asperity.reduction.scan import BLOCK
 from asperity.reference.materials import contact_modulus
+from asperity.scenarios import rail_textures
 from asperity.scenarios.ball_on_beam import ball_geometry
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry, window_cells
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.rail_geometry import rail_geometry
 from asperity.scenarios.reducing import STATES, filter_stride
-from asperity.scenarios.textures import strip_rows
+from asperity.scenarios.textures import measured_maps, strip_rows, synthesised
 from asperity.structures.ball import Ball
+from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.statistics import rms_slope
 from asperity.threads import thread_count
 
 SOLUTION_TIME = 1e-5
@@ -97,6 +101,49 @@ def expected_scans(case: Case) -> dict[str, Expected]:
         rows = math.ceil(case.settled_time * pace) + math.ceil(case.rolled_time * pace) + 2 + window
         result["path"] = _expected(case, shape, rows, table_stride(shape))
     return result
+
+
+def expected_area_ratio(case: Case) -> float | None:
+    """Expect the real contact area under the working load over that of smooth bodies.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase or WheelOnRailCase
+        The case.
+
+    Returns
+    -------
+    float or None
+        About what `asperity.scenarios.reducing.Reduction.area_ratio` will be, from the slope of the
+        samples; None where the case has none.
+
+    Raises
+    ------
+    InputError
+        If a file does not hold what the case needs of it.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        shape, samples = _geometry(case), _samples(case)
+    if not samples:
+        return None
+    slope = float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in samples])))
+    peak = 1.5 * shape.load / (np.pi * math.prod(shape.semi_axes))
+    return expected_area_ratio_of(slope, peak, shape.modulus)
+
+
+def _samples(case: Case) -> tuple[HeightMap, ...]:
+    """Samples like those of the case, without its path."""
+    rows = strip_rows(case.contact)
+    if isinstance(case, WheelOnRailCase):
+        short = {"duration": rows * case.contact.spacing / case.speed, "settling": 0.0}
+        return rail_textures.gather(case.model_copy(update=short)).maps
+    if case.surface.file is not None:
+        return measured_maps(case.surface, case.contact.spacing)[0]
+    if case.surface.rms is None:
+        return ()
+    size = (rows, window_cells(case.contact))
+    return (synthesised(case.surface, case.contact.spacing, size, case.seed),)
 
 
 def direct_time(case: Case) -> float:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from asperity.config.sections import ContactCase
 from asperity.contact import Hertz
 from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
+from asperity.reduction.scan import window_for
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in working loads."""
@@ -68,6 +69,38 @@ class Geometry:
             (a_x, a_y), m.
         """
         return self.hertz.semi_axes(self.hertz.approach(force))
+
+    def remedy_for_cut_off(self, highest: float, working: float, datum: float, widest: float) -> str:
+        """Name a window that holds the contacts of all states, also of those that this one keeps out.
+
+        Parameters
+        ----------
+        highest, working : float
+            Approach of the highest state, and under the working load, m.
+        datum : float
+            d0 of the states, m: minus the lowest first touch.
+        widest : float
+            Widest window that the samples allow, m.
+
+        Returns
+        -------
+        str
+            One sentence.
+        """
+        wanted = max(HIGHEST_FORCE * self.load, self.largest_force)
+        kept_out = self.hertz.approach(wanted) - self.hertz.approach(self.largest_force)
+        overlap = highest + kept_out + datum
+        side = window_for(self.body, self.spacing, overlap)
+        if side <= widest:
+            return f'contact.window = "{side * 1e3:.3g} mm" holds them.'
+        text = f"It takes a window of {side * 1e3:.3g} mm, and the maps are {widest * 1e3:.3g} mm wide: "
+        held = overlap * (widest / side) ** 2 - datum  # the side grows as the root of the overlap
+        if held < working:
+            return text + "measure wider maps, or remove the waviness by surface.longest."
+        return (
+            text + f"a window as wide as they are holds approaches up to {held * 1e6:.3g} µm; end "
+            "contact.approaches there."
+        )
 
     def within_window(self) -> Geometry:
         """Bound the states: above by a contact that the window holds, below by the working approach.

@@ -150,7 +150,11 @@ class Workshop:
             stride=stride, rtol=rtol_for(self.numerics.force_accuracy), planes=planes,
             progress=self.progress, message="scanning the path",
         )  # fmt: skip
-        warn_of_scans([scanned], "the path")
+        reduction, widest = self.reduction, self.textures.widest_window
+        remedy = self.shape.remedy_for_cut_off(
+            float(reduction.approaches[-1]), reduction.working_approach, reduction.ensemble.datum, widest
+        )
+        warn_of_scans([scanned], "the path", remedy)
         touches = first_touch(surface, self.shape.body, stride) + planes
         table = ForceTable(
             scanned.forces, self.reduction.approaches, self.textures.start + half * dx, stride * dx, touches

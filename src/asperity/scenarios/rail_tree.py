@@ -14,6 +14,7 @@ from asperity.scenarios.rail_spectra import point_coordinate, spectra_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.track_group import track_group
 from asperity.scenarios.tree import assembled, law_coordinate, loss_variables
+from asperity.scenarios.validity import findings, warn_of
 from asperity.scenarios.verdict import verdict
 from asperity.scenarios.wheel_on_rail import Computed
 from asperity.structures.rail_poles import RailPoles
@@ -35,10 +36,12 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         Groups scenario, surface, track, contact, rolling, spectra.
     """
     spectra = spectra_group(computed)
+    found = findings(computed.chain)
+    warn_of(found)
     groups = {
         "/surface": surface_group(computed.chain),
         "/track": track_group(computed),
-        "/contact": contact_group(computed.chain),
+        "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),
         "/spectra": spectra,
     }
@@ -47,7 +50,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         groups,
         caught,
         title=f"Wheel on rail at {computed.case.speed:.3g} m/s",
-        verdict=verdict(computed.chain, spectra, "wheel"),
+        verdict=verdict(computed.chain, spectra, found, "wheel"),
         numerics=_numerics(computed),
         citations=(*computed.track.sources, CITATION),
     )

@@ -27,6 +27,7 @@ from asperity.reduction.filter import (
     tap_count,
 )
 from asperity.reduction.pool import in_order
+from asperity.reduction.real_contact import isolated_share
 from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_forces, warn_of_scans
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
@@ -66,8 +67,12 @@ class Reduction:
         First sample under the working load.
     working_approach : float
         Mean approach of the samples under the working load, m.
-    solves, iterations : int
-        Contact solutions done for the filters, and their iterations.
+    area_ratio : float
+        Contact area of the samples under the working load over that of smooth bodies, mean.
+    isolated_share : float
+        Share of that load on cells that touch alone, mean.
+    solves, iterations, truncated : int
+        Contact solutions done for the filters, their iterations, and those that are cut off.
     """
 
     approaches: NDArray[np.float64]
@@ -77,8 +82,11 @@ class Reduction:
     taps: NDArray[np.float64]
     working: Contact
     working_approach: float
+    area_ratio: float
+    isolated_share: float
     solves: int
     iterations: int
+    truncated: int
 
 
 def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
@@ -138,12 +146,15 @@ def reduce(
     samples = patches([m.heights for m in textures.maps], cells, contact.samples, weights)
     half_space = HalfSpace(cells, shape.spacing, shape.modulus, hardness)
     contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=numerics.rtol) for s in samples]
+    smooth = half_space.solve(shape.body, load=shape.load, rtol=numerics.rtol)
     approaches = _approaches(contact, textures, shape, planes, samples, half_space)
     lowest = min(float(approaches[0]), _lowest_touch(textures, shape, planes, samples))
     datum = max(-lowest, LEAST_DATUM)
+    working = float(np.mean([c.approach for c in contacts]))
+    remedy = shape.remedy_for_cut_off(float(approaches[-1]), working, datum, textures.widest_window)
     ensemble = stiffness_ensemble(
         samples, shape.spacing, shape.body, shape.modulus, approaches, datum, hardness,
-        rtol=rtol_for(numerics.force_accuracy), progress=progress,
+        rtol=rtol_for(numerics.force_accuracy), progress=progress, remedy=remedy,
     )  # fmt: skip
     mean = ensemble.mean_force
     if mean[-1] < shape.load:
@@ -157,6 +168,7 @@ def reduce(
     loaded = mean >= LIGHTEST_STATE * shape.load
     accuracy = FILTER_SHARE * numerics.force_accuracy
     contact_filter, scans = _filters(contact, accuracy, textures, shape, ensemble, loaded, cache, progress)
+    warn_of_scans(scans, "the filters", remedy)
     order = contact.filter_taps or tap_count(shape.spacing[0], float(semi_axes.max()))
     return Reduction(
         approaches,
@@ -165,9 +177,12 @@ def reduce(
         contact_filter,
         design_fir(contact_filter, shape.spacing[0], order),
         contacts[0],
-        float(np.mean([c.approach for c in contacts])),
+        working,
+        float(np.mean([c.area for c in contacts])) / smooth.area,
+        float(np.mean([isolated_share(c.pressure) for c in contacts])),
         sum(s.solved for s in scans),
         sum(s.iterations for s in scans),
+        sum(s.truncated for s in scans),
     )
 
 
@@ -256,7 +271,6 @@ def _filters(
                 tangent_stiffness=tangent, asymptote=asymptote,
             )
         )  # fmt: skip
-    warn_of_scans(scans, "the filters")
     degree, normalise = contact.filter_degree, contact.normalise
     return mean_filter(estimates, approaches, degree=degree, normalise=normalise), scans  # type: ignore[arg-type]
 

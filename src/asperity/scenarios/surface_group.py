@@ -11,12 +11,13 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
-from asperity.errors import ShortRecordWarning
+from asperity.errors import InhomogeneousWarning, ShortRecordWarning
 from asperity.results import variable
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.textures import Textures
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.homogeneity import SIGNIFICANCE, TILES, homogeneity, more_than_chance
 from asperity.surfaces.statistics import (
     Statistic,
     areal_statistics,
@@ -65,6 +66,8 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
             "path_y": variable("path_y", np.arange(piece.shape[1]) * dx, "m", "across"),
             "path_heights": variable(("path_x", "path_y"), piece, "m", "height of the path"),
         }
+    if chain.case.surface.file is not None and textures.maps is not textures.strips:
+        variables |= _homogeneity(textures.maps)
     line = textures.followed[recorded]
     variables["distance"] = variable("distance", np.arange(len(line)) * dx, "m", "distance along the path")
     variables["line"] = variable("distance", line, "m", "height along the middle of the path")
@@ -131,6 +134,38 @@ def _areal(surface: HeightMap) -> list[dict[str, Any]]:
         warnings.simplefilter("always", ShortRecordWarning)
         found = areal_statistics(surface)
     return _listed(_without_bounds(found, caught), "first sample")
+
+
+def _homogeneity(maps: tuple[HeightMap, ...]) -> dict[str, xarray.Variable]:
+    """Test measured maps for being the same everywhere; synthesised ones are."""
+    if any(min(m.shape) < 2 * max(TILES) or not np.ptp(m.heights) for m in maps):
+        return {}
+    found = [homogeneity(m) for m in maps]
+    p_values = [f.p_value for f in found]
+    if more_than_chance(p_values):
+        failed = sum(not f.homogeneous for f in found)
+        worst = max(found, key=lambda f: f.variation / f.expected)
+        warnings.warn(
+            f"{failed} of {len(maps)} measured maps are not the same everywhere (p ≤ {SIGNIFICANCE:g}): the "
+            f"mean squares of {TILES[0]} × {TILES[1]} tiles vary by up to {100 * worst.variation:.0f} %, "
+            f"those of stationary textures by {100 * worst.expected:.0f} %. Samples of them do not stand for "
+            "the whole path: take more maps, crop them, or remove form and waviness.",
+            InhomogeneousWarning,
+            stacklevel=2,
+        )
+    tiles = ("sample", "tile_x", "tile_y")
+    return {
+        "homogeneity_p": variable(
+            "sample", p_values, "1", "share of stationary textures whose tiles vary as much as those of a map"
+        ),
+        "tile_variation": variable(
+            "sample", [f.variation for f in found], "1", "coefficient of variation of the tiles' mean squares"
+        ),
+        "tile_variation_expected": variable(
+            "sample", [f.expected for f in found], "1", "the same of stationary textures, median"
+        ),
+        "tile_rms": variable(tiles, np.stack([f.tile_rms for f in found]), "m", "rms height of the tiles"),
+    }
 
 
 def _without_bounds(found: list[Statistic], caught: list[warnings.WarningMessage]) -> list[Statistic]:

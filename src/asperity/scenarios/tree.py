@@ -14,7 +14,7 @@ import xarray
 
 from asperity import __version__
 from asperity.contact.device import find_device
-from asperity.errors import PhysicsWarning
+from asperity.errors import Grade, PhysicsWarning
 from asperity.pointforce import LAWS
 from asperity.results import BASELINES, checked, difference_name, variable
 from asperity.scenarios.chain import Chain
@@ -87,10 +87,13 @@ def assembled(
 
 
 def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
-    physics = [m for m in caught if issubclass(m.category, PhysicsWarning)]
-    counts = Counter((m.category.__name__, str(m.message)) for m in physics)
+    """Warnings on the physics, each once with its number, the gravest first."""
+    physics = [m.message for m in caught if isinstance(m.message, PhysicsWarning)]
+    counts = Counter((type(m).__name__, str(m), m.grade) for m in physics)
+    order = list(Grade)
     return [
-        {"category": category, "message": message, "count": n} for (category, message), n in counts.items()
+        {"category": category, "message": message, "grade": grade.value, "count": n}
+        for (category, message, grade), n in sorted(counts.items(), key=lambda c: -order.index(c[0][2]))
     ]
 
 

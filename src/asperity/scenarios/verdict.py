@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 import xarray
 
+from asperity.errors import Grade
 from asperity.results import BASELINES, difference_name
 from asperity.scenarios.chain import Chain, Run
+from asperity.scenarios.validity import SCANNED, Finding
 from asperity.spectra import LEAST_PRODUCT, nominal_frequency
 
 COMPARED = (100.0, 5000.0)
 """Band centres between which laws are compared, Hz."""
 
 
-def verdict(chain: Chain[Any], spectra: xarray.Dataset, body: str) -> str:
+def verdict(chain: Chain[Any], spectra: xarray.Dataset, found: Sequence[Finding], body: str) -> str:
     """Say in a few words how the main law's contact went, and how far it is from the others.
 
     Parameters
@@ -25,6 +27,8 @@ def verdict(chain: Chain[Any], spectra: xarray.Dataset, body: str) -> str:
         What was computed; the first law is the main one.
     spectra : Dataset
         The spectra group of the result.
+    found : sequence of Finding
+        What holds the case to the range of its laws.
     body : str
         What rolls: "ball" or "wheel".
 
@@ -35,19 +39,35 @@ def verdict(chain: Chain[Any], spectra: xarray.Dataset, body: str) -> str:
     """
     main, run = next(iter(chain.runs.items()))
     dynamic = float(np.std(run.contact_force))
-    sentences = [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
+    sentences = list(_doubts(chain, found))
+    sentences += [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
     secant = " (linear with the stiffness F/r)" if chain.case.contact.linearise == "secant" else ""
     baselines = [name for name in BASELINES if difference_name(name) in spectra and name != main]
     shown = _shown(spectra)
     if not shown.any():
         sentences.append("The record is too short to compare its one-third octaves with those of other laws")
     elif compared := list(_compared(spectra.isel(band=shown), main, baselines)):
-        sentences.append(f"Per one-third octave it is {' and '.join(compared)}{secant}")
+        sentences.append(f"Per one-third octave {main} is {' and '.join(compared)}{secant}")
     if "sound_power_level_a" in spectra and baselines:
         level = spectra["sound_power_level_a"].sel(source="total")
         changes = [f"{_signed(level.sel(law=main) - level.sel(law=name))} over {name}" for name in baselines]
         sentences.append(f"Its A-weighted sound power is {' and '.join(changes)}{secant}")
     return ". ".join(sentences) + "."
+
+
+def _doubts(chain: Chain[Any], found: Sequence[Finding]) -> Iterator[str]:
+    """Say first where the main law is outside its range, and what the scanned contact gives instead."""
+    main = next(iter(chain.runs))
+    doubts = [finding for finding in found if finding.concerns(main)]
+    if not doubts:
+        return
+    out = any(finding.grade is Grade.OUT for finding in doubts)
+    reasons = ", ".join(finding.brief for finding in doubts)
+    better = [law for law in SCANNED if law in chain.runs and any(law not in f.laws for f in doubts)]
+    instead = [
+        f"{law} varies by {_force(float(np.std(chain.runs[law].contact_force)))} rms" for law in better
+    ]
+    yield f"{'Out of range' if out else 'Doubtful'} for {main}: {'; '.join([reasons, *instead[:1]])}"
 
 
 def _shown(spectra: xarray.Dataset) -> np.ndarray:

@@ -126,7 +126,8 @@ def _warnings(tables: Sequence[xarray.Dataset]) -> list[dict[str, Any]]:
     for table in tables:
         met = {_kind(w["category"], w["message"]): w for w in json.loads(table.attrs["warnings"])}
         for kind, warning in met.items():
-            start = {"category": warning["category"], "message": warning["message"], "members": 0}
+            start = {key: warning[key] for key in ("category", "message", "grade") if key in warning}
+            start["members"] = 0
             groups.setdefault(kind, start)["members"] += 1
     return list(groups.values())
 

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
+from scipy.stats import binom
 
 from asperity.errors import InputError
-from asperity.surfaces.areal_psd import psd_2d
+from asperity.surfaces.areal_psd import texture_direction
 from asperity.surfaces.correlation import autocorrelation_lengths
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.levelling import level
+from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.synthesis import from_map
 
 SIGNIFICANCE = 0.05
+TILES = (4, 4)
+"""Tiles that a map is cut into where nothing else is said."""
+MOST_POINTS = 192
+"""Points along a side on which the test is made: short waves add little to the mean square of a tile."""
+FEWEST_POINTS = 8
+"""Points along a tile's side that are left."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +53,7 @@ class Homogeneity:
 
 
 def homogeneity(
-    surface: HeightMap, tiles: tuple[int, int] = (4, 4), *, surrogates: int = 39, seed: int = 0
+    surface: HeightMap, tiles: tuple[int, int] = TILES, *, surrogates: int = 39, seed: int = 0
 ) -> Homogeneity:
     """Test whether the mean square of tiles varies more than on a stationary surface.
 
@@ -77,8 +84,8 @@ def homogeneity(
 
     Notes
     -----
-    One-sided rank test (Monte Carlo test). Finds patches and trends of roughness larger than a
-    tile; a change of the spectrum at equal mean square goes unseen.
+    One-sided rank test (Monte Carlo test), on at most 192 points along a side. Finds patches and trends of
+    roughness larger than a tile; a change of the spectrum at equal mean square goes unseen.
 
     References
     ----------
@@ -91,14 +98,26 @@ def homogeneity(
         raise InputError("tiles", tiles, f"two or more tiles of 2 points or more in {surface.shape}")
     if surrogates < 19:
         raise InputError("surrogates", surrogates, "at least 19, for 5 % significance")
-    measured = _tile_mean_squares(level(surface), tiles)
+    coarse = _coarse(level(surface), tiles)
+    measured, (nx, ny) = _tile_mean_squares(level(coarse), tiles), coarse.shape
     variation = float(measured.std() / measured.mean())
-    long = from_map(surface, (nx * surrogates, ny), seed).heights
-    pieces = (HeightMap(long[k * nx : (k + 1) * nx], surface.spacing) for k in range(surrogates))
+    long = from_map(coarse, (nx * surrogates, ny), seed).heights
+    pieces = (HeightMap(long[k * nx : (k + 1) * nx], coarse.spacing) for k in range(surrogates))
     squares = [_tile_mean_squares(level(piece), tiles) for piece in pieces]
     chance = np.array([s.std() / s.mean() for s in squares])
     p_value = (1.0 + float(np.sum(chance >= variation))) / (surrogates + 1.0)
-    return Homogeneity(np.sqrt(measured), variation, float(np.median(chance)), p_value)
+    tile_rms = np.sqrt(_tile_mean_squares(level(surface), tiles))
+    return Homogeneity(tile_rms, variation, float(np.median(chance)), p_value)
+
+
+def _coarse(surface: HeightMap, tiles: tuple[int, int]) -> HeightMap:
+    """The surface on fewer points where it has more than the test needs."""
+    room = min(n / (FEWEST_POINTS * count) for n, count in zip(surface.shape, tiles, strict=True))
+    step = min(max(surface.shape) / MOST_POINTS, room)
+    if step <= 1.0:
+        return surface
+    dx, dy = surface.spacing
+    return resample(surface, (step * dx, step * dy))
 
 
 def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> NDArray[np.float64]:
@@ -135,7 +154,7 @@ def anisotropy(surface: HeightMap) -> Anisotropy:
     Returns
     -------
     Anisotropy
-        Str, and Std within about 2°.
+        Str, and Std from `texture_direction`.
 
     Raises
     ------
@@ -147,21 +166,26 @@ def anisotropy(surface: HeightMap) -> Anisotropy:
     ShortRecordWarning
         If the autocorrelation does not fall to 0.2 inside the map.
 
-    Notes
-    -----
-    The angular spectrum is the areal one summed over rings from three wavenumber steps, below
-    which directions cannot be told apart, to the largest wavenumber that both directions reach,
-    and smoothed over ±4°.
-
     References
     ----------
     ISO 25178-2:2021 (Str, Std).
     """
     shortest, longest = autocorrelation_lengths(surface)
-    qx, qy, density = psd_2d(surface)
-    q, angle = np.hypot(qx[:, None], qy[None, :]), np.arctan2(qy[None, :], qx[:, None]) % np.pi
-    inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
-    degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
-    energy = np.bincount(degrees, density[inside], minlength=180)
-    smooth = ndimage.uniform_filter1d(energy, 9, mode="wrap")
-    return Anisotropy(shortest / longest, float(np.radians(smooth.argmax())))
+    return Anisotropy(shortest / longest, texture_direction(surface))
+
+
+def more_than_chance(p_values: Sequence[float]) -> bool:
+    """Whether more maps fail the test than chance makes fail, at 5 % significance.
+
+    Parameters
+    ----------
+    p_values : sequence of float
+        Of the maps, from `homogeneity`.
+
+    Returns
+    -------
+    bool
+        One of one, two of two to seven, three of eight or more, and so on: the binomial tail.
+    """
+    count = sum(p <= SIGNIFICANCE for p in p_values)
+    return bool(binom.sf(count - 1, len(p_values), SIGNIFICANCE) <= SIGNIFICANCE * (1 + 1e-9))

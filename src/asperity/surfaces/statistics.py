@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from asperity.errors import InputError
-from asperity.surfaces.areal_psd import psd_1d, psd_2d, psd_radial
+from asperity.surfaces.areal_psd import psd_1d, psd_2d, psd_radial, texture_direction
 from asperity.surfaces.correlation import autocorrelation, autocorrelation_lengths
 from asperity.surfaces.heightmap import HeightMap, Profile
 
@@ -23,6 +24,9 @@ __all__ = [
     "psd_1d",
     "psd_2d",
     "psd_radial",
+    "rms_slope",
+    "shortest_wave_for",
+    "texture_direction",
 ]
 
 
@@ -37,7 +41,7 @@ class Statistic:
     value : float
         Value in `unit`; NaN if it cannot be determined.
     unit : str
-        ``"m"``, or ``"1"`` for a ratio.
+        ``"m"``, ``"rad"``, or ``"1"`` for a ratio.
     bandwidth : tuple of float
         Shortest and longest wavelength of the data, m.
     meaning : str
@@ -52,7 +56,7 @@ class Statistic:
 
 
 def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:
-    """Areal roughness parameters Sq, Sa, Ssk, Sku, Sz, Sdq, Sdr, Sal, Str.
+    """Areal roughness parameters Sq, Sa, Ssk, Sku, Sz, Sdq, Sdr, Sal, Str, Std.
 
     Parameters
     ----------
@@ -82,11 +86,18 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     ISO 25178-2:2021. Slopes by the seven-point formula of ISO 4287:1997.
     """
     band = bandwidth or (2.0 * min(surface.spacing), max(surface.size))
-    dx, dy = surface.spacing
-    square = slope(surface.heights, dx, 0) ** 2 + slope(surface.heights, dy, 1) ** 2
+    square = _square_slope(surface)
     slopes = (float(np.nanmean(square)), float(np.nanmean(np.sqrt(1.0 + square)) - 1.0))
     lengths = autocorrelation_lengths(surface)
-    return areal_parameters(*_amplitudes(surface.heights), slopes, lengths, band)
+    complete = not np.isnan(surface.heights).any()
+    direction = Statistic(
+        "Std",
+        texture_direction(surface) if complete else np.nan,
+        "rad",
+        band,
+        "direction from x in which it varies most, across the lay; means little where Str is above 0.5",
+    )
+    return [*areal_parameters(*_amplitudes(surface.heights), slopes, lengths, band), direction]
 
 
 def areal_parameters(
@@ -114,7 +125,7 @@ def areal_parameters(
     Returns
     -------
     list of Statistic
-        In the order of `areal_statistics`.
+        In the order of `areal_statistics`, but for Std.
     """
     shortest, longest = lengths
     return [
@@ -124,6 +135,67 @@ def areal_parameters(
         Statistic("Sal", shortest, "m", band, "shortest lag at which the autocorrelation falls to 0.2"),
         Statistic("Str", shortest / longest, "1", band, "shortest over longest such lag; 1 is isotropic"),
     ]
+
+
+def rms_slope(surface: HeightMap) -> float:
+    """Rms slope Sdq of a surface.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Levelled heights, m; missing points are left out.
+
+    Returns
+    -------
+    float
+        Sdq.
+
+    Raises
+    ------
+    InputError
+        If the map has fewer than seven points along an axis.
+    """
+    return float(np.sqrt(np.nanmean(_square_slope(surface))))
+
+
+def _square_slope(surface: HeightMap) -> NDArray[np.float64]:
+    along, across = (slope(surface.heights, d, axis) for axis, d in enumerate(surface.spacing))
+    return along**2 + across**2
+
+
+def shortest_wave_for(surface: HeightMap, slope: float) -> float:
+    """Cut-off that leaves a surface with an rms slope when `asperity.surfaces.levelling.band_limit` has it.
+
+    Parameters
+    ----------
+    surface : HeightMap
+        Complete, levelled heights, m.
+    slope : float
+        Rms slope that is wanted.
+
+    Returns
+    -------
+    float
+        Shortest wavelength, m, at most the surface's longest side; zero where it has no larger slope.
+
+    Raises
+    ------
+    InputError
+        If points are missing.
+    """
+    qx, qy, density = psd_2d(surface)
+    square = qx[:, None] ** 2 + qy**2
+    power = square * density * (qx[1] - qx[0]) * (qy[1] - qy[0])
+    if power.sum() <= slope**2:
+        return 0.0
+
+    def left(octaves: float) -> float:
+        """What a Gaussian of half transmission at this cut-off leaves too much."""
+        passed = 4.0 ** -(square * (2.0**octaves / (2.0 * np.pi)) ** 2)
+        return float(np.sum(power * passed)) - slope**2
+
+    ends = np.log2(min(surface.spacing)) - 4.0, np.log2(max(surface.size))
+    return float(2.0 ** (brentq(left, *ends, xtol=1e-3) if left(ends[1]) < 0.0 else ends[1]))
 
 
 def profile_statistics(profile: Profile, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:

@@ -31,7 +31,7 @@ class StripSurvey:
     Attributes
     ----------
     statistics : list of Statistic
-        Areal roughness parameters, in the order of `areal_statistics`; none of a flat strip.
+        Areal roughness parameters, in the order of `areal_parameters`; none of a flat strip.
     edges, density : ndarray, shape (81,) and (80,)
         Heights about the mean, m, and the probability density between them, 1/m.
     wavenumber, spectrum : ndarray, shape (f,)

@@ -1,0 +1,214 @@
+"""Is a case inside the range in which its laws are known to hold? Answers with number and limit."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from asperity.errors import Grade, OutOfRangeWarning, percent
+from asperity.scenarios.chain import Chain
+from asperity.surfaces.statistics import rms_slope, shortest_wave_for
+
+_CUT_OFF = "share of contacts that the window cuts off"
+
+SCANNED = ("table", "direct")
+"""Laws that take the rough contact as it is, not as a texture averaged over Hertz's patch."""
+AREA = (0.9, 0.7)
+"""Real contact area over that of smooth bodies: warned of, and out of range, below."""
+SLOPE = (0.2, 0.5)
+"""Rms slope: warned of, and out of range, above. The half-space leaves out terms of its square."""
+ISOLATED = (0.05, 0.25)
+"""Share of the load on cells that touch alone: warned of, and out of range, above."""
+CELLS_PER_WAVE = 4
+"""Cells that the shortest wave must have, so that no more than `ISOLATED` touches alone."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One quantity, how far it may go, and what to make of it.
+
+    Attributes
+    ----------
+    quantity, value, limit : str
+        What was found, its number, and where its range ends.
+    grade : Grade or None
+        None where it is inside its range.
+    meaning, remedy : str
+        What it means to be outside, and what to do.
+    brief : str
+        Quantity and number in a few words, for a headline.
+    laws : tuple of str
+        Laws of the case that it concerns.
+    """
+
+    quantity: str
+    value: str
+    limit: str
+    grade: Grade | None
+    meaning: str
+    remedy: str
+    brief: str
+    laws: tuple[str, ...]
+
+    def concerns(self, law: str) -> bool:
+        """Whether it makes a law doubtful."""
+        return self.grade in (Grade.WARNING, Grade.OUT) and law in self.laws
+
+    @property
+    def message(self) -> str:
+        """All of it in one or two sentences."""
+        return f"{self.quantity}: {self.value}, in range {self.limit}. {self.meaning} {self.remedy}"
+
+
+def findings(chain: Chain[Any]) -> list[Finding]:
+    """Hold a case to the range in which its laws are known to hold.
+
+    Parameters
+    ----------
+    chain : Chain
+        What was computed.
+
+    Returns
+    -------
+    list of Finding
+        Every quantity, inside its range or not; none without samples.
+    """
+    return (
+        [] if chain.reduction is None else [_area(chain), _slope(chain), _isolated(chain), *_cut_off(chain)]
+    )
+
+
+def warn_of(found: list[Finding]) -> None:
+    """Warn of what is outside its range; cut-off contacts have been warned of where they were solved.
+
+    Parameters
+    ----------
+    found : list of Finding
+        From `findings`.
+    """
+    for finding in found:
+        if finding.grade is not None and not finding.quantity.startswith(_CUT_OFF):
+            warnings.warn(OutOfRangeWarning(finding.message, finding.grade), stacklevel=2)
+
+
+def rms_slope_of(chain: Chain[Any]) -> float:
+    """Rms slope of the samples on the contact grid."""
+    return float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in chain.textures.maps])))
+
+
+def _grade(value: float, limits: tuple[float, float]) -> Grade | None:
+    """Grade of a value: out of range below limits that fall, above limits that rise."""
+    sign = 1.0 if limits[1] > limits[0] else -1.0
+    warned, out = (sign * value > sign * limit for limit in limits)
+    return Grade.OUT if out else Grade.WARNING if warned else None
+
+
+def _area(chain: Chain[Any]) -> Finding:
+    ratio = chain.reduction.area_ratio  # type: ignore[union-attr]
+    averaged = tuple(law for law in chain.laws if law not in SCANNED)
+    scanned = [law for law in chain.laws if law in SCANNED]
+    return Finding(
+        "real contact area over that of smooth bodies",
+        f"{ratio:.2f}",
+        f"from {AREA[0]:g} on",
+        _grade(ratio, AREA) if averaged else None,
+        "The rough contact is only a part of the patch that laws of a line or an averaged texture take for "
+        "it: `areal` was 0.8 dB from `table` at 0.96 (rms over the bands), 1.2 dB at 0.81, 2.8 dB at 0.64.",
+        f"Read `{scanned[0]}`, which was rolled as well." if scanned else "Take `table`.",
+        f"real contact area {percent(ratio)} of that of smooth bodies",
+        averaged,
+    )
+
+
+def _slope(chain: Chain[Any]) -> Finding:
+    slope, spacing = rms_slope_of(chain), chain.shape.spacing[0]
+    pressure = 0.5 * chain.shape.modulus * slope
+    shortest = max(shortest_wave_for(sample, SLOPE[0]) for sample in chain.textures.maps)
+    remedy = "Leave out the short waves that yield at first touch"
+    if shortest > 2 * spacing:
+        remedy += f": surface.shortest = {_um(shortest)} leaves a slope of {SLOPE[0]:g}"
+    hard = "" if chain.case.contact.hardness is not None else ", or give contact.hardness"
+    return Finding(
+        "rms slope of the samples, Sdq",
+        f"{slope:.2g}",
+        f"up to {SLOPE[0]:g}",
+        _grade(slope, SLOPE),
+        "An elastic half-space is for small slopes, and elastic asperities carry about E* Sdq/2 = "
+        f"{pressure / 1e9:.2g} GPa.",
+        f"{remedy}{hard}.",
+        f"rms slope {slope:.2g}",
+        tuple(chain.laws),
+    )
+
+
+def _isolated(chain: Chain[Any]) -> Finding:
+    share, spacing = chain.reduction.isolated_share, chain.shape.spacing[0]  # type: ignore[union-attr]
+    least = CELLS_PER_WAVE * spacing
+    ways = [f"surface.shortest = {_um(least)} leaves out the waves that this one does not resolve"]
+    surface = chain.case.surface
+    known = surface.band[1] or (2.0 * surface.pixel if surface.pixel is not None else None)
+    if known is not None and known < least:
+        ways.insert(0, f"contact.spacing = {_um(known / CELLS_PER_WAVE, down=True)} resolves all waves")
+    return Finding(
+        "share of the load on asperities of a single cell",
+        percent(share),
+        f"up to {percent(ISOLATED[0])}",
+        _grade(share, ISOLATED),
+        "The grid does not resolve the asperities: forces depend on contact.spacing.",
+        f"A grid that would do: {', or '.join(ways)}.",
+        f"{percent(share)} of the load on single cells",
+        tuple(chain.laws),
+    )
+
+
+def _cut_off(chain: Chain[Any]) -> Iterator[Finding]:
+    """Contacts that the window cuts off: those that are rolled, and all that were solved."""
+    reduction, scan = chain.reduction, chain.scan
+    assert reduction is not None
+    ensemble, highest = reduction.ensemble, float(reduction.approaches[-1])
+    remedy = chain.shape.remedy_for_cut_off(
+        highest, reduction.working_approach, ensemble.datum, chain.textures.widest_window
+    )
+    main, run = next(iter(chain.runs.items()))
+    held = float(ensemble.mean_force[ensemble.held - 1]) if ensemble.held else 0.0
+    visited = float(np.mean(run.contact_force > held)) if ensemble.held < len(ensemble.approaches) else 0.0
+    smooth = main.partition("-")[0] in ("hertz", "linear")
+    yield Finding(
+        f"share of the time in contacts that the window cuts off, {main}",
+        percent(visited),
+        "below 1 %",
+        Grade.of_share(visited) if visited and not smooth else None,
+        f"Forces above {held:.3g} N are too small: their contacts are larger than the window.",
+        remedy,
+        f"{percent(visited)} of the time in contacts that the window cuts off",
+        (main,),
+    )
+    scans = {"filters": (reduction.truncated, reduction.solves)}
+    if scan is not None:
+        scans["path"] = (scan.truncated, scan.solved)
+    for name, (cut_off, solved) in scans.items():
+        share = cut_off / max(solved, 1)
+        grade = Grade.of_share(share) if cut_off else None
+        yield Finding(
+            f"{_CUT_OFF}, {name}",
+            percent(share),
+            "below 1 %",
+            grade,
+            "Their force is too small.",
+            remedy,
+            "",
+            (),
+        )
+
+
+def _um(length: float, *, down: bool = False) -> str:
+    """Write a length as it stands in a case file, rounded up, or down, to two digits."""
+    unit = 10.0 ** (math.floor(math.log10(length * 1e6)) - 1)
+    digits = length * 1e6 / unit
+    rounded = math.floor(digits * (1 + 1e-9)) if down else math.ceil(digits * (1 - 1e-9))
+    return f'"{round(rounded * unit, 6):g} um"'
