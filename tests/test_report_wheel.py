@@ -370,3 +370,14 @@ def test_motion_is_compared_with_practice():
     drawn = PARTS["rail_velocity"].draw(small(("areal", "linear-filtered", "linear"))).axes[0]
     assert {line.get_label() for line in drawn.lines} >= {"areal", "linear-filtered"}
     assert "linear" not in {line.get_label() for line in drawn.lines}
+
+
+def test_spectra_are_shaded_where_their_bands_say_little():
+    tree = small()
+    tree["spectra/band_time_product"].values[:] = 100.0
+    for name in ("force_psd", "rail_velocity_psd"):
+        assert not any(axes.patches for axes in PARTS[name].draw(tree).axes)
+    tree["spectra/band_time_product"].values[:6] = 9.9
+    for name in ("force_psd", "rail_velocity_psd"):
+        assert all(len(axes.patches) == 1 for axes in PARTS[name].draw(tree).axes)
+        assert "B T is below 10" in PARTS[name].caption(tree)

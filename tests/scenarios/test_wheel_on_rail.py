@@ -344,3 +344,9 @@ def test_decay_rate_limit():
         iso_3095_decay_rate([100.0, 250.0, 500.0, 800.0, 2000.0, 9000.0]),
         [np.nan, 2.0, 6.0, 2.19, 0.8, np.nan],
     )
+
+
+def test_a_record_that_holds_the_start_is_marked(tree):
+    """The run-in of these cases is 20 ms."""
+    messages = [w["message"] for w in json.loads(tree.attrs["warnings"])]
+    assert any("the record starts 20 ms after rest, less than 50 ms" in message for message in messages)

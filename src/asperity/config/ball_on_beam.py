@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, model_validator
 
 from asperity.config.case import (
     LAWS,
+    SETTLED,
     Case,
     Law,
     problem_of_steps,
@@ -38,9 +39,8 @@ from asperity.results import BASELINES
 NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
 NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line
 
-SETTLING = (0.05, 0.2)
-"""Shortest and longest run-in that is chosen, s: after the first the force varies as in a long run, within
-some per cent, after the second it does so in every one-third octave from 40 Hz on."""
+LONGEST_SETTLING = 0.2
+"""Longest run-in that is chosen, s: after it no one-third octave from 40 Hz on holds the start from rest."""
 SETTLING_SHARE = 0.25
 """Share of the beam that a chosen run-in takes at most, where the record lasts until its end."""
 
@@ -165,15 +165,16 @@ class BallOnBeamCase(Case):
     def settled_time(self) -> float:
         """Time in s that is rolled before the record starts.
 
-        As given; else as long as the record within `SETTLING`, as far as there is room on the beam.
+        As given; else as long as the record, from `SETTLED` to `LONGEST_SETTLING`, as far as there is room.
         """
         if self.settling is not None:
             return self.settling
-        (shortest, longest), whole = SETTLING, self.beam.length / self.speed
+        longest, whole = LONGEST_SETTLING, self.beam.length / self.speed
         before = whole if self.start is None else self.start / self.speed
         if self.duration is None:
             return min(longest, before, SETTLING_SHARE * whole)
-        return max(min(max(self.duration, shortest), longest, before, whole - self.duration), 0.0)
+        wanted = min(max(self.duration, SETTLED), longest)
+        return max(min(wanted, before, whole - self.duration), 0.0)
 
     @property
     def rolled_time(self) -> float:

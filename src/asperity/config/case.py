@@ -25,6 +25,8 @@ LAWS = (
     "linear-filtered",
 )
 MOST_STEPS = 10**8
+SETTLED = 0.05
+"""Run-in after which the force of a record varies as in a long run, within some per cent, s."""
 SAMPLING = 2.5  # points per period of the highest frequency, at least
 
 Law = Annotated[str, BeforeValidator(Choice(LAWS))]

@@ -19,7 +19,13 @@ from asperity.report.marks import (
 )
 from asperity.report.part import Columns, Part
 from asperity.report.rail_force_figures import around_peak
-from asperity.report.spectrum_figures import DRAWN, frequency_range, narrow_level
+from asperity.report.spectrum_figures import (
+    DRAWN,
+    frequency_range,
+    narrow_level,
+    shade_bands,
+    shaded_words,
+)
 from asperity.report.style import (
     INK,
     frequency_axis,
@@ -229,6 +235,7 @@ def velocity_psd_figure(tree: DataTree) -> Figure:
     frequency_axis(panels[-1], *frequency_range(tree))
     level_limits(panels[0], levels)
     for axes in panels:
+        shade_bands(axes, tree, labelled=axes is panels[0])
         draw_marks(axes, natural_frequencies(tree), labelled=False)
     legend_above(panels[0], columns=5)
     return figure
@@ -247,7 +254,7 @@ def velocity_psd_columns(tree: DataTree) -> Columns:
 def _velocity_psd_caption(tree: DataTree) -> str:
     named = ", ".join(f"{mark.label} {mark.frequency:.0f} Hz" for mark in natural_frequencies(tree))
     dotted = f" Dotted: {named}." if named else ""
-    return f"Velocity of the rail at fixed points over the whole run, {DRAWN}.{dotted}"
+    return f"Velocity of the rail at fixed points over the whole run, {DRAWN}.{dotted}{shaded_words(tree)}"
 
 
 MOTION = (

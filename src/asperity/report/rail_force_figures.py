@@ -13,7 +13,7 @@ from asperity.report.data import engineering, laws, number, of_law, present, val
 from asperity.report.marks import draw_sleeper_tones, draw_split, pinned_pinned_split
 from asperity.report.part import Columns, Part
 from asperity.report.spectrum_figures import FORCE as PSD
-from asperity.report.spectrum_figures import REFERENCE_STYLE, Spectrum
+from asperity.report.spectrum_figures import REFERENCE_STYLE, Spectrum, shade_bands, shaded_words
 from asperity.report.style import decibels, law_style, legend_above, level_limits, new_figure, styled
 from asperity.report.time_figures import FORCE, bars_words, columns_of_piece, cut_off, forces_with_flights
 
@@ -72,6 +72,7 @@ def psd_figure(tree: DataTree) -> Figure:
         axes.plot(*_thinned(tree, values(tree, REFERENCE_PSD), high), **REFERENCE_STYLE)
     axes.set_xlim(0, high)
     level_limits(axes, [level for _, level in drawn.values()])
+    shade_bands(axes, tree)
     _finish(axes, tree)
     return figure
 
@@ -131,7 +132,7 @@ def _psd_caption(tree: DataTree) -> str:
     turns = number(tree, "spectra", "wheel_revolution_frequency")
     if turns:
         text.append(f"The wheel turns at {turns:.1f} Hz.")
-    return " ".join(text)
+    return " ".join(text) + shaded_words(tree)
 
 
 FORCE_PEAK = Part(

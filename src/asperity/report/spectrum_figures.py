@@ -79,12 +79,14 @@ def narrow_level(tree: DataTree, psd: NDArray[np.float64], reference: float) -> 
     return smooth, decibels(power, reference)
 
 
-def _shade(axes: Axes, tree: DataTree) -> None:
+def shade_bands(axes: Axes, tree: DataTree, labelled: bool = True) -> None:
+    """Shade the frequencies of the bands that say little."""
     if present(tree, "spectra/band"):
-        shade_doubtful(axes, values(tree, "spectra/band"), doubtful(tree, "band"))
+        shade_doubtful(axes, values(tree, "spectra/band"), doubtful(tree, "band"), labelled)
 
 
-def _shaded_words(tree: DataTree) -> str:
+def shaded_words(tree: DataTree) -> str:
+    """Say what is shaded in a spectrum, where something is; a blank comes first."""
     return doubtful_words(tree, "band") if present(tree, "spectra/band") else ""
 
 
@@ -98,7 +100,7 @@ def force_figure(tree: DataTree) -> Figure:
     for law, (frequency, level) in spectra.items():
         axes.plot(frequency, level, label=law, **law_style(law, names[0]))
     frequency_axis(axes, *frequency_range(tree))
-    _shade(axes, tree)
+    shade_bands(axes, tree)
     level_limits(axes, [level for _, level in spectra.values()])
     axes.set_ylabel("contact force PSD / dB re 1 N²/Hz")
     legend_above(axes)
@@ -185,7 +187,7 @@ def _acceleration_level(tree: DataTree, law: str, sensor: int) -> Spectrum:
 
 def _finish_acceleration(axes: Axes, tree: DataTree, spectra: Sequence[Spectrum]) -> None:
     frequency_axis(axes, *frequency_range(tree))
-    _shade(axes, tree)
+    shade_bands(axes, tree)
     level_limits(axes, [level for _, level in spectra])
     axes.set_ylabel("acceleration PSD / dB re (1 µm/s²)²/Hz")
     legend_above(axes)
@@ -249,7 +251,7 @@ DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than tha
 def _force_caption(tree: DataTree) -> str:
     return (
         f"Contact force of all laws, one-sided PSD, {DRAWN}; thick: the main law, {laws(tree, FORCE)[0]}. "
-        "Ticks stand at the one-third octaves." + _shaded_words(tree)
+        "Ticks stand at the one-third octaves." + shaded_words(tree)
     )
 
 
@@ -277,12 +279,12 @@ def doubtful_words(tree: DataTree, dim: str) -> str:
 def _sensors_caption(tree: DataTree) -> str:
     main = laws(tree, ACCELERATION)[0]
     text = f"Acceleration at all sensors by the main law, {main}, positive downwards; {DRAWN}."
-    return text + _shaded_words(tree)
+    return text + shaded_words(tree)
 
 
 def _one_sensor_caption(tree: DataTree) -> str:
     label = sensor_labels(tree, ACCELERATION)[_middle_sensor(tree)]
-    return f"Acceleration at {label} by all laws; {DRAWN}.{_shaded_words(tree)}"
+    return f"Acceleration at {label} by all laws; {DRAWN}.{shaded_words(tree)}"
 
 
 _ACCELERATION_NEEDS = (ACCELERATION, "spectra/frequency")

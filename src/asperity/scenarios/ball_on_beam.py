@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 from asperity.config import BallOnBeamCase
-from asperity.config.ball_on_beam import SETTLING
 from asperity.contact import Hertz
-from asperity.errors import ShortRecordWarning
 from asperity.pointforce import Law
 from asperity.progress import Progress
 from asperity.reference.materials import contact_modulus
 from asperity.rolling.ball_on_beam import Rolling, roll
 from asperity.scenarios.beam_textures import gather
-from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
+from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll, warn_of_start
 from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.geometry import Geometry, geometry, parabola, window_cells
 from asperity.scenarios.textures import Textures
@@ -71,7 +68,7 @@ def compute(case: BallOnBeamCase, progress: Progress) -> Computed:
     watch.lap("compiled functions")
     pace = case.contact.spacing / case.speed
     duration = min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace)
-    _warn_of_start(case.settled_time)
+    warn_of_start(case, "shorten the duration or start farther along the beam")
     checkpoint = Checkpoint(store, _run_key(case, textures, duration)) if "direct" in case.laws else None
 
     def roll_law(law: Law) -> Rolling:
@@ -127,17 +124,6 @@ def _beam(case: BallOnBeamCase) -> Beam:
         highest_frequency=MODES_BEYOND * case.numerics.highest_frequency,
         suspension_frequency=case.beam.suspension_frequency,
     )
-
-
-def _warn_of_start(settling: float) -> None:
-    if settling < SETTLING[0] * (1 - 1e-9):
-        warnings.warn(
-            f"the record starts {settling * 1e3:.3g} ms after the ball lay at rest, less than "
-            f"{SETTLING[0] * 1e3:.3g} ms: its levels hold the start. Start farther along the beam, or "
-            "shorten the duration, so that there is room for settling.",
-            ShortRecordWarning,
-            stacklevel=3,
-        )
 
 
 def _run_key(case: BallOnBeamCase, textures: Textures, duration: float) -> str:

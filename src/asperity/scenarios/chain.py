@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
@@ -11,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config import Case
+from asperity.config.case import SETTLED
+from asperity.errors import ShortRecordWarning
 from asperity.pointforce import Law
 from asperity.progress import Progress
 from asperity.reduction.scan import ScannedForces
@@ -119,6 +122,26 @@ class Stopwatch:
         now = time.perf_counter()
         self.seconds[part] = now - self._last
         self._last = now
+
+
+def warn_of_start(case: Case, remedy: str) -> None:
+    """Warn of a record that holds the start from rest.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    remedy : str
+        How to make room for a run-in.
+    """
+    settling = case.settled_time
+    if settling < SETTLED * (1 - 1e-9):
+        warnings.warn(
+            f"the record starts {settling * 1e3:.3g} ms after rest, less than {SETTLED * 1e3:.3g} ms: its "
+            f"levels hold the start. So that there is time for settling, {remedy}.",
+            ShortRecordWarning,
+            stacklevel=3,
+        )
 
 
 def reduce_and_roll(

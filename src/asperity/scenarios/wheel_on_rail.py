@@ -15,7 +15,7 @@ from asperity.pointforce import Law
 from asperity.progress import Progress
 from asperity.rolling.passing import passed_points
 from asperity.rolling.wheel_on_rail import WheelRolling, roll
-from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
+from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll, warn_of_start
 from asperity.scenarios.compiling import compile_rail_kernels
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.rail_defects import NEED_GEOMETRY
@@ -77,6 +77,7 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
     track, wheel = case.track_model(), wheel_of(case)
     shape = rail_geometry(case)
     textures = gather(case)
+    warn_of_start(case, "set settling")
     _warn_of_defects(case, textures, shape)
     watch.lap("textures")
     compile_rail_kernels(progress)  # not before the files are known to be right
