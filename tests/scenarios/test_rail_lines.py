@@ -20,7 +20,7 @@ kind = "wheel-on-rail"
 laws = ["areal", "linear"]
 speed = "56 m/s"
 duration = "{duration}"
-settling = "20 ms"
+settling = "50 ms"
 [surface]
 {surface}
 [wheel]
