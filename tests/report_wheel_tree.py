@@ -44,6 +44,11 @@ def track():
         np.sin(np.pi * start / SLEEPERS) ** 2, 1e-6 * np.sin(2 * np.pi * PINNED * lag) * np.exp(-lag / 8e-3)
     )
 
+    layers = {"pad": (0.25, 0.75, 3.0), "ballast": (0.4, 0.6, 9.0)}  # loss factor, stiffness from and to
+    stiffness = np.array([np.geomspace(low, high, BANDS.size) for _, low, high in layers.values()])
+    constant = np.array([factor for factor, _, _ in layers.values()])
+    wave = np.sin(np.linspace(0, 6, BANDS.size))
+
     def against(values, units, name):
         return variable("frequency", values, units, name)
 
@@ -61,8 +66,17 @@ def track():
             "moving_kernel": variable(
                 ("start_position", "lag"), kernel + ring, "m/(N s)", "response under the wheel"
             ),
+            "loss_factor_force_error": variable("band", 0.6 * wave, "dB", "error of the contact force"),
+            "loss_factor_rail_error": variable("band", 3 - 3 * wave, "dB", "error of the receptance"),
+            "loss_factor": variable("layer", constant, "1", "constant loss factor"),
+            "relaxed_stiffness": variable(("layer", "band"), stiffness, "1", "stiffness in time"),
+            "relaxed_loss_factor": variable(
+                ("layer", "band"), constant[:, None] * (1 + 0.3 * wave), "1", "loss factor in time"
+            ),
         },
         coords={
+            "band": ("band", BANDS, {"units": "Hz"}),
+            "layer": list(layers),
             "frequency": ("frequency", frequency, {"units": "Hz"}),
             "lag": ("lag", lag, {"units": "s"}),
             "start_position": ("start_position", start, {"units": "m"}),
@@ -73,6 +87,7 @@ def track():
             "antiresonance_frequency": 225.0,
             "critical_speed": 412.0,
             "static_deflection": 7.6e-4,
+            "static_deflection_in_time": 1.1e-3,
             "kernel_fit_error": 1.5e-4,
             "kernel_method": "poles",
             "kernel_poles": 100,

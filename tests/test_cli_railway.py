@@ -42,6 +42,23 @@ def test_check_shows_the_track_and_the_run_in():
         assert text in shown
 
 
+def test_check_says_what_loss_factors_do_to_the_force():
+    assert "error of the contact force, dB: " in call("check", "rail.toml").stdout
+    Path("lossy.toml").write_text(
+        f'{RAIL}[track]\nname = "nordborg-loss-factor"\nballast_loss_factor = 2.0\n'
+    )
+    outcome = call("check", "lossy.toml")
+    told = " ".join(line.split("│")[2].strip() for line in outcome.stdout.splitlines() if line[0] == "│")
+    assert "40 Hz +0.4" in told
+    assert "630 Hz −1.0" in told
+    assert "else below 0.05" in told
+    assert "rail 0.99, pads 1.10, ballast 0.40; the load at mid-span rests" in told
+    assert "mm down, nominally 0.343 mm" in told
+    assert "nothing that answers after a force only has the loss factor 2 of the ballast" in outcome.stderr
+    Path("viscous.toml").write_text(f'{RAIL}[track]\nname = "nordborg"\nrail_loss_factor = 0.0\n')
+    assert "loss factors" not in call("check", "viscous.toml").stdout
+
+
 def test_check_reads_the_measured_lines():
     np.save("wheel.npy", np.zeros((2890, 10)))
     keys = '[wheel]\nline = "wheel.npy"\nline_unit = "um"\n'

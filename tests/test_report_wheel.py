@@ -117,6 +117,7 @@ def test_attributes_may_be_missing(part):
         ("receptance", "track", ["receptance_midspan_phase", "receptance_support_phase"]),
         ("receptance", "track", ["receptance_midspan", "wheel_receptance", "contact_receptance"]),
         ("decay_rate", "track", ["decay_rate_limit", "decay_rate_en15461"]),
+        ("loss_factors", "track", ["loss_factor_rail_error"]),
         ("roughness", "rolling", ["position"]),
         ("force_envelope", "rolling", ["contact_loss_share"]),
         ("force_peak", "rolling", ["position", "contact_loss_share"]),

@@ -331,7 +331,9 @@ def test_overrides_replace_the_other_kind_of_damping():
     assert not any(source.startswith("pad_damping") for source in rail.sources)
     back = Track.named("nordborg-loss-factor", ballast_damping=48e3)
     assert (back.ballast_damping, back.ballast_loss_factor) == (48e3, None)
-    assert not back.is_viscous
+    assert not back.is_causal
+    assert not rail.is_causal
+    assert track(rail_loss_factor=0.0).is_causal
     assert rail.is_damped
     assert not undamped().is_damped
 

@@ -109,16 +109,32 @@ class TestAgainstTheFrequencyDomain:
         assert away.sum() >= 13
         assert np.abs(difference).max() < 1.0
 
+    def test_loss_factors_keep_the_force_at_the_resonance_of_the_wheel_on_the_track(self):
+        track, speed = Track.named("nordborg-loss-factor"), 10.0
+        rail = rail_poles(moving_kernel(track, speed, STEP, positions=12), 100)
+        heights = 1e-8 * np.cumsum(np.random.default_rng(3).standard_normal(25_000))
+        texture = StateTexture.unfiltered(-(heights - heights.mean()), 2e-3, -5.0)
+        rough, smooth = (
+            roll(rail, WHEEL, linear(each), start=0.0, duration=4.0, settling=0.4) for each in (texture, None)
+        )
+        # the contact is linear: without the tones of the sleepers, the force is that of the texture
+        frequency, found = psd(rough.contact_force - smooth.contact_force, STEP, segment=20_000)
+        _, density = psd(texture.at(rough.position)[:, 0], speed * STEP, segment=20_000)
+        expected = np.zeros_like(found)
+        expected[1:] = linear_force_psd(frequency[1:], density[1:], speed, WHEEL, track, STIFFNESS)
+        _, levels = band_levels(frequency, np.stack([found, expected]), low=25.0, high=1000.0)
+        assert np.abs(levels[0] - levels[1]).max() < 0.75
+
 
 class TestConvergence:
     def test_the_force_converges_with_the_square_of_the_time_step(self):
-        x = np.arange(0.0, 6.0, 1e-3)
-        texture = StateTexture.unfiltered(-10e-6 * np.sin(2 * np.pi * x / 0.2), 1e-3, -1.0)
+        x = np.arange(0.0, 9.0, 1e-3)
+        texture = StateTexture.unfiltered(-10e-6 * np.sin(2 * np.pi * x / 0.2), 1e-3, -6.0)
         forces = []
         for divide in (1, 2, 4):
-            step = 1.6e-4 / divide
+            step = 8e-5 / divide
             rail = moving_kernel(TRACK, SPEED, step, duration=0.2)
-            run = roll(rail, WHEEL, Hertz(HERTZ, texture), start=0.0, duration=0.048, settling=0.0)
+            run = roll(rail, WHEEL, Hertz(HERTZ, texture), start=0.0, duration=0.048, settling=0.096)
             forces.append(run.contact_force[::divide])
         n = min(map(len, forces))
         coarse = np.linalg.norm(forces[0][:n] - forces[1][:n])

@@ -137,6 +137,10 @@ class ShortRecordWarning(PhysicsWarning):
     """A record is short for the wavelengths or statistics taken from it."""
 
 
+class LossFactorWarning(PhysicsWarning):
+    """Constant loss factors are not causal; what stands for them in time changes the contact force."""
+
+
 class UnconvergedWarning(PhysicsWarning):
     """An iterative solution stopped before it reached its tolerance."""
 

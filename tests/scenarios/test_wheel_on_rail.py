@@ -15,6 +15,7 @@ from asperity.reference.cnossos import rail_roughness
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.scenarios import run
 from asperity.scenarios.rail_geometry import rail_geometry
+from asperity.scenarios.rail_losses import described_losses, expected_error_of_losses, loss_variables
 from asperity.scenarios.rail_textures import gather
 from asperity.studies.running import study
 from asperity.surfaces.heightmap import Profile
@@ -173,6 +174,34 @@ class TestResult:
         middle = 0.5 * (spectra["pinned_pinned_low"] + spectra["pinned_pinned_high"])
         assert middle == pytest.approx(tree["track"].attrs["pinned_pinned_frequency"])
         assert spectra["wheel_revolution_frequency"] == pytest.approx(56 / (2 * np.pi * 0.46))
+
+
+class TestLossFactors:
+    def test_the_result_holds_the_error_of_every_band(self, tree):
+        track, errors = tree["track"], tree["track/loss_factor_force_error"]
+        assert errors.dims == ("band",)
+        assert float(errors.band[0]) == pytest.approx(5.01, abs=0.01)
+        assert set(np.round(tree["spectra/band"].values)) <= set(np.round(errors.band.values))
+        assert 0.01 < float(np.abs(errors).max()) < 0.2  # x2000: the rail alone has a loss factor
+        assert list(track["layer"].values) == ["rail"]
+        assert float(track["loss_factor"].sel(layer="rail")) == 0.02
+        assert track["relaxed_stiffness"].dims == ("layer", "band")
+        assert track.attrs["static_deflection_in_time"] > track.attrs["static_deflection"]
+        assert "constant loss factors" in tree["spectra/linear_reference_psd"].attrs["long_name"]
+        numerics = {entry["name"]: entry["value"] for entry in json.loads(tree["scenario"].attrs["numerics"])}
+        assert "else below 0.05" in numerics["loss factors in time"]
+        assert "of the nominal one: rail 0.9" in numerics["stiffness at rest"]
+
+    def test_a_large_one_is_warned_of(self, tree, monkeypatch):
+        monkeypatch.setattr("asperity.rolling.loss_factors.DOUBTFUL", 0.01)
+        again = run(case(laws=["linear"]))  # the same track, kept
+        assert "LossFactorWarning" in [entry["category"] for entry in json.loads(again.attrs["warnings"])]
+        assert "LossFactorWarning" not in tree.attrs["warnings"]
+
+    def test_viscous_tracks_have_nothing_to_tell(self):
+        viscous = expected_error_of_losses(case(track='name = "nordborg"\nrail_loss_factor = 0.0'))
+        assert loss_variables(viscous) == {}
+        assert list(described_losses(viscous, 65e3)) == []
 
 
 @pytest.fixture(scope="module")

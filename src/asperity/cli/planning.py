@@ -164,11 +164,19 @@ def _track(case: Case) -> list[tuple[str, str]]:
     """Characteristic numbers of the track."""
     if not isinstance(case, WheelOnRailCase):
         return []
-    track = case.track_model()
+    from asperity.rolling.loss_factors import warn_of_loss_factors
+    from asperity.scenarios.rail_losses import described_losses, expected_error_of_losses
+
+    track, losses = case.track_model(), expected_error_of_losses(case)
+    warn_of_loss_factors(losses)
     frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, sleeper passing"
     passing = f"{case.speed / track.sleeper_spacing:.4g} Hz, critical speed {track.critical_speed:.4g} m/s"
     points = ", ".join(f"{position:g} m" for position in case.point_positions)
-    return [("track", f"{frequencies} {passing}"), ("rail motion recorded at", points)]
+    return [
+        ("track", f"{frequencies} {passing}"),
+        *described_losses(losses, case.wheel.load),
+        ("rail motion recorded at", points),
+    ]
 
 
 def _measured(case: Case) -> list[tuple[str, str]]:

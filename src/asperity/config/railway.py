@@ -62,7 +62,10 @@ class TrackCase(Section):
         None, "viscous damping of a pad", otherwise=_NAMED, example='"18 kN s/m"'
     )
     pad_loss_factor: LossFactor | None = key(
-        None, "loss factor of a pad, instead of pad_damping", otherwise=_NAMED, example="0.15"
+        None,
+        "loss factor of a pad, instead of pad_damping; approximated in time",
+        otherwise=_NAMED,
+        example="0.15",
     )
     sleeper_mass: Mass | None = key(
         None, "mass of a sleeper under one rail: half a sleeper", otherwise=_NAMED, example='"150 kg"'
@@ -74,7 +77,10 @@ class TrackCase(Section):
         None, "viscous damping of the ballast", otherwise=_NAMED, example='"48 kN s/m"'
     )
     ballast_loss_factor: LossFactor | None = key(
-        None, "loss factor of the ballast, instead of ballast_damping", otherwise=_NAMED, example="0.4"
+        None,
+        "loss factor of the ballast, instead of ballast_damping; approximated in time",
+        otherwise=_NAMED,
+        example="0.4",
     )
     sleeper_spacing: Length | None = key(
         None, "distance of the sleepers", otherwise=_NAMED, example='"0.6 m"'

@@ -14,6 +14,7 @@ from xarray import DataTree
 
 from asperity.report.contact_figures import CONTACT
 from asperity.report.data import entries, group_attrs
+from asperity.report.loss_figures import LOSS_FACTORS
 from asperity.report.motion_figures import MOTION
 from asperity.report.noise_figures import NOISE
 from asperity.report.part import Part
@@ -57,7 +58,7 @@ BALL_ON_BEAM = (
 )
 WHEEL_ON_RAIL = (
     Chapter("texture", "Texture", (ROUGHNESS_LEVELS, *TEXTURE), (statistics_table, homogeneity_table)),
-    Chapter("track", "Track and wheel", TRACK),
+    Chapter("track", "Track and wheel", (*TRACK, LOSS_FACTORS)),
     _CONTACT,
     Chapter(
         "force",

@@ -119,7 +119,10 @@ def _psd_caption(tree: DataTree) -> str:
     drawn = f"drawn as mean power of {count} lines" if count > 1 else "every line"
     text = [f"One-sided PSD, {drawn}; thick: the main law, {laws(tree, PSD)[0]}."]
     if present(tree, REFERENCE_PSD):
-        text.append("Dashed: the linear contact in the frequency domain, F = −h/(α_W + α_C + α_R), at rest.")
+        text.append(
+            "Dashed: the linear contact in the frequency domain, F = −h/(α_W + α_C + α_R), at rest, with "
+            "constant loss factors."
+        )
     tone = number(tree, "spectra", "sleeper_passing_frequency")
     if tone:
         text.append(f"Ticks along the bottom: sleeper passing, n v/L, every {tone:.1f} Hz.")

@@ -107,7 +107,7 @@ def roll_a_wheel() -> None:
     from asperity.structures.wheel import Wheel
 
     wheel = Wheel.rigid(600.0, 65e3)
-    kernel = MovingKernel(Track.named("nordborg"), 1.0, 1e-6, np.full((4, 4), 1e-12), 0.0)
+    kernel = MovingKernel(Track.named("nordborg"), 1.0, 1e-6, np.full((4, 4), 1e-12))
     poles = RailPoles(kernel, np.array([0.5 + 0.1j]), np.full((4, 1), 1e-12 + 0j), 0.0, 0.0)
     rails: list[RailPoles | MovingKernel] = [kernel, poles]
     for each in rails:

@@ -65,7 +65,7 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
             "frequency",
             reference[shown],
             "N2/Hz",
-            "PSD of the contact force, linear, by frequency",
+            "PSD of the contact force, linear, by frequency, with constant loss factors",
         ),
         "linear_reference_level": variable(
             "band", reference_level, "dB re 1 N", "contact force level, linear, in the frequency domain"
@@ -83,6 +83,8 @@ def linear_reference(
     computed: Computed, frequency: NDArray[np.float64], segment: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Force of the linear contact in the frequency domain, for the texture that is passed.
+
+    The track is the nominal one, with constant loss factors.
 
     Parameters
     ----------

@@ -9,7 +9,9 @@ import xarray
 
 from asperity.reference.cnossos import CITATION
 from asperity.results import variable
+from asperity.rolling.loss_factors import LossFactorError, warn_of_loss_factors
 from asperity.scenarios.contact_group import contact_group
+from asperity.scenarios.rail_losses import described_losses, error_of_losses
 from asperity.scenarios.rail_spectra import point_coordinate, spectra_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.track_group import track_group
@@ -35,12 +37,13 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     xarray.DataTree
         Groups scenario, surface, track, contact, rolling, spectra.
     """
-    spectra = spectra_group(computed)
+    spectra, losses = spectra_group(computed), error_of_losses(computed)
     found = findings(computed.chain)
     warn_of(found)
+    warn_of_loss_factors(losses)
     groups = {
         "/surface": surface_group(computed.chain),
-        "/track": track_group(computed),
+        "/track": track_group(computed, losses),
         "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),
         "/spectra": spectra,
@@ -51,21 +54,21 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         caught,
         title=f"Wheel on rail at {computed.case.speed:.3g} m/s",
         verdict=verdict(computed.chain, spectra, found, "wheel"),
-        numerics=_numerics(computed),
+        numerics=_numerics(computed, losses),
         citations=(*computed.track.sources, CITATION),
     )
 
 
-def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:
+def _numerics(computed: Computed, losses: LossFactorError) -> Iterable[tuple[str, str]]:
     kernel, rail = computed.kernel, computed.rail
     yield "start positions of the moving kernel", f"{kernel.weights.shape[0]} in a bay"
     yield "length of the moving kernel", f"{kernel.lag[-1]:.3g} s, {kernel.weights.shape[1]} steps"
-    yield "error of the moving kernel from non-causal losses", f"{kernel.causality_error:.2g} dB"
     if isinstance(rail, RailPoles):
         yield "track in time", f"{rail.count} poles"
         yield "error of the fitted poles, relative", f"{rail.fit_error:.1e}"
     else:
         yield "track in time", "scattered from the moving kernel"
+    yield from described_losses(losses, computed.case.wheel.load)
 
 
 def _rolling(computed: Computed) -> xarray.Dataset:

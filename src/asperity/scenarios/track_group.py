@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.results import variable
+from asperity.rolling.loss_factors import LossFactorError
 from asperity.scenarios.laws import working_point
+from asperity.scenarios.rail_losses import loss_variables
 from asperity.scenarios.wheel_on_rail import Computed
 from asperity.structures.decay_rate import decay_rate, decay_rate_en15461
 from asperity.structures.rail_poles import RailPoles
@@ -20,18 +22,20 @@ KERNEL_LAG = 0.25
 """Longest lag of the moving kernel that is kept in a result, s."""
 
 
-def track_group(computed: Computed) -> xarray.Dataset:
+def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
     """Lay out what the wheel rolls on.
 
     Parameters
     ----------
     computed : Computed
         What was computed.
+    losses : LossFactorError
+        How far the force is off for loss factors.
 
     Returns
     -------
     xarray.Dataset
-        Receptances over frequency, decay rates, moving kernel and characteristic numbers.
+        Receptances over frequency, decay rates, moving kernel, loss factors and characteristic numbers.
     """
     track, case = computed.track, computed.case
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
@@ -59,7 +63,8 @@ def track_group(computed: Computed) -> xarray.Dataset:
         ),
         "decay_rate_limit": over(iso_3095_decay_rate(frequency), "dB/m", "lower limit, ISO 3095:2013"),
     }
-    return xarray.Dataset(variables | _kernel(computed), attrs=_attributes(computed))
+    variables |= _kernel(computed) | loss_variables(losses)
+    return xarray.Dataset(variables, attrs=_attributes(computed))
 
 
 def _kernel(computed: Computed) -> dict[str, xarray.Variable]:
@@ -87,7 +92,9 @@ def _attributes(computed: Computed) -> dict[str, float | int | str]:
         "antiresonance_frequency": track.antiresonance_frequency,
         "critical_speed": track.critical_speed,
         "static_deflection": track.static_deflection(case.wheel.load, 0.5 * track.sleeper_spacing),
-        "kernel_causality_error": computed.kernel.causality_error,
+        "static_deflection_in_time": computed.kernel.track.static_deflection(
+            case.wheel.load, 0.5 * track.sleeper_spacing
+        ),
         "kernel_method": "poles" if isinstance(computed.rail, RailPoles) else "scatter",
     }
     if isinstance(computed.rail, RailPoles):

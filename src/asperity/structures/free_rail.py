@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 def free_rail_waves(
     omega: NDArray,
-    bending_stiffness: complex,
+    bending_stiffness: complex | NDArray,
     mass_per_length: float,
-    shear_stiffness: complex | None = None,
+    shear_stiffness: complex | NDArray | None = None,
     rotary_inertia: float | None = None,
 ) -> tuple[NDArray, NDArray]:
     """Receptance of a free infinite rail as a sum of two waves.
@@ -19,12 +19,12 @@ def free_rail_waves(
     ----------
     omega : ndarray (f,) of complex
         Angular frequency, rad/s, with positive real part or in the lower half-plane.
-    bending_stiffness : complex
-        E I with its loss factor, N m^2.
+    bending_stiffness : complex or ndarray (f,)
+        E I with its losses, N m^2.
     mass_per_length : float
         m', kg/m.
-    shear_stiffness : complex, optional
-        S = G A kappa with its loss factor, N; with `rotary_inertia` a Timoshenko rail.
+    shear_stiffness : complex or ndarray (f,), optional
+        S = G A kappa with its losses, N; with `rotary_inertia` a Timoshenko rail.
     rotary_inertia : float, optional
         rho I, kg m.
 

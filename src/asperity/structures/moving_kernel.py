@@ -13,6 +13,7 @@ from asperity.arguments import real, shown, whole
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
 from asperity.store import Cache, content_key
+from asperity.structures.causal_track import causal_track
 from asperity.structures.hat_response import SHIFT, ZONES, HatResponse
 from asperity.structures.track import Track
 from asperity.threads import thread_count
@@ -23,8 +24,6 @@ SHORTEST, LONGEST = 0.12, 0.6
 """Between these lengths, s, the kernel grows until it has died away."""
 DIED_AWAY = 1e-3
 """Largest value in the last tenth of a kernel, relative to its largest of all, by which it has died away."""
-LOWEST, HIGHEST = 50.0, 5000.0
-"""Frequencies, Hz, between which the kernel's receptance is compared with that of the track."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +33,7 @@ class MovingKernel:
     Parameters
     ----------
     track : Track
-        The track.
+        The track, with relaxations where it has loss factors.
     speed : float
         Of the contact, m/s.
     time_step : float
@@ -44,18 +43,12 @@ class MovingKernel:
         again, linearly, within a step each, at x_s = s L/positions; m/N. Column 0 stands for the rising
         half alone. A force that is linear over each step displaces the rail by the sum of its values
         times these weights.
-    causality_error : float
-        Largest departure of the kernel's receptance under a force at rest from that of the track, 50 Hz to
-        5 kHz or a quarter of the sampling frequency, dB. Loss factors are not causal: the kernel is the
-        causal signal with the imaginary part of the receptance, faded out below some ten hertz so that
-        the static deflection is exact.
     """
 
     track: Track
     speed: float
     time_step: float
     weights: NDArray[np.float64]
-    causality_error: float
 
     @property
     def spacing(self) -> float:
@@ -83,7 +76,8 @@ def moving_kernel(
     Parameters
     ----------
     track : Track
-        The track; it must dissipate.
+        The track; it must dissipate. Where it has constant loss factors, the kernel is that of its
+        `causal_track`.
     speed : float
         m/s, below the critical speed; zero for a contact at rest.
     time_step : float
@@ -114,8 +108,8 @@ def moving_kernel(
     Notes
     -----
     Inverse Fourier transform of the exact receptance G(x_s + vτ | x_s) times that of the hat,
-    sin²(ωΔt/2)/(ωΔt/2)², folded at half the sampling frequency; between the nodes of a bay the
-    response is interpolated by a cubic. For viscous damping alone the transform runs along ω − iσ.
+    sin²(ωΔt/2)/(ωΔt/2)², along ω − iσ and folded at half the sampling frequency; between the nodes of a
+    bay the response is interpolated by a cubic.
     """
     if not isinstance(track, Track):
         raise InputError("track", shown(track), "a Track, as Track.named('x2000')")
@@ -129,12 +123,12 @@ def moving_kernel(
         raise InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
     if speed > 0.0:
         track.refuse_speed(speed)
+    track = causal_track(track)
     parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
     key = content_key("moving-kernel", parameters, speed, time_step, duration, positions, ZONES, SHIFT)
     kept = cache.get(key) if cache is not None else None
     if kept is None:
         kept = {"weights": _until_it_dies(track, speed, time_step, duration, positions, progress)}
-        kept["causality_error"] = np.array(_causality_error(track, time_step, kept["weights"].shape[1]))
         if cache is not None:
             cache.put(key, kept)
     weights = kept["weights"]
@@ -146,7 +140,7 @@ def moving_kernel(
             CoarseSamplingWarning,
             stacklevel=2,
         )
-    return MovingKernel(track, speed, time_step, weights, float(kept["causality_error"]))
+    return MovingKernel(track, speed, time_step, weights)
 
 
 def _until_it_dies(
@@ -223,19 +217,3 @@ def _cubic(share: NDArray) -> NDArray:
             before * share * after / 6.0,
         ]
     )
-
-
-def _causality_error(track: Track, time_step: float, taps: int) -> float:
-    """Largest difference of levels between the causal kernel and the receptance, at mid-span, dB."""
-    grid = HatResponse(track, time_step, taps, ZONES)
-    middle = 0.5 * track.sleeper_spacing
-    weights = grid.response((grid.hat * grid.waves.receptance(middle, middle))[None])[0]
-    omega = 2.0 * np.pi * np.geomspace(LOWEST, min(HIGHEST, 0.25 / time_step), 60)
-    found = np.exp(-1j * omega[:, None] * time_step * np.arange(taps)) @ weights
-    expected = np.zeros(omega.size, dtype=complex)
-    for alias in range(-ZONES // 2, ZONES // 2 + 1):
-        shifted = omega + 2.0 * np.pi * alias / time_step
-        receptance = track.receptance(np.abs(shifted) / (2.0 * np.pi), middle, middle)
-        hat = (np.sin(0.5 * shifted * time_step) / (0.5 * shifted * time_step)) ** 2
-        expected += hat * np.where(shifted < 0.0, np.conj(receptance), receptance)
-    return float(np.abs(20.0 * np.log10(np.abs(found / expected))).max())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from asperity.errors import InputError
 from asperity.reference.tracks import named_track
 from asperity.structures.free_rail import free_rail_waves, pinned_frequency
 from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
+from asperity.structures.relaxation import Relaxation, Relaxations
 from asperity.structures.track_checks import check_track
 
 _ALTERNATIVES = {
@@ -57,6 +58,8 @@ class Track:
         What the set is called.
     sources : tuple of str
         Where the values come from, one text per parameter.
+    relaxations : Relaxations, optional
+        Causal stiffnesses that stand for the loss factors, as `asperity.structures.causal_track` finds them.
 
     Raises
     ------
@@ -68,8 +71,8 @@ class Track:
     -----
     Vertical motion of one rail on rigid half sleepers. Euler-Bernoulli overestimates the
     pinned-pinned frequency of a UIC 60 rail at 0.6 m by a third (1420 for 1063 Hz); above about 5 kHz
-    the section of a rail deforms. A constant loss factor is slightly non-causal in time; viscous
-    damping is exact.
+    the section of a rail deforms. A constant loss factor is not causal: in time a causal track stands
+    for it (`asperity.structures.causal_track`). Viscous damping is causal.
     """
 
     bending_stiffness: float
@@ -87,6 +90,7 @@ class Track:
     rotary_inertia: float | None = None
     name: str = ""
     sources: tuple[str, ...] = ()
+    relaxations: Relaxations | None = None
 
     def __post_init__(self) -> None:
         check_track(self)
@@ -126,9 +130,15 @@ class Track:
         return cls(**(values | overrides))
 
     @property
-    def is_viscous(self) -> bool:
-        """Whether pads and ballast have no loss factor; their response in time is then causal."""
-        return not self.pad_loss_factor and not self.ballast_loss_factor
+    def is_causal(self) -> bool:
+        """Whether it responds after a force only: no constant loss factor, or relaxations instead."""
+        lossy = self.rail_loss_factor or self.pad_loss_factor or self.ballast_loss_factor
+        return not lossy or self.relaxations is not None
+
+    @property
+    def nominal(self) -> Track:
+        """The track with its constant loss factors, without relaxations."""
+        return replace(self, relaxations=None)
 
     @property
     def is_damped(self) -> bool:
@@ -147,7 +157,7 @@ class Track:
         Parameters
         ----------
         omega : array_like of complex
-            Angular frequency, rad/s, with positive real part or, if viscous, in the lower half-plane.
+            Angular frequency, rad/s, with positive real part or, if causal, in the lower half-plane.
 
         Returns
         -------
@@ -155,12 +165,28 @@ class Track:
             K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2), N/m.
         """
         omega = np.asarray(omega, dtype=complex)
-        pad = _layer_stiffness(self.pad_stiffness, self.pad_damping, self.pad_loss_factor, omega)
-        ballast = _layer_stiffness(
-            self.ballast_stiffness, self.ballast_damping, self.ballast_loss_factor, omega
-        )
+        pad, ballast = self.layer_stiffnesses(omega)
         below = ballast - self.sleeper_mass * omega**2
         return pad * below / (pad + below)
+
+    def layer_stiffnesses(self, omega: ArrayLike) -> tuple[NDArray, NDArray]:
+        """Dynamic stiffness of a pad, and of the ballast under a sleeper.
+
+        Parameters
+        ----------
+        omega : array_like of complex
+            As in `support_stiffness`.
+
+        Returns
+        -------
+        pad, ballast : ndarray of complex
+            N/m.
+        """
+        omega, relaxed = np.asarray(omega, dtype=complex), self.relaxations or Relaxations()
+        pad = self.pad_stiffness * _loss(self.pad_loss_factor, relaxed.pad, omega)
+        ballast = self.ballast_stiffness * _loss(self.ballast_loss_factor, relaxed.ballast, omega)
+        rate = 1j * omega
+        return pad + rate * (self.pad_damping or 0.0), ballast + rate * (self.ballast_damping or 0.0)
 
     def free_waves(self, omega: ArrayLike) -> tuple[NDArray, NDArray]:
         """Waves of the rail without supports.
@@ -175,13 +201,13 @@ class Track:
         wavenumbers, amplitudes : ndarray (2, f) of complex
             k_i, rad/m, and A_i, m/N, of the receptance G_0(x) = sum_i A_i exp(-i k_i |x|).
         """
+        omega, relaxed = np.asarray(omega, dtype=complex), self.relaxations or Relaxations()
+        loss = _loss(self.rail_loss_factor, relaxed.rail, omega)
         return free_rail_waves(
-            np.asarray(omega, dtype=complex),
-            self.bending_stiffness * (1.0 + 1j * self.rail_loss_factor),
+            omega,
+            self.bending_stiffness * loss,
             self.mass_per_length,
-            None
-            if self.shear_stiffness is None
-            else self.shear_stiffness * (1.0 + 1j * self.rail_loss_factor),
+            None if self.shear_stiffness is None else self.shear_stiffness * loss,
             self.rotary_inertia,
         )
 
@@ -191,7 +217,7 @@ class Track:
         Parameters
         ----------
         omega : array_like (f,) of complex
-            Angular frequency, rad/s, with positive real part or, if viscous, in the lower half-plane.
+            Angular frequency, rad/s, with positive real part or, if causal, in the lower half-plane.
 
         Returns
         -------
@@ -247,7 +273,9 @@ class Track:
     @property
     def foundation_stiffness(self) -> float:
         """Static stiffness of the supports per length s = K(0)/L, N/m^2."""
-        pad, ballast = self.pad_stiffness, self.ballast_stiffness
+        relaxed = self.relaxations or Relaxations()
+        pad = self.pad_stiffness * _at_rest(relaxed.pad)
+        ballast = self.ballast_stiffness * _at_rest(relaxed.ballast)
         return pad * ballast / (pad + ballast) / self.sleeper_spacing
 
     def static_deflection(self, force: float, x: float = 0.0) -> float:
@@ -263,12 +291,12 @@ class Track:
         Returns
         -------
         float
-            m. Exact for discrete supports.
+            m. Exact for discrete supports; with relaxations, when all of them have come to an end.
         """
-        at = x % self.sleeper_spacing
+        at, rail = x % self.sleeper_spacing, _at_rest((self.relaxations or Relaxations()).rail)
         compliance = static_receptance(
-            self.bending_stiffness,
-            self.shear_stiffness,
+            self.bending_stiffness * rail,
+            None if self.shear_stiffness is None else self.shear_stiffness * rail,
             self.foundation_stiffness * self.sleeper_spacing,
             self.sleeper_spacing,
             at,
@@ -383,10 +411,17 @@ class Track:
         )
 
 
-def _layer_stiffness(
-    stiffness: float, damping: float | None, loss_factor: float | None, omega: NDArray
-) -> NDArray:
-    return stiffness * (1.0 + 1j * (loss_factor or 0.0)) + 1j * omega * (damping or 0.0)
+def _loss(factor: float | None, relaxation: Relaxation | None, omega: NDArray) -> NDArray:
+    """Complex stiffness relative to the nominal one."""
+    if relaxation is not None:
+        return relaxation.at(omega)
+    return np.asarray(1.0 + 1j * (factor or 0.0))
 
 
-_PARAMETERS = tuple(field.name for field in fields(Track) if field.name not in ("name", "sources"))
+def _at_rest(relaxation: Relaxation | None) -> float:
+    """Static stiffness relative to the nominal one."""
+    return 1.0 if relaxation is None else relaxation.static
+
+
+_NO_PARAMETERS = ("name", "sources", "relaxations")
+_PARAMETERS = tuple(field.name for field in fields(Track) if field.name not in _NO_PARAMETERS)

@@ -1,0 +1,209 @@
+"""A causal track that stands for one with constant loss factors.
+
+No material has one stiffness and one loss factor at all frequencies: by Kramers and Kronig a loss factor η
+lets the stiffness grow, by 2η/π per neper of frequency. The stiffnesses of the causal track relax
+(`asperity.structures.relaxation`), such that the contact force of a wheel is as nearly as possible that on
+the track with constant loss factors, in each one-third octave.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+from scipy.optimize import nnls
+
+from asperity.spectra import third_octave_bands
+from asperity.structures.relaxation import Relaxation, Relaxations, relaxing
+from asperity.structures.track import Track
+
+LOWEST, HIGHEST = 5.0, 5000.0
+"""One-third octaves over which the contact force is fitted, Hz."""
+FREQUENCIES = tuple(float(f) for f in 10.0 ** (1.0 + np.arange(10) / 3.0))
+"""Of the Maxwell elements, three in a decade, Hz."""
+LEAST_STATIC = 0.4
+"""Least stiffness at rest, relative to the nominal one; 1/(1 + 2η) where that is more (`least_static`)."""
+WHEELS = (300.0, 600.0, 1200.0)
+"""Masses of the wheels whose contact force is fitted, kg."""
+CONTACT = 1.2e9
+"""Stiffness of their contact, N/m."""
+LARGE = 0.5
+"""Errors beyond this, dB, weigh more than their squares: the largest shall be small, not the mean alone."""
+DEPARTURE = 0.05
+"""Weight of a stiffness that departs by its nominal value, beside an error of 1 dB."""
+RAIL = 300.0
+"""Frequency at which the rail keeps its nominal stiffness, Hz."""
+POSITIONS, LINES = 6, 8
+"""Places in half a bay, and frequencies in a band."""
+STEPS, SETTLED = 40, 1e-3
+"""Most steps of the fit, and the relative gain of a step that ends it."""
+
+Linearised = Callable[[NDArray], tuple[NDArray, NDArray]]
+
+
+def causal_track(track: Track) -> Track:
+    """Put stiffnesses that relax in the place of loss factors.
+
+    Parameters
+    ----------
+    track : Track
+        Any.
+
+    Returns
+    -------
+    Track
+        The same with `relaxations`; a track that is causal already as it is.
+
+    Notes
+    -----
+    Least squares of the level of the mean square of 1/(α_W + α_C + α_R) over half a bay and each band, for
+    three rigid wheels on a linear contact, in the strengths of the Maxwell elements of pads and ballast. None
+    of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps it in all
+    bands, and its stiffness at 300 Hz. At rest, and under a load that hardly moves, the track is softer than
+    the nominal one.
+    """
+    return track if track.is_causal else _fitted(track)
+
+
+def least_static(factor: float) -> float:
+    """Least stiffness at rest that pads and ballast may have.
+
+    Parameters
+    ----------
+    factor : float
+        Loss factor η.
+
+    Returns
+    -------
+    float
+        Relative to the nominal stiffness: 1/(1 + 2η), for by 2η a loss factor stiffens that is kept over π
+        nepers, from 5 Hz to 115 Hz; at least `LEAST_STATIC`.
+    """
+    return max(1.0 / (1.0 + 2.0 * factor), LEAST_STATIC)
+
+
+@lru_cache(maxsize=16)
+def _fitted(track: Track) -> Track:
+    fit = _Fit(track)
+    return fit.track_of(_least_squares(fit.linearised, fit.start()) if fit.lossy else np.zeros(0))
+
+
+def _rail(factor: float) -> Relaxation:
+    """The loss factor in all bands."""
+    losses = relaxing(2.0 * np.pi * third_octave_bands(LOWEST, HIGHEST)[0], FREQUENCIES).imag[:, 1:]
+    strengths = nnls(losses, np.full(len(losses), factor))[0]
+    gained = float(relaxing(2.0 * np.pi * RAIL, FREQUENCIES).real[1:] @ strengths)
+    return Relaxation(max(1.0 - gained, LEAST_STATIC), tuple(strengths.tolist()), FREQUENCIES)
+
+
+class _Fit:
+    """Errors of the contact force in bands, as a function of the Maxwell elements of pads and ballast.
+
+    Parameters
+    ----------
+    track : Track
+        With constant loss factors.
+    """
+
+    def __init__(self, track: Track) -> None:
+        self.track = track
+        self.rail = _rail(track.rail_loss_factor) if track.rail_loss_factor else None
+        factors = {"pad": track.pad_loss_factor, "ballast": track.ballast_loss_factor}
+        self.lossy = {part: eta for part, eta in factors.items() if eta}
+        centres, low, high = third_octave_bands(LOWEST, HIGHEST)
+        steps = (np.arange(LINES) + 0.5) / LINES
+        self.omega = 2.0 * np.pi * (low[:, None] * (high / low)[:, None] ** steps).ravel()
+        self.basis = relaxing(self.omega, FREQUENCIES)
+        coarse = relaxing(2.0 * np.pi * centres, FREQUENCIES)
+        self.coarse = np.concatenate([coarse.real, coarse.imag])
+        self.least = np.zeros((len(self.lossy), 1 + len(FREQUENCIES)))
+        self.least[:, 0] = [least_static(eta) for eta in self.lossy.values()]
+        self.places = (np.arange(POSITIONS) + 0.5) * 0.5 * track.sleeper_spacing / POSITIONS
+        self.carried = [1.0 / CONTACT - 1.0 / (mass * self.omega**2) for mass in WHEELS]
+        nominal = self.receptance(track)
+        self.wanted = [self.banded(np.abs(1.0 / (carried + nominal)) ** 2) for carried in self.carried]
+
+    def receptance(self, track: Track) -> NDArray:
+        """Receptances of the rail at the places, (places, f)."""
+        waves = track.waves(self.omega)
+        return np.array([waves.receptance(x, x) for x in self.places])
+
+    def banded(self, values: NDArray) -> NDArray:
+        """Mean over places and over the frequencies of each band, (places, f, …) → (bands, …)."""
+        mean = values.mean(axis=0)
+        return np.asarray(mean.reshape(-1, LINES, *mean.shape[1:]).mean(axis=1))
+
+    def parts(self, unknowns: NDArray) -> NDArray:
+        """Coefficients of spring and elements, (lossy parts, 1 + elements)."""
+        return np.asarray(self.least + unknowns.reshape(self.least.shape))
+
+    def track_of(self, unknowns: NDArray, stiffer: str = "", share: float = 0.0) -> Track:
+        """The track with the elements that the unknowns stand for, one part stiffer by a share."""
+        found = {}
+        for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
+            static, *strengths = (float(c) for c in part * (1.0 + (share if name == stiffer else 0.0)))
+            found[name] = Relaxation(static, tuple(strengths), FREQUENCIES)
+        return replace(self.track, relaxations=Relaxations(self.rail, **found))
+
+    def constant(self, stiffness: float, loss: float) -> NDArray:
+        """Real and imaginary part of a constant, in the rows of `coarse`."""
+        return np.repeat([stiffness, loss], len(self.coarse) // 2)
+
+    def start(self) -> NDArray:
+        """Unknowns that depart least from the constant loss factors."""
+        aims = [self.constant(1.0 - least_static(eta), eta) for eta in self.lossy.values()]
+        return np.concatenate([np.zeros(0), *(nnls(self.coarse, aim)[0] for aim in aims)])
+
+    def linearised(self, unknowns: NDArray) -> tuple[NDArray, NDArray]:
+        """Weighted errors and departures, (n,), and their slopes, (n, unknowns)."""
+        receptance, share, columns = self.receptance(self.track_of(unknowns)), 1e-6, []
+        for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
+            stiffer = self.receptance(self.track_of(unknowns, name, share))
+            slope = (stiffer - receptance) / (share * (self.basis @ part))
+            columns.append(slope[..., None] * self.basis)
+        change = np.concatenate(columns, axis=-1)
+        pairs = zip(self.carried, self.wanted, strict=True)
+        rows = [self._errors(carried, wanted, receptance, change) for carried, wanted in pairs]
+        residuals, slopes = zip(*rows, self._departures(unknowns), strict=True)
+        return np.concatenate(residuals), np.vstack(slopes)
+
+    def _errors(
+        self, carried: NDArray, wanted: NDArray, receptance: NDArray, change: NDArray
+    ) -> tuple[NDArray, NDArray]:
+        """Errors of the level in each band, dB, large ones weighted, and their slopes."""
+        transfer = 1.0 / (carried + receptance)
+        power = np.abs(transfer) ** 2
+        level, share = self.banded(power), 1.0 / np.sqrt(len(WHEELS))
+        error = 10.0 * np.log10(level / wanted)
+        rising = self.banded((-2.0 * power * transfer)[..., None] * change).real
+        slopes = 10.0 / np.log(10.0) * rising / level[:, None]
+        weight = np.sqrt(1.0 + (error / LARGE) ** 2)
+        return share * weight * error, share * (2.0 * weight - 1.0 / weight)[:, None] * slopes
+
+    def _departures(self, unknowns: NDArray) -> tuple[NDArray, NDArray]:
+        """Departures from the constant loss factors at the centres of bands, and their slopes."""
+        aims = np.array([self.constant(1.0, eta) for eta in self.lossy.values()])
+        departures = self.parts(unknowns) @ self.coarse.T - aims
+        return DEPARTURE * departures.ravel(), DEPARTURE * block_diag(*[self.coarse] * len(aims))
+
+
+def _least_squares(linearised: Linearised, start: NDArray) -> NDArray:
+    """Unknowns, not negative, of the least sum of squares: Levenberg-Marquardt, its steps by `nnls`."""
+    unknowns, damping = start, 1e-3
+    residual, slope = linearised(unknowns)
+    for _ in range(STEPS):
+        brake = np.sqrt(damping) * np.linalg.norm(slope, axis=0)
+        aim = np.concatenate([slope @ unknowns - residual, brake * unknowns])
+        tried = nnls(np.vstack([slope, np.diag(brake)]), aim, maxiter=100 * aim.size)[0]
+        found = linearised(tried)
+        gain = 1.0 - (found[0] @ found[0]) / (residual @ residual)
+        damping *= 0.1 if gain > 0.0 else 10.0
+        if gain > 0.0:
+            unknowns, (residual, slope) = tried, found
+        if 0.0 < gain < SETTLED or damping > 1e6:
+            break
+    return unknowns

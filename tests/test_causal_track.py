@@ -1,0 +1,143 @@
+"""The causal track that stands for loss factors: causality, passivity, and the contact force on it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from asperity import Track
+from asperity.spectra import third_octave_bands
+from asperity.structures.causal_track import LEAST_STATIC, causal_track, least_static
+from asperity.structures.moving_kernel import moving_kernel
+
+STEP = 50e-6
+NORDBORG = Track.named("nordborg-loss-factor")
+SOFT = Track.named("uic60", pad_loss_factor=0.25, ballast_loss_factor=1.0)
+TRACKS = {  # track, and what the contact force may be off in any band, dB
+    "nordborg-loss-factor": (NORDBORG, 0.7),
+    "ballast 1": (Track.named("nordborg-loss-factor", ballast_loss_factor=1.0), 1.0),
+    "ballast 2": (Track.named("nordborg-loss-factor", ballast_loss_factor=2.0), 1.1),
+    "pads 0.25": (Track.named("nordborg-loss-factor", pad_loss_factor=0.25), 0.8),
+    "pads 0.25, ballast 2": (
+        Track.named("nordborg-loss-factor", pad_loss_factor=0.25, ballast_loss_factor=2.0),
+        1.1,
+    ),
+    "soft, pads 0.25, ballast 1": (SOFT, 0.9),
+    "x2000": (Track.named("x2000"), 0.15),
+}
+
+
+def sampled(values, frequency):
+    """Transform of a signal in time steps."""
+    return values @ np.exp(-2j * np.pi * STEP * np.arange(values.shape[-1])[:, None] * frequency)
+
+
+def force_levels(receptances, frequency, mass=600.0, stiffness=1.25e9):
+    """Level of the mean square contact force per band, (positions, bands, lines) → (bands,)."""
+    carried = 1.0 / stiffness - 1.0 / (mass * (2.0 * np.pi * frequency) ** 2)
+    return 10.0 * np.log10(np.mean(np.abs(1.0 / (carried + receptances)) ** 2, axis=(0, 2)))
+
+
+@pytest.mark.parametrize("name", TRACKS)
+def test_the_force_on_the_kernel_is_that_with_constant_loss_factors(name):
+    track, tolerance = TRACKS[name]
+    _, low, high = third_octave_bands(5.0, 2000.0)
+    frequency = low[:, None] + (high - low)[:, None] * (np.arange(40) + 0.5) / 40
+    kernel = moving_kernel(track, 0.0, STEP, positions=8)
+    hat = np.sinc(frequency * STEP) ** 2
+    places = 0.6 / 8 * np.arange(8)
+    found = np.array([sampled(row, frequency.ravel()).reshape(frequency.shape) for row in kernel.weights])
+    nominal = np.array([track.receptance(frequency, x, x) for x in places])
+    folded = np.zeros_like(nominal)  # what sampling adds to the kernel
+    for alias in (-2, -1, 1, 2):
+        f = frequency + alias / STEP
+        moved = np.array([track.receptance(np.abs(f), x, x) for x in places])
+        folded += np.sinc(f * STEP) ** 2 * (moved.conj() if alias < 0 else moved)
+    error = force_levels((found - folded) / hat, frequency) - force_levels(nominal, frequency)
+    assert np.abs(error).max() < tolerance
+
+
+@pytest.mark.parametrize("track", [NORDBORG, SOFT], ids=["euler-bernoulli", "timoshenko"])
+def test_the_kernel_at_rest_is_the_receptance_of_its_track(track):
+    kernel = moving_kernel(track, 0.0, STEP, positions=4)
+    frequency = np.array([8.0, 60.0, 150.0, 400.0, 900.0, 1400.0, 2500.0, 4000.0])
+    for row in range(4):
+        x, expected = 0.15 * row, 0.0
+        for alias in (-2, -1, 0, 1, 2):
+            f = frequency + alias / STEP
+            receptance = kernel.track.receptance(np.abs(f), x, x)
+            expected += np.sinc(f * STEP) ** 2 * (receptance.conj() if alias < 0 else receptance)
+        np.testing.assert_allclose(sampled(kernel.weights[row], frequency), expected, rtol=0.005)
+        static = kernel.track.static_deflection(1.0, x)
+        assert kernel.weights[row].sum() == pytest.approx(static, rel=2e-3)
+
+
+def test_the_kernel_does_not_depend_on_its_length():
+    short, long = (moving_kernel(NORDBORG, 56.0, 1e-4, duration=time, positions=4) for time in (0.3, 0.5))
+    left = np.linalg.norm(long.weights[:, : short.weights.shape[1]] - short.weights)
+    assert left < 1e-3 * np.linalg.norm(short.weights)
+
+
+@pytest.mark.parametrize("x", [0.0, 0.3])
+def test_kramers_and_kronig_give_the_static_deflection(x):
+    # G(0) = -(2/π) ∫ Im G/ω dω for what is causal; constant loss factors give more than they have
+    frequency = np.geomspace(0.01, 40e3, 20001)
+
+    def share(track):
+        dissipative = -track.receptance(frequency, x, x).imag
+        return 2.0 / np.pi * np.trapezoid(dissipative, np.log(frequency)) / track.static_deflection(1.0, x)
+
+    assert share(causal_track(NORDBORG)) == pytest.approx(1.0, abs=0.01)
+    assert share(NORDBORG) > 1.4
+
+
+losses = st.floats(0.0, 3.0)
+
+
+@settings(max_examples=15, deadline=None)
+@given(rail=st.floats(0.0, 0.1), pad=losses, ballast=losses)
+def test_it_is_passive_and_not_too_soft_at_rest(rail, pad, ballast):
+    track = replace(NORDBORG, rail_loss_factor=rail, pad_loss_factor=pad, ballast_loss_factor=ballast)
+    causal = causal_track(track)
+    assert causal.is_causal
+    if track.is_causal:
+        return
+    for factor, found in ((pad, causal.relaxations.pad), (ballast, causal.relaxations.ballast)):
+        assert (found is None) == (factor == 0.0)
+        if found is not None:
+            assert min(found.strengths) >= 0.0
+            assert found.static >= least_static(factor) * (1.0 - 1e-12)
+    frequency = np.geomspace(1.0, 2e4, 200)
+    for x in (0.0, 0.17, 0.3):
+        assert (causal.receptance(frequency, x, x).imag <= 1e-18).all()
+
+
+def test_the_least_static_stiffness_falls_with_the_loss_factor_to_a_bound():
+    assert least_static(0.0) == 1.0
+    assert least_static(0.25) == pytest.approx(1.0 / 1.5)
+    assert least_static(2.0) == LEAST_STATIC
+
+
+def test_the_rail_keeps_its_loss_factor_and_nearly_its_stiffness():
+    frequency = np.geomspace(20.0, 5000.0, 50)
+    found = causal_track(Track.named("x2000")).relaxations.rail.at(2.0 * np.pi * frequency)
+    np.testing.assert_allclose(found.imag, 0.02, rtol=0.08)
+    assert np.abs(found.real - 1.0).max() < 0.05
+
+
+def test_what_is_causal_stays_as_it_is():
+    viscous = Track.named("nordborg", rail_loss_factor=0.0)
+    assert causal_track(viscous) is viscous
+    causal = causal_track(NORDBORG)
+    assert causal_track(causal) is causal
+    assert causal.nominal == NORDBORG
+    assert causal_track(NORDBORG) == causal
+
+
+def test_the_receptance_of_a_track_keeps_its_constant_loss_factors():
+    frequency = np.array([10.0, 100.0, 1000.0])
+    pad, ballast = NORDBORG.layer_stiffnesses(2.0 * np.pi * frequency)
+    np.testing.assert_allclose(pad, 300e6 * (1.0 + 0.15j))
+    np.testing.assert_allclose(ballast, 150e6 * (1.0 + 0.4j))
