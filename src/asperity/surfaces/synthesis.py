@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +11,8 @@ from scipy import fft
 from asperity.errors import InputError
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip
-from asperity.surfaces.translation import gaussian_correlation, height_transform
 
 __all__ = ["from_bands", "from_map", "long_self_affine", "long_strip_like", "self_affine", "strip_from_bands"]
 
@@ -138,9 +136,9 @@ def from_map(
 ) -> HeightMap:
     """Surface of any size with the spectrum and the height distribution of measured maps.
 
-    The two-sided angular spectrum, with its anisotropy, is the Hann-windowed periodogram averaged over
-    the levelled maps; its variance is that of the pooled heights. A Gaussian field with a
-    pre-distorted correlation is translated to the pooled height distribution.
+    The two-sided angular spectrum, with its anisotropy, is that of the surface that the levelled maps were
+    cut from, as `asperity.surfaces.likeness.likeness` estimates it; its variance is that of the pooled
+    heights. A Gaussian field with a pre-distorted correlation is translated to their distribution.
 
     Parameters
     ----------
@@ -168,14 +166,11 @@ def from_map(
 
     Notes
     -----
-    - Wavelengths longer than the map are not known. The correlation is taken as zero beyond the
-      map's length, which continues the spectrum from its value at the longest measured wavelength
-      smoothly to zero wavenumber (no trend, no added waviness).
-    - The Hann window mixes each wavenumber with its neighbours one step of the map away: waves near
-      the map's length are blurred, and a fall of 3 dB per step is lifted by 0.35 dB, one of 6 dB
-      by 1.4 dB. Larger maps have smaller steps.
-    - The field is made on a grid longer and wider than asked for by the size of the map, then cut:
-      it is not periodic, and a narrow strip holds waves much longer than its width.
+    - Wavelengths longer than the map are not known. The spectrum is held below one wave per map, and what
+      lacks of the variance, as the bow of a sheet, gets waves twice as long as the map. A bow that all maps
+      have becomes waves of random phase: pieces as long as the maps are flatter than these.
+    - The field is made on a grid longer and wider than asked for by two maps, then cut: it is not
+      periodic, and a narrow strip holds waves much longer than its width.
     - Where the distribution and the spectrum contradict each other (a distribution that is not
       smooth needs short waves that a steep spectrum does not have), the distribution wins.
 
@@ -185,8 +180,8 @@ def from_map(
     M. Grigoriu, Applied Non-Gaussian Processes (1995) (translation).
     """
     _check_shape(shape)
-    like = _likeness(maps, spacing)
-    heights = like.transform(like.gaussian(shape, seed))
+    like = likeness(maps, spacing)
+    heights = like.transform(_gaussian_like(like, shape, seed))
     return HeightMap(heights, like.spacing, f"synthesised from {like.source}, seed {seed}")
 
 
@@ -258,13 +253,13 @@ def long_strip_like(
         If the maps have missing points or different spacings, or the shape is too small.
     """
     _check_shape(shape)
-    like = _likeness(maps, spacing)
+    like = likeness(maps, spacing)
 
     def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
-        return like.gaussian((rows, shape[1]), piece_seed)
+        return _gaussian_like(like, (rows, shape[1]), piece_seed)
 
-    reach, source = like.correlation.shape[0] // 2, f"synthesised from {like.source}, seed {seed}"
-    return _long_strip(shape, like.spacing, piece, seed, reach, like.transform, source)
+    source = f"synthesised from {like.source}, seed {seed}"
+    return _long_strip(shape, like.spacing, piece, seed, like.reach, like.transform, source)
 
 
 def _long_strip(
@@ -281,70 +276,13 @@ def _long_strip(
     return LongStrip(shape, spacing, piece, seed, stride, blend, transform, source)
 
 
-@dataclass(frozen=True, eq=False)
-class _Likeness:
-    """What a synthesised surface shares with measured maps."""
-
-    transform: Callable[[NDArray[np.float64]], NDArray[np.float64]]  # Gaussian to measured heights
-    correlation: NDArray[np.float64]  # of the Gaussian field, odd size, zero lag first (wrapped)
-    spacing: tuple[float, float]
-    source: str
-
-    def gaussian(self, shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
-        """Gaussian field of unit variance with this correlation, not periodic."""
-        lags = [(n + 1) // 2 for n in self.correlation.shape]
-        grid = [fft.next_fast_len(n + k, real=True) for n, k in zip(shape, lags, strict=True)]
-        power = fft.rfft2(_embedded(self.correlation, grid), overwrite_x=True).real
-        np.maximum(power, 0.0, out=power)
-        return _gaussian_field(power, grid, 1.0, seed)[: shape[0], : shape[1]]
-
-
-def _likeness(
-    maps: HeightMap | Sequence[HeightMap], spacing: float | tuple[float, float] | None
-) -> _Likeness:
-    levelled = _prepared([maps] if isinstance(maps, HeightMap) else list(maps), spacing)
-    transform = height_transform(np.concatenate([m.heights.ravel() for m in levelled]))
-    target = _correlation([m.heights for m in levelled])
-    needed = gaussian_correlation(transform, target)
-    sources = ", ".join(dict.fromkeys(m.source for m in levelled if m.source))
-    return _Likeness(transform, needed, levelled[0].spacing, sources or "maps")
-
-
-def _prepared(maps: list[HeightMap], spacing: float | tuple[float, float] | None) -> list[HeightMap]:
-    if not maps:
-        raise InputError("maps", "none", "one or more height maps")
-    for one in maps:
-        if np.isnan(one.heights).any():
-            received = f"{one.missing_share:.2%} missing points in {one.source or 'a map'}"
-            raise InputError("maps", received, "complete maps", "Use fill first.")
-        if not np.allclose(one.spacing, maps[0].spacing, rtol=1e-6, atol=0.0):
-            received = f"spacings {maps[0].spacing} and {one.spacing} m"
-            raise InputError("maps", received, "one spacing for all", "Use resample first.")
-    levelled = [level(one) for one in maps]
-    return levelled if spacing is None else [resample(one, spacing) for one in levelled]
-
-
-def _correlation(maps: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Correlation coefficients at all lags, odd size, zero lag first (wrapped), tapered by the window.
-
-    The window weighs the middle of the maps; what its mean square lacks of the plain one lies in
-    waves that it cannot resolve, and gets the window's own spectrum about zero wavenumber.
-    """
-    size = [2 * max(m.shape[axis] for m in maps) - 1 for axis in (0, 1)]
-    power, kernel = np.zeros((2, size[0], size[1] // 2 + 1))
-    for heights in maps:
-        window = np.outer(*(_hann(n) for n in heights.shape))
-        mean = np.sum(window * heights) / np.sum(window)
-        power += np.abs(fft.rfft2(window * (heights - mean), s=size)) ** 2
-        kernel += np.abs(fft.rfft2(window, s=size)) ** 2
-    correlation, taper = fft.irfft2(power, s=size), fft.irfft2(kernel, s=size)
-    variance = np.mean(np.concatenate([m.ravel() for m in maps]) ** 2)
-    resolved = correlation / (variance * taper[0, 0])
-    return np.asarray(resolved + (1.0 - resolved[0, 0]) * taper / taper[0, 0])
-
-
-def _hann(points: int) -> NDArray[np.float64]:
-    return np.sin(np.pi * (np.arange(points) + 0.5) / points) ** 2
+def _gaussian_like(like: Likeness, shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
+    """Gaussian field of unit variance with the correlation of measured maps, not periodic."""
+    lags = [(n + 1) // 2 for n in like.correlation.shape]
+    grid = [fft.next_fast_len(n + k, real=True) for n, k in zip(shape, lags, strict=True)]
+    power = fft.rfft2(_embedded(like.correlation, grid), overwrite_x=True).real
+    np.maximum(power, 0.0, out=power)
+    return _gaussian_field(power, grid, 1.0, seed)[: shape[0], : shape[1]]
 
 
 def _embedded(correlation: NDArray[np.float64], grid: Sequence[int]) -> NDArray[np.float64]:
