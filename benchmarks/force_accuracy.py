@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from asperity.contact import Hertz
 from asperity.reduction.accuracy import FILTER_SHARE, FORCE_ACCURACY, SINGLE_ENOUGH, rtol_for
-from asperity.reduction.filter import estimate_filter, mean_filter
+from asperity.reduction.filter import estimate_filter, filter_spectra
 from asperity.reduction.scan import ScannedForces, scan_forces
 from asperity.spectra import band_levels, psd
 from asperity.surfaces.synthesis import self_affine
@@ -101,7 +101,9 @@ def errors(p: Problem, found: NDArray, tight: NDArray) -> tuple[float, float, fl
     half, across = p.body.shape[0] // 2, int(p.radius / p.spacing)
     lines = p.heights[half:, half - across : half + across + 1][: found.shape[1]].T
     fitted = [
-        mean_filter([estimate_filter(f[2:], lines, p.spacing)], p.approaches[2:]).magnitude
+        estimate_filter(
+            [filter_spectra(f[2:], lines, p.spacing)], p.approaches[2:], 1.0, normalise="low-wavenumber"
+        ).magnitude
         for f in (found, tight)
     ]
     return (

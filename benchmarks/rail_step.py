@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 
 from asperity.contact import Hertz as HertzContact
 from asperity.pointforce import Hertz, Law, Linear, Shifted, Table
-from asperity.reduction.filter import filtered_texture
+from asperity.reduction.fir import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture

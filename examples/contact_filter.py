@@ -2,8 +2,8 @@
 
 A steel ball at constant state r = approach + d0 is moved along rough strips, and its force is compared,
 wavenumber by wavenumber, with that of a point force on the line textures under the patch (Hann window, power
-averaged over the lines, a polynomial fitted in dB, mean over the strips). A patch of semi-axis
-a = sqrt(R approach) averages over its width, so the filter |H(k, r)| falls earlier the larger r is.
+of all lines and strips, averaged over a sixth of an octave). A patch of semi-axis a = sqrt(R approach)
+averages over its width, so the filter |H(k, r)| falls earlier the larger r is.
 
 What is asserted:
 
@@ -11,12 +11,12 @@ What is asserted:
 - so is, on average over the wavenumbers, the filter that is referred to the tangent stiffness.
 
 The printed normalisation (left) makes the filter one at the longest waves. It needs waves longer than the
-patch: the texture here rolls off at 1 mm, and even so the filters of the two largest states cross beyond
-their 10 dB. With a roll-off at 0.4 mm, shorter than the larger patches, it hides how much these average away,
-and the wavenumbers no longer fall in order (10 dB at 2380, 1980, 3370 and 2350 cycles/m). Referred to the
-tangent stiffness (right), the filter says how much of the texture reaches the force in all. It starts below
-one, since this texture also varies across the path, and falls off less sharply than sin q / q, q = 2 pi k a,
-the closed form for texture that is uniform across.
+patch, and the texture here rolls off at 1 mm: the largest state has lost half its force there already
+(k_0/k_t = 0.54), which does not show. With a roll-off at 0.4 mm, shorter than the larger patches, k_0/k_t
+goes down to 0.28, and the wavenumbers no longer fall in order (10 dB at 2400, 1630, 4010 and 1850 cycles/m).
+Referred to the tangent stiffness (right), the filter says how much of the texture reaches the force in all.
+It starts below one, since this texture also varies across the path. Where sin q / q, q = 2 pi k a, the closed
+form for texture that is uniform across, goes through zero, it has a dip, and lobes beyond.
 
 Run: python contact_filter.py [FOLDER]
 """
@@ -32,7 +32,7 @@ from matplotlib.figure import Figure
 
 import asperity
 from asperity.contact import Hertz
-from asperity.reduction.filter import ContactFilter, estimate_filter, mean_filter, punch_filter
+from asperity.reduction.filter import ContactFilter, estimate_filter, filter_spectra, punch_filter
 from asperity.reduction.scan import first_touch
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reference.materials import contact_modulus, material
@@ -64,18 +64,19 @@ def filters(longest: float, strips: int = 3, rows: int = 720) -> Filters:
     approaches = STATES - datum
     semi_axis = np.array([BALL.semi_axes(approach)[0] for approach in approaches])
     long_waves = 0.5 / (2 * np.pi * semi_axis)  # k a < 1/2, where sin q/q is one but for 4 %
-    across = int(semi_axis.min() / SPACING)
-    printed, tangent = [], []
+    under = (semi_axis / SPACING).astype(int)  # lines on either side of the middle
+    spectra, means = [], []
     for z in textures:
         forces = asperity.scan(z, grid, body, BALL.modulus, approaches, stride=STRIDE, rtol=1e-5).values
-        middle = slice(CELLS // 2 - across, CELLS // 2 + across + 1)
-        lines = z[CELLS // 2 :: STRIDE, middle][: forces.shape[1]].T
-        slope = ForceCurve.from_samples(approaches, forces.mean(axis=1)).stiffness(approaches)
-        printed.append(estimate_filter(forces, lines, STRIDE * SPACING, asymptote=long_waves))
-        tangent.append(estimate_filter(forces, lines, STRIDE * SPACING, tangent_stiffness=slope))
-    return Filters(
-        mean_filter(printed, approaches), mean_filter(tangent, approaches, normalise="tangent"), semi_axis
+        lines = z[CELLS // 2 :][: forces.shape[1] * STRIDE].T
+        spectra.append(filter_spectra(forces, lines, SPACING, under))
+        means.append(forces.mean(axis=1))
+    slope = ForceCurve.from_samples(approaches, np.mean(means, axis=0)).stiffness(approaches)
+    printed, tangent = (
+        estimate_filter(spectra, approaches, slope, normalise=normalise, asymptote=long_waves)
+        for normalise in ("low-wavenumber", "tangent")
     )
+    return Filters(printed, tangent, semi_axis)
 
 
 def falls_to(contact_filter: ContactFilter, level: float) -> np.ndarray:

@@ -35,8 +35,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from asperity.config import WheelOnRailCase, parse_case
-from asperity.pointforce import Law, Linear, Printed, Shifted
-from asperity.reduction.texture import StateTexture
+from asperity.pointforce import Law, Linear, Printed
 from asperity.reference import cnossos
 from asperity.report.style import band_axis, styled
 from asperity.rolling.linear_reference import mean_square_transfer
@@ -48,7 +47,7 @@ from asperity.spectra import band_levels, psd
 CASE = """
 kind = "wheel-on-rail"
 speed = "200 km/h"
-laws = ["shifted", "printed", "linear"]
+laws = ["shifted", "shifted-unfiltered", "printed", "printed-unfiltered", "linear"]
 duration = "1 s"
 settling = "0.2 s"
 [surface]
@@ -60,7 +59,7 @@ roughness_level = "{level:+g} dB"
 [track]
 points = ["10 m"]
 [contact]
-samples = 4
+linearise = "rough"
 [numerics]
 poles = 60
 """
@@ -72,9 +71,9 @@ STYLES = {
     TANGENT: ("#96700a", (0, (3, 1.5))),
     SECANT: ("#1c2126", (0, (3, 1.5))),
     "shifted": ("#c8500a", "-"),
-    "shifted, no filter": ("#c8500a", (0, (1.5, 1.5))),
+    "shifted-unfiltered": ("#c8500a", (0, (1.5, 1.5))),
     "printed": ("#a8458f", "-"),
-    "printed, no filter": ("#a8458f", (0, (1.5, 1.5))),
+    "printed-unfiltered": ("#a8458f", (0, (1.5, 1.5))),
 }
 
 
@@ -102,23 +101,12 @@ class Forces(NamedTuple):
 def laws(computed: Computed) -> tuple[dict[str, Law], float, float]:
     """Laws compared, tangent and secant stiffness of the rough contact at the working load, N/m."""
     built = computed.chain.laws
-    printed, shifted, linear = built["printed"], built["shifted"], built["linear"]
+    printed, linear = built["printed"], built["linear"]
     assert isinstance(printed, Printed)
-    assert isinstance(shifted, Shifted)
     assert isinstance(linear, Linear)
-    bare: StateTexture | None = linear.texture
-    approach = float(printed.curve.inverse(linear.force))
-    tangent = float(printed.curve.stiffness(approach))
-    secant = linear.force / (approach + printed.datum)
-    found: dict[str, Law] = {
-        TANGENT: replace(linear, stiffness=tangent, approach=approach),
-        SECANT: replace(linear, stiffness=secant, approach=approach),
-        "shifted": shifted,
-        "shifted, no filter": replace(shifted, texture=bare),
-        "printed": printed,
-        "printed, no filter": replace(printed, texture=bare),
-    }
-    return found, tangent, secant
+    secant = linear.force / (linear.approach + printed.datum)
+    found: dict[str, Law] = {TANGENT: linear, SECANT: replace(linear, stiffness=secant)}
+    return found | {name: law for name, law in built.items() if name != "linear"}, linear.stiffness, secant
 
 
 def forces(level: float = 0.0) -> Forces:
@@ -201,20 +189,20 @@ def main(folder: Path = Path()) -> dict[str, float]:
     draw(found, folder / "wheel_on_rail.png")
     steady = found.band > STEADY / 1.05
     scale = 20 * np.log10(found.secant / found.tangent)
-    filtered = found.over("shifted", "shifted, no filter")
+    filtered = found.over("shifted", "shifted-unfiltered")
     numbers = {
         "tangent_stiffness": found.tangent,
         "secant_stiffness": found.secant,
         "secant_over_tangent": scale,
-        "shifted_from_tangent": float(abs(found.over("shifted, no filter", TANGENT)[steady]).max()),
-        "printed_from_scaled": float(abs(found.over("printed, no filter", TANGENT) - scale)[steady].max()),
+        "shifted_from_tangent": float(abs(found.over("shifted-unfiltered", TANGENT)[steady]).max()),
+        "printed_from_scaled": float(abs(found.over("printed-unfiltered", TANGENT) - scale)[steady].max()),
         "secant_from_receptances": float(abs(found.over(SECANT, TANGENT) - found.expected)[steady].max()),
         "filter_at_125_hz": float(filtered[steady][0]),
         "filter_at_4_khz": float(filtered[-1]),
     }
-    for law in ("shifted", "shifted, no filter", "printed", "printed, no filter"):
+    for law in ("shifted", "shifted-unfiltered", "printed", "printed-unfiltered"):
         for base in (TANGENT, SECANT):
-            key = f"{law} over {base[-3:]}".replace(", ", "_").replace(" ", "_")
+            key = f"{law} over {base[-3:]}".replace("-", "_").replace(" ", "_")
             numbers[f"{key}_at_63_hz"] = float(found.over(law, base)[0])
             numbers[f"{key}_125_to_630_hz"] = found.mean_over(law, base, 125.0, 630.0)
             numbers[f"{key}_1000_to_1600_hz"] = found.mean_over(law, base, 1000.0, 1600.0)
@@ -224,7 +212,7 @@ def main(folder: Path = Path()) -> dict[str, float]:
     assert numbers["shifted_from_tangent"] < 0.3
     assert numbers["printed_from_scaled"] < 0.4
     assert numbers["secant_from_receptances"] < 0.4
-    assert np.all(np.diff(filtered[found.band > 300.0]) < 0.0)
+    assert np.all(np.diff(filtered[found.band > 950.0]) < 0.0)
     check_signs(numbers)
     return numbers
 
@@ -238,12 +226,12 @@ def check_signs(numbers: dict[str, float]) -> None:
         "shifted_over_k_c_at_4_khz": 3.0,
         "printed_over_k_c_125_to_630_hz": 3.0,
         "printed_over_k_c_a_weighted": 3.0,
-        "printed_no_filter_over_k_c_125_to_630_hz": 3.0,
+        "printed_unfiltered_over_k_c_125_to_630_hz": 3.0,
     }
     more = {
         "shifted_over_k_c_1000_to_1600_hz": 3.0,
-        "printed_no_filter_over_k_c_1250_to_4000_hz": 0.4,
-        "printed_no_filter_over_k_c_a_weighted": 0.1,
+        "printed_unfiltered_over_k_c_1250_to_4000_hz": 0.4,
+        "printed_unfiltered_over_k_c_a_weighted": 0.1,
     }
     for name, least in less.items():
         assert numbers[name] < -least, f"{name} is not below {-least} dB: {numbers[name]}"

@@ -184,10 +184,12 @@ def contact(rng):
         * (np.maximum(approach, 0) ** 3 + (0.15e-6 * np.exp(approach / 0.4e-6)).clip(max=0.4e-6) ** 3) ** 0.5
     )
     radius = np.sqrt(RADIUS * np.maximum(approach, 0.05e-6))
-    wavenumber = np.linspace(500, 25000, 150)
+    wavenumber = np.geomspace(500, 25000, 68)  # twelfths of an octave
     theory = sinc(2 * np.pi * wavenumber * radius[:, None])
     noisy = theory + 0.01 * rng.standard_normal(theory.shape)
     noisy[0] = theory[0] = np.nan
+    excited = wavenumber < 21e3
+    estimated = np.where(excited, np.abs(noisy), np.nan)
     side = np.linspace(-0.25e-3, 0.25e-3, 64)
     x, y = np.meshgrid(side, side, indexing="ij")
     a = 1.3e-4
@@ -202,9 +204,17 @@ def contact(rng):
             "hertz_force": variable("approach", hertz, "N", "Hertz"),
             "hertz_stiffness": variable("approach", hertz / r, "N/m", "F/r of smooth bodies, at r − d₀"),
             "filter": variable(("approach", "wavenumber"), np.abs(noisy), "1", "contact filter, magnitude"),
+            "filter_raw": variable(("approach", "wavenumber"), 1.02 * estimated, "1", "ratio of the spectra"),
+            "filter_applied": variable(("approach", "wavenumber"), 0.99 * np.abs(noisy), "1", "of the taps"),
             "filter_std": variable(("approach", "wavenumber"), 0.05 + 0 * noisy, "1", "its spread"),
             "filter_signed": variable(("approach", "wavenumber"), noisy, "1", "contact filter, signed"),
+            "filter_coherence": variable(("approach", "wavenumber"), np.abs(noisy), "1", "coherence"),
             "filter_theory": variable(("approach", "wavenumber"), theory, "1", "sin q / q"),
+            "filter_excited": variable("wavenumber", excited.astype(np.int8), "1", "1 where excited"),
+            "filter_scale": variable("approach", np.linspace(0.9, 0.5, 9), "1", "k_0/k_t"),
+            "printed_filter": variable(("approach", "wavenumber"), np.abs(noisy), "1", "as printed"),
+            "printed_filter_raw": variable(("approach", "wavenumber"), estimated, "1", "ratio"),
+            "printed_filter_applied": variable(("approach", "wavenumber"), np.abs(noisy), "1", "of the taps"),
             "contact_radius": variable("approach", radius, "m", "radius of the Hertz contact"),
             "pressure": variable(("px", "py"), pressure, "Pa", "contact pressure"),
             "gap": variable(("px", "py"), np.where(pressure > 0, 0, 1e-7), "m", "gap"),
@@ -217,6 +227,10 @@ def contact(rng):
         },
         attrs={
             "datum": DATUM,
+            "datum_samples": DATUM,
+            "datum_path": 1.25 * DATUM,
+            "samples": 8,
+            "normalise": "tangent",
             "working_load": LOAD,
             "working_approach": 0.55e-6,
             "hertz_radius": 1.25e-4,

@@ -7,7 +7,7 @@ from asperity.contact import HalfSpace, Hertz
 from asperity.errors import InputError, TruncatedContactWarning
 from asperity.pointforce import Areal, Direct, Printed, Shifted, Table, force
 from asperity.reduction.areal import areal_texture
-from asperity.reduction.filter import filtered_texture
+from asperity.reduction.fir import filtered_texture
 from asperity.reduction.scan import scan_forces
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable

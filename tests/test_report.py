@@ -29,7 +29,7 @@ from asperity.report.tables import reference_table, validity_table
 from asperity.report.time_figures import TIME, piece
 from asperity.results import load, save
 from report_reading import HOSTILE, Reader, read_csv
-from report_tree import LAWS, report_tree
+from report_tree import DATUM, LAWS, LOAD, report_tree
 
 PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.parts]
 
@@ -195,7 +195,9 @@ def test_numbers_that_are_all_missing_count_as_missing():
 
 
 def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
-    tree = small(surface=["sample_heights", "psd_sample", "psd_path"], contact=["filter", "pressure"])
+    tree = small(
+        surface=["sample_heights", "psd_sample", "psd_path"], contact=["filter", "printed_filter", "pressure"]
+    )
     del tree["rolling"], tree["spectra"]
     text = write_report(tree, tmp_path).read_text(encoding="utf-8")
     drawn = {"texture_path", "contact_force"}
@@ -208,6 +210,12 @@ def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
     [
         ("contact_pressure", "contact", ["gap"]),
         ("contact_filter", "contact", ["filter_std", "filter_signed", "filter_theory"]),
+        ("contact_filter", "contact", ["filter_raw", "filter_applied", "filter_excited", "filter_coherence"]),
+        (
+            "contact_filter_printed",
+            "contact",
+            ["printed_filter_raw", "printed_filter_applied", "filter_scale"],
+        ),
         ("contact_force", "contact", ["force_std", "stiffness", "hertz_force"]),
         ("contact_force", "contact", ["stiffness_std", "tangent_stiffness", "hertz_stiffness"]),
         ("texture_sample", "surface", ["path_height_density"]),
@@ -275,7 +283,58 @@ def test_every_csv_column_has_a_unit_and_one_length(folder):
 def test_missing_numbers_are_empty_fields(folder):
     table = read_csv(folder / "contact_filter.csv")
     assert not any("approach=-1e-06 m" in head for head in table)  # a state without a filter has no columns
-    assert all(np.isfinite(values).all() for values in table.values())
+    excited = np.isfinite(table["wavenumber [1/m]"]) & (table["wavenumber [1/m]"] < 21e3)
+    for head, values in table.items():
+        known = excited if head.startswith("filter_raw") else np.ones_like(excited)
+        assert np.array_equal(np.isfinite(values), known), head
+
+
+def drawn_lines(part, tree):
+    return [line.get_ydata() for axes in part.draw(tree).axes for line in axes.get_lines()]
+
+
+def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
+    part = next(part for part in PARTS if part.name == "contact_filter")
+    contact = tree["contact"].to_dataset()
+    excited = contact["filter_excited"].values > 0
+    lines, row = drawn_lines(part, tree), 4  # the state nearest the working load
+    for name in ("filter_raw", "filter", "filter_applied"):
+        level = 20 * np.log10(contact[name].values[row])
+        shown = excited & (level > -40)
+        drawn = [y[::3] if len(y) == 3 * len(level) else y for y in lines]  # dots are short lines
+        assert any(len(y) == len(level) and np.allclose(y[shown], level[shown]) for y in drawn), name
+    beyond = [y[~excited] for y in lines if len(y) == len(excited)]
+    theory = [y for y in beyond if np.isfinite(y).any()]
+    assert len(theory) == 5  # sin q/q in the lower panel alone goes on where the texture excites nothing
+    assert "grey: waves that the texture lacks" in part.caption(tree)
+
+
+def test_signed_estimate_is_faint_where_force_and_line_have_little_in_common(tree):
+    part = next(part for part in PARTS if part.name == "contact_filter")
+    contact = tree["contact"].to_dataset()
+    known = (contact["filter_coherence"].values[4] >= 0.25) & (contact["filter_excited"].values > 0)
+    full = np.where(known, contact["filter_signed"].values[4], np.nan)
+    assert any(
+        y.shape == full.shape and np.array_equal(y, full, equal_nan=True) for y in drawn_lines(part, tree)
+    )
+
+
+def test_caption_says_what_printed_owes_to_its_datum(tree):
+    part = next(part for part in PARTS if part.name == "contact_force")
+    contact = tree["contact"].to_dataset()
+    attrs = contact.attrs
+    state = attrs["working_approach"] + DATUM
+    tangent = np.interp(attrs["working_approach"], contact["approach"], contact["tangent_stiffness"])
+    below, change = 20 * np.log10(tangent * state / LOAD), 20 * np.log10(state / (state + 0.25 * DATUM))
+    assert f"In printed k_c multiplies the texture: under the working load {below:.1f} dB" in part.caption(
+        tree
+    )
+    said = f"d₀ from samples and path, 1.88 µm, would change that by −{-change:.1f} dB."
+    assert said in part.caption(tree)
+    assert "In printed" not in part.caption(small())
+    other = report_tree()
+    other["contact"].attrs["datum"] = attrs["datum_path"]
+    assert "d₀ from the samples alone, 1.50 µm, would change that by +" in part.caption(other)
 
 
 def test_differences_to_the_reference_law_are_printed(tree, text):

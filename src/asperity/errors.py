@@ -141,6 +141,10 @@ class LossFactorWarning(PhysicsWarning):
     """Constant loss factors are not causal; what stands for them in time changes the contact force."""
 
 
+class ContactFilterWarning(PhysicsWarning):
+    """A contact filter is normalised where the texture says little, or applied less exactly than fitted."""
+
+
 class UnconvergedWarning(PhysicsWarning):
     """An iterative solution stopped before it reached its tolerance."""
 

@@ -23,6 +23,8 @@ LAWS = (
     "linear",
     "hertz-filtered",
     "linear-filtered",
+    "shifted-unfiltered",
+    "printed-unfiltered",
 )
 MOST_STEPS = 10**8
 SETTLED = 0.05

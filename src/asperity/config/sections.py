@@ -182,7 +182,7 @@ class ContactCase(Section):
     sample_length: Length | None = key(
         None,
         "length of the strips from which filters are estimated",
-        otherwise="eight windows, or the length of the map",
+        otherwise="16 windows, or the length of the map",
         example='"2 mm"',
     )
     approaches: tuple[Approach, ...] | None = key(
@@ -193,19 +193,32 @@ class ContactCase(Section):
     )
     damping: Damping = key("0 N s/m", "damping of the contact")
     hardness: Pressure | None = key(None, "largest pressure", otherwise="elastic contact", example='"3 GPa"')
-    normalise: Annotated[str, BeforeValidator(Choice(("low-wavenumber", "tangent")))] = key(
-        "low-wavenumber",
-        "what the filter is 1 at: its own low wavenumbers (as printed), or the tangent stiffness",
+    datum: Annotated[str, BeforeValidator(Choice(("samples", "path")))] = key(
+        "samples",
+        "from whose first touch the state r = approach + d0 counts: that of the samples (as printed), or of "
+        "samples and path",
+    )
+    normalise: Annotated[str, BeforeValidator(Choice(("low-wavenumber", "tangent")))] | None = key(
+        None,
+        "what the contact filter is 1 at: its own low wavenumbers (as printed), or the tangent stiffness",
+        otherwise="as printed for `printed`, tangent for every other law",
+        example='"tangent"',
     )
     linearise: Annotated[str, BeforeValidator(Choice(("hertz", "rough", "secant")))] = key(
         "hertz",
         "stiffness of the linear laws under the load: dF/dr of smooth bodies, dF/dr of rough ones, or F/r",
     )
-    filter_degree: Annotated[int, BeforeValidator(Number(at_least=1, at_most=20, whole=True))] = key(
-        6, "degree of the polynomial fitted to each filter, in dB over wavenumber"
+    filter_degree: Annotated[int, BeforeValidator(Number(at_least=1, at_most=20, whole=True))] | None = key(
+        None,
+        "degree of a polynomial that is fitted to each filter, in dB over wavenumber",
+        otherwise="the filter is averaged over a sixth of an octave",
+        example="6",
     )
     filter_taps: Annotated[int, BeforeValidator(Number(at_least=2, at_most=4096, whole=True))] | None = key(
-        None, "order J of the filter (J + 1 taps), even", otherwise="four contact radii long", example="64"
+        None,
+        "order J of the filter (J + 1 taps), even, designed by window",
+        otherwise="the first that meets the fitted filter within 0.3 dB down to -30 dB",
+        example="64",
     )
 
     @property

@@ -9,48 +9,56 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import fftconvolve, firwin2
+from scipy.ndimage import median_filter
 from scipy.signal.windows import hann
 
 from asperity.errors import InputError
-from asperity.reduction.texture import StateTexture
 
 Normalise = Literal["low-wavenumber", "tangent"]
 
+BANDS = 12
+"""Bands of an octave."""
 FLOOR = 1e-3
 """Smallest magnitude of a fitted filter (−60 dB)."""
-LEAST_POWER = 1e-8
-"""Texture power, relative to its largest, below which a wavenumber says nothing about the filter."""
+HIGHEST = 0.8
+"""Largest wavenumber of a filter to that which the positions of the scan can tell apart."""
+FITTED_WIDTH, FITTED_BINS = 1.0 / 6.0, 1.5
+"""Half the width of the average that is the fit: octaves, and bins of the spectra where those are wider."""
+CUT_OFF, CUT_OFF_SLOPE = 1e-2, 4
+"""Line power times k^slope below this share of its largest value at longer waves excites no contact."""
 
 
 @dataclass(frozen=True, eq=False)
-class FilterEstimate:
-    """Filter of one sample, estimated at each state.
+class FilterSpectra:
+    """What one scanned strip says about the contact filter: spectra added up in bands.
 
     Attributes
     ----------
     wavenumber : ndarray, shape (k,)
-        Cycles/m.
-    magnitude : ndarray, shape (s, k)
-        |Ĥ| of Eq. 2.6, as printed: no sign.
-    signed : ndarray, shape (s, k)
-        Real part of the cross-spectral estimate: the force regressed on the line textures.
-    usable : ndarray of bool, shape (k,)
-        Where the texture has power.
-    stiffness : ndarray, shape (s,)
-        k_0 used, N/m.
+        Cycles/m, mean of each band.
+    bins : ndarray, shape (k,)
+        Lines of the spectra in each band.
+    force : ndarray, shape (s, k)
+        Power of the scanned force in each state, N².
+    lines : ndarray, shape (s, k)
+        Power of the line textures under the patch of each state, mean over the lines, m².
+    mean_line : ndarray, shape (s, k)
+        Power of their mean, m².
+    cross : ndarray, shape (s, k)
+        Cross spectrum of the force with their mean, N m; complex.
     """
 
     wavenumber: NDArray[np.float64]
-    magnitude: NDArray[np.float64]
-    signed: NDArray[np.float64]
-    usable: NDArray[np.bool_]
-    stiffness: NDArray[np.float64]
+    bins: NDArray[np.intp]
+    force: NDArray[np.float64]
+    lines: NDArray[np.float64]
+    mean_line: NDArray[np.float64]
+    cross: NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
 class ContactFilter:
-    """Ensemble mean of fitted contact filters.
+    """Contact filters of an ensemble of strips.
 
     Attributes
     ----------
@@ -58,24 +66,36 @@ class ContactFilter:
         Approaches of the states, m.
     wavenumber : ndarray, shape (k,)
         Cycles/m.
+    excited : ndarray of bool, shape (k,)
+        Where the texture has the power to say something; beside it the filter is held.
+    raw : ndarray, shape (s, k)
+        |Ĥ| of Eq. 2.6 over all strips: root of the ratio of their powers. No sign.
     magnitude, spread : ndarray, shape (s, k)
-        Mean of the fitted magnitudes and their standard deviation between samples.
-    signed : ndarray, shape (s, k)
-        Mean of the signed estimates.
-    stiffness : ndarray, shape (s,)
-        Mean of k_0, N/m.
+        The fit to it, and the standard deviation of the strips' own fits.
+    signed, coherence : ndarray, shape (s, k)
+        Force regressed on the mean line under the patch, over k_t, and the share of the force's power that
+        this explains. Each strip and line of the spectra counts by its power, and so by its coherence.
+    asymptotic_stiffness, tangent_stiffness : ndarray, shape (s,)
+        k_0 that makes force and texture agree at low wavenumbers, mean over the strips, and k_t, N/m.
+    long_wave_share : ndarray, shape (s,)
+        Share of the lines' power at the low wavenumbers from which k_0 is taken.
     normalise : str
         ``"low-wavenumber"`` (printed: both spectra share their long-wave asymptote) or ``"tangent"``
-        (k_0 = dF/dδ: keeps what a patch wider than the lateral correlation averages away).
+        (k_0 = k_t: keeps what a patch wider than the lateral correlation averages away).
     """
 
     approaches: NDArray[np.float64]
     wavenumber: NDArray[np.float64]
+    excited: NDArray[np.bool_]
+    raw: NDArray[np.float64]
     magnitude: NDArray[np.float64]
     spread: NDArray[np.float64]
     signed: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
-    normalise: str
+    coherence: NDArray[np.float64]
+    asymptotic_stiffness: NDArray[np.float64]
+    tangent_stiffness: NDArray[np.float64]
+    long_wave_share: NDArray[np.float64]
+    normalise: Normalise
 
 
 def punch_filter(wavenumber: ArrayLike, semi_axis: ArrayLike) -> NDArray[np.float64]:
@@ -96,247 +116,232 @@ def punch_filter(wavenumber: ArrayLike, semi_axis: ArrayLike) -> NDArray[np.floa
     return np.sinc(2.0 * np.asarray(wavenumber) * np.asarray(semi_axis))
 
 
-def estimate_filter(
+def filter_spectra(
     forces: NDArray[np.float64],
     lines: NDArray[np.float64],
     spacing: float,
-    *,
-    tangent_stiffness: ArrayLike | None = None,
-    asymptote: ArrayLike | None = None,
-) -> FilterEstimate:
-    """Compare scanned forces with a point force that follows line textures (Eqs. 2.4–2.6).
+    half_widths: ArrayLike | None = None,
+) -> FilterSpectra:
+    """Take the spectra of a scanned force and of the line textures that it follows (Eqs. 2.4, 2.5).
 
     Parameters
     ----------
     forces : ndarray, shape (s, m)
         F_c(x_m, r_i) at constant approach, N.
-    lines : ndarray, shape (l, m)
-        Heights of the line textures that cover the nominal contact width, at the same positions, m,
-        peaks positive.
+    lines : ndarray, shape (l, m · stride)
+        Heights of the line textures from the first position on, m, peaks positive; an odd number of lines,
+        the middle one that of the contact. They may be finer than the scan by a whole number, so that waves
+        too short for its positions do not appear as longer ones.
     spacing : float
-        Distance of the positions, m.
-    tangent_stiffness : array_like, shape (s,), optional
-        k_0 = k_t of each state, N/m. Without it k_0 makes both spectra agree at low wavenumbers.
-    asymptote : array_like, shape (s,), optional
-        Wavenumber below which the spectra must agree, cycles/m; the lowest bins if there are none below.
+        Distance of the points of the lines, m.
+    half_widths : array_like of int, shape (s,), optional
+        Lines on either side of the middle that the nominal patch of each state covers; all by default.
 
     Returns
     -------
-    FilterEstimate
-        The estimate; the mean of the force is removed before the Hann window, and *power*, not
-        amplitude, is averaged over the lines.
+    FilterSpectra
+        Means are removed before the Hann window, and *power*, not amplitude, is averaged over the lines.
+        Bands are a twelfth of an octave wide, or a bin where that is wider.
 
     Raises
     ------
     InputError
-        If forces and lines differ in length, are too short, or the texture is flat.
+        If forces and lines do not fit, are too short, or the texture is flat.
     """
     f, z = np.atleast_2d(forces), np.atleast_2d(lines)
-    m = f.shape[1]
-    if z.shape[1] != m or m < 16:
-        raise InputError(
-            "scan for the filter", f"{m} forces, {z.shape[1]} heights", "equally many, at least 16"
-        )
-    window = hann(m, sym=False)
-    force = np.fft.rfft((f - f.mean(axis=1, keepdims=True)) * window)[:, 1:]
-    texture = np.fft.rfft((z - z.mean(axis=1, keepdims=True)) * window)[:, 1:]
-    wavenumber = np.fft.rfftfreq(m, spacing)[1:]
-    power = np.mean(np.abs(texture) ** 2, axis=0)
-    if not power.max() > 0.0:
+    states, m = f.shape
+    stride, rest = divmod(z.shape[1], m)
+    if rest or m < 16:
+        received = f"{m} forces, {z.shape[1]} heights"
+        raise InputError("scan for the filter", received, "a whole number of heights a force, at least 16")
+    middle = z.shape[0] // 2
+    half = np.full(states, middle) if half_widths is None else np.minimum(half_widths, middle)
+    highest = int(HIGHEST * (m // 2))
+    force = _windowed(f)[:, 1 : highest + 1]
+    texture = _windowed(z)[:, 1 : highest + 1] / stride
+    under = [texture[middle - h : middle + h + 1] for h in half]
+    power = np.array([np.mean(np.abs(t) ** 2, axis=0) for t in under])
+    if not np.ptp(z) > 0.0:
         raise InputError("line textures of the filter", "a flat surface", "a surface with texture")
-    cross = np.real(force * np.conj(texture.mean(axis=0)))
-    centres, (force_power, cross, power) = _banded(wavenumber, np.abs(force) ** 2, cross, power)
-    if tangent_stiffness is not None:
-        k0 = np.broadcast_to(np.asarray(tangent_stiffness, dtype=np.float64), (f.shape[0],))
-    else:
-        k0 = _common_asymptote(centres, force_power, power, asymptote)
-    usable = power[0] > LEAST_POWER * power.max()
-    scale = np.where(k0 > 0.0, k0, np.inf)[:, None]
-    safe = np.where(usable, power, np.inf)
-    return FilterEstimate(
-        centres, np.sqrt(force_power / safe) / scale, cross / safe / scale, usable, np.asarray(k0)
-    )
-
-
-def _banded(
-    wavenumber: NDArray, *spectra: NDArray
-) -> tuple[NDArray[np.float64], tuple[NDArray[np.float64], ...]]:
-    """Add up spectra in bands of a twelfth octave, single bins where those are wider."""
-    band = np.round(12.0 * np.log2(wavenumber / wavenumber[0])).astype(int)
+    mean = np.array([t.mean(axis=0) for t in under])
+    wavenumber = np.arange(1, highest + 1) / (z.shape[1] * spacing)
+    band = np.round(BANDS * np.log2(wavenumber / wavenumber[0])).astype(int)
     _, first = np.unique(band, return_index=True)
-    counts = np.diff(np.append(first, len(band)))
-    centres = np.add.reduceat(wavenumber, first) / counts
-    return centres, tuple(np.add.reduceat(np.atleast_2d(s), first, axis=1) for s in spectra)
+    bins = np.diff(np.append(first, len(band)))
+    sums = [
+        np.add.reduceat(spectrum, first, axis=-1)
+        for spectrum in (np.abs(force) ** 2, power, np.abs(mean) ** 2, force * np.conj(mean))
+    ]
+    return FilterSpectra(np.add.reduceat(wavenumber, first) / bins, bins, *sums)
 
 
-def _common_asymptote(
-    wavenumber: NDArray, force_power: NDArray, power: NDArray, asymptote: ArrayLike | None
-) -> NDArray[np.float64]:
-    """k_0 for which force and texture have the same power at low wavenumbers."""
-    states = force_power.shape[0]
-    limit = np.broadcast_to(np.asarray(0.0 if asymptote is None else asymptote), (states,))
-    k0 = np.empty(states)
-    for i in range(states):
-        count = max(3, int(np.count_nonzero(wavenumber <= limit[i])))
-        k0[i] = math.sqrt(force_power[i, :count].sum() / power[0, :count].sum())
-    return k0
+def _windowed(rows: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Spectra of rows without their means, under a Hann window."""
+    return np.fft.rfft((rows - rows.mean(axis=1, keepdims=True)) * hann(rows.shape[1], sym=False))
 
 
-def fit_filter(estimate: FilterEstimate, degree: int, *, through_one: bool) -> NDArray[np.float64]:
-    """Fit each magnitude by a polynomial in dB over the usable wavenumbers, by least squares.
-
-    Parameters
-    ----------
-    estimate : FilterEstimate
-        Filter of one sample.
-    degree : int
-        Degree of the polynomial.
-    through_one : bool
-        Whether the fit is one at wavenumber zero (the printed normalisation) or free there.
-
-    Returns
-    -------
-    ndarray, shape (s, k)
-        Fitted magnitudes between `FLOOR` and one, held constant above the last usable wavenumber.
-    """
-    k, usable = estimate.wavenumber, estimate.usable
-    degree = min(degree, max(1, int(usable.sum()) - 2))
-    highest = k[usable][-1]
-    x = np.minimum(k, highest) / highest
-    powers = np.arange(1 if through_one else 0, degree + 1)
-    basis = x[:, None] ** powers
-    fitted = np.empty_like(estimate.magnitude)
-    for i, magnitude in enumerate(estimate.magnitude):
-        level = 20.0 * np.log10(np.maximum(magnitude[usable], FLOOR))
-        coefficients = np.linalg.lstsq(basis[usable], level, rcond=None)[0]
-        fitted[i] = 10.0 ** (basis @ coefficients / 20.0)
-    return np.clip(fitted, FLOOR, 1.0)
-
-
-def mean_filter(
-    estimates: Sequence[FilterEstimate],
+def estimate_filter(
+    strips: Sequence[FilterSpectra],
     approaches: ArrayLike,
+    tangent_stiffness: ArrayLike,
     *,
-    degree: int = 6,
-    normalise: Normalise = "low-wavenumber",
+    normalise: Normalise = "tangent",
+    asymptote: ArrayLike = 0.0,
+    degree: int | None = None,
 ) -> ContactFilter:
-    """Average the fitted filters of all samples.
+    """Compare scanned forces with a point force that follows line textures (Eq. 2.6), and fit the ratio.
 
     Parameters
     ----------
-    estimates : sequence of FilterEstimate
-        One a sample, on common wavenumbers.
+    strips : sequence of FilterSpectra
+        One a strip, on common wavenumbers.
     approaches : array_like, shape (s,)
         Approaches of the states, m.
-    degree : int
-        Degree of the polynomial fit.
+    tangent_stiffness : array_like, shape (s,)
+        k_t of each state, N/m.
     normalise : {"low-wavenumber", "tangent"}
-        How k_0 was chosen.
+        Whether k_0 makes both spectra of each strip agree at low wavenumbers, as printed, or is k_t.
+    asymptote : array_like, shape (s,), optional
+        Wavenumber below which spectra agree under the former, cycles/m; at least the three lowest bands.
+    degree : int, optional
+        Degree of the polynomial, in dB over wavenumber, that is fitted to the ratio of each strip by least
+        squares, as printed; the fits are averaged. By default the powers of all strips are averaged over a
+        sixth of an octave: a polynomial of low degree cannot hold the knee of the filter.
 
     Returns
     -------
     ContactFilter
-        Mean and spread between samples.
+        The fit lies between `FLOOR` and one.
     """
-    through_one = normalise == "low-wavenumber"
-    fits = np.array([fit_filter(e, degree, through_one=through_one) for e in estimates])
+    k, lines = strips[0].wavenumber, np.array([s.lines for s in strips])
+    forces = np.array([s.force for s in strips])
+    tangent = np.broadcast_to(np.asarray(tangent_stiffness, dtype=np.float64), lines.shape[1:2])
+    limit = np.broadcast_to(np.asarray(asymptote, dtype=np.float64), tangent.shape)
+    low = (k <= limit[:, None]) | (np.arange(k.size) < 3)
+    anchored = np.sqrt((forces * low).sum(axis=2) / (lines * low).sum(axis=2))
+    printed, whole = normalise == "low-wavenumber", lines.sum(axis=0)
+    forces = forces / np.where(printed, anchored, tangent)[:, :, None] ** 2
+    excited = _excited(k, whole[0] / strips[0].bins)
+    known = np.where(excited, lines, np.nan)
+    if degree is None:
+        fits = _averaged(k, excited, forces, lines)
+        fitted = _averaged(k, excited, forces.sum(axis=0), whole)
+    else:
+        fits = np.array([_polynomials(k, excited, r, degree, printed) for r in np.sqrt(forces / known)])
+        fitted = fits.mean(axis=0)
+    signed, coherence = _regressed(k, excited, strips)
     return ContactFilter(
         np.asarray(approaches, dtype=np.float64),
-        estimates[0].wavenumber,
-        fits.mean(axis=0),
+        k,
+        excited,
+        np.sqrt(forces.sum(axis=0) / known.sum(axis=0)),
+        fitted,
         fits.std(axis=0, ddof=1) if len(fits) > 1 else np.zeros(fits.shape[1:]),
-        np.mean([e.signed for e in estimates], axis=0),
-        np.mean([e.stiffness for e in estimates], axis=0),
+        signed / tangent[:, None],
+        coherence,
+        anchored.mean(axis=0),
+        tangent,
+        (whole * low).sum(axis=1) / whole.sum(axis=1),
         normalise,
     )
 
 
-def tap_count(spacing: float, largest_semi_axis: float) -> int:
-    """Least even J with J dx ≥ 4 a_max.
+def _excited(wavenumber: NDArray[np.float64], density: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Where a texture has power, from the density of its lines.
+
+    Rough surfaces fall no faster than k^−4; what does is a cut-off, beyond which the force holds products of
+    longer waves alone. A single tone, as of corrugation, stands out above what is typical of its octave.
+    """
+    weighted = density * wavenumber**CUT_OFF_SLOPE
+    typical = median_filter(weighted, BANDS + 1, mode="nearest")
+    return np.asarray(weighted > CUT_OFF * np.maximum.accumulate(typical))
+
+
+def _neighbours(wavenumber: NDArray[np.float64], excited: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Weights, shape (k, k), with which bands count in the average about each wavenumber.
+
+    A triangle over the logarithm of the wavenumber, times k²: spectra of rough lines then count evenly.
+    """
+    octaves = np.log2(wavenumber)
+    half = np.maximum(FITTED_WIDTH, np.log2(1.0 + FITTED_BINS * wavenumber[0] / wavenumber))
+    known = octaves[excited]
+    at = known[np.argmin(np.abs(known[None, :] - octaves[:, None]), axis=1)]  # held beside what is excited
+    weights = np.maximum(0.0, 1.0 - np.abs(octaves[None, :] - at[:, None]) / half[:, None])
+    return np.asarray(weights * excited * wavenumber**2)
+
+
+def _averaged(
+    wavenumber: NDArray[np.float64],
+    excited: NDArray[np.bool_],
+    force: NDArray[np.float64],
+    lines: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Root of the ratio of two powers, each averaged about every wavenumber."""
+    weights = _neighbours(wavenumber, excited)
+    return np.clip(np.sqrt((force @ weights.T) / (lines @ weights.T)), FLOOR, 1.0)
+
+
+def _regressed(
+    wavenumber: NDArray[np.float64], excited: NDArray[np.bool_], strips: Sequence[FilterSpectra]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Force regressed on the mean line, N/m, and the coherence of the two."""
+    weights = _neighbours(wavenumber, excited).T
+    cross = np.sum([s.cross for s in strips], axis=0) @ weights
+    mean = np.sum([s.mean_line for s in strips], axis=0) @ weights
+    force = np.sum([s.force for s in strips], axis=0) @ weights
+    return np.real(cross) / mean, np.abs(cross) ** 2 / np.maximum(mean * force, np.finfo(float).tiny)
+
+
+def _polynomials(
+    wavenumber: NDArray[np.float64],
+    excited: NDArray[np.bool_],
+    ratio: NDArray[np.float64],
+    degree: int,
+    through_one: bool,
+) -> NDArray[np.float64]:
+    """Polynomials in dB over the wavenumber, fitted where the texture is excited and held beyond."""
+    degree = min(degree, max(1, int(excited.sum()) - 2))
+    highest = wavenumber[excited][-1]
+    x = np.minimum(wavenumber, highest) / highest
+    basis = x[:, None] ** np.arange(1 if through_one else 0, degree + 1)
+    level = 20.0 * np.log10(np.maximum(ratio[:, excited], FLOOR))
+    coefficients = np.linalg.lstsq(basis[excited], level.T, rcond=None)[0]
+    return np.clip(10.0 ** ((basis @ coefficients).T / 20.0), FLOOR, 1.0)
+
+
+def closed_form(
+    approaches: NDArray[np.float64],
+    wavenumber: NDArray[np.float64],
+    semi_axes: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
+) -> ContactFilter:
+    """Filter of bodies without texture: that of small roughness, uniform across.
 
     Parameters
     ----------
-    spacing : float
-        Sampling of the line texture, m.
-    largest_semi_axis : float
-        Largest semi-axis of the contact in the rolling direction, m.
+    approaches, semi_axes, stiffness : ndarray, shape (s,)
+        Approaches of the states, m, semi-axes in the rolling direction, m, and tangent stiffnesses, N/m.
+    wavenumber : ndarray, shape (k,)
+        Cycles/m.
 
     Returns
     -------
-    int
-        J; the filter has J + 1 taps.
+    ContactFilter
+        sin q/q; no raw estimate.
     """
-    return 2 * math.ceil(2.0 * largest_semi_axis / spacing)
-
-
-def design_fir(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
-    """Design linear-phase FIR filters with the mean magnitudes (Matlab's fir2).
-
-    Parameters
-    ----------
-    contact_filter : ContactFilter
-        Mean filter.
-    spacing : float
-        Sampling of the line texture, m.
-    order : int
-        J, even.
-
-    Returns
-    -------
-    ndarray, shape (s, J + 1)
-        Taps b_j of each state, symmetric; they sum to one under the printed normalisation, else to the
-        magnitude at the lowest wavenumber.
-
-    Raises
-    ------
-    InputError
-        If the order is odd or less than 2.
-    """
-    if order < 2 or order % 2:
-        raise InputError(
-            "order of the contact filter", order, "an even number ≥ 2", "J + 1 taps need J even."
-        )
-    nyquist = 0.5 / spacing
-    grid = np.linspace(0.0, 1.0, 513)
-    taps = np.empty((len(contact_filter.approaches), order + 1))
-    for i, magnitude in enumerate(contact_filter.magnitude):
-        at_zero = 1.0 if contact_filter.normalise == "low-wavenumber" else magnitude[0]
-        k = np.concatenate([[0.0], contact_filter.wavenumber])
-        gain = np.interp(grid * nyquist, k, np.concatenate([[at_zero], magnitude]))
-        taps[i] = firwin2(order + 1, grid, gain)
-        taps[i] *= at_zero / taps[i].sum()
-    return taps
-
-
-def filtered_texture(
-    heights: NDArray[np.float64],
-    spacing: float,
-    taps: NDArray[np.float64],
-    approaches: ArrayLike,
-    start: float = 0.0,
-) -> StateTexture:
-    """Filter the line texture of a path for every state (Eq. 2.7).
-
-    Parameters
-    ----------
-    heights : ndarray, shape (m,)
-        Line texture, m, peaks positive.
-    spacing : float
-        Distance of the points, m.
-    taps : ndarray, shape (s, J + 1)
-        From `design_fir`.
-    approaches : array_like, shape (s,)
-        Approaches of the states, m.
-    start : float
-        Position of the first point, m.
-
-    Returns
-    -------
-    StateTexture
-        h̃(m, r_i) = Σ_j b_j(r_i) h(m − J/2 + j) with h = −z, m, positive away from the contact. The first
-        and last J/2 points see a texture mirrored at the ends.
-    """
-    half = taps.shape[1] // 2
-    padded = np.pad(-np.asarray(heights, dtype=np.float64), half, mode="reflect")
-    result = np.array([fftconvolve(padded, b, mode="valid") for b in taps])
-    return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing)
+    signed = punch_filter(wavenumber[None, :], semi_axes[:, None])
+    none, every = np.full_like(signed, math.nan), np.ones_like(signed)
+    return ContactFilter(
+        approaches,
+        wavenumber,
+        np.ones(wavenumber.shape, dtype=bool),
+        none,
+        np.clip(np.abs(signed), FLOOR, 1.0),
+        np.zeros_like(signed),
+        signed,
+        every,
+        stiffness,
+        stiffness,
+        np.ones(stiffness.shape),
+        "tangent",
+    )

@@ -1,4 +1,4 @@
-"""Figures of the contact: pressure at the working load, force and stiffness, the contact filter."""
+"""Figures of the contact: pressure at the working load, force and stiffness."""
 
 from __future__ import annotations
 
@@ -9,23 +9,19 @@ from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.report.data import engineering, force_unit, number, plain, present, values
+from asperity.report.data import engineering, force_unit, laws, number, present, values
+from asperity.report.filter_figures import FILTER
 from asperity.report.part import Columns, Part
 from asperity.report.style import (
     INK,
     LAW_STYLES,
     MUTED,
-    new_figure,
-    sequence,
     side_by_side,
     styled,
-    wavenumber_axis,
 )
 from asperity.report.texture import draw_map, length_unit
 
-_BLUE, _ORANGE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "shifted", "table"))
-FLOOR = -40.0  # dB, lowest level of a drawn filter
-MOST_FILTERS = 6
+_BLUE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "table"))
 CURVE_POINTS = 200
 """Points of a closed form."""
 
@@ -244,110 +240,31 @@ def _force_caption(tree: DataTree) -> str:
     common = (
         f"one common datum d₀ = {engineering(datum, 'm')}" if datum is not None else "no common datum stated"
     )
+    rough = number(tree, "contact", "samples") is not None
+    plane = "Approach from the plane that the nominal patch feels" if rough else "Approach"
     return (
-        "Approach of the mean surfaces, positive closing; rough contact starts below zero. The state r "
-        f"counts from {common}. k_c is the secant F/r (Eq. 2.3), the tangent is what small vibration feels. "
-        "Hertz: smooth bodies in closed form, F = K δ^1.5 and their secant F/δ, at δ = r − d₀."
+        f"{plane}, positive closing; rough contact starts below zero. The state r counts from {common}. "
+        "k_c is the secant F/r (Eq. 2.3), the tangent is what small vibration feels. Hertz: smooth bodies in "
+        f"closed form, F = K δ^1.5 and their secant F/δ, at δ = r − d₀.{_datum_sensitivity(tree)}"
     )
 
 
-def _drawn_filters(tree: DataTree, path: str) -> list[int]:
-    rows = values(tree, path, "approach", "wavenumber")
-    filled = np.flatnonzero(np.isfinite(rows).any(axis=1))
-    picks = np.linspace(0, len(filled) - 1, min(MOST_FILTERS, len(filled))).round().astype(int)
-    return filled[picks].tolist()
-
-
-@styled()
-def filter_figure(tree: DataTree) -> Figure:
-    """Contact filters of several approaches: magnitude, and below it the signed estimate."""
-    signed = present(tree, "contact/filter_signed")
-    figure = new_figure(6.6 if signed else 4.0)
-    panels = figure.subplots(2 if signed else 1, 1, squeeze=False)[:, 0]
-    wavenumber = values(tree, "contact/wavenumber")
-    rows = _drawn_filters(tree, "contact/filter")
-    _magnitudes(panels[0], tree, wavenumber, rows)
-    if signed:
-        _signed(panels[1], tree, wavenumber, rows)
-    positive = wavenumber[wavenumber > 0]
-    for axes in panels:
-        wavenumber_axis(axes, positive[0], positive[-1])
-    if signed:  # the panels share their axes: name each quantity once
-        panels[0].set_xlabel("")
-        figure.axes[-1].set_xlabel("")
-    return figure
-
-
-def _magnitudes(axes: Axes, tree: DataTree, wavenumber: NDArray[np.float64], rows: list[int]) -> None:
-    magnitude = values(tree, "contact/filter", "approach", "wavenumber")
-    spread = (
-        values(tree, "contact/filter_std", "approach", "wavenumber")
-        if present(tree, "contact/filter_std")
-        else None
+def _datum_sensitivity(tree: DataTree) -> str:
+    """What the force of `printed`, k_c = F/r times the texture, owes to where r counts from."""
+    load, approach, datum, samples, path = (
+        number(tree, "contact", name)
+        for name in ("working_load", "working_approach", "datum", "datum_samples", "datum_path")
     )
-    theory = _theory(tree)
-    approach = values(tree, "contact/approach")
-    for row, colour in zip(rows, sequence(len(rows)), strict=True):
-        label = f"δ = {plain(approach[row] * 1e6)} µm"
-        axes.plot(wavenumber, _level(magnitude[row]), color=colour, label=label, linewidth=1.7)
-        if spread is not None:
-            band = (_level(magnitude[row] - spread[row]), _level(magnitude[row] + spread[row]))
-            clear = magnitude[row] > spread[row]
-            axes.fill_between(wavenumber, *band, where=clear, color=colour, alpha=0.09, linewidth=0)
-        if theory is not None:
-            lobe = np.logical_and.accumulate(theory[row] > 0)  # beyond it the lobes of all states would cross
-            level = np.where(lobe, _level(theory[row]), np.nan)
-            axes.plot(wavenumber, level, color=colour, linewidth=0.9, linestyle=(0, (4, 2)))
-    axes.set_ylim(FLOOR, 5)
-    axes.set_ylabel("|H| / dB")
-    axes.legend(loc="lower left", ncols=2)
-    axes.set_title("magnitude" + ("; dashed: sin q / q up to its first zero" if theory is not None else ""))
-
-
-def _signed(axes: Axes, tree: DataTree, wavenumber: NDArray[np.float64], rows: list[int]) -> None:
-    estimate = values(tree, "contact/filter_signed", "approach", "wavenumber")
-    theory = _theory(tree)
-    for row, colour in zip(rows, sequence(len(rows)), strict=True):
-        axes.plot(wavenumber, estimate[row], color=colour, linewidth=1.7)
-        if theory is not None:
-            axes.plot(wavenumber, theory[row], color=colour, linewidth=0.7, linestyle=(0, (4, 2)))
-    axes.axhline(0, color=MUTED, linewidth=0.8)
-    axes.set_ylim(-0.5, 1.15)
-    axes.set_ylabel("H (signed)")
-    axes.set_title("signed estimate" + ("; dashed: sin q / q" if theory is not None else ""))
-
-
-def _theory(tree: DataTree) -> NDArray[np.float64] | None:
-    path = "contact/filter_theory"
-    return values(tree, path, "approach", "wavenumber") if present(tree, path) else None
-
-
-def _level(ratio: NDArray[np.float64]) -> NDArray[np.float64]:
-    return 20 * np.log10(np.maximum(ratio, 10 ** (FLOOR / 20 - 1)))
-
-
-def filter_columns(tree: DataTree) -> Columns:
-    """Filters against wavenumber, one group of columns per approach."""
-    columns: Columns = {"wavenumber [1/m]": values(tree, "contact/wavenumber")}
-    approach = values(tree, "contact/approach")
-    for name in ("filter", "filter_std", "filter_signed", "filter_theory"):
-        if not present(tree, f"contact/{name}"):
-            continue
-        rows = values(tree, f"contact/{name}", "approach", "wavenumber")
-        for row in np.flatnonzero(np.isfinite(rows).any(axis=1)):
-            columns[f"{name}(approach={approach[row]:.9g} m) [1]"] = rows[row]
-    return columns
-
-
-def _filter_caption(tree: DataTree) -> str:
-    dashed = (
-        " Dashed: sin q / q, q = ka, the closed form of small roughness on Hertz's contact of radius a; it "
-        "is negative beyond q = π, which a magnitude cannot show."
-    )
+    used = [law for law in laws(tree, "rolling/contact_force") if law.startswith("printed")]
+    if not used or load is None or approach is None or datum is None or samples is None or path is None:
+        return ""
+    other, where = (path, "samples and path") if datum == samples else (samples, "the samples alone")
+    tangent = np.interp(approach, values(tree, "contact/approach"), values(tree, "contact/tangent_stiffness"))
+    below = 20 * np.log10(tangent * (approach + datum) / load)
+    change = f"{20 * np.log10((approach + datum) / (approach + other)):+.1f}".replace("-", "−")
     return (
-        "Contact filter per approach against the wavenumber in rolling direction (cycles per metre), "
-        f"wavelength along the top; shaded: standard deviation of the samples; cut off at {plain(FLOOR)} dB."
-        + (dashed if _theory(tree) is not None else "")
+        f" In {' and '.join(used)} k_c multiplies the texture: under the working load {below:.1f} dB below "
+        f"the tangent. d₀ from {where}, {engineering(other, 'm')}, would change that by {change} dB."
     )
 
 
@@ -368,12 +285,5 @@ CONTACT = (
         force_columns,
         _force_caption,
     ),
-    Part(
-        "contact_filter",
-        "Contact filter",
-        ("contact/filter", "contact/wavenumber", "contact/approach"),
-        filter_figure,
-        filter_columns,
-        _filter_caption,
-    ),
+    *FILTER,
 )

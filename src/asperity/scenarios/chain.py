@@ -20,6 +20,7 @@ from asperity.reduction.scan import ScannedForces
 from asperity.rolling.events import ContactLoss
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import Workshop
+from asperity.scenarios.line_filters import normalisations
 from asperity.scenarios.reducing import Reduction, patch_planes, reduce
 from asperity.scenarios.textures import Textures
 from asperity.store import Store
@@ -176,11 +177,10 @@ def reduce_and_roll(
         All that was computed.
     """
     planes = None if textures.path is None else patch_planes(textures.path, shape)
-    reduction = (
-        reduce(case.contact, case.numerics, textures, shape, planes, store, progress)
-        if textures.maps
-        else None
-    )
+    reduction = None
+    if textures.maps:
+        needed = normalisations(case.contact, case.laws)
+        reduction = reduce(case.contact, case.numerics, textures, shape, planes, needed, store, progress)
     watch.lap("reduction")
     workshop = Workshop(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
     laws: dict[str, Law] = {}

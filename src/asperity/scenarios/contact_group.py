@@ -11,9 +11,13 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity.reduction.filter import punch_filter
+from asperity.reduction.fir import LineFilter, punch_taps, response
 from asperity.results import variable
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.validity import Finding, rms_slope_of
+
+PATCH_PLANE = "approach from the plane that the nominal patch feels: heights under its flat-punch weight"
 
 
 def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset:
@@ -44,6 +48,8 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
     ensemble, working = reduction.ensemble, reduction.working
     attrs |= {
         "datum": ensemble.datum,
+        "datum_from": chain.case.contact.datum,
+        **{f"datum_{name}": value for name, value in reduction.datums.items()},
         "working_approach": reduction.working_approach,
         "contact_area": working.area,
         "contact_area_ratio": reduction.area_ratio,
@@ -51,7 +57,7 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         "rms_slope": rms_slope_of(chain),
         "validity": json.dumps([_row(finding) for finding in found], ensure_ascii=False),
         "samples": len(ensemble.forces),
-        "normalise": reduction.contact_filter.normalise,
+        "normalise": next(iter(reduction.filters)),
     }
     state = ensemble.states
     safe = np.where(state > 0.0, state, np.inf)
@@ -60,7 +66,7 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
     hertz = np.array([shape.hertz.force(s) for s in approach])
     touching = np.where(approach > 0.0, approach, np.inf)
     variables = {
-        "approach": variable("approach", reduction.approaches, "m", "approach of the mean surfaces"),
+        "approach": variable("approach", reduction.approaches, "m", PATCH_PLANE),
         "force": variable("approach", force, "N", "contact force, ensemble mean"),
         "force_std": variable("approach", spread, "N", "standard deviation of the force between samples"),
         "stiffness": variable("approach", force / safe, "N/m", "contact stiffness F/r, ensemble mean"),
@@ -101,43 +107,83 @@ def _filters(chain: Chain[Any]) -> dict[str, xarray.Variable]:
     """Filters on the approaches of all states; NaN where a state carries too little load to have one."""
     reduction = chain.reduction
     assert reduction is not None
-    found = reduction.contact_filter
-    dims = ("approach", "wavenumber")
-    rows = np.searchsorted(reduction.approaches, found.approaches)
-    wavenumber = found.wavenumber
-
-    def spread_out(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        full = np.full((len(reduction.approaches), len(wavenumber)), np.nan)
-        full[rows] = values
-        return full
-
+    main, *others = reduction.filters.values()
+    estimated = main.contact_filter
+    rows = np.searchsorted(reduction.approaches, estimated.approaches)
+    wavenumber = estimated.wavenumber
     theory = punch_filter(wavenumber[None, :], reduction.semi_axes[rows, :1])
-    return {
+    ratio = estimated.asymptotic_stiffness / estimated.tangent_stiffness
+    signed = np.where(estimated.excited, estimated.signed, np.nan)
+    dims, count = ("approach", "wavenumber"), len(reduction.approaches)
+    coherence = "share of the force's power that the mean line under the patch explains"
+    variables = {
         "wavenumber": variable("wavenumber", wavenumber, "1/m", "wavenumber, cycles per metre"),
-        "filter": variable(dims, spread_out(found.magnitude), "1", "contact filter, magnitude"),
-        "filter_std": variable(dims, spread_out(found.spread), "1", "standard deviation between samples"),
-        "filter_signed": variable(dims, spread_out(found.signed), "1", "contact filter, signed estimate"),
-        "filter_theory": variable(dims, spread_out(theory), "1", "sin q/q of the nominal patch"),
+        "filter_excited": variable(
+            "wavenumber", estimated.excited.astype(np.int8), "1", "1 where the texture excites the contact"
+        ),
+        "filter_scale": variable(
+            "approach", _on_states(ratio, rows, count), "1", "k_0/k_t: low-wavenumber over tangent stiffness"
+        ),
+        "filter_signed": variable(dims, _on_states(signed, rows, count), "1", "contact filter, signed"),
+        "filter_coherence": variable(dims, _on_states(estimated.coherence, rows, count), "1", coherence),
+        "filter_theory": variable(dims, _on_states(theory, rows, count), "1", "sin q/q of the nominal patch"),
     }
+    for name, found in (("filter", main), *(("printed_filter", other) for other in others)):
+        variables |= _magnitudes(name, found, rows, count)
+    return variables
+
+
+def _magnitudes(name: str, found: LineFilter, rows: NDArray, count: int) -> dict[str, xarray.Variable]:
+    """A filter as estimated, as fitted and as applied."""
+    estimated, what = found.contact_filter, f"contact filter, {found.contact_filter.normalise} normalisation"
+    laid_out = {
+        name: (estimated.magnitude, f"{what}: fitted magnitude"),
+        f"{name}_raw": (estimated.raw, f"{what}: ratio of the spectra, Eq. 2.6"),
+        f"{name}_applied": (found.applied, f"{what}: magnitude of the taps"),
+        f"{name}_std": (estimated.spread, f"{what}: standard deviation between the strips' fits"),
+    }
+    return {
+        key: variable(("approach", "wavenumber"), _on_states(values, rows, count), "1", meaning)
+        for key, (values, meaning) in laid_out.items()
+    }
+
+
+def _on_states(values: NDArray[np.float64], rows: NDArray, count: int) -> NDArray[np.float64]:
+    """Values of some states among `count`; NaN for the others."""
+    full = np.full((count, *values.shape[1:]), np.nan)
+    full[rows] = values
+    return full
 
 
 def _hertz_only(chain: Chain[Any], attrs: dict[str, Any]) -> xarray.Dataset:
     """Contact of smooth bodies, and its closed-form filter, where a case has no samples."""
-    hertz, load = chain.shape.hertz, chain.shape.load
+    shape, hertz, load = chain.shape, chain.shape.hertz, chain.shape.load
     approach = np.linspace(0.0, 2.0 * hertz.approach(load), 41)[1:]
     radius = np.array([hertz.semi_axes(d)[0] for d in approach])
-    wavenumber = np.geomspace(0.01, 2.0, 120) / chain.shape.semi_axes[0]
+    wavenumber = np.geomspace(0.01, 2.0, 120) / shape.semi_axes[0]
     force = np.array([hertz.force(d) for d in approach])
     theory = punch_filter(wavenumber[None, :], radius[:, None])
     dims = ("approach", "wavenumber")
     return xarray.Dataset(
         {
-            "approach": variable("approach", approach, "m", "approach of the mean surfaces"),
+            "approach": variable("approach", approach, "m", "approach of the smooth bodies"),
             "force": variable("approach", force, "N", "contact force (Hertz)"),
             "stiffness": variable("approach", force / approach, "N/m", "contact stiffness F/r (Hertz)"),
             "contact_radius": variable("approach", radius, "m", "radius of the contact"),
             "wavenumber": variable("wavenumber", wavenumber, "1/m", "wavenumber, cycles per metre"),
             "filter": variable(dims, np.abs(theory), "1", "contact filter, magnitude (closed form)"),
+            "filter_applied": variable(
+                dims, _applied_at_load(shape, approach, wavenumber), "1", "magnitude of the taps"
+            ),
         },
         attrs=attrs | {"datum": 0.0, "working_approach": hertz.approach(load)},
     )
+
+
+def _applied_at_load(
+    shape: Geometry, approach: NDArray[np.float64], wavenumber: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Magnitude of the one filter that smooth bodies have, in the state of the working load."""
+    taps = punch_taps(shape.semi_axes[0], shape.spacing[0])
+    state = np.array([np.argmin(np.abs(approach - shape.hertz.approach(shape.load)))])
+    return _on_states(np.abs(response(taps, shape.spacing[0], wavenumber)), state, len(approach))

@@ -21,8 +21,9 @@ from asperity.scenarios import rail_textures
 from asperity.scenarios.ball_on_beam import ball_geometry
 from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry, window_cells
 from asperity.scenarios.laws import table_stride
+from asperity.scenarios.line_filters import filter_stride
 from asperity.scenarios.rail_geometry import rail_geometry
-from asperity.scenarios.reducing import STATES, filter_stride
+from asperity.scenarios.reducing import STATES
 from asperity.scenarios.textures import measured_maps, strip_rows, synthesised
 from asperity.structures.ball import Ball
 from asperity.surfaces.heightmap import HeightMap

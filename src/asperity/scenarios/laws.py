@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase, Numerics
-from asperity.contact import Hertz as HertzContact
 from asperity.pointforce import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
 from asperity.progress import Progress
 from asperity.reduction.accuracy import rtol_for
 from asperity.reduction.areal import areal_texture
-from asperity.reduction.filter import filtered_texture
+from asperity.reduction.fir import filtered_texture, punch_taps
 from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_into, warn_of_scans
 from asperity.reduction.stored import StoredForces
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.line_filters import normalisation, warn_of_filter
 from asperity.scenarios.reducing import Reduction
 from asperity.scenarios.textures import Textures
 
@@ -69,21 +69,22 @@ class Workshop:
             The scan of the path, for ``table``.
         """
         damping = self.contact.damping
-        base, _, filtered = name.partition("-")
+        base, _, variant = name.partition("-")
         if base == "table":
             return self._table(damping)
         if base == "direct":
             return self._direct(damping), None
         if base in ("hertz", "linear"):
-            texture = self._filtered_line() if filtered else self._line()
+            texture = self._filtered_line(name) if variant == "filtered" else self._line()
             return (self._hertz if base == "hertz" else self._linear)(texture, damping, name), None
         assert self.reduction is not None
         curve = self.reduction.ensemble.curve
         if base == "areal":
             return Areal(curve, self._areal(), damping, plane=self._plane()), None
+        texture = self._line() if variant == "unfiltered" else self._filtered_line(name)
         if base == "printed":
-            return Printed(curve, self._filtered_line(), self.reduction.ensemble.datum, damping), None
-        return Shifted(curve, self._filtered_line(), damping), None
+            return Printed(curve, texture, self.reduction.ensemble.datum, damping, name), None
+        return Shifted(curve, texture, damping, name), None
 
     def _hertz(self, texture: StateTexture, damping: float, name: str) -> Law:
         return Hertz(self.shape.hertz.stiffness_constant, texture, damping, name)
@@ -97,17 +98,15 @@ class Workshop:
     def _line(self) -> StateTexture:
         return StateTexture.unfiltered(-self.textures.followed, self.shape.spacing[0], self.textures.start)
 
-    def _filtered_line(self) -> StateTexture:
+    def _filtered_line(self, law: str) -> StateTexture:
         dx, start = self.shape.spacing[0], self.textures.start
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
-            taps = punch_taps(self.shape.hertz, self.shape.load, dx)
-            return self._over_defects(
-                filtered_texture(self.textures.line, dx, taps[None], [0.0], self.textures.start)
-            )
-        states = self.reduction.contact_filter.approaches
-        return self._over_defects(
-            filtered_texture(self.textures.line, dx, self.reduction.taps, states, start)
-        )
+            taps, states = punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
+        else:
+            found = self.reduction.filters[normalisation(self.contact, law)]
+            warn_of_filter(found, law, self.reduction.working_approach)
+            taps, states = found.taps, found.contact_filter.approaches
+        return self._over_defects(filtered_texture(self.textures.line, dx, taps, states, start))
 
     def _over_defects(self, texture: StateTexture) -> StateTexture:
         """Add the trajectory over defects: rolled over already, it is not to be filtered again."""
@@ -152,7 +151,7 @@ class Workshop:
         )  # fmt: skip
         reduction, widest = self.reduction, self.textures.widest_window
         remedy = self.shape.remedy_for_cut_off(
-            float(reduction.approaches[-1]), reduction.working_approach, reduction.ensemble.datum, widest
+            float(reduction.approaches[-1]), reduction.working_approach, reduction.datums["path"], widest
         )
         warn_of_scans([scanned], "the path", remedy)
         touches = first_touch(surface, self.shape.body, stride) + planes
@@ -218,26 +217,3 @@ def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | 
     if contact.linearise == "secant":
         return approach, shape.load / (approach + ensemble.datum)
     return approach, float(ensemble.curve.stiffness(approach))
-
-
-def punch_taps(hertz: HertzContact, load: float, spacing: float) -> NDArray[np.float64]:
-    """Taps of the closed-form filter sin q/q of a smooth contact: the mean over its length.
-
-    Parameters
-    ----------
-    hertz : HertzContact
-        Smooth contact.
-    load : float
-        Working load, N.
-    spacing : float
-        Sampling of the line texture, m.
-
-    Returns
-    -------
-    ndarray, shape (odd,)
-        Share of each point under the patch; they sum to one.
-    """
-    a = hertz.semi_axes(hertz.approach(load))[0]
-    half = max(0, math.ceil(a / spacing - 0.5))
-    edges = (np.arange(-half, half + 2) - 0.5) * spacing
-    return np.diff(np.clip(edges, -a, a)) / (2 * a)

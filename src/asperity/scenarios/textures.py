@@ -18,8 +18,10 @@ from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.strip import Raised, Strip
 from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
 
-STRIP_WINDOWS = 8
-"""Length of a synthesised strip for the filters, in windows."""
+STRIP_WINDOWS = 16
+"""Length of a strip for the filters, in windows: few bins of its spectra span the fall of a filter else."""
+FEWEST_WINDOWS = 4
+"""Least length of maps that strips are cut from, in windows, where the case does not ask for more."""
 
 HELD_POINTS = 2**22
 """Points of a synthesised path that are held in memory (32 MiB); of longer paths, pieces are."""
@@ -185,7 +187,7 @@ def strips_of(
     """
     rows, ny = strip_rows(contact), window_cells(contact)
     longest = min(m.shape[0] for m in maps)
-    if contact.sample_length is None and longest >= rows // 2:
+    if contact.sample_length is None and longest >= FEWEST_WINDOWS * ny:
         rows = min(rows, longest)
     if longest >= rows and min(m.shape[1] for m in maps) >= ny:
         cut = []

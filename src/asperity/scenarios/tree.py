@@ -98,8 +98,8 @@ def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
 
 
 def _meaning(name: str) -> str:
-    base, _, filtered = name.partition("-")
-    return LAWS[base].meaning + (" With the filtered line texture." if filtered else "")
+    base, _, variant = name.partition("-")
+    return LAWS[base].meaning + (f" Here with the {variant} line texture." if variant else "")
 
 
 def _listed(chain: Chain[Any], numerics: Iterable[tuple[str, str]]) -> list[dict[str, str]]:
@@ -119,7 +119,8 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
         solves, iterations = chain.reduction.solves, chain.reduction.iterations
         yield "contacts solved for the filters", f"{solves}"
         yield "iterations per contact", f"{iterations / max(solves, 1):.1f}"
-        yield "filter order J", f"{chain.reduction.taps.shape[1] - 1}"
+        orders = {found.taps.shape[1] - 1 for found in chain.reduction.filters.values()}
+        yield "filter order J", ", ".join(map(str, sorted(orders)))
     if chain.scan is not None:
         precision = "single" if chain.scan.single else "double"
         yield "contacts solved for the table", f"{chain.scan.solved} in {precision} precision"

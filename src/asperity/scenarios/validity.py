@@ -172,7 +172,7 @@ def _cut_off(chain: Chain[Any]) -> Iterator[Finding]:
     assert reduction is not None
     ensemble, highest = reduction.ensemble, float(reduction.approaches[-1])
     remedy = chain.shape.remedy_for_cut_off(
-        highest, reduction.working_approach, ensemble.datum, chain.textures.widest_window
+        highest, reduction.working_approach, reduction.datums["path"], chain.textures.widest_window
     )
     main, run = next(iter(chain.runs.items()))
     held = float(ensemble.mean_force[ensemble.held - 1]) if ensemble.held else 0.0

@@ -1,0 +1,246 @@
+"""Filters that a line texture runs through: designed from a contact filter, finite, without delay."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+from scipy.signal import fftconvolve, firwin2
+
+from asperity.errors import InputError
+from asperity.reduction.filter import ContactFilter
+from asperity.reduction.texture import StateTexture
+
+ACCURACY, DOWN_TO = 0.3, -30.0
+"""A chosen order meets the fitted filter within so many dB, down to a level in dB."""
+GROWTH = 1.25
+"""From one order tried to the next."""
+LARGEST_ORDER = 4096
+"""No longer filter is tried."""
+_FINE = 3
+"""Points a band at which the response is held against the fit."""
+
+
+@dataclass(frozen=True, eq=False)
+class LineFilter:
+    """A contact filter and the taps that apply it.
+
+    Attributes
+    ----------
+    contact_filter : ContactFilter
+        What was estimated.
+    taps : ndarray, shape (s, J + 1)
+        b_j of each state, symmetric.
+    spacing : float
+        Sampling of the line texture, m.
+    """
+
+    contact_filter: ContactFilter
+    taps: NDArray[np.float64]
+    spacing: float
+
+    @property
+    def applied(self) -> NDArray[np.float64]:
+        """Magnitude that the taps have at the filter's wavenumbers, shape (s, k)."""
+        return np.abs(response(self.taps, self.spacing, self.contact_filter.wavenumber))
+
+    @property
+    def miss(self) -> float:
+        """Largest distance of the applied filter from the fitted one, dB, where that is above `DOWN_TO`."""
+        known = self.contact_filter.wavenumber[self.contact_filter.excited]
+        fine = np.geomspace(known[0], known[-1], _FINE * known.size)
+        fitted = 20.0 * np.log10(_target(self.contact_filter, fine))
+        applied = 20.0 * np.log10(np.maximum(np.abs(response(self.taps, self.spacing, fine)), 1e-9))
+        return float(np.max(np.abs(applied - fitted), where=fitted >= DOWN_TO, initial=0.0))
+
+
+def response(taps: NDArray[np.float64], spacing: float, wavenumber: ArrayLike) -> NDArray[np.float64]:
+    """Response of symmetric taps about their middle one, real and signed.
+
+    Parameters
+    ----------
+    taps : ndarray, shape (s, odd)
+        Filters.
+    spacing : float
+        Distance of the points, m.
+    wavenumber : array_like, shape (k,)
+        Cycles/m.
+
+    Returns
+    -------
+    ndarray, shape (s, k)
+        One where a wave passes unchanged.
+    """
+    lags = np.arange(taps.shape[1]) - taps.shape[1] // 2
+    return np.asarray(taps @ np.cos(2.0 * math.pi * spacing * lags[:, None] * np.asarray(wavenumber)))
+
+
+def tap_count(spacing: float, largest_semi_axis: float) -> int:
+    """Least even J with J dx ≥ 4 a_max.
+
+    Parameters
+    ----------
+    spacing : float
+        Sampling of the line texture, m.
+    largest_semi_axis : float
+        Largest semi-axis of the contact in the rolling direction, m.
+
+    Returns
+    -------
+    int
+        J; the filter has J + 1 taps.
+    """
+    return 2 * math.ceil(2.0 * largest_semi_axis / spacing)
+
+
+def punch_taps(semi_axes: ArrayLike, spacing: float) -> NDArray[np.float64]:
+    """Taps of the closed-form filter sin q/q: the mean over the length of the patch.
+
+    Parameters
+    ----------
+    semi_axes : array_like, shape (s,)
+        Semi-axes of the patch in the rolling direction, m.
+    spacing : float
+        Sampling of the line texture, m.
+
+    Returns
+    -------
+    ndarray, shape (s, odd)
+        Share of each point under each patch; they sum to one.
+    """
+    a = np.atleast_1d(np.asarray(semi_axes, dtype=np.float64))[:, None]
+    half = max(0, math.ceil(float(a.max()) / spacing - 0.5))
+    edges = (np.arange(-half, half + 2) - 0.5) * spacing
+    return np.asarray(np.diff(np.clip(edges, -a, a), axis=1) / (2.0 * a))
+
+
+def design_fir(
+    contact_filter: ContactFilter,
+    spacing: float,
+    order: int | None = None,
+    *,
+    least: int = 2,
+    most: int = LARGEST_ORDER,
+) -> LineFilter:
+    """Design linear-phase FIR filters with the fitted magnitudes.
+
+    Parameters
+    ----------
+    contact_filter : ContactFilter
+        Estimated filter.
+    spacing : float
+        Sampling of the line texture, m.
+    order : int, optional
+        J, even: a design by window, as the thesis' (Matlab's fir2). By default J is chosen, and the taps are
+        those of the least relative error.
+    least, most : int, optional
+        Orders between which to choose.
+
+    Returns
+    -------
+    LineFilter
+        Under the printed normalisation the taps of each state sum to one. A chosen order is the first tried
+        that meets the fit within 0.3 dB down to −30 dB; where none does, the largest: see `LineFilter.miss`.
+
+    Raises
+    ------
+    InputError
+        If the order is odd or less than 2.
+    """
+    if order is not None:
+        if order < 2 or order % 2:
+            raise InputError(
+                "order of the contact filter", order, "an even number ≥ 2", "J + 1 taps need J even."
+            )
+        return LineFilter(contact_filter, _by_window(contact_filter, spacing, order), spacing)
+    most = max(2, 2 * (min(most, LARGEST_ORDER) // 2))
+    order = min(max(2, least), most)
+    while True:
+        found = LineFilter(contact_filter, _least_relative_error(contact_filter, spacing, order), spacing)
+        if order == most or found.miss <= ACCURACY:
+            return found
+        order = min(2 * math.ceil(0.5 * GROWTH * order), most)
+
+
+def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
+    """Taps from the inverse transform of the magnitude under a Hamming window."""
+    grid = np.linspace(0.0, 1.0, 513)
+    gain = _target(contact_filter, grid * (0.5 / spacing))
+    return _summed(contact_filter, np.array([firwin2(order + 1, grid, row) for row in gain]))
+
+
+def _least_relative_error(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
+    """Taps with the least squared relative error of the response, octave for octave.
+
+    A response Σ_j c_j cos jω has normal equations of sums and differences of lags: those of the
+    transforms of the weight and of the weighted target.
+    """
+    points = 2 ** math.ceil(math.log2(max(8 * order, 2048)))
+    wavenumber = np.arange(points // 2 + 1) / (points * spacing)
+    lags = np.arange(order // 2 + 1)
+    apart, together = np.abs(lags[:, None] - lags), lags[:, None] + lags
+    least = 10.0 ** ((DOWN_TO - 3.0) / 20.0)
+    taps = []
+    for target in _target(contact_filter, wavenumber):
+        weight = 1.0 / (np.maximum(target, least) ** 2 * np.maximum(wavenumber, contact_filter.wavenumber[0]))
+        of_weight, of_target = np.fft.irfft(weight, points), np.fft.irfft(weight * target, points)
+        cosines = np.linalg.solve(0.5 * (of_weight[apart] + of_weight[together]), of_target[lags])
+        taps.append(np.concatenate([0.5 * cosines[:0:-1], cosines[:1], 0.5 * cosines[1:]]))
+    return _summed(contact_filter, np.array(taps))
+
+
+def _target(contact_filter: ContactFilter, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Magnitude at any wavenumber: between the fitted ones smooth in dB over octaves, beyond them held.
+
+    Under the printed normalisation it goes on to one at wavenumber zero.
+    """
+    known, magnitude = contact_filter.wavenumber, contact_filter.magnitude
+    inside = np.log(np.clip(wavenumber, known[0], known[-1]))
+    found = np.exp(PchipInterpolator(np.log(known), np.log(magnitude), axis=1)(inside))
+    if contact_filter.normalise == "low-wavenumber":
+        share = np.minimum(wavenumber / known[0], 1.0)
+        found = share * found + (1.0 - share)
+    return np.asarray(found)
+
+
+def _summed(contact_filter: ContactFilter, taps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Taps that let pass what the filter does at wavenumber zero."""
+    at_zero = _target(contact_filter, np.zeros(1))
+    return np.asarray(taps * at_zero / taps.sum(axis=1, keepdims=True))
+
+
+def filtered_texture(
+    heights: NDArray[np.float64],
+    spacing: float,
+    taps: NDArray[np.float64],
+    approaches: ArrayLike,
+    start: float = 0.0,
+) -> StateTexture:
+    """Filter the line texture of a path for every state (Eq. 2.7).
+
+    Parameters
+    ----------
+    heights : ndarray, shape (m,)
+        Line texture, m, peaks positive.
+    spacing : float
+        Distance of the points, m.
+    taps : ndarray, shape (s, J + 1)
+        As of a `LineFilter`.
+    approaches : array_like, shape (s,)
+        Approaches of the states, m.
+    start : float
+        Position of the first point, m.
+
+    Returns
+    -------
+    StateTexture
+        h̃(m, r_i) = Σ_j b_j(r_i) h(m − J/2 + j) with h = −z, m, positive away from the contact. The first
+        and last J/2 points see a texture mirrored at the ends.
+    """
+    half = taps.shape[1] // 2
+    padded = np.pad(-np.asarray(heights, dtype=np.float64), half, mode="reflect")
+    result = np.array([fftconvolve(padded, b, mode="valid") for b in taps])
+    return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing)
