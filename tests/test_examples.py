@@ -62,7 +62,7 @@ def test_wheel_on_rail_filters_more_the_harder_it_is_pressed(tmp_path):
 
 def test_linear_contact_over_or_underestimates_by_its_stiffness(tmp_path):
     numbers = run("wheel_on_rail", tmp_path)
-    # Hertz's k_t at 65 kN; the mean planes of these rough bodies meet 10 to 30 µm after the first touch
+    # Hertz's k_t and approach of 78.1 µm at 65 kN; peaks of the samples stand up to 10 µm above their planes
     assert numbers["tangent_stiffness"] == pytest.approx(1.248e9, rel=0.02)
-    assert 65e3 / 108e-6 < numbers["secant_stiffness"] < 65e3 / 88e-6
+    assert 65e3 / 88e-6 < numbers["secant_stiffness"] < 65e3 / 78.1e-6
     assert numbers["shifted_over_k_t_a_weighted"] < 0.0 < numbers["printed_unfiltered_over_k_c_a_weighted"]

@@ -16,8 +16,8 @@ from asperity.reduction.scan import window_for
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in working loads."""
-FILLED = 0.95
-"""Share of the window's width that the contact of the largest chosen state may fill."""
+FILLED = 0.9
+"""Share of the window's width for the smooth contact of the largest chosen state; rough ones vary."""
 
 
 @dataclass(frozen=True, eq=False)
