@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from asperity.errors import ComputationError, InputError
-from asperity.store import Store, atomic_write, content_key, default_root
+from asperity.files import atomic_write
+from asperity.store import Store, content_key, default_root
 
 
 @pytest.fixture

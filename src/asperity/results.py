@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Hashable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
+from asperity.apart import apart, reason
 from asperity.arguments import file_path
 from asperity.errors import InputError
-from asperity.store import atomic_write
+from asperity.files import is_sealed, write_bytes
 
 if TYPE_CHECKING:
     import xarray
@@ -113,17 +115,16 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     checked(tree)
     encoding = {
         node.path: {
-            name: {"zlib": True, "complevel": 1, "shuffle": True}
+            name: {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True}
             for name, values in node.to_dataset(inherit=False).variables.items()
             if np.issubdtype(values.dtype, np.number) and values.ndim
         }
         for node in tree.subtree
     }
 
-    def write(file: Any) -> None:
-        tree.to_netcdf(file.name, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
-
-    return atomic_write(path, write)
+    image = io.BytesIO()  # HDF5 itself ends the process where a disk is full
+    tree.to_netcdf(image, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
+    return write_bytes(path, image.getbuffer(), sealed=True)
 
 
 def load(path: str | os.PathLike[str]) -> xarray.DataTree:
@@ -144,8 +145,6 @@ def load(path: str | os.PathLike[str]) -> xarray.DataTree:
     InputError
         If the file is missing, damaged, too large or not a result of this program.
     """
-    import xarray
-
     path = file_path("result", path, "the path of a run.nc, or of the folder that holds one")
     if path.is_dir():
         path = path / "run.nc"
@@ -155,18 +154,43 @@ def load(path: str | os.PathLike[str]) -> xarray.DataTree:
     if path.stat().st_size > LARGEST_FILE:
         raise InputError(str(path), f"{path.stat().st_size / 2**30:.0f} GiB", f"{allowed} of at most 16 GiB")
     with open(path, "rb") as file:
-        signature = file.read(8)
+        signature, intact = file.read(8), is_sealed(file)
     if signature != b"\x89HDF\r\n\x1a\n":
         raise InputError(str(path), "a file that is not netCDF-4", allowed)
-    try:
-        with xarray.open_datatree(path, engine="h5netcdf") as opened:
-            tree = opened.load()
-    except Exception as error:  # h5py and xarray raise errors of many kinds on damaged files
-        received = f"a damaged file ({type(error).__name__})"
-        raise InputError(str(path), received, allowed, "Run its case again.") from error
+    if intact is None:  # of another program, which HDF5 may hang in
+        apart(f"{__name__}:open_apart", [str(path.absolute())], str(path), path.stat().st_size, "netCDF-4")
+    elif not intact:
+        received = "a damaged file: its digest does not fit its contents"
+        raise InputError(str(path), received, allowed, "Run its case again.")
+    tree = _opened(path)
     if "asperity_version" not in tree.attrs or not set(GROUPS) <= set(tree.children):
         raise InputError(str(path), "a netCDF-4 file of another kind", allowed)
     return tree
+
+
+def _opened(path: Path) -> xarray.DataTree:
+    import xarray
+
+    try:
+        with xarray.open_datatree(path, engine="h5netcdf") as opened:
+            return opened.load()
+    except Exception as error:  # h5py and xarray raise errors of many kinds on damaged files
+        received = f"a damaged file ({reason(error)})"
+        allowed = "a result file that a run has written (run.nc)"
+        raise InputError(str(path), received, allowed, "Run its case again.") from error
+
+
+def open_apart(path: str, answers: BinaryIO) -> None:
+    """Open a result whose origin is not known, to see that it can be.
+
+    Parameters
+    ----------
+    path : str
+        The file.
+    answers : binary file
+        Receives nothing.
+    """
+    _opened(Path(path))
 
 
 def case_text(path: str | os.PathLike[str]) -> str:
@@ -190,8 +214,11 @@ def case_text(path: str | os.PathLike[str]) -> str:
     import h5netcdf
 
     try:
+        with open(path, "rb") as sealed:
+            if not is_sealed(sealed):
+                raise ValueError("its digest is missing, or does not fit")
         with h5netcdf.File(path, "r") as file:
             return str(file.attrs["case"])
     except Exception as error:  # h5py raises errors of many kinds on damaged files
-        received = f"a file without a readable case ({type(error).__name__})"
+        received = f"a file without a readable case ({reason(error)})"
         raise InputError(str(path), received, "a result file that a run has written (run.nc)") from error

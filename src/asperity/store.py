@@ -1,68 +1,28 @@
-"""What has been computed once is kept: a content-addressed cache on disk, and atomic writing of any file."""
+"""What has been computed once is kept: a content-addressed cache on disk."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import os
-import secrets
 import sys
 import tempfile
+import warnings
 import zipfile
-import zlib
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import ComputationError, InputError
+from asperity.files import amount, atomic_write, is_sealed, left_overs, sweep
 
 FORMAT = 1  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
-
-
-def atomic_write(path: str | os.PathLike[str], write: Callable[[BinaryIO], object]) -> Path:
-    """Write a file completely or not at all.
-
-    Parameters
-    ----------
-    path : path
-        The file to write; its folder is made if it is missing. An existing file is replaced in one step.
-    write : callable
-        Receives a binary file open for reading and writing, and fills it.
-
-    Returns
-    -------
-    Path
-        The file written.
-
-    Raises
-    ------
-    ComputationError
-        If the folder cannot be made or the file not be written.
-    """
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with open(temporary, "x+b") as file:
-            write(file)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except OSError as error:
-        raise ComputationError(
-            f"{path} could not be written ({error.strerror or error})",
-            "another folder, or free space on this disk",
-        ) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-    return path
+MOST_HELD = 2**30  # bytes; what no disk takes is held in memory up to here
 
 
 def content_key(name: str, *parts: object) -> str:
@@ -128,11 +88,15 @@ class Store:
 
     Notes
     -----
-    Files are ``.npz`` without pickled objects, written atomically. A file that is damaged, or was not
-    written by a `Store`, counts as missing. Any number of processes may read and write the same folder.
+    Files are ``.npz`` without pickled objects, written atomically and sealed with a digest. A file that is
+    damaged, or was not written by a `Store`, counts as missing. Any number of processes may read and write
+    the same folder. Where it cannot be written, results are held in memory, with one warning.
     """
 
     root: Path = field(default_factory=lambda: default_root())
+    _held: dict[str, dict[str, NDArray[Any]]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "root", Path(self.root))
@@ -157,17 +121,19 @@ class Store:
             What `put` stored under `key`; None if there is nothing, or nothing that can be trusted.
         """
         path = self.path(key)
+        if key in self._held:
+            return dict(self._held[key])
         try:
             with open(path, "rb") as file:
+                if not is_sealed(file):
+                    return None
                 with zipfile.ZipFile(file) as archive:
                     if sum(entry.file_size for entry in archive.infolist()) > LARGEST_FILE:
                         return None
                 file.seek(0)
                 with np.load(file, allow_pickle=False) as arrays:
                     found = {name: arrays[name] for name in arrays.files}
-        except (OSError, ValueError, EOFError, KeyError, NotImplementedError, RuntimeError, MemoryError):
-            return None
-        except (zipfile.BadZipFile, zlib.error, SyntaxError, OverflowError, TypeError):
+        except Exception:  # a forged seal, an unreadable disk: errors of any kind
             return None
         if str(found.pop("__key__", "")) != key:
             return None
@@ -186,12 +152,39 @@ class Store:
         Raises
         ------
         ComputationError
-            If the file cannot be written.
+            If the file cannot be written, and memory already holds much that could not.
+
+        Warns
+        -----
+        RuntimeWarning
+            If the file cannot be written: the result is held in memory, for this store alone.
         """
         contents = {"__key__": np.array(key), **{name: np.asarray(value) for name, value in arrays.items()}}
         if any(value.dtype.hasobject for value in contents.values()):
             raise TypeError("arrays of objects cannot be stored")
-        atomic_write(self.path(key), lambda file: np.savez(file, **contents))  # type: ignore[arg-type]
+        path = self.path(key)
+        try:
+            atomic_write(path, lambda file: np.savez(file, **contents), sealed=True)  # type: ignore[arg-type]
+        except ComputationError as error:
+            self._hold(key, {name: value for name, value in contents.items() if name != "__key__"}, error)
+
+    def _hold(self, key: str, arrays: dict[str, NDArray[Any]], error: ComputationError) -> None:
+        """Hold in memory what the disk does not take."""
+        held = self._held | {key: arrays}
+        size = sum(value.nbytes for result in held.values() for value in result.values())
+        if size > MOST_HELD:
+            raise ComputationError(
+                f"{error.what}, and memory already holds {amount(MOST_HELD)} that are kept nowhere",
+                error.remedy,
+            ) from error
+        if not self._held:
+            warnings.warn(
+                f"{error.what}: finished work is not kept, and a run that is interrupted starts again. Let "
+                "$ASPERITY_CACHE name a folder that can be written to.",
+                RuntimeWarning,
+                stacklevel=3,
+            )
+        self._held[key] = {name: value.copy() for name, value in arrays.items()}
 
     def files(self) -> list[Path]:
         """List the files of this store, sorted by name."""
@@ -201,12 +194,16 @@ class Store:
         """Total size of the files, in bytes."""
         return sum(path.stat().st_size for path in self.files())
 
+    def left_overs(self) -> list[Path]:
+        """List what interrupted writes left in the folder; not what another run is writing."""
+        return left_overs(self.root)
+
     def clear(self) -> int:
         """Delete all results and what interrupted writes left; return how many results went."""
         files = self.files()
-        left_overs = list(self.root.glob(".*.npz.*.part")) if self.root.is_dir() else []
-        for path in [*files, *left_overs]:
+        for path in files:
             path.unlink(missing_ok=True)
+        sweep(self.root)
         return len(files)
 
 

@@ -1,8 +1,6 @@
 """Bare arrays, netCDF and instrument files."""
 
 import sys
-import types
-from contextlib import nullcontext
 from pathlib import Path
 
 import h5netcdf
@@ -183,31 +181,55 @@ def test_netcdf_coordinate_that_is_not_uniform(tmp_path):
         read_surface(file)
 
 
+def package(tmp_path, monkeypatch, code):
+    """Put code where SurfaceTopography is imported from; files are read in a process of their own."""
+    place = tmp_path / "packages"
+    place.mkdir(exist_ok=True)
+    (place / "SurfaceTopography.py").write_text(code)
+    if str(place) not in sys.path:
+        monkeypatch.syspath_prepend(str(place))
+
+
+AS_THEY_ARE = f"np.array({HEIGHTS.tolist()})"
+FAKE = """
+import types
+from contextlib import nullcontext
+import numpy as np
+
+heights = {heights}
+measured = types.SimpleNamespace(
+    is_uniform={uniform}, unit={unit!r}, heights=lambda: heights, pixel_size=(2.0, 3.0)[: heights.ndim]
+)
+channel = types.SimpleNamespace(
+    name="Height", nb_grid_pts=heights.shape, physical_sizes=(1.0, 1.0), topography=lambda **_: measured
+)
+reader = types.SimpleNamespace(channels=[channel], default_channel=channel)
+open_topography = lambda path: nullcontext(reader)
+"""
+"""One channel with the attributes that the documentation of SurfaceTopography names."""
+
+
+@pytest.fixture
+def measured(tmp_path, monkeypatch):
+    file = tmp_path / "a.plu"
+    file.write_bytes(b"content")
+
+    def fake(*, unit="um", uniform=True, heights=AS_THEY_ARE):
+        package(tmp_path, monkeypatch, FAKE.format(unit=unit, uniform=uniform, heights=heights))
+        return file
+
+    return fake
+
+
 def test_instrument_file_without_the_extra(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    package(tmp_path, monkeypatch, "raise ImportError")
     (tmp_path / "a.al3d").write_bytes(b"AliconaImaging")
     with pytest.raises(InputError, match=r'a .al3d file.*pip install "asperity\[readers\]"'):
         read_surface(tmp_path / "a.al3d")
 
 
-def fake_topography(monkeypatch, *, unit="um", uniform=True, heights=HEIGHTS):
-    """Stand in for SurfaceTopography: one channel with the attributes that its documentation names."""
-    measured = types.SimpleNamespace(
-        is_uniform=uniform, unit=unit, heights=lambda: heights, pixel_size=(2.0, 3.0)[: heights.ndim]
-    )
-    channel = types.SimpleNamespace(
-        name="Height", nb_grid_pts=heights.shape, physical_sizes=(1.0, 1.0), topography=lambda **_: measured
-    )
-    reader = types.SimpleNamespace(channels=[channel], default_channel=channel)
-    module = types.ModuleType("SurfaceTopography")
-    module.open_topography = lambda path: nullcontext(reader)
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", module)
-
-
-def test_instrument_file(tmp_path, monkeypatch):
-    file = tmp_path / "a.plu"
-    file.write_bytes(b"content")
-    fake_topography(monkeypatch, heights=np.ma.masked_equal(HEIGHTS, 12.0))
+def test_instrument_file(measured):
+    file = measured(heights=f"np.ma.masked_equal({HEIGHTS.tolist()}, 12.0)")
     with pytest.warns(MissingPointsWarning, match=r"a\.plu:Height: 1 points"):
         surface = read_surface(file)
     expected = 1e-6 * HEIGHTS
@@ -216,14 +238,43 @@ def test_instrument_file(tmp_path, monkeypatch):
     assert surface.spacing == pytest.approx((2e-6, 3e-6))
     with pytest.raises(InputError, match=r"array in a\.plu: received 'Phase'; allowed: one of: Height"):
         read_surface(file, array="Phase")
-    fake_topography(monkeypatch, heights=HEIGHTS[:, 0])
+
+
+def test_instrument_file_of_a_line(measured):
+    file = measured(heights=f"np.array({HEIGHTS[:, 0].tolist()})")
     assert isinstance(read_surface(file, array="Height"), Profile)
-    fake_topography(monkeypatch, unit=None)
+
+
+def test_instrument_file_that_lacks_something(measured):
     with pytest.raises(InputError, match="heights without a unit"):
-        read_surface(file)
-    fake_topography(monkeypatch, uniform=False)
+        read_surface(measured(unit=None))
     with pytest.raises(InputError, match="points at no uniform spacing"):
-        read_surface(file)
+        read_surface(measured(uniform=False))
+
+
+@pytest.mark.parametrize(
+    ("code", "message"),
+    [
+        ("import time\ndef open_topography(path): time.sleep(60)", "a file that takes more than 3 s to open"),
+        ("import os\ndef open_topography(path): os.abort()", r"a file that ends the program that opens it"),
+        (
+            "import numpy\ndef open_topography(path): numpy.ones(2**31)",
+            r"(MemoryError|more than 8 GiB of memory).* while it was opened",
+        ),
+        (
+            "def open_topography(path): raise KeyError(b'0' * 4000)",
+            r"KeyError \(.{300} …\) while it was opened",
+        ),
+    ],
+)
+def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, message):
+    package(tmp_path, monkeypatch, code)
+    monkeypatch.setattr("asperity.apart.SECONDS", 3.0)
+    (tmp_path / "a.plu").write_bytes(b"content")
+    with pytest.raises(InputError, match=message) as caught:
+        read_surface(tmp_path / "a.plu")
+    assert len(str(caught.value)) < 700
+    assert "a.plu: received" in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from asperity.errors import InputError
-from asperity.store import atomic_write
+from asperity.files import atomic_write
 from asperity.surfaces.readers.spelling import on_command_line, spelled
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ import numpy as np
 
 from asperity.config import WheelOnRailCase, load_case
 from asperity.errors import InputError
+from asperity.files import write_bytes
 from asperity.progress import progress_bar
-from asperity.store import atomic_write
 from asperity.studies.definition import Study, study_of
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def study_into(
     _report(table)
     written = save(DataTree(table), directory / "study.nc")
     text = table_text(table)
-    rows = atomic_write(directory / "study.csv", lambda file: file.write(text.encode("utf-8")))
+    rows = write_bytes(directory / "study.csv", text.encode("utf-8"))
     click.echo(f"Results: {written.resolve()}")
     click.echo(f"Table:   {rows.resolve()}")
 

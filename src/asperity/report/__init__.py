@@ -42,15 +42,15 @@ def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
     ComputationError
         If a file cannot be written.
     """
+    from asperity.files import write_bytes
     from asperity.report.csv_files import write_csv
     from asperity.report.page import drawable_parts, page
-    from asperity.store import atomic_write
 
     directory = Path(directory)
     text = page(tree)
     for part in drawable_parts(tree):
         write_csv(part.columns(tree), directory / f"{part.name}.csv")
-    return atomic_write(directory / "report.html", lambda file: file.write(text.encode("utf-8")))
+    return write_bytes(directory / "report.html", text.encode("utf-8"))
 
 
 def surface_picture(heights: NDArray[Any], spacing: tuple[float, float], title: str) -> Figure:

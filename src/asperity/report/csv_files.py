@@ -6,12 +6,11 @@ import csv
 import io
 import math
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 
+from asperity.files import write_bytes
 from asperity.report.part import Columns
-from asperity.store import atomic_write
 
 
 def csv_text(columns: Columns) -> str:
@@ -41,7 +40,4 @@ def _fields(values: np.ndarray) -> list[float | str]:
 def write_csv(columns: Columns, path: Path) -> Path:
     """Write `columns` to the file at `path`, completely or not at all."""
 
-    def write(file: BinaryIO) -> None:
-        file.write(csv_text(columns).encode("utf-8"))
-
-    return atomic_write(path, write)
+    return write_bytes(path, csv_text(columns).encode("utf-8"))

@@ -13,7 +13,8 @@ import numpy as np
 from asperity.arguments import shown, whole
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import arrays, instruments, netcdf, sdf, text, x3p
+from asperity.surfaces.readers import arrays, sdf, text, x3p
+from asperity.surfaces.readers.foreign import read_apart
 from asperity.surfaces.readers.guards import archive, readable_file
 from asperity.surfaces.readers.hints import Hints, Length, Surface, checked_hints
 from asperity.surfaces.readers.spelling import advice, spell
@@ -23,12 +24,14 @@ __all__ = ["read_surface", "read_surfaces"]
 S = TypeVar("S", HeightMap, Profile, Surface)
 Reader = Callable[[Path, Hints], list[Surface]]
 
+NETCDF = read_apart("netcdf", "netCDF-4")
+INSTRUMENTS = read_apart("instruments", "known instrument")
 TEXT = {"", ".txt", ".csv", ".tsv", ".dat", ".asc", ".xyz"}
 OWN: dict[str, tuple[str, Reader]] = {
     ".npy": ("npy", arrays.read_npy),
     ".npz": ("npz", arrays.read_npz),
-    ".nc": ("netCDF-4", netcdf.read),
-    ".nc4": ("netCDF-4", netcdf.read),
+    ".nc": ("netCDF-4", NETCDF),
+    ".nc4": ("netCDF-4", NETCDF),
     ".sdf": ("SDF", sdf.read),
     ".x3p": ("X3P", x3p.read),
 }
@@ -162,7 +165,7 @@ def _reader(file: Path) -> Reader:
         return reader
     if found is not None:
         return found
-    return text.read if extension in TEXT else instruments.read
+    return text.read if extension in TEXT else INSTRUMENTS
 
 
 def _by_content(file: Path, head: bytes) -> Reader | None:
@@ -173,7 +176,7 @@ def _by_content(file: Path, head: bytes) -> Reader | None:
     if head.startswith(b"\x93NUMPY"):
         return arrays.read_npy
     if head.startswith(b"\x89HDF") and file.suffix.lower() in ("", ".nc", ".nc4"):
-        return netcdf.read
+        return NETCDF
     if head.startswith(b"PK"):
         return _by_members(file)
     return None

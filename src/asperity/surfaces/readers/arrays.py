@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,9 @@ from asperity.errors import InputError
 from asperity.surfaces.readers.guards import archive, check_claim, hostile, member_bytes
 from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
 from asperity.surfaces.readers.spelling import advice
+
+HEADER = 128
+"""Bytes in which the header of a scalar ends."""
 
 
 def read_npy(path: Path, hints: Hints) -> list[Surface]:
@@ -65,15 +69,18 @@ def read_npz(path: Path, hints: Hints) -> list[Surface]:
         members = {name: f"{name}.npy" for name in names}
         chosen = hints.array
         if chosen is None:  # scalars such as a pixel size do not count
-            arrays = {
-                name: _decoded(member_bytes(opened, members[name], path.name), path.name) for name in names
-            }
-            chosen = only_one([name for name, array in arrays.items() if array.ndim], path.name)
+            chosen = only_one([name for name in names if _has_axes(opened, members[name])], path.name)
         if chosen not in members:
             allowed = f"one of: {', '.join(names)}"
             raise InputError(f"array in {path.name}", repr(chosen), allowed, "Choose one.")
         array = _decoded(member_bytes(opened, members[chosen], path.name), path.name)
         return _surfaces(array, hints, f"{path.name}:{chosen}")
+
+
+def _has_axes(opened: ZipFile, member: str) -> bool:
+    """Whether a member holds more than a single number; nothing but its header is unpacked."""
+    with opened.open(member) as stream:
+        return "'shape': ()" not in stream.read(HEADER).decode("latin-1")
 
 
 def only_one(names: list[str], source: str) -> str:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree
 
+from asperity.apart import reason
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 
@@ -82,7 +83,7 @@ def hostile(source: str, kind: str) -> Iterator[None]:
     except InputError:
         raise
     except Exception as error:  # malformed bytes surface as many kinds of exception
-        received = f"{type(error).__name__} while reading it ({error})"
+        received = f"{reason(error)} while it was opened"
         remedy = "The file is damaged or not of this format; export it again."
         raise InputError(source, received, f"an intact {kind} file", remedy) from error
 
@@ -203,6 +204,8 @@ def _check_names(source: str, members: list[zipfile.ZipInfo]) -> None:
         path = PurePosixPath(name.replace("\\", "/"))
         if path.is_absolute() or ".." in path.parts or ":" in name:
             raise InputError(source, f"a member named {name[:80]!r}", allowed, remedy)
+        if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise InputError(source, f"the member {name[:80]!r} compressed in a rare way", "deflate", remedy)
         if member.flag_bits & 1:
             raise InputError(source, f"the encrypted member {name[:80]!r}", allowed, remedy)
     if len(set(names)) != len(names):

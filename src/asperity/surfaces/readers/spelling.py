@@ -6,6 +6,8 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import Any
 
 Value = str | int | bool | None
 Spelling = Callable[[str, Value], str | None]
@@ -44,12 +46,21 @@ def in_case(section: str, keys: Mapping[str, str]) -> Spelling:
         As `in_python`.
     """
 
-    def spelling(name: str, value: Value) -> str | None:
-        if name not in keys or value is None:
-            return keys.get(name)
-        return f"{keys[name]} = {json.dumps(value, ensure_ascii=False)} in [{section}]"
+    return InCase(section, dict(keys))
 
-    return spelling
+
+@dataclass(frozen=True)
+class InCase:
+    """Writes hints as `in_case` says."""
+
+    section: str
+    keys: Mapping[str, str]
+
+    def __call__(self, name: str, value: Value) -> str | None:
+        """Write a hint."""
+        if name not in self.keys or value is None:
+            return self.keys.get(name)
+        return f"{self.keys[name]} = {json.dumps(value, ensure_ascii=False)} in [{self.section}]"
 
 
 _spelling: ContextVar[Spelling] = ContextVar("spelling", default=in_python)
@@ -69,6 +80,21 @@ def spelled(spelling: Spelling) -> Iterator[None]:
         yield
     finally:
         _spelling.reset(token)
+
+
+def current() -> list[Any]:
+    """Describe the spelling in use, as `spelling_of` takes it: what JSON can hold."""
+    spelling = _spelling.get()
+    if isinstance(spelling, InCase):
+        return [spelling.section, dict(spelling.keys)]
+    return [spelling.__name__]
+
+
+def spelling_of(description: list[Any]) -> Spelling:
+    """Make the spelling that `current` describes."""
+    if len(description) > 1:
+        return InCase(*description)
+    return {"in_python": in_python, "on_command_line": on_command_line}[description[0]]
 
 
 def advice(name: str, value: Value, lead: str, otherwise: str) -> str:

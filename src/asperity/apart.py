@@ -1,0 +1,166 @@
+"""Foreign files are opened apart: in a process with limits of time and memory, which may hang or end."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import subprocess
+import sys
+from typing import Any, BinaryIO
+
+from asperity.errors import InputError
+from asperity.files import amount
+
+SECONDS = 20.0
+"""Time that a file has to be opened in, plus …"""
+BYTES_PER_SECOND = 20e6
+"""… its size over this."""
+MEMORY = 8 * 2**30
+"""Bytes of address space that opening a file may need."""
+_REFUSED = 2
+_FAILED = 3
+_MOST_WORDS = 300
+
+_START = (
+    "import sys, json; sys.path[:] = json.loads(sys.argv[1]); from asperity.apart import answer; answer()"
+)
+
+
+def apart(function: str, arguments: list[Any], source: str, size: int, kind: str) -> bytes:
+    """Call a function in a process of its own.
+
+    Parameters
+    ----------
+    function : str
+        Module and name, as ``"asperity.results:check"``. It receives the arguments, and a binary file to
+        which it writes its answer.
+    arguments : list
+        What JSON can hold.
+    source : str
+        Name of the file that it opens, for messages.
+    size : int
+        Its size in bytes.
+    kind : str
+        What the file should be, as ``"netCDF-4"``.
+
+    Returns
+    -------
+    bytes
+        The answer.
+
+    Raises
+    ------
+    InputError
+        What the function raised; or that it took more time or memory than it may, or that its process ended.
+    """
+    seconds = SECONDS + size / BYTES_PER_SECOND
+    command = [sys.executable, "-c", _START, json.dumps(sys.path)]
+    request = json.dumps([function, arguments, MEMORY, int(seconds) + 1]).encode()
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+    allowed = f"an intact {kind} file"
+    try:
+        done = subprocess.run(
+            command, input=request, capture_output=True, timeout=seconds, env=environment, check=False
+        )
+    except subprocess.TimeoutExpired:
+        received = f"a file that takes more than {seconds:.0f} s to open"
+        raise InputError(source, received, allowed, _DAMAGED) from None
+    if done.returncode == 0:
+        return done.stdout
+    words = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+    if done.returncode == _REFUSED:
+        raise InputError(*json.loads(words))
+    if done.returncode == _FAILED:
+        raise InputError(source, f"{json.loads(words)} while it was opened", allowed, _DAMAGED)
+    received = f"a file that ends the program that opens it (code {done.returncode})"
+    raise InputError(source, received, allowed, _DAMAGED)
+
+
+_DAMAGED = "It is damaged, or not of this format; export it again."
+
+
+def answer() -> None:
+    """Answer the request on standard input, as the process that `apart` starts."""
+    function, arguments, memory, seconds = json.load(sys.stdin)
+    _limit(memory, seconds)
+    module, _, name = function.partition(":")
+    try:
+        getattr(importlib.import_module(module), name)(*arguments, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
+    except InputError as error:
+        _leave([error.what, str(error.received), error.allowed, error.remedy], _REFUSED)
+    except MemoryError:
+        _leave(f"more than {amount(memory)} of memory were needed", _FAILED)
+    except Exception as error:  # whatever a library makes of malformed bytes
+        _leave(reason(error), _FAILED)
+
+
+def reason(error: BaseException) -> str:
+    """Name an error of a library and its words, but no page of raw bytes."""
+    words = " ".join("".join(c if c.isprintable() else " " for c in str(error)).split())
+    cut = f"{words[:_MOST_WORDS]} …" if len(words) > _MOST_WORDS else words
+    return f"{type(error).__name__} ({cut})" if cut else type(error).__name__
+
+
+def _leave(message: object, code: int) -> None:
+    sys.stderr.write(f"\n{json.dumps(message)}")
+    sys.stderr.flush()
+    os._exit(code)  # what a library holds is not taken apart
+
+
+def _limit(memory: int, seconds: int) -> None:
+    """Limit the memory and time of this process, where the system can."""
+    try:
+        import resource
+    except ImportError:  # Windows; the time is limited from outside as well
+        return
+    for kind, value in ((resource.RLIMIT_AS, memory), (resource.RLIMIT_CPU, seconds)):
+        _, hard = resource.getrlimit(kind)
+        if hard in (resource.RLIM_INFINITY,) or hard >= value:
+            resource.setrlimit(kind, (value, hard))
+
+
+def send(answers: BinaryIO, description: object, arrays: list[Any]) -> None:
+    """Write a description and arrays of numbers to an answer.
+
+    Parameters
+    ----------
+    answers : binary file
+        As a function called by `apart` receives it.
+    description : object
+        What JSON can hold.
+    arrays : list of ndarray
+        Arrays of float64.
+    """
+    import numpy as np
+
+    shapes = [list(array.shape) for array in arrays]
+    answers.write(json.dumps([description, shapes]).encode() + b"\n")
+    for array in arrays:
+        answers.write(np.ascontiguousarray(array, dtype=np.float64).data)
+
+
+def received(answers: bytes) -> tuple[Any, list[Any]]:
+    """Read what `send` wrote.
+
+    Parameters
+    ----------
+    answers : bytes
+        The answer of `apart`.
+
+    Returns
+    -------
+    description : object
+    arrays : list of ndarray
+    """
+    import numpy as np
+
+    start = answers.index(b"\n") + 1
+    description, shapes = json.loads(answers[:start])
+    arrays = []
+    for shape in shapes:
+        count = int(np.prod(shape))
+        arrays.append(np.frombuffer(answers, np.float64, count, start).reshape(shape))
+        start += 8 * count
+    return description, arrays

@@ -1,0 +1,360 @@
+"""Files are written completely or not at all, sealed where damage must show, and in a folder of one's own."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import os
+import re
+import secrets
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO
+
+from asperity.errors import ComputationError, InputError
+
+try:
+    import fcntl
+except ImportError:  # Windows: open files cannot be removed there, which does as well
+    fcntl = None  # type: ignore[assignment]
+
+_PART = re.compile(r"\..+\.[0-9a-f]{8}\.part")
+_SEAL = b"\nasperity sha256 "
+_SEAL_SIZE = len(_SEAL) + 64
+_CHUNK = 2**20
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) if hasattr(errno, "EDQUOT") else (errno.ENOSPC, errno.EFBIG)
+_swept: set[Path] = set()
+
+
+def atomic_write(
+    path: str | os.PathLike[str], write: Callable[[BinaryIO], object], *, sealed: bool = False
+) -> Path:
+    """Write a file completely or not at all.
+
+    Parameters
+    ----------
+    path : path
+        The file to write; its folder is made if it is missing. An existing file is replaced in one step.
+    write : callable
+        Receives a binary file open for reading and writing, and fills it.
+    sealed : bool
+        Whether to end the file with a digest of all before it: see `is_sealed`.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    ComputationError
+        If the folder cannot be made or the file not be written.
+    """
+    path, temporary, size = Path(path), None, 0
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _sweep_once(path.parent)
+        with _new_part(path) as file:
+            temporary = Path(file.name)
+            write(file)
+            if sealed:
+                file.write(_seal_of(file, file.seek(0, os.SEEK_END)))
+            file.flush()
+            size = file.tell()
+            os.fsync(file.fileno())
+            if fcntl is not None:  # while it is locked nobody takes it for a left-over
+                os.replace(temporary, path)
+        if fcntl is None:
+            os.replace(temporary, path)
+    except OSError as error:
+        raise _not_written(path, error, size) from error
+    finally:
+        if temporary is not None:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+    return path
+
+
+def write_bytes(path: str | os.PathLike[str], contents: bytes | memoryview, *, sealed: bool = False) -> Path:
+    """Write what is in memory to a file, completely or not at all.
+
+    Parameters
+    ----------
+    path, sealed
+        As in `atomic_write`.
+    contents : bytes
+        All of the file.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    ComputationError
+        If the folder cannot be made, the disk has less free space, or the file cannot be written.
+    """
+    with suppress(OSError):
+        require_space(Path(path), len(contents))
+    return atomic_write(path, lambda file: file.write(contents), sealed=sealed)
+
+
+def require_space(path: Path, size: float) -> None:
+    """Refuse to begin what the disk cannot hold.
+
+    Parameters
+    ----------
+    path : Path
+        What is to be written, or its folder; neither need exist.
+    size : float
+        Bytes it will have, about.
+
+    Raises
+    ------
+    ComputationError
+        If the disk has less free space.
+    """
+    free = free_space(path)
+    if size > free:
+        raise _too_large(path, size, free)
+
+
+def free_space(path: Path) -> int:
+    """Free space of the disk that holds a path, or would hold it, in bytes."""
+    return shutil.disk_usage(_existing(path)).free
+
+
+def _existing(path: Path) -> Path:
+    """First of a path and the folders above it that exists."""
+    path = path.absolute()
+    return next(place for place in (path, *path.parents) if place.exists())
+
+
+def _not_written(path: Path, error: OSError, size: int) -> ComputationError:
+    if error.errno in _FULL:
+        with suppress(OSError):
+            free = free_space(path)
+            if error.errno == errno.EFBIG:
+                return ComputationError(
+                    f"{path} could not be written (files may not grow as large here)",
+                    "a larger limit on the size of files, as 'ulimit -f unlimited' sets it",
+                )
+            return _too_large(path, size, free)
+    return ComputationError(
+        f"{path} could not be written ({error.strerror or error})",
+        "another folder, or free space on this disk",
+    )
+
+
+def _too_large(path: Path, size: float, free: int) -> ComputationError:
+    needed = (
+        f"{amount(size)} are needed, {amount(free)} are free" if size > free else f"{amount(free)} are free"
+    )
+    return ComputationError(
+        f"{path} could not be written: the disk is full ({needed})",
+        "another folder, or free space on this disk",
+    )
+
+
+def amount(size: float) -> str:
+    """Write a number of bytes, as ``"1.5 MiB"``."""
+    for unit, factor in (("GiB", 2**30), ("MiB", 2**20), ("KiB", 2**10)):
+        if size >= factor:
+            return f"{size / factor:.3g} {unit}"
+    return f"{size:.0f} bytes"
+
+
+def _seal_of(file: BinaryIO, size: int) -> bytes:
+    """Digest of the first `size` bytes of a file, as it stands at the file's end."""
+    digest = hashlib.sha256()
+    file.seek(0)
+    while size > 0 and (chunk := file.read(min(_CHUNK, size))):
+        digest.update(chunk)
+        size -= len(chunk)
+    file.seek(0, os.SEEK_END)
+    return _SEAL + digest.hexdigest().encode()
+
+
+def is_sealed(file: BinaryIO) -> bool | None:
+    """Whether a file is, to the last bit, what `atomic_write` has sealed.
+
+    Parameters
+    ----------
+    file : binary file
+        Open for reading; stands at its start afterwards.
+
+    Returns
+    -------
+    bool or None
+        None if it has no seal.
+
+    Notes
+    -----
+    The seal stands behind the end that archives (zip) and HDF5 files know of; their readers pass over it.
+    It shows damage, not malice: anybody can make one.
+    """
+    size = file.seek(0, os.SEEK_END) - _SEAL_SIZE
+    if size < 0:
+        return None
+    file.seek(size)
+    seal = file.read()
+    same = _seal_of(file, size) == seal if seal.startswith(_SEAL) else None
+    file.seek(0)
+    return same
+
+
+def _new_part(path: Path) -> BinaryIO:
+    """Open a new file beside a path, locked as one that is being written."""
+    while True:
+        temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+        file = open(temporary, "x+b")  # noqa: SIM115 (the caller closes it)
+        if fcntl is None:
+            return file
+        with suppress(OSError):  # a file system without locks
+            fcntl.flock(file, fcntl.LOCK_SH)
+        if temporary.exists():  # else a sweep came between
+            return file
+        file.close()
+
+
+def left_overs(folder: Path) -> list[Path]:
+    """Files that an interrupted write left in a folder, and that nobody writes any more.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    list of Path
+    """
+    try:
+        parts = [Path(entry.path) for entry in os.scandir(folder) if _PART.fullmatch(entry.name)]
+    except OSError:
+        return []
+    return sorted(part for part in parts if not _is_held(part))
+
+
+def _is_held(part: Path) -> bool:
+    """Whether a process writes a part; True as well where that cannot be known."""
+    if fcntl is None:
+        return False  # it cannot be removed then
+    try:
+        with open(part, "rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return True
+    return False
+
+
+def sweep(folder: Path) -> int:
+    """Remove the left-overs of a folder.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Returns
+    -------
+    int
+        How many were removed.
+    """
+    count = 0
+    for part in left_overs(folder):
+        with suppress(OSError):
+            part.unlink()
+            count += 1
+    return count
+
+
+def _sweep_once(folder: Path) -> None:
+    """Remove the left-overs of a folder when this process first writes into it."""
+    if folder not in _swept:
+        _swept.add(folder)
+        sweep(folder)
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Keep other runs out of a folder, which is made if it is missing.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+
+    Raises
+    ------
+    InputError
+        If another run writes into it.
+    ComputationError
+        If it cannot be made.
+
+    Notes
+    -----
+    The folder itself is locked, so that nothing can be left in it; on Windows nothing is.
+    """
+    made = not folder.exists()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(folder, os.O_RDONLY) if fcntl is not None else None
+    except OSError as error:
+        raise _not_written(folder, error, 0) from error
+    try:
+        if descriptor is not None:
+            _lock(descriptor, folder)
+        yield
+    finally:
+        if descriptor is not None:
+            os.close(descriptor)
+        if made:
+            with suppress(OSError):  # it is removed only if it is empty
+                folder.rmdir()
+
+
+def _lock(descriptor: int, folder: Path) -> None:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise InputError(
+            str(folder),
+            "a folder into which another run is writing",
+            "a folder of its own for each run",
+            "Wait for that run, or choose another folder with -o.",
+        ) from None
+    except OSError:
+        return  # a file system without locks
+
+
+def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:
+    """Refuse a folder into which nothing can be written, before there is anything to write.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; it is not made.
+    what : str
+        What it is for, for the message.
+    remedy : str
+        What to do.
+
+    Raises
+    ------
+    InputError
+        If it, or the first folder above it that exists, is a file or takes no new file.
+    """
+    existing = _existing(folder)
+    try:
+        with tempfile.TemporaryFile(dir=existing):
+            return
+    except OSError as error:
+        if error.errno in _FULL:
+            raise _too_large(folder, 0, 0) from error
+        reason = f"{existing} is a file" if existing.is_file() else f"{existing}: {error.strerror or error}"
+    raise InputError(what, f"{folder} ({reason})", "a folder that can be written to", remedy) from None
