@@ -14,7 +14,7 @@ from click.testing import CliRunner
 import asperity
 from asperity.cli import main
 from asperity.errors import InputError
-from asperity.studies.executors import cluster
+from asperity.studies.cluster import cluster
 
 BALL = """
 kind = "ball-on-beam"
@@ -89,7 +89,7 @@ def test_the_command_line_computes_on_a_cluster(scheduler):
 
 def test_a_scheduler_that_does_not_answer(monkeypatch):
     pytest.importorskip("distributed", reason='needs pip install "asperity[cluster]"')
-    monkeypatch.setattr("asperity.studies.executors.PATIENCE", "1 s")
+    monkeypatch.setattr("asperity.studies.cluster.PATIENCE", 1.0)
     with pytest.raises(InputError, match=r"scheduler: received 'tcp://127.0.0.1:1' .*dask scheduler"):
         cluster("tcp://127.0.0.1:1").__enter__()
     with pytest.raises(InputError, match="scheduler: received 'nowhere at all'"):

@@ -1,6 +1,23 @@
-"""The command line as ``python -m asperity``."""
+"""Where the program starts: ``asperity``, or ``python -m asperity``."""
 
-from asperity.cli import main
+import os
+import sys
+
+from asperity.interrupts import interruptible
+
+
+def start(name: str = "asperity") -> None:
+    """Run the command line; an interrupt is told in a word, even while modules are imported."""
+    try:
+        with interruptible():
+            from asperity.cli import main
+
+            main(prog_name=name)
+    except KeyboardInterrupt:
+        sys.stderr.write("interrupted\n")
+        sys.stderr.flush()
+        os._exit(130)  # half-imported modules have nothing to put in order
+
 
 if __name__ == "__main__":
-    main(prog_name="python -m asperity")
+    start("python -m asperity")

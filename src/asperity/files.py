@@ -53,24 +53,46 @@ def atomic_write(
     ComputationError
         If the folder cannot be made or the file not be written.
     """
-    path, temporary, size = Path(path), None, 0
+    path = Path(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        _sweep_once(path.parent)
+        return replace(path, write, sealed=sealed)
+    except OSError as error:
+        raise _not_written(path, error) from error
+
+
+def replace(path: Path, write: Callable[[BinaryIO], object], *, sealed: bool = False) -> Path:
+    """Write a file as `atomic_write` does, for those who go on without it.
+
+    Parameters
+    ----------
+    path, write, sealed
+        As in `atomic_write`.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be made or the file not be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    _sweep_once(path.parent)
+    temporary = None
+    try:
         with _new_part(path) as file:
             temporary = Path(file.name)
             write(file)
             if sealed:
                 file.write(_seal_of(file, file.seek(0, os.SEEK_END)))
             file.flush()
-            size = file.tell()
             os.fsync(file.fileno())
             if fcntl is not None:  # while it is locked nobody takes it for a left-over
                 os.replace(temporary, path)
         if fcntl is None:
             os.replace(temporary, path)
-    except OSError as error:
-        raise _not_written(path, error, size) from error
     finally:
         if temporary is not None:
             with suppress(OSError):
@@ -134,16 +156,15 @@ def _existing(path: Path) -> Path:
     return next(place for place in (path, *path.parents) if place.exists())
 
 
-def _not_written(path: Path, error: OSError, size: int) -> ComputationError:
+def _not_written(path: Path, error: OSError) -> ComputationError:
     if error.errno in _FULL:
         with suppress(OSError):
-            free = free_space(path)
             if error.errno == errno.EFBIG:
                 return ComputationError(
                     f"{path} could not be written (files may not grow as large here)",
                     "a larger limit on the size of files, as 'ulimit -f unlimited' sets it",
                 )
-            return _too_large(path, size, free)
+            return _too_large(path, 0, free_space(path))
     return ComputationError(
         f"{path} could not be written ({error.strerror or error})",
         "another folder, or free space on this disk",
@@ -221,6 +242,11 @@ def _new_part(path: Path) -> BinaryIO:
         file.close()
 
 
+def is_part(path: Path) -> bool:
+    """Whether a file is one that is being written, or was when its program ended."""
+    return _PART.fullmatch(path.name) is not None
+
+
 def left_overs(folder: Path) -> list[Path]:
     """Files that an interrupted write left in a folder, and that nobody writes any more.
 
@@ -234,7 +260,7 @@ def left_overs(folder: Path) -> list[Path]:
     list of Path
     """
     try:
-        parts = [Path(entry.path) for entry in os.scandir(folder) if _PART.fullmatch(entry.name)]
+        parts = [path for path in folder.iterdir() if is_part(path)]
     except OSError:
         return []
     return sorted(part for part in parts if not _is_held(part))
@@ -305,7 +331,7 @@ def alone_in(folder: Path) -> Iterator[None]:
         folder.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(folder, os.O_RDONLY) if fcntl is not None else None
     except OSError as error:
-        raise _not_written(folder, error, 0) from error
+        raise _not_written(folder, error) from error
     try:
         if descriptor is not None:
             _lock(descriptor, folder)

@@ -10,6 +10,7 @@ import tempfile
 import warnings
 import zipfile
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import ComputationError, InputError
-from asperity.files import amount, atomic_write, is_sealed, left_overs, sweep
+from asperity.files import amount, atomic_write, is_sealed, left_overs
 
 FORMAT = 1  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
@@ -199,11 +200,11 @@ class Store:
         return left_overs(self.root)
 
     def clear(self) -> int:
-        """Delete all results and what interrupted writes left; return how many results went."""
+        """Delete all results, and what interrupted writes left; return how many results went."""
         files = self.files()
-        for path in files:
-            path.unlink(missing_ok=True)
-        sweep(self.root)
+        for path in [*files, *self.left_overs()]:
+            with suppress(OSError):  # another process was faster
+                path.unlink(missing_ok=True)
         return len(files)
 
 

@@ -241,15 +241,10 @@ def surface(
 @main.command()
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
 def cache(clear: bool) -> None:
-    """Show where finished pieces of work are kept, and how large they are."""
-    from asperity.store import Store
+    """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left."""
+    from asperity.cli.keeping import clear_kept, show_kept
 
-    store = Store()
-    count, size = len(store.files()), store.size()
-    if clear:
-        click.echo(f"{store.root}: {store.clear()} results deleted, {size / 2**20:.1f} MiB")
-    else:
-        click.echo(f"{store.root}: {count} results, {size / 2**20:.1f} MiB")
+    clear_kept() if clear else show_kept()
 
 
 @main.command()

@@ -14,9 +14,11 @@ import click
 
 from asperity.cli import plain_text
 from asperity.errors import AsperityError
+from asperity.interrupts import interruptible, was_interrupted
 
 FAILED = 3
 INTERRUPTED = 130
+_INTERRUPTED = "interrupted; run the same command again to continue"
 COLLECT_AFTER = 1_000_000
 """New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
 
@@ -34,7 +36,7 @@ class Door(click.Group):
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, TextIOWrapper):
                 stream.reconfigure(errors=plain_text.NAME)  # a pipe without − gets - and goes on
-        with warnings.catch_warnings():
+        with interruptible(), warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.showwarning = _WarningLines()
             try:
@@ -42,9 +44,12 @@ class Door(click.Group):
             except (click.ClickException, click.exceptions.Exit, BrokenPipeError):
                 raise
             except (KeyboardInterrupt, click.Abort):
-                click.echo("interrupted; run the same command again to continue", err=True)
+                click.echo(_INTERRUPTED, err=True)
                 ctx.exit(INTERRUPTED)
             except Exception as error:
+                if was_interrupted():  # and an import has made another error of it
+                    click.echo(_INTERRUPTED, err=True)
+                    ctx.exit(INTERRUPTED)
                 message, code = _outcome(error)
                 if ctx.params.get("debug"):
                     click.echo(traceback.format_exc(), err=True)

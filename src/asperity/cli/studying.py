@@ -64,7 +64,7 @@ def study_into(
     from xarray import DataTree
 
     from asperity.results import save
-    from asperity.studies.executors import cluster
+    from asperity.studies.cluster import cluster
     from asperity.studies.running import study as computed
 
     size = " × ".join(f"{len(axis.values)} {axis.name}" for axis in study.axes)

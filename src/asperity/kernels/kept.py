@@ -8,14 +8,11 @@ damaged, incomplete or of another version counts as missing.
 from __future__ import annotations
 
 import hashlib
-import os
 import pickle
 import re
-import secrets
 import sys
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import suppress
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -25,10 +22,10 @@ import numba
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
-from asperity.store import default_root, is_private, temporary_folder
+from asperity.files import replace
+from asperity.kernels.folders import STAMP, VARIABLE, folders
+from asperity.store import is_private
 
-VARIABLE = "ASPERITY_KERNELS"
-"""Names the folder of kept kernels; by default they lie in the cache."""
 DIGEST = 32
 """Bytes of a digest."""
 
@@ -37,25 +34,11 @@ def _stamp() -> str:
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__} {sys.version}".encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
+    return digest.hexdigest()[:STAMP]
 
 
 SOURCES = _stamp()
 """What all kernels are made of: one that is called by another is compiled into it."""
-
-
-def folders() -> Iterator[Path]:
-    """Folders in which kernels may lie, in the order in which they are tried.
-
-    Yields
-    ------
-    Path
-        ``$ASPERITY_KERNELS``, or that in the cache; then one for temporary files.
-    """
-    with suppress(OSError, ValueError):
-        yield Path(os.environ.get(VARIABLE) or default_root() / "kernels").absolute()
-    with suppress(OSError):
-        yield temporary_folder() / "kernels"
 
 
 class Kept:
@@ -172,18 +155,13 @@ def _verified(folder: Path, name: str) -> bytes | None:
 def _written(root: Path, name: str, payload: bytes) -> bool:
     """Write a file completely or not at all; return whether it is there."""
     folder = root / SOURCES
-    temporary = folder / f".{name}.{secrets.token_hex(4)}.part"
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if not is_private(folder):
             return False
-        temporary.write_bytes(_digest(name, payload) + payload)
-        os.replace(temporary, folder / name)
+        replace(folder / name, lambda file: file.write(_digest(name, payload) + payload))
     except OSError:
         return False
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
     return True
 
 

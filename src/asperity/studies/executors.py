@@ -6,21 +6,23 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections import deque
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Collection, Generator, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
     Executor,
     Future,
     ProcessPoolExecutor,
-    as_completed,
     wait,
 )
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from asperity.errors import ComputationError, InputError
+from asperity.errors import ComputationError
+from asperity.interrupts import no_interrupt_for_children
+from asperity.studies.cluster import Heart
 from asperity.studies.member import Failure, compute_member
 from asperity.threads import THREADS, processors
 
@@ -34,8 +36,8 @@ if TYPE_CHECKING:
 
 ATTEMPTS = 3
 """How often a member is given to an executor that loses it."""
-PATIENCE = "20 s"
-"""How long a scheduler may take to answer."""
+BEAT = 5.0
+"""How often an executor is asked whether it lives, s."""
 
 
 def through(executor: Executor, members: Sequence[Member]) -> Outcomes:
@@ -56,20 +58,24 @@ def through(executor: Executor, members: Sequence[Member]) -> Outcomes:
     Raises
     ------
     ComputationError
-        If the executor takes no more members.
+        If the executor takes no more members, or no longer answers.
     """
     lost: dict[Member, Exception] = dict.fromkeys(members, Exception())
+    heart = Heart(executor, len(members))
     for _ in range(ATTEMPTS):
         futures: dict[Future[Outcome], Member] = {}
         try:
             for member in lost:
                 futures[_submitted(executor, member)] = member
             lost = {}
-            for future in as_completed(futures):
+            for future in _ended(futures, heart):
                 try:
-                    yield futures[future], future.result()
+                    outcome = future.result()
                 except Exception as error:
                     lost[futures[future]] = error
+                    continue
+                heart.finished += 1
+                yield futures[future], outcome
         except RuntimeError as error:  # broken, or shut down
             what = f"the executor takes no more members ({error})"
             raise ComputationError(what, "the same study again: it goes on where it was") from error
@@ -78,8 +84,20 @@ def through(executor: Executor, members: Sequence[Member]) -> Outcomes:
                 future.cancel()
         if not lost:
             return
+        while not heart.listen():
+            time.sleep(BEAT)
     for member, reason in lost.items():
         yield member, Failure.of(reason)
+
+
+def _ended(futures: Collection[Future[Outcome]], heart: Heart) -> Iterator[Future[Outcome]]:
+    """Yield futures as they end, while there is life in the executor."""
+    waiting = set(futures)
+    while waiting:
+        done, waiting = wait(waiting, BEAT, FIRST_COMPLETED)
+        yield from done
+        if not done:
+            heart.listen()
 
 
 def _submitted(executor: Executor, member: Member) -> Future[Outcome]:
@@ -123,7 +141,8 @@ def _until_broken(waiting: deque[Member], workers: int, lost: list[Member]) -> O
         while waiting or under_way:
             try:
                 while waiting and len(under_way) < workers:
-                    future = _submitted(pool, waiting[0])
+                    with no_interrupt_for_children():  # a process may start here
+                        future = _submitted(pool, waiting[0])
                     under_way[future] = waiting.popleft()
             except BrokenExecutor:
                 lost += under_way.values()
@@ -170,42 +189,3 @@ def _end_with(watched: Connection) -> None:
         watched.poll(None)
     finally:
         os._exit(1)
-
-
-@contextmanager
-def cluster(address: str) -> Iterator[Executor]:
-    """Connect to a Dask cluster.
-
-    Parameters
-    ----------
-    address : str
-        Of its scheduler, as ``"tcp://node7:8786"``.
-
-    Yields
-    ------
-    concurrent.futures.Executor
-        Computes on the workers of the cluster. The scheduler itself repeats what a lost worker had.
-
-    Raises
-    ------
-    InputError
-        If the package distributed is not there, or no scheduler answers.
-
-    Notes
-    -----
-    A process computes one member at a time, whatever the number of its threads: start workers of one thread
-    each, ``dask worker --nworkers -1 --nthreads 1``, with ``ASPERITY_THREADS=1`` in their environment.
-    """
-    allowed = "the address of a Dask scheduler that runs, as tcp://127.0.0.1:8786"
-    try:
-        from distributed import Client
-    except ImportError:
-        remedy = 'Install it: pip install "asperity[cluster]".'
-        raise InputError("scheduler", "no package distributed", allowed, remedy) from None
-    try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TypeError) as error:
-        remedy = "Start one with 'dask scheduler', and workers with 'dask worker'."
-        raise InputError("scheduler", f"'{address}' ({error})", allowed, remedy) from None
-    with client:
-        yield client.get_executor(pure=False)

@@ -1,0 +1,46 @@
+"""What is kept between runs, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import click
+
+from asperity.files import amount
+from asperity.kernels.folders import folders, kept_files
+from asperity.store import Store
+
+
+def show_kept() -> None:
+    """Print what is kept, how much it is and where."""
+    for what, where, files in _kept():
+        click.echo(f"{where}: {len(files)} {what}, {amount(_size(files))}")
+
+
+def clear_kept() -> None:
+    """Delete all that is kept; what another run is writing stays."""
+    for what, where, files in _kept():
+        size = _size(files)
+        for file in files:
+            with suppress(OSError):  # another process was faster
+                file.unlink(missing_ok=True)
+        click.echo(f"{where}: {len(files)} {what} deleted, {amount(size)}")
+
+
+def _kept() -> Iterator[tuple[str, Path, list[Path]]]:
+    store = Store()
+    kernels, parts = kept_files()
+    yield "results", store.root, store.files()
+    yield "compiled functions", next(folders(), store.root), kernels
+    if left := [*store.left_overs(), *parts]:
+        yield "files left by interrupted runs", store.root, left
+
+
+def _size(files: list[Path]) -> int:
+    size = 0
+    for file in files:
+        with suppress(OSError):
+            size += file.stat().st_size
+    return size

@@ -1,0 +1,59 @@
+"""Ctrl-C, and the signals with which systems end a program, as one kind of interrupt."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any, NoReturn
+
+_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+_received: list[int] = []
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Let every such signal raise KeyboardInterrupt while the body of the ``with`` statement runs.
+
+    Notes
+    -----
+    A signal that is ignored stays so, as with nohup, or in the background of a shell. Python calls handlers
+    in the main thread; in another one nothing changes.
+    """
+    earlier: dict[int, Any] = {}
+    if threading.current_thread() is threading.main_thread():
+        for number in (getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)):
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                earlier[number] = signal.signal(number, _interrupt)
+    _received.clear()
+    try:
+        yield
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
+    _received.append(number)
+    raise KeyboardInterrupt
+
+
+def was_interrupted() -> bool:
+    """Whether an interrupt came, even if an import has made another error of it."""
+    return bool(_received)
+
+
+@contextmanager
+def no_interrupt_for_children() -> Iterator[None]:
+    """Let processes that are started here never receive Ctrl-C; one that comes meanwhile waits."""
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

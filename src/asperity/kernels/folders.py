@@ -1,0 +1,47 @@
+"""Folders in which compiled kernels are kept, and what lies there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from asperity.files import is_part, left_overs
+from asperity.store import default_root, is_private, temporary_folder
+
+VARIABLE = "ASPERITY_KERNELS"
+"""Names the folder of kept kernels; by default they lie in the cache."""
+STAMP = 16
+"""Digits that name the folder of a version of the kernels."""
+
+
+def folders() -> Iterator[Path]:
+    """Folders in which kernels may lie, in the order in which they are tried.
+
+    Yields
+    ------
+    Path
+        ``$ASPERITY_KERNELS``, or that in the cache; then one for temporary files.
+    """
+    with suppress(OSError, ValueError):
+        yield Path(os.environ.get(VARIABLE) or default_root() / "kernels").absolute()
+    with suppress(OSError):
+        yield temporary_folder() / "kernels"
+
+
+def kept_files() -> tuple[list[Path], list[Path]]:
+    """List what lies in these folders, of all versions of the kernels.
+
+    Returns
+    -------
+    kernels, left_overs : list of Path
+        Compiled kernels, and parts that interrupted writes left.
+    """
+    kernels: list[Path] = []
+    parts: list[Path] = []
+    for place in {place for folder in folders() for place in folder.glob("[0-9a-f]" * STAMP)}:
+        if is_private(place):
+            kernels += [file for file in place.iterdir() if not is_part(file)]
+            parts += left_overs(place)
+    return sorted(kernels), sorted(parts)
