@@ -631,11 +631,28 @@ def test_surface_writes_pictures_only(ensemble):
     assert Path("map.png").read_bytes() == b"heights in a picture"
 
 
-def test_cache_is_shown_and_cleared(own_folder):
+def test_cache_is_shown_and_cleared(own_folder, monkeypatch):
+    monkeypatch.setenv("ASPERITY_KERNELS", str(own_folder / "kernels"))
+    cache, version = own_folder / "cache", own_folder / "kernels" / "0123456789abcdef"
     Store().put("scan-1", {"force": np.zeros(2**17)})
-    assert call("cache").stdout == f"{own_folder / 'cache'}: 1 results, 1.0 MiB\n"
-    assert "1 results deleted, 1.0 MiB" in call("cache", "--clear").stdout
-    assert Store().files() == []
+    (cache / ".scan-2.npz.01234567.part").write_bytes(bytes(2**10))
+    (cache / "notes.txt").write_text("of the user")
+    version.mkdir(parents=True, mode=0o700)
+    (version / "kernel-0").write_bytes(bytes(2**20))
+    (version / ".kernel-1.01234567.part").write_bytes(bytes(2**10))
+    told = [
+        f"{cache}: 1 results, 1 MiB",
+        f"{own_folder / 'kernels'}: 1 compiled functions, 1 MiB",
+        f"{cache}: 2 files left by interrupted runs, 2 KiB",
+    ]
+    assert call("cache").stdout.splitlines() == told
+    assert call("cache", "--clear").stdout.splitlines() == [
+        f"{cache}: 1 results deleted, 1 MiB",
+        f"{own_folder / 'kernels'}: 1 compiled functions deleted, 1 MiB",
+        f"{cache}: 2 files left by interrupted runs deleted, 2 KiB",
+    ]
+    assert [path.name for path in cache.iterdir()] == ["notes.txt"]
+    assert list(version.iterdir()) == []
 
 
 def test_surface_says_whether_a_map_is_the_same_everywhere_and_which_way_it_runs():

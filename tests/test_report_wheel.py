@@ -201,7 +201,8 @@ def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
     tree = small()
     for node in tree.subtree:  # a result that is saved has units and a long name everywhere
         for name, values in node.to_dataset(inherit=False).variables.items():
-            node[name].attrs.update({"units": "1", "long_name": str(name)} | values.attrs)
+            known = {"units": "1", "long_name": str(name), "missing": "as drawn"}
+            node[name].attrs.update(known | values.attrs)
     loaded = load(save(tree, tmp_path / "run.nc"))
     assert drawable_parts(loaded) == list(PARTS.values())
     for part in PARTS.values():

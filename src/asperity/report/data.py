@@ -45,6 +45,18 @@ def present(tree: DataTree, *paths: str) -> bool:
     return all(variable(tree, path) is not None for path in paths)
 
 
+def missing(tree: DataTree, *paths: str) -> str:
+    """Say of which of these variables how many values are missing, and why; nothing where none is."""
+    told = []
+    for path in paths:
+        found = variable(tree, path)
+        if found is not None and "missing" in found.attrs:
+            lost = int((~np.isfinite(found.values)).sum())
+            name = found.attrs.get("long_name", path.rpartition("/")[2])
+            told.append(f"{lost} of {found.size} values of the {name} are missing: {found.attrs['missing']}.")
+    return " ".join(told)
+
+
 def number(tree: DataTree, group: str, name: str) -> float | None:
     """Finite number in an attribute of a group, or None."""
     found = tree[group].attrs.get(name) if group in tree.children else None

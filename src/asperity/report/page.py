@@ -13,7 +13,7 @@ from markupsafe import Markup
 from xarray import DataTree
 
 from asperity.report.contact_figures import CONTACT
-from asperity.report.data import entries, group_attrs
+from asperity.report.data import entries, group_attrs, missing
 from asperity.report.loss_figures import LOSS_FACTORS
 from asperity.report.motion_figures import MOTION
 from asperity.report.noise_figures import NOISE
@@ -111,7 +111,9 @@ def _picture(tree: DataTree, part: Part) -> Picture:
     wide = svg(part.draw(tree), part.name, part.title)
     with narrow_page():
         narrow = svg(part.draw(tree), f"{part.name}-narrow", part.title)
-    return Picture(part.name, part.title, part.caption(tree), Markup(wide), Markup(narrow))
+    lost = missing(tree, *part.needs, *part.any_of)
+    caption = f"{part.caption(tree)} {lost}".strip()
+    return Picture(part.name, part.title, caption, Markup(wide), Markup(narrow))
 
 
 def sections(tree: DataTree) -> list[Section]:

@@ -16,6 +16,7 @@ from asperity.report.data import (
     differences,
     doubtful,
     laws,
+    missing,
     of_law,
     present,
     sensor_labels,
@@ -279,7 +280,8 @@ def doubtful_words(tree: DataTree, dim: str) -> str:
 def _sensors_caption(tree: DataTree) -> str:
     main = laws(tree, ACCELERATION)[0]
     text = f"Acceleration at all sensors by the main law, {main}, positive downwards; {DRAWN}."
-    return text + shaded_words(tree)
+    lost = missing(tree, "spectra/acceleration_level")
+    return f"{text}{shaded_words(tree)} {lost}".strip()
 
 
 def _one_sensor_caption(tree: DataTree) -> str:

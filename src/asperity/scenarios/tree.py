@@ -18,6 +18,7 @@ from asperity.errors import Grade, PhysicsWarning
 from asperity.pointforce import LAWS
 from asperity.results import BASELINES, checked, difference_name, variable
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.missing import marked
 from asperity.spectra import LEAST_PRODUCT, band_product
 
 SEGMENT = (0.025, 0.2)
@@ -72,7 +73,9 @@ def assembled(
             "laws": json.dumps({n: _meaning(n) for n in chain.laws}, ensure_ascii=False),
         }
     )
-    tree = xarray.DataTree.from_dict({"/scenario": scenario, **groups})
+    tree = xarray.DataTree.from_dict(
+        {"/scenario": scenario, **{path: marked(group) for path, group in groups.items()}}
+    )
     tree.attrs = {
         "title": title,
         "asperity_version": __version__,
