@@ -34,6 +34,7 @@ from asperity.progress import progress_bar
 from asperity.rolling.ball_on_beam import Rolling, roll
 from asperity.scenarios.ball_on_beam import Computed, compute
 from asperity.scenarios.laws import Workshop
+from asperity.scenarios.preparing import prepare
 from asperity.store import Store
 
 COMPILED = ["linear", "hertz", "printed", "shifted", "areal", "table"]
@@ -81,7 +82,7 @@ def prepared_case(load: float, rms: float, duration: float) -> Computed:
         """
     )
     with progress_bar() as progress:
-        return compute(case, progress)
+        return compute(prepare(case), progress)
 
 
 def direct_law(computed: Computed) -> Law:

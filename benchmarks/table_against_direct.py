@@ -27,6 +27,7 @@ from asperity.config import BallOnBeamCase, parse_case
 from asperity.errors import PhysicsWarning
 from asperity.progress import progress_bar
 from asperity.scenarios.ball_on_beam import Computed, compute
+from asperity.scenarios.preparing import prepare
 from asperity.spectra import band_levels, psd
 
 LAWS = [
@@ -132,7 +133,7 @@ def main() -> None:
         began = time.perf_counter()
         with warnings.catch_warnings(record=True) as messages, progress_bar() as progress:
             warnings.simplefilter("always", PhysicsWarning)
-            ensemble.add(compute(case_of(options, seed), progress))
+            ensemble.add(compute(prepare(case_of(options, seed)), progress))
         caught.update(message.category.__name__ for message in messages)
         table = ensemble.differences[LAWS.index("table")]
         print(

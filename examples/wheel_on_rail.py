@@ -41,6 +41,7 @@ from asperity.report.style import band_axis, styled
 from asperity.rolling.linear_reference import mean_square_transfer
 from asperity.rolling.noise import rolling_sound_power
 from asperity.rolling.wheel_on_rail import roll
+from asperity.scenarios.preparing import prepare
 from asperity.scenarios.wheel_on_rail import Computed, compute
 from asperity.spectra import band_levels, psd
 
@@ -112,7 +113,7 @@ def laws(computed: Computed) -> tuple[dict[str, Law], float, float]:
 def forces(level: float = 0.0) -> Forces:
     case = parse_case(CASE.format(level=level))
     assert isinstance(case, WheelOnRailCase)
-    computed = compute(case, lambda done, total, message: None)
+    computed = compute(prepare(case), lambda done, total, message: None)
     compared, tangent, secant = laws(computed)
     segment = round(0.2 / case.time_step)
     density = {}

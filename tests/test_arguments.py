@@ -1,5 +1,6 @@
 """Wrong types and values at the doors of Python: always a message that names what was received."""
 
+import re
 import warnings
 
 import numpy as np
@@ -16,6 +17,7 @@ MICROMETRE = (1e-6, 1e-6)
 MAP = HeightMap(np.random.default_rng(0).normal(size=(20, 8)) * 1e-8, MICROMETRE)
 X = (np.arange(8) - 4) * 1e-6
 BALL = np.add.outer(X**2, X**2) / 2e-4
+HALF_SPACE = HalfSpace((8, 8), MICROMETRE, 1e11)
 TRACK = Track.named("x2000")
 
 NO_NUMBERS = ["1 um", b"x", [], {}, object(), 1 + 2j, np.array(["x"]), len, float("nan"), True, (1, 2, 3)]
@@ -32,6 +34,9 @@ DOORS = {
     "half-space spacing": lambda v: HalfSpace((8, 8), v, 1e11),
     "contact modulus": lambda v: HalfSpace((8, 8), MICROMETRE, v),
     "hardness": lambda v: HalfSpace((8, 8), MICROMETRE, 1e11, v),
+    "load": lambda v: HALF_SPACE.solve(BALL, load=v),
+    "approach": lambda v: HALF_SPACE.solve(BALL, approach=v),
+    "rtol of a contact": lambda v: HALF_SPACE.solve(BALL, load=1e-3, rtol=v),
     "spacing of the scan": lambda v: scanned(spacing=v),
     "contact modulus of a scan": lambda v: scanned(modulus=v),
     "hardness of a scan": lambda v: scanned(hardness=v),
@@ -58,7 +63,9 @@ NEEDED = ("half-space shape", "half-space spacing", "contact modulus", "stride",
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
 @pytest.mark.parametrize("door", DOORS)
 def test_what_is_no_number_is_refused_by_name(door, value):
-    with pytest.raises(InputError, match=rf"^{door.partition(' of a s')[0]}.*: received .*; allowed: "):
+    with pytest.raises(
+        InputError, match=rf"^{re.sub(' of a (scan|contact|study)$', '', door)}.*: received .*; allowed: "
+    ):
         DOORS[door](value)
 
 
@@ -69,6 +76,9 @@ def test_what_is_needed_is_not_none(door):
 
 
 ARRAYS = {
+    "gap": lambda v: HALF_SPACE.solve(v, load=1e-3),
+    "start pressure": lambda v: HALF_SPACE.solve(BALL, load=1e-3, start=v),
+    "pressure": lambda v: HALF_SPACE.displacement(v),
     "heights of the scan": lambda v: scanned(heights=v),
     "body of the scan": lambda v: scanned(body=v),
     "approaches of the scan": lambda v: scanned(approaches=v),

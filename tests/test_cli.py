@@ -38,7 +38,8 @@ def computed(monkeypatch):
     """Replace the computation and the report; returns the cases that were run."""
     cases = []
 
-    def run(case, progress=None):
+    def run(prepared, progress=None):
+        case = prepared.case
         cases.append(case)
         progress(1, 2, "scan")
         groups = {f"/{name}": xr.Dataset() for name in GROUPS}
@@ -132,7 +133,10 @@ def test_files_of_others_are_never_overwritten(computed, name, message):
 
 
 def test_a_file_is_no_folder_for_results(computed):
-    assert "case.toml: received a file" in call("run", "case.toml", "-o", "case.toml", code=2).stderr
+    for command in ("run", "check"):
+        message = call(command, "case.toml", "-o", "case.toml", code=2).stderr
+        assert "folder of the results: received case.toml" in message
+        assert "case.toml is a file); allowed: a folder that can be written to." in message
     assert Path("case.toml").read_text() == CASE
 
 
@@ -198,12 +202,81 @@ def test_too_little_memory_is_3(monkeypatch):
 def test_an_interruption_is_130(monkeypatch):
     failing_with(monkeypatch, KeyboardInterrupt())
     outcome = call("--debug", "run", "case.toml", code=130)
-    assert outcome.stderr.strip() == "interrupted; run the same command again to continue"
+    assert outcome.stderr.splitlines()[-1] == "interrupted; run the same command again to continue"
 
 
-def test_a_folder_that_cannot_be_written_is_3(computed):
+@pytest.mark.parametrize("command", ["run", "check", "study"])
+def test_a_folder_that_cannot_be_written_is_2_before_anything_is_computed(computed, command):
     Path("file").write_text("in the way")
-    assert "could not be written" in call("run", "case.toml", "-o", "file/out", code=3).stderr
+    Path("study.toml").write_text('case = "case.toml"\n[sweep]\nseed = [1, 2]\n')
+    file = "study.toml" if command == "study" else "case.toml"
+    message = call(command, file, "-o", "file/out", code=2).stderr
+    assert "folder of the results: received file/out" in message
+    assert "file is a file)" in message
+    assert computed == []
+    if Path("/proc/self").exists():  # where nobody makes files, the superuser neither
+        assert "folder of the results" in call(command, file, "-o", "/proc/out", code=2).stderr
+
+
+def test_several_errors_of_files_and_surroundings_come_at_once(computed, monkeypatch):
+    monkeypatch.setenv("ASPERITY_THREADS", "many")
+    np.save("map.npy", np.random.default_rng(0).normal(size=(64, 64)))
+    keys = 'file = "map.npy"\nheight_unit = "um"'
+    ball = '[ball]\nload = "20 kN"\n'
+    Path("case.toml").write_text(CASE.replace('rms = "0.5 um"', keys) + ball)
+    for command in ("run", "check"):
+        message = call(command, "case.toml", code=2).stderr
+        assert "case.toml: 3 errors" in message
+        assert "  - contact.window: received 504 um; allowed: at least" in message
+        assert 'Give it, as in pixel = "1.5 um" in [surface].' in message
+        assert "  - $ASPERITY_THREADS: received 'many'" in message
+
+
+BEFORE_COMPUTING = {
+    "window": ('[contact]\nwindow = "0.2 mm"\n', "contact.window: received 2"),
+    "strips": (
+        '[contact]\nwindow = "0.5 mm"\nspacing = "60 um"\nsample_length = "1 mm"\n[surface]',
+        "contact.sample_length: received strips of",
+    ),
+    "hardness": ('[contact]\nhardness = "1 MPa"\n', "contact.hardness: received 0.001 GPa"),
+    "step": ('[numerics]\ntime_step = "30 us"\n', "duration: received 0.02 ms; allowed: at least one"),
+}
+
+
+@pytest.mark.parametrize("what", BEFORE_COMPUTING)
+def test_check_finds_what_run_refuses(computed, what):
+    keys, expected = BEFORE_COMPUTING[what]
+    case = CASE + '[ball]\nload = "60 N"\n' + keys.removesuffix("[surface]")
+    if what == "step":
+        case = case.replace('"0.01 s"', '"20 us"')
+    if what == "strips":
+        case = 'speed = "5 m/s"\n' + case.replace('"0.5 um"', '"0.5 um"\nshortest = "0.2 mm"')
+    Path("case.toml").write_text(case)
+    found = call("check", "case.toml", code=2).stderr
+    assert expected in found
+    assert call("run", "case.toml", code=2).stderr == found
+    assert computed == []
+
+
+def test_check_finds_approaches_that_do_not_carry_the_load():
+    approaches = 'approaches = ["-1 um", "-0.9 um"]\nsamples = 2\n'
+    Path("case.toml").write_text(CASE.replace("0.5 um", "0.1 um") + f"[contact]\n{approaches}")
+    for command in ("run", "check"):
+        message = call(command, "case.toml", code=2).stderr
+        assert "contact.approaches: received up to -0.9 um, where the samples carry 0 N" in message
+
+
+def test_check_finds_approaches_of_which_one_alone_is_in_contact():
+    approaches = 'approaches = ["-9 um", "3 um"]\nsamples = 2\n'
+    Path("case.toml").write_text(CASE.replace("0.5 um", "0.1 um") + f"[contact]\n{approaches}")
+    message = call("check", "case.toml", code=2).stderr
+    assert "contact.approaches: received up to 3 um, where the samples carry" in message
+    assert "and none at -9 um; allowed: at least two approaches in contact. Add some around" in message
+
+
+def test_check_says_what_is_doubtful_before_anything_is_computed():
+    Path("case.toml").write_text('start = "0 m"\nsettling = "0 s"\n' + CASE)
+    assert "Warning: the record starts 0 ms after rest" in call("check", "case.toml").stderr
 
 
 def test_warnings_are_printed_once_on_one_line(monkeypatch):
@@ -214,7 +287,7 @@ def test_warnings_are_printed_once_on_one_line(monkeypatch):
 
     monkeypatch.setattr(importlib.import_module("asperity.scenarios"), "run", run, raising=False)
     outcome = call("run", "case.toml", code=3)
-    assert outcome.stderr.splitlines()[0] == "Warning: the grid is coarse"
+    assert "Warning: the grid is coarse" in outcome.stderr.splitlines()
     assert outcome.stderr.count("coarse") == 1
 
 
@@ -378,11 +451,13 @@ def test_check_shows_values_and_work():
 
 
 def test_check_reads_the_measured_map():
-    np.save("map.npy", np.random.default_rng(0).normal(size=(64, 64)))
-    keys = 'file = "map.npy"\nheight_unit = "um"\npixel = "8 um"\n'
+    np.save("map[dim] :x:.npy", np.random.default_rng(0).normal(size=(64, 64)))  # names are no markup
+    keys = 'file = "map[dim] :x:.npy"\nheight_unit = "um"\npixel = "8 um"\n'
     case = CASE.replace('rms = "0.5 um"\n', keys)
     Path("measured.toml").write_text(case)
-    assert "64 × 64 points, 0.512 × 0.512 mm" in call("check", "measured.toml").stdout
+    shown = call("check", "measured.toml").stdout
+    assert "64 × 64 points, 0.512 × 0.512 mm" in shown
+    assert "map[dim] :x:.npy" in shown
     Path("measured.toml").write_text(case + '[contact]\nwindow = "0.6 mm"\n')
     assert (
         "contact.window: received 600 um; allowed: at most the measured map, 512 um"
@@ -392,18 +467,33 @@ def test_check_reads_the_measured_map():
     assert "pixel" in call("check", "measured.toml", code=2).stderr
 
 
-def test_the_plan_counts_contact_solutions():
+def test_the_plan_counts_contact_solutions(monkeypatch):
     from asperity.cli.planning import plan
+    from asperity.scenarios.expecting import Work
+    from asperity.scenarios.preparing import prepare
+    from asperity.scenarios.scan_sizes import scan_sizes
 
     laws = 'laws = ["table", "direct"]\n'
     contact = '[contact]\napproaches = ["0 um", "1 um"]\nsamples = 2\nsample_length = "1.5 mm"\n'
-    rows = dict(plan(parse_case(laws + CASE + contact)))
+
+    def rows_of(text):
+        prepared = prepare(parse_case(text))
+        scans = scan_sizes(prepared.case, prepared.shape, prepared.textures)
+        return dict(plan(prepared, Work(scans, {"rolling": 40.0, "report": 4.0, "textures": 0.1})))
+
+    rows = rows_of(laws + CASE + contact)
     window, strip = 63, 188  # rows of 8 µm
-    assert rows["contact solutions, scan for the filters"] == f"at most {2 * 2 * (strip - window)}"
-    assert rows["contact solutions, scan for the path"] == f"at most {2 * (6250 + 1252 + window)}"
+    path = 7502 + 2 * window  # rounded up
+    assert rows["contact solutions, scan for the filters"] == f"at most {2 * 2 * (strip - window + 1)}"
+    assert rows["contact solutions, scan for the path"] == f"at most {2 * (path - window + 1)}"
     assert rows["contact solutions, direct"] == f"at most {3 * 7500}"
+    assert rows["work"] == "about 44 s, less what the cache holds: rolling 40 s, report 4 s"
+    monkeypatch.setattr("asperity.contact.device.find_device", lambda name=None: object())
+    assert rows_of(laws + CASE + contact)["work"].startswith(
+        "about 44 s if the processor solves all contacts"
+    )
     smooth = CASE.replace('rms = "0.5 um"', 'spectrum = "iso3095"')
-    assert not any(name.startswith("contact solutions") for name in dict(plan(parse_case(smooth))))
+    assert not any(name.startswith("contact solutions") for name in rows_of(smooth))
 
 
 LONG = """
@@ -433,7 +523,7 @@ def test_a_path_of_ten_metres_is_planned_and_announced(monkeypatch):
     shown = " ".join(call("check", "long.toml").stdout.replace("│", " ").split())
     planned = re.search(
         r"scan of the path (\d+) positions 10 µm apart × 10 approaches, solved in single precision, "
-        r"in the order of (.*?) on",
+        r"about (.*?) on",
         shown,
     )
     assert planned

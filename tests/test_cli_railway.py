@@ -63,6 +63,36 @@ def test_check_reads_the_measured_lines():
     np.save("wheel.npy", np.zeros((2890, 10)))
     keys = '[wheel]\nline = "wheel.npy"\nline_unit = "um"\n'
     Path("measured.toml").write_text(f"{RAIL}{keys}line_spacing = '1 mm'\nline_distance = '5 mm'\n")
-    assert "a map of 2890 × 10 points, 2890 × 10 mm" in call("check", "measured.toml").stdout
+    shown = " ".join(call("check", "measured.toml").stdout.replace("│", " ").split())
+    assert "measured line of [wheel] 10 parallel lines, each of 2890 points, 2.89 m, 1 mm apart" in shown
     Path("measured.toml").write_text(RAIL + keys)
-    assert "pixel" in call("check", "measured.toml", code=2).stderr
+    message = call("check", "measured.toml", code=2).stderr
+    assert 'Give it, as in line_spacing = "1.5 um" in [wheel].' in message
+
+
+def test_check_finds_lines_without_their_distance():
+    np.save("wheel.npy", np.zeros((2890, 10)))
+    keys = '[wheel]\nline = "wheel.npy"\nline_unit = "um"\nline_spacing = "1 mm"\n'
+    Path("measured.toml").write_text(RAIL + keys)
+    for command in ("check", "run"):
+        message = call(command, "measured.toml", code=2).stderr
+        assert "wheel.line_distance: received no distance for 10 lines" in message
+
+
+@pytest.mark.parametrize("highest", ["300 Hz", "1 kHz"])
+def test_fewer_poles_are_taken_where_the_track_remembers_few_steps(highest):
+    """A tenth of 0.12 s in steps of 1/(8 f_max)."""
+    coarse = f'[numerics]\nhighest_frequency = "{highest}"\n'
+    Path("coarse.toml").write_text(RAIL + coarse)
+    call("check", "coarse.toml")
+    Path("coarse.toml").write_text(RAIL + coarse + "poles = 100\n")
+    assert (
+        "numerics.poles: received 100; allowed: an even number up to"
+        in call("check", "coarse.toml", code=2).stderr
+    )
+
+
+def test_check_finds_a_track_without_damping():
+    undamped = 'name = "uic60"\nrail_loss_factor = 0.0\npad_loss_factor = 0.0\nballast_loss_factor = 0.0\n'
+    Path("undamped.toml").write_text(f"{RAIL}[track]\n{undamped}")
+    assert "track: received no damping at all" in call("check", "undamped.toml", code=2).stderr

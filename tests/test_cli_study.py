@@ -117,7 +117,7 @@ def test_another_study_is_never_overwritten_unasked(computed):
     assert "out: received the study.nc of another study" in call(*other, code=2).stderr
     call(*other, "--overwrite")
     assert len(computed) == 3
-    assert "rail.toml: received a file" in call(*other[:-1], "rail.toml", code=2).stderr
+    assert "rail.toml is a file)" in call(*other[:-1], "rail.toml", code=2).stderr
 
 
 @pytest.mark.parametrize(

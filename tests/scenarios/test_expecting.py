@@ -1,11 +1,18 @@
-"""What is expected of a scan before it starts is what it then takes."""
+"""What is expected of a run before it starts: its scans as they are, and every part of its time once."""
 
+import numpy as np
 import pytest
 
 from asperity.config import parse_case
+from asperity.errors import CaseError, InputError
+from asperity.scenarios import expecting
 from asperity.scenarios.ball_on_beam import compute
-from asperity.scenarios.expecting import direct_time, expected_scans
+from asperity.scenarios.expecting import expect, expected_path_scan
+from asperity.scenarios.preparing import prepare
+from asperity.scenarios.scan_sizes import scan_sizes
+from asperity.scenarios.trial import ContactTrial, TrackTrial, try_contacts, try_rolling, try_track
 from asperity.store import Store
+from asperity.structures.moving_kernel import moving_kernel
 
 CASE = """
 kind = "ball-on-beam"
@@ -20,34 +27,140 @@ spacing = "{spacing}"
 window = "0.5 mm"
 samples = 2
 """
+RAIL = """
+kind = "wheel-on-rail"
+laws = ["areal", "linear"]
+duration = "{duration}"
+settling = "20 ms"
+[surface]
+spectrum = "iso3095"
+[wheel]
+roughness = "disc"
+[contact]
+spacing = "1 mm"
+samples = 2
+sample_length = "60 mm"
+[numerics]
+highest_frequency = "4 kHz"
+"""
+
+
+def quiet(done, total, message):
+    """A progress that nobody sees."""
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(monkeypatch, tmp_path):
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
 
 
 @pytest.mark.filterwarnings("ignore:the record starts 0 ms")
 @pytest.mark.parametrize("spacing", ["10 um", "6 um"])
-def test_size_on_disk_and_number_of_positions(spacing, monkeypatch, tmp_path):
+def test_size_on_disk_and_number_of_positions(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
-    case = parse_case(CASE.format(spacing=spacing))
-    expected = expected_scans(case)["path"]
-    scanned = compute(case, lambda done, total, message: None).chain.scan
+    prepared = prepare(parse_case(CASE.format(spacing=spacing)))
+    expected = scan_sizes(prepared.case, prepared.shape, prepared.textures)["path"]
+    scanned = compute(prepared, quiet).chain.scan
     states, positions = scanned.forces.shape
-    assert states == expected.states
+    assert (states, positions) == (expected.states, expected.positions)
     assert expected.single == scanned.single
-    assert positions <= expected.positions <= positions + 2
     files = [Store().path(key) for key in scanned.forces.keys]
     assert sum(file.stat().st_size for file in files) == pytest.approx(expected.bytes, rel=0.05)
     assert 0 < scanned.solved <= expected.solutions
 
 
-def test_time_grows_with_the_path_and_the_grid():
-    case = CASE.format(spacing="10 um")
-    short = expected_scans(parse_case(case))
-    long = expected_scans(parse_case(case.replace("8 ms", "80 ms")))
-    fine = parse_case(case.replace("10 um", "5 um"))
-    assert set(short) == {"filters", "path"}
-    assert 8 < long["path"].seconds / short["path"].seconds < 10
-    assert long["filters"] == short["filters"]
-    longest = expected_scans(parse_case(case.replace("8 ms", "800 ms")))["path"]
-    assert (short["path"].single, longest.single) == (False, True)
-    assert 4 < longest.seconds / long["path"].seconds < 9
-    assert direct_time(fine) > 1.5 * direct_time(parse_case(case))
+def test_the_states_that_are_tried_are_much_like_those_of_the_run():
+    prepared = prepare(parse_case(CASE.format(spacing="10 um")))
+    tried = try_contacts(prepared, quiet)
+    reduction = compute(prepared, quiet).chain.reduction
+    reach = np.ptp(reduction.approaches)
+    np.testing.assert_allclose(tried.approaches, reduction.approaches, atol=0.1 * reach)
+    assert abs(tried.loaded - len(reduction.filters["tangent"].contact_filter.approaches)) <= 1
+    for seconds in (tried.load, tried.curve, tried.filters, tried.path, tried.touch, tried.average):
+        assert seconds > 0.0
+
+
+@pytest.fixture
+def tried(monkeypatch):
+    """Trials with known times, on one thread of the reference."""
+    monkeypatch.setenv("ASPERITY_THREADS", "1")
+    monkeypatch.setattr(expecting, "_pace", lambda: 1.0)
+    monkeypatch.setattr(expecting, "try_rolling", lambda prepared: 1e-6)
+    contacts = ContactTrial(np.linspace(0, 1e-6, 14), 12, 3.0, 5.0, 0.01, 0.02, 7e-4, 1e-5, 1e-6)
+    monkeypatch.setattr(expecting, "try_contacts", lambda prepared, progress: contacts)
+    monkeypatch.setattr(expecting, "try_track", lambda prepared, progress: TrackTrial(0.12, 11.0, 13.0))
+
+
+@pytest.mark.usefixtures("tried")
+def test_every_part_of_the_work_counts_once():
+    text = CASE.format(spacing="10 um").replace('"table"', '"table", "direct", "areal"')
+    prepared = prepare(parse_case(text))
+    work = expect(prepared, quiet)
+    assert work.total == pytest.approx(sum(work.seconds.values()))
+    scans, seconds = work.scans, work.seconds
+    assert seconds["scanning for the path"] == pytest.approx(0.02 * scans["path"].positions)
+    assert seconds["scanning for the filters"] == pytest.approx(0.01 * scans["filters"].positions)
+    assert seconds["pressing the samples"] == pytest.approx(2 * (3.0 + 5.0))
+    steps = round(8e-3 / prepared.case.time_step)
+    assert seconds["direct"] == pytest.approx(3 * steps * 7e-4)
+    rows, strips = prepared.textures.path.shape[0], sum(s.shape[0] for s in prepared.textures.strips)
+    under_the_patch = (2 * rows + strips) * 1e-5 + rows * (1 + 14) * 1e-6
+    assert seconds["averaging under the patch"] == pytest.approx(under_the_patch)
+    assert {"textures", "rolling", "spectra and statistics", "report"} < set(seconds)
+    assert expected_path_scan(prepared, quiet) == scans["path"]
+
+
+@pytest.mark.usefixtures("tried")
+def test_kernel_and_passed_points_are_part_of_the_work():
+    work = expect(prepare(parse_case(RAIL.format(duration="40 ms"))), quiet)
+    assert work.seconds["moving kernel"] == 11.0
+    assert work.seconds["passed points"] == 2 * 13.0
+    assert work.seconds["poles"] > 0.0
+    three = RAIL.replace("[contact]", '[track]\npoints = ["1 m", "1.1 m", "1.2 m"]\n[contact]')
+    assert expect(prepare(parse_case(three.format(duration="40 ms"))), quiet).seconds["passed points"] == 39.0
+
+
+@pytest.mark.usefixtures("tried")
+def test_threads_share_scans_and_kernel(monkeypatch):
+    text = CASE.format(spacing="10 um").replace("8 ms", "80 ms").replace("samples = 2", "samples = 4")
+    one = expect(prepare(parse_case(text)), quiet).seconds
+    monkeypatch.setenv("ASPERITY_THREADS", "4")
+    four = expect(prepare(parse_case(text)), quiet).seconds
+    for name in ("scanning for the path", "scanning for the filters"):
+        assert four[name] == pytest.approx(one[name] / 4)
+    assert four["pressing the samples"] == pytest.approx(4 * 3.0 + 5.0)
+
+
+SOFT = """
+[track]
+pad_damping = "28 kN s/m"
+ballast_damping = "28 kN s/m"
+rail_loss_factor = 0.001
+[contact]"""
+
+
+@pytest.mark.parametrize("track", ["[contact]", SOFT])
+def test_the_length_of_a_kernel_is_found_before_it_is_computed(track):
+    """Kernels grow from 0.12 s until they have died away: the less they are damped, the longer."""
+    prepared = prepare(parse_case(RAIL.replace("[contact]", track).format(duration="40 ms")))
+    tried = try_track(prepared, quiet)
+    kernel = moving_kernel(prepared.case.track_model(), prepared.case.speed, prepared.case.time_step)
+    assert tried.length == pytest.approx(kernel.lag[-1], rel=0.02)
+    assert (tried.length > 0.15) == (track == SOFT)
+    assert min(tried.kernel, tried.points) > 0.0
+
+
+@pytest.mark.parametrize("kernel", ["poles", "scatter"])
+def test_rolling_is_tried_on_the_rail_of_the_case(kernel):
+    text = RAIL.format(duration="40 ms") + f'kernel = "{kernel}"\n'
+    assert try_rolling(prepare(parse_case(text))) > 0.0
+
+
+def test_all_errors_come_at_once_and_a_single_one_as_it_is(monkeypatch):
+    with pytest.raises(InputError, match=r"contact\.window: received 510 um") as single:
+        prepare(parse_case(CASE.format(spacing="10 um") + '[ball]\nload = "20 kN"\n'))
+    assert not isinstance(single.value, CaseError)
+    monkeypatch.setenv("ASPERITY_THREADS", "no")
+    monkeypatch.setenv("ASPERITY_DEVICE", "abacus")
+    with pytest.raises(CaseError, match=r"2 errors\n.*\$ASPERITY_THREADS: .*\n.*\$ASPERITY_DEVICE: "):
+        prepare(parse_case(CASE.format(spacing="10 um")))

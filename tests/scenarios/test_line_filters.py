@@ -13,6 +13,7 @@ from asperity.pointforce import Printed, Shifted
 from asperity.reduction.fir import response
 from asperity.report.page import drawable_parts
 from asperity.scenarios import ball_on_beam, run, wheel_on_rail
+from asperity.scenarios.preparing import prepare
 
 BALL = """
 kind = "ball-on-beam"
@@ -64,7 +65,7 @@ def computed(case):
     kind = ball_on_beam if case.kind == "ball-on-beam" else wheel_on_rail
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)
-        return kind.compute(case, lambda done, total, message: None).chain
+        return kind.compute(prepare(case), lambda done, total, message: None).chain
 
 
 def at_load(tree):

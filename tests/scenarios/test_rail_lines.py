@@ -11,6 +11,7 @@ from asperity.errors import InputError, ShortRecordWarning
 from asperity.rolling.linear_reference import force_transfer
 from asperity.scenarios import run
 from asperity.scenarios.laws import working_point
+from asperity.scenarios.preparing import prepare
 from asperity.scenarios.rail_textures import gather
 from asperity.scenarios.wheel_on_rail import compute
 
@@ -164,7 +165,7 @@ def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, speed):
         wheel=f'line = "{MEASURED}"\nline_array = "flat0p4mm"\nline_unit = "um"\nline_spacing = "1 mm"\n'
         'line_distance = "5 mm"\nprocessing = ["curvature"]',
     )  # fmt: skip
-    computed = compute(parse_case(text, folder / "case.toml"), lambda done, total, message: None)
+    computed = compute(prepare(parse_case(text, folder / "case.toml")), lambda done, total, message: None)
     chain = computed.chain
     wheel = chain.runs["linear"]
     # the middle lines are lowest at 0.267 m; the wheel strikes where it reaches the flat's far end

@@ -13,12 +13,14 @@ from asperity.config import parse_case
 from asperity.errors import Grade, PhysicsWarning
 from asperity.reduction.scan import scan, warn_of_flaws, window_for
 from asperity.scenarios import run
-from asperity.scenarios.expecting import expected_area_ratio
+from asperity.scenarios.expecting import Work, expected_area_ratio
+from asperity.scenarios.preparing import prepare
 from asperity.scenarios.validity import SLOPE
 from asperity.surfaces.levelling import band_limit
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for
 from asperity.surfaces.synthesis import self_affine
 
+NO_WORK = Work({}, {})
 MAPS = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"
 CASE = """
 kind = "ball-on-beam"
@@ -106,23 +108,23 @@ class TestArea:
         text = CASE.format(
             surface=f'rms = "{rms} um"\nshortest = "60 um"', laws='["areal"]', spacing=10, window=0.66
         )
-        case = parse_case(text)
+        case = prepare(parse_case(text))
         found = run(case)["contact"].attrs["contact_area_ratio"]
         assert expected_area_ratio(case) == pytest.approx(found, abs=0.08)
-        told = dict(plan(case))["real contact"]
+        told = dict(plan(case, NO_WORK))["real contact"]
         assert f"about {100 * expected_area_ratio(case):.0f} % of the area" in told
         assert ("areal are out of range; take table" in told) == (expected_area_ratio(case) < 0.9)
 
     def test_check_expects_it_on_a_rail_too(self):
-        case = parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n')
+        case = prepare(parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'))
         assert 0.9 < expected_area_ratio(case) <= 1.0
         rough = parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\nlevel = "+20 dB"\n')
-        assert expected_area_ratio(rough) < 0.8
+        assert expected_area_ratio(prepare(rough)) < 0.8
 
     def test_a_line_without_samples_has_no_real_contact(self):
-        case = parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n')
+        case = prepare(parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n'))
         assert expected_area_ratio(case) is None
-        assert "real contact" not in dict(plan(case))
+        assert "real contact" not in dict(plan(case, NO_WORK))
 
 
 class TestGrid:

@@ -6,7 +6,6 @@ from asperity.errors import InputError
 from asperity.surfaces.defects import (
     corrugation,
     dipped_joint,
-    flat_depth,
     flat_geometry,
     flat_length,
     flat_trajectory,
@@ -112,10 +111,6 @@ def test_worn_flat_may_be_longer_than_its_chord():
         for function in (flat_geometry, flat_trajectory):
             with pytest.raises(InputError, match="length of the wheel flat"):
                 function(x, DEPTH, RADIUS, shape, wrong)
-
-
-def test_length_and_depth_of_a_flat_belong_together():
-    assert flat_depth(flat_length(DEPTH, RADIUS), RADIUS) == pytest.approx(DEPTH)
 
 
 @pytest.mark.parametrize("depth", [0.0, -MM, np.nan, 0.1])

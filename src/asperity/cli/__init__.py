@@ -11,6 +11,13 @@ from asperity import __version__
 from asperity.cli.door import Door
 
 _case = click.argument("case", type=click.Path(path_type=Path))
+_output = click.option(
+    "-o",
+    "--output",
+    "directory",
+    type=click.Path(path_type=Path),
+    help="Folder of the results. [default: runs/NAME]",
+)
 _overwrite = click.option("--overwrite", is_flag=True, help="Replace the run of another case in the folder.")
 _report = click.option(
     "--report/--no-report", default=True, show_default=True, help="Write the HTML page and CSVs."
@@ -38,13 +45,7 @@ def _study_options(command: Callable[..., None]) -> Callable[..., None]:
         click.option("--overwrite", is_flag=True, help="Replace another study in the folder."),
         click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler."),
         click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]"),
-        click.option(
-            "-o",
-            "--output",
-            "directory",
-            type=click.Path(path_type=Path),
-            help="Folder of the results. [default: runs/NAME]",
-        ),
+        _output,
     ):
         command = option(command)
     return command
@@ -106,23 +107,27 @@ def new(kind: str) -> None:
 
 @main.command()
 @_case
-def check(case: Path) -> None:
-    """Check a case: show its values, what will be computed, and how much work that is."""
-    from asperity.cli.planning import show_plan
-    from asperity.config import load_case
+@_output
+@_device
+@_overwrite
+def check(case: Path, directory: Path | None, overwrite: bool) -> None:
+    """Check a case: show its values, what will be computed, and how long that takes.
 
-    show_plan(load_case(case), str(case))
+    Refuses whatever 'asperity run' would refuse, and tries small pieces of the work to expect its time.
+    """
+    from asperity.cli.planning import show_plan
+    from asperity.cli.running import refuse_folder
+    from asperity.config import load_case
+    from asperity.scenarios.preparing import prepare
+
+    loaded = load_case(case)
+    refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
+    show_plan(prepare(loaded), str(case))
 
 
 @main.command()
 @_case
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=click.Path(path_type=Path),
-    help="Folder of the results. [default: runs/NAME]",
-)
+@_output
 @_report
 @_device
 @_overwrite

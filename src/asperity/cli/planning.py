@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from typing import TYPE_CHECKING
 
 import click
 
 from asperity.config import Case, WheelOnRailCase
-from asperity.errors import InputError
-from asperity.progress import duration
+from asperity.config.sections import MeasuredLine
+from asperity.errors import Grade, PhysicsWarning
+from asperity.progress import Progress, duration, progress_bar
 
 if TYPE_CHECKING:
-    from asperity.scenarios.expecting import Expected
+    from asperity.scenarios.expecting import Work
+    from asperity.scenarios.preparing import Prepared
+    from asperity.scenarios.scan_sizes import Expected
 
-STEP_TIME = 3e-6  # s per time step of one compiled law, in order of magnitude
-SOLUTIONS_PER_STEP = 3  # of `direct`: two or three iterations in each time step
 ANNOUNCED = 60.0  # s of a scan that is announced before it starts
+ANNOUNCED_SOLUTIONS = 100_000  # of a scan that is tried to find out
+SMALL_PART = 0.05  # of the work: shorter parts are not named
 
 
-def show_plan(case: Case, source: str) -> None:
+def show_plan(prepared: Prepared, source: str) -> None:
     """Print the values of a case, and what will be computed from it.
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    prepared : Prepared
         The case.
     source : str
         Its file.
@@ -32,83 +36,98 @@ def show_plan(case: Case, source: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    measured = [*_measured(case), *_measured_lines(case)]
-    console = Console(file=sys.stdout)
+    from asperity.scenarios.expecting import expect
+
+    for warning in prepared.caught:
+        grade = getattr(warning.message, "grade", Grade.WARNING).value.capitalize()
+        click.echo(f"{grade}: {warning.message}", err=True)
+    with progress_bar() as progress:
+        expected = expect(prepared, progress)
+    console = Console(file=sys.stdout, markup=False, emoji=False)  # names of files may look like either
     if not console.is_terminal:
         console.width = 120
     values = Table(title=f"{source}: a valid case", title_justify="left")
     for heading in ("key", "value", "default", "what it is"):
         values.add_column(heading)
-    for item in case.parameters():
+    for item in prepared.case.parameters():
         default = "" if item["is_default"] else item["default"] or "none"
         style = None if item["is_default"] else "bold"
         values.add_row(item["key"], item["value"], default, item["note"], style=style)
     console.print(values)
     work = Table(title="What will be computed", title_justify="left", show_header=False)
-    for name, value in [*measured, *plan(case)]:
+    for name, value in plan(prepared, expected):
         work.add_row(name, value)
     console.print(work)
 
 
-def plan(case: Case) -> list[tuple[str, str]]:
+def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
     """List what will be computed and how much work it is.
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    prepared : Prepared
         The case.
+    expected : Work
+        From `asperity.scenarios.expecting.expect`.
 
     Returns
     -------
     list of (str, str)
         Name and value, with units.
     """
-    from asperity.scenarios.expecting import direct_time, expected_scans
+    from asperity.scenarios.expecting import SOLUTIONS_PER_STEP, steps_of
     from asperity.scenarios.reducing import STATES
 
-    contact = case.contact
+    case, (nx, ny) = prepared.case, prepared.shape.body.shape
+    contact, settling = case.contact, case.settled_time
     states = STATES if contact.approaches is None else len(contact.approaches)
-    settling = case.settled_time
-    length = (settling + case.rolled_time) * case.speed
-    points = round(length / contact.spacing) + 1
-    steps = round((settling + case.rolled_time) / case.time_step)
-    where = f"{length:g} m from {case.rolled_range[0]:g} m"
+    first, last = case.rolled_range
+    points = round((last - first) / contact.spacing) + 1
+    steps = steps_of(case)
     run_in = f", and {settling:g} s before it" if settling else ""
-    scans = expected_scans(case)
-    solves = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
-    seconds = sum(scan.seconds for scan in scans.values()) + steps * len(case.laws) * STEP_TIME
+    solves = {f"scan for the {name}": scan.solutions for name, scan in expected.scans.items()}
     if "direct" in case.laws:
         solves["direct"] = SOLUTIONS_PER_STEP * steps
-        seconds += solves["direct"] * direct_time(case)
+    scanned = expected.scans.get("path")
     return [
-        ("path", f"{where}, {points} points {contact.spacing * 1e6:g} µm apart"),
+        *_measured(case),
+        ("textures", prepared.textures.origin),
+        ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
         ("time", f"{case.rolled_time:g} s{run_in}, {steps} steps of {case.time_step * 1e6:.4g} µs"),
         *_track(case),
         ("laws", ", ".join(case.laws)),
-        (
-            "contact",
-            f"{contact.cells} × {contact.cells} cells, {contact.samples} samples, {states} approaches",
-        ),
-        *_real_contact(case),
+        ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
+        *_real_contact(prepared),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items()),
-        *([("scan of the path", described_scan(scans["path"]))] if "path" in scans else []),
-        ("work", f"in the order of {duration(seconds)}, less what the cache holds"),
+        *([("scan of the path", described_scan(scanned))] if scanned else []),
+        ("work", _described_work(expected)),
     ]
 
 
-def _real_contact(case: Case) -> list[tuple[str, str]]:
+def _real_contact(prepared: Prepared) -> list[tuple[str, str]]:
     """Expected real contact, and which laws it takes out of their range."""
     from asperity.scenarios.expecting import expected_area_ratio
     from asperity.scenarios.validity import AREA, SCANNED
 
-    ratio = expected_area_ratio(case)
+    ratio = expected_area_ratio(prepared)
     if ratio is None:
         return []
     text = f"about {100 * ratio:.0f} % of the area of smooth bodies"
-    averaged = [law for law in case.laws if law not in SCANNED]
+    averaged = [law for law in prepared.case.laws if law not in SCANNED]
     if ratio < AREA[0] and averaged:
         text += f": below {100 * AREA[0]:.0f} % {', '.join(averaged)} are out of range; take table"
     return [("real contact", text)]
+
+
+def _described_work(expected: Work) -> str:
+    """Time of a run, and of its longest parts."""
+    from asperity.contact.device import find_device
+
+    parts = sorted(expected.seconds.items(), key=lambda part: -part[1])
+    longest = [(name, part) for name, part in parts if part >= max(SMALL_PART * expected.total, 0.5)]
+    named = ", ".join(f"{name} {duration(part)}" for name, part in longest)
+    where = "" if find_device() is None else " if the processor solves all contacts"
+    return f"about {duration(expected.total)}{where}, less what the cache holds" + f": {named}" * bool(named)
 
 
 def described_scan(scan: Expected) -> str:
@@ -131,31 +150,28 @@ def described_scan(scan: Expected) -> str:
     return (
         f"{scan.positions} positions {scan.step * 1e6:.4g} µm apart × {scan.states} approaches, "
         f"solved in {'single' if scan.single else 'double'} precision, "
-        f"in the order of {duration(scan.seconds)} on {thread_count()} threads, {size} in {root}; "
+        f"about {duration(scan.seconds)} on {thread_count()} threads, {size} in {root}; "
         "if interrupted or killed, it goes on after its last finished block"
     )
 
 
-def announce_scan(case: Case) -> None:
-    """Before a long scan of a path starts, say what it takes; refuse one that the disk cannot hold.
+def announce_scan(prepared: Prepared, progress: Progress) -> None:
+    """Before a long scan of a path starts, say what it takes.
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    prepared : Prepared
         The case.
-
-    Raises
-    ------
-    InputError
-        If the disk has too little room.
+    progress : Progress
+        Called while a few contacts are tried.
     """
-    if "table" not in case.laws:
-        return
-    from asperity.scenarios.expecting import check_disk, expected_scans
-    from asperity.store import Store
+    from asperity.scenarios.expecting import expected_path_scan
+    from asperity.scenarios.scan_sizes import scan_sizes
 
-    scan = expected_scans(case)["path"]
-    check_disk(scan, Store().root)
+    size = scan_sizes(prepared.case, prepared.shape, prepared.textures).get("path")
+    if size is None or size.solutions < ANNOUNCED_SOLUTIONS:
+        return
+    scan = expected_path_scan(prepared, progress)
     if scan.seconds > ANNOUNCED:
         click.echo(f"Scan of the path: {described_scan(scan)}.", err=True)
 
@@ -180,34 +196,25 @@ def _track(case: Case) -> list[tuple[str, str]]:
 
 
 def _measured(case: Case) -> list[tuple[str, str]]:
-    """Read the measured samples, so that their errors come before the work."""
-    surface = case.surface
-    if surface.file is None:
-        return []
-    from asperity.cli.inspecting import described, read
+    """Say what is in the measured files."""
+    from asperity.cli.inspecting import described, described_lines
+    from asperity.scenarios.reading import read_lines, read_maps
+    from asperity.surfaces.heightmap import HeightMap
+    from asperity.surfaces.parallel_lines import lines_of
 
-    maps = read(
-        surface.file, surface.index, array=surface.array, height_unit=surface.height_unit, pixel=surface.pixel
-    )
-    smallest = min(min(found.size) if isinstance(found.size, tuple) else found.size for found in maps)
-    if smallest < case.contact.window:
-        allowed = f"at most the measured map, {smallest * 1e6:.4g} um"
-        raise InputError(
-            "contact.window", f"{case.contact.window * 1e6:g} um", allowed, "Choose a smaller window."
-        )
-    return [("samples", described(maps))]
-
-
-def _measured_lines(case: Case) -> list[tuple[str, str]]:
-    """Read the measured lines of rail and wheel, so that their errors come before the work."""
-    from asperity.cli.inspecting import described, read
-
-    if not isinstance(case, WheelOnRailCase):
-        return []
     found = []
-    for name, section in (("lines of the rail", case.surface), ("lines of the wheel", case.wheel)):
-        if section.line is not None:
-            array, unit, spacing = section.line_array, section.line_unit, section.line_spacing
-            lines = read(section.line, array=array, height_unit=unit, pixel=spacing)
-            found.append((name, described(lines)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)  # said before
+        if case.surface.file is not None:
+            found.append(("measured map", described(list(read_maps(case.surface)))))
+        sections: list[tuple[str, MeasuredLine]] = [("surface", case.surface)]
+        if isinstance(case, WheelOnRailCase):
+            sections.append(("wheel", case.wheel))
+        for name, section in sections:
+            if section.line is not None:
+                lines = read_lines(section, name)
+                words = described([lines])
+                if isinstance(lines, HeightMap):
+                    words = described_lines(lines_of(lines))
+                found.append((f"measured line of [{name}]", words))
     return found

@@ -30,17 +30,18 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
     Raises
     ------
     InputError
-        If `directory` holds the run of another case, or the disk cannot hold the scan of the path.
+        If the case cannot be computed, or its results not go into `directory`.
     """
-    if not overwrite:
-        _refuse_to_overwrite(case, directory)
     from asperity.results import save
     from asperity.scenarios import run
+    from asperity.scenarios.preparing import prepare
     from asperity.store import Store
 
-    announce_scan(case)
+    refuse_folder(case, directory, overwrite=overwrite)
+    prepared = prepare(case)
     with progress_bar() as progress:
-        tree = run(case, progress=progress)
+        announce_scan(prepared, progress)
+        tree = run(prepared, progress=progress)
     for warning in json.loads(tree.attrs.get("warnings", "[]")):
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
         grade = warning.get("grade", "warning").capitalize()
@@ -60,12 +61,30 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
         click.echo(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
 
 
-def _refuse_to_overwrite(case: Case, directory: Path) -> None:
-    """Let a case replace its own run; anything else of that name in the folder stays."""
+def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> None:
+    """Refuse a folder that cannot be written to, or that holds what is not this case's own run.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase or WheelOnRailCase
+        The case.
+    directory : Path
+        Where its results shall go.
+    overwrite : bool
+        Whether the run of another case may be replaced.
+
+    Raises
+    ------
+    InputError
+        If results cannot go there.
+    """
+    from asperity.files import refuse_unwritable
+
+    refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    if overwrite:
+        return
     allowed = "a new folder, or the folder of an earlier run of the same case"
     remedy = "Choose another folder with -o, or replace it with --overwrite."
-    if directory.exists() and not directory.is_dir():
-        raise InputError(str(directory), "a file", allowed, "Choose another folder with -o.")
     if (directory / "run.nc").exists():
         from asperity.results import case_text
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from asperity.config import WheelOnRailCase, load_case
 from asperity.errors import InputError
-from asperity.files import write_bytes
+from asperity.files import refuse_unwritable, write_bytes
 from asperity.progress import progress_bar
 from asperity.studies.definition import Study, study_of
 
@@ -59,6 +59,7 @@ def study_into(
     """
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
+    refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
     if not overwrite:
         _refuse_to_overwrite(study, directory)
     from xarray import DataTree
@@ -115,8 +116,6 @@ def speeds_and_loads(case: Path, speeds: str | None, loads: str | None) -> Study
 def _refuse_to_overwrite(study: Study, directory: Path) -> None:
     """Let a study replace its own table; another one in the folder stays."""
     file = directory / "study.nc"
-    if directory.exists() and not directory.is_dir():
-        raise InputError(str(directory), "a file", "a folder", "Choose another folder with -o.")
     if not file.exists():
         return
     import xarray

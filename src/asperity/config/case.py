@@ -140,7 +140,10 @@ def problems_of_sampling(case: Case) -> Iterator[InputError]:
 
 
 def problem_of_steps(case: Case, time: float) -> Iterator[InputError]:
-    """Not more time steps than can be computed."""
+    """At least one time step to record, and not more than can be computed."""
+    if case.rolled_time < case.time_step:
+        received = f"{case.rolled_time * 1e3:.4g} ms"
+        yield InputError("duration", received, f"at least one time step, {case.time_step * 1e3:.4g} ms")
     if time / case.time_step > MOST_STEPS:
         received = f"{time / case.time_step:.2g} time steps"
         yield InputError(

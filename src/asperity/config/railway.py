@@ -160,13 +160,17 @@ class RailNumerics(Numerics):
     kernel: Annotated[str, BeforeValidator(Choice(("poles", "scatter")))] = key(
         "poles", "how the track's response is carried on in time: by fitted poles, or by its whole past"
     )
-    poles: Annotated[int, BeforeValidator(Number(at_least=10, at_most=1000, whole=True))] = key(
-        100, "number of poles, even", goes_with="kernel=poles"
+    poles: Annotated[int, BeforeValidator(Number(at_least=10, at_most=1000, whole=True))] | None = key(
+        None,
+        "number of poles, even",
+        otherwise="100, or a tenth of the time steps that the track remembers if that is less",
+        example="100",
+        goes_with="kernel=poles",
     )
 
     def problems(self) -> Iterator[InputError]:
         """Poles come in pairs."""
-        if self.poles % 2:
+        if self.poles is not None and self.poles % 2:
             yield InputError("poles", self.poles, "an even number", "Poles come in conjugate pairs.")
 
 

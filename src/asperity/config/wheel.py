@@ -26,7 +26,6 @@ from asperity.config.keys import (
 from asperity.config.railway_textures import TABLE_OF_LEVELS, MeasuredLines, problems_of_table
 from asperity.config.tables import read_levels, read_modes, read_receptance
 from asperity.errors import InputError
-from asperity.surfaces.defects import flat_depth
 
 WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")
 DEEPEST_FLAT = 0.01  # of the wheel's radius
@@ -111,9 +110,12 @@ class WheelCase(MeasuredLines, WheelBody):
         """Depth and length of the flat in m; None without one."""
         depth, length = self.flat_depth, self.flat_length
         if depth is None:
-            return None if length is None else (flat_depth(length, self.radius), length)
+            return None if length is None else (self._chord_depth(length), length)
         chord = math.sqrt(8.0 * self.radius * depth)
         return depth, chord if length is None or self.flat_shape == "fresh" else max(length, chord)
+
+    def _chord_depth(self, length: float) -> float:
+        return length**2 / (8.0 * self.radius)
 
     def problems(self) -> Iterator[InputError]:
         """A sound body, one source of texture, and a flat that is small against the wheel."""
@@ -151,7 +153,7 @@ class WheelCase(MeasuredLines, WheelBody):
         if chord * (1.0 - CLOSE_LENGTH) <= length <= longest:
             return
         allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), within {CLOSE_LENGTH:.0%}"
-        remedy = f"The chord of this length is {flat_depth(length, self.radius) * 1e3:.3g} mm deep."
+        remedy = f"The chord of this length is {self._chord_depth(length) * 1e3:.3g} mm deep."
         if worn:
             allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), to the wheel's radius"
         elif length > chord:

@@ -137,6 +137,7 @@ class WheelOnRailCase(Case):
         yield from _problems_of_texture(self)
         yield from _problems_of_levels(self)
         yield from _problems_of_track(self)
+        yield from _problem_of_poles(self)
         yield from _problems_of_path(self)
         widest = 2 * min(self.wheel.radius, self.track.rail_head_radius)
         if self.contact.window > widest:
@@ -172,16 +173,33 @@ def _problems_of_levels(case: WheelOnRailCase) -> Iterator[InputError]:
 
 
 def _problems_of_track(case: WheelOnRailCase) -> Iterator[InputError]:
-    """A track that exists, and on which the wheel is slower than the waves that it sends out."""
+    """A track that exists and is damped, on which the wheel is slower than the waves that it sends out."""
     try:
         track = case.track_model()
     except InputError as error:
         yield InputError("track", error.received, error.allowed, error.remedy)
         return
+    if not track.is_damped:
+        remedy = "Give the rail a loss factor, or damping to pads or ballast."
+        yield InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
     try:
         track.refuse_speed(case.speed)
     except InputError as error:
         yield InputError("speed", f"{case.speed:g} m/s", error.allowed, error.remedy)
+
+
+def _problem_of_poles(case: WheelOnRailCase) -> Iterator[InputError]:
+    """No more poles than the shortest kernel of a track can tell apart."""
+    if case.numerics.poles is None:
+        return
+    from asperity.structures.moving_kernel import SHORTEST
+    from asperity.structures.rail_poles import most_poles
+
+    most = most_poles(round(SHORTEST / case.time_step))
+    if case.numerics.poles > most:
+        allowed = f"an even number up to {most}, a tenth of the time steps that the track remembers"
+        remedy = "Take fewer poles, or a shorter time step."
+        yield InputError("numerics.poles", case.numerics.poles, allowed, remedy)
 
 
 def _problems_of_path(case: WheelOnRailCase) -> Iterator[InputError]:

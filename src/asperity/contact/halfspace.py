@@ -11,7 +11,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real, two, two_lengths, whole
+from asperity.arguments import real, real_array, two, two_lengths, whole
 from asperity.errors import InputError, Outcome, UnconvergedWarning
 from asperity.kernels.contact import REACH, displace, indent, room
 from asperity.kernels.fourier import smooth_length
@@ -22,6 +22,7 @@ from asperity.kernels.preconditioner import inverse_stencil
 from asperity.kernels.scanning import Block, solve_positions
 
 MAX_ITERATIONS = 2000
+BELOW_ONE = math.nextafter(1.0, 0.0)
 AT_ONCE = 16
 """Positions between two looks at whether the user wants to stop."""
 
@@ -214,13 +215,11 @@ class HalfSpace:
         if (approach is None) == (load is None):
             given = "both" if approach is not None else "neither"
             raise InputError("approach and load", given, "exactly one of them", "Give one of the two.")
-        if not (math.isfinite(rtol) and 0 < rtol < 1):
-            raise InputError("rtol", rtol, "a number between 0 and 1, as 1e-6")
+        rtol = real("rtol", rtol, "a number between 0 and 1, as 1e-6", above=0.0, at_most=BELOW_ONE)
         p = None if start is None else np.clip(self._field("start pressure", start), 0.0, self.pressure_cap)
         if approach is not None:
-            if not math.isfinite(approach):
-                raise InputError("approach", approach, "a finite length, m")
-            contact = self.at_approach(g, float(approach), p, rtol)
+            approach = real("approach", approach, "a finite length, m")
+            contact = self.at_approach(g, approach, p, rtol)
         else:
             contact = self._at_load(g, self._checked_load(load), p, rtol)
         if not contact.converged:
@@ -233,8 +232,7 @@ class HalfSpace:
         return math.inf if self.hardness is None else self.hardness
 
     def _checked_load(self, load: float | None) -> float:
-        if load is None or not (math.isfinite(load) and load >= 0):
-            raise InputError("load", load, "a force ≥ 0, N")
+        load = real("load", load, "a force ≥ 0, N", at_least=0.0)
         largest = self.pressure_cap * self.cell_area * self.shape[0] * self.shape[1]
         if load >= largest:
             raise InputError(
@@ -243,10 +241,10 @@ class HalfSpace:
                 f"less than hardness × window area = {largest:.4g} N",
                 "Enlarge the window, raise the hardness or lower the load.",
             )
-        return float(load)
+        return load
 
     def _field(self, name: str, values: ArrayLike) -> NDArray[np.float64]:
-        a = _array(values)
+        a = _array(real_array(name, values, f"an array of the half-space's shape {self.shape}"))
         if a.shape != self.shape:
             raise InputError(f"{name} shape", a.shape, f"the half-space's shape {self.shape}")
         if not np.isfinite(a).all():

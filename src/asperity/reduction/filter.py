@@ -20,6 +20,8 @@ BANDS = 12
 """Bands of an octave."""
 FLOOR = 1e-3
 """Smallest magnitude of a fitted filter (−60 dB)."""
+FEWEST_POSITIONS = 16
+"""Positions of a scan, at least, from which a filter is estimated."""
 HIGHEST = 0.8
 """Largest wavenumber of a filter to that which the positions of the scan can tell apart."""
 FITTED_WIDTH, FITTED_BINS = 1.0 / 6.0, 1.5
@@ -151,9 +153,10 @@ def filter_spectra(
     f, z = np.atleast_2d(forces), np.atleast_2d(lines)
     states, m = f.shape
     stride, rest = divmod(z.shape[1], m)
-    if rest or m < 16:
+    if rest or m < FEWEST_POSITIONS:
         received = f"{m} forces, {z.shape[1]} heights"
-        raise InputError("scan for the filter", received, "a whole number of heights a force, at least 16")
+        allowed = f"a whole number of heights a force, at least {FEWEST_POSITIONS}"
+        raise InputError("scan for the filter", received, allowed)
     middle = z.shape[0] // 2
     half = np.full(states, middle) if half_widths is None else np.minimum(half_widths, middle)
     highest = int(HIGHEST * (m // 2))

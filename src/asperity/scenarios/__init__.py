@@ -15,18 +15,19 @@ if TYPE_CHECKING:
 
     from asperity.config import Case
     from asperity.progress import Progress
+    from asperity.scenarios.preparing import Prepared
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Case, progress: Progress | None = None
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case | Prepared, progress: Progress | None = None
 ) -> xarray.DataTree:
     """Compute a case.
 
     Parameters
     ----------
     case : path, mapping or case object
-        A TOML case file; its keys and values, sections as mappings; or what `asperity.config.load_case` made
-        of one.
+        A TOML case file; its keys and values, sections as mappings; or what `asperity.config.load_case`, or
+        `asperity.scenarios.preparing.prepare`, made of one.
     progress : callable, optional
         ``progress(done, total, message)``, called during long work.
 
@@ -45,28 +46,32 @@ def run(
     """
     from asperity.config import as_case
     from asperity.errors import PhysicsWarning
+    from asperity.scenarios.preparing import Prepared, prepare
     from asperity.threads import one_thread_in_linear_algebra
 
-    loaded = as_case(case)
+    loaded = case if isinstance(case, Prepared) else as_case(case)
     if progress is not None and not callable(progress):
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
         warnings.simplefilter("always", PhysicsWarning)
-        result = _computed(loaded, progress or (lambda done, total, message: None), caught)
+        prepared = loaded if isinstance(loaded, Prepared) else prepare(loaded)
+        caught += prepared.caught
+        result = _computed(prepared, progress or (lambda done, total, message: None), caught)
     for message in caught:
         if not issubclass(message.category, PhysicsWarning):
             warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
     return result
 
 
-def _computed(case: Case, progress: Progress, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
-    from asperity.config import BallOnBeamCase, WheelOnRailCase
+def _computed(
+    prepared: Prepared, progress: Progress, caught: list[warnings.WarningMessage]
+) -> xarray.DataTree:
+    from asperity.config import WheelOnRailCase
 
-    if isinstance(case, WheelOnRailCase):
+    if isinstance(prepared.case, WheelOnRailCase):
         from asperity.scenarios import rail_tree, wheel_on_rail
 
-        return rail_tree.layout(wheel_on_rail.compute(case, progress), caught)
+        return rail_tree.layout(wheel_on_rail.compute(prepared, progress), caught)
     from asperity.scenarios import ball_on_beam, beam_tree
 
-    assert isinstance(case, BallOnBeamCase)
-    return beam_tree.layout(ball_on_beam.compute(case, progress), caught)
+    return beam_tree.layout(ball_on_beam.compute(prepared, progress), caught)

@@ -114,8 +114,8 @@ class Checkpoint:
 class Stopwatch:
     """Wall time of consecutive parts of the work."""
 
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
+    def __init__(self, **before: float) -> None:
+        self.seconds: dict[str, float] = before
         self._last = time.perf_counter()
 
     def lap(self, part: str) -> None:

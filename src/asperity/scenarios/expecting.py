@@ -1,115 +1,107 @@
-"""How long the scan of a case's path will take, and what it will keep on disk, before it starts."""
+"""What a run will take: contact solutions, disk, and time, expected from small pieces of it."""
 
 from __future__ import annotations
 
 import math
-import shutil
-import warnings
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.config import BallOnBeamCase, Case, WheelOnRailCase
-from asperity.errors import InputError, PhysicsWarning
-from asperity.reduction.accuracy import FILTER_SHARE, in_single, rtol_for
+from asperity.config import Case, WheelOnRailCase
+from asperity.progress import Progress
 from asperity.reduction.real_contact import expected_area_ratio as expected_area_ratio_of
 from asperity.reduction.scan import BLOCK
-from asperity.reference.materials import contact_modulus
-from asperity.scenarios import rail_textures
-from asperity.scenarios.ball_on_beam import ball_geometry
-from asperity.scenarios.geometry import HIGHEST_FORCE, Geometry, window_cells
-from asperity.scenarios.laws import table_stride
-from asperity.scenarios.line_filters import filter_stride
-from asperity.scenarios.rail_geometry import rail_geometry
+from asperity.scenarios.compiling import compile_kernels, compile_rail_kernels
+from asperity.scenarios.preparing import Prepared
 from asperity.scenarios.reducing import STATES
-from asperity.scenarios.textures import measured_maps, strip_rows, synthesised
-from asperity.structures.ball import Ball
-from asperity.surfaces.heightmap import HeightMap
+from asperity.scenarios.scan_sizes import Expected, scan_sizes
+from asperity.scenarios.trial import ContactTrial, timed, try_contacts, try_rolling, try_track
+from asperity.scenarios.wheel_on_rail import POLES
 from asperity.surfaces.statistics import rms_slope
-from asperity.threads import thread_count
+from asperity.threads import one_thread_in_linear_algebra, thread_count
 
-SOLUTION_TIME = 1e-5
-"""Time of a contact solution on one core at the accuracy of a scan, beside that of its cells, s."""
-CELL_TIME = 7e-8
-"""Time of a contact solution for each cell of the box around the overlap, s."""
 SINGLE_TIME = 0.65
 """Time of a contact solution in single precision to that in double."""
-BLOCK_BYTES = 1200
-"""What the file of a block holds beside its forces, bytes."""
+SOLUTIONS_PER_STEP = 3
+"""Solutions of `direct` in a time step: two or three."""
+STATE_TIME = 1.5e-7
+"""Time of laying a state function out for a time step, s."""
+POLE_TIME = 6e-3
+"""Time of fitting a pole, s."""
+NUMBER_TIME = 5e-7
+"""Time of making a spectrum of a number of a record and of writing it, s."""
+POINT_TIME = 3e-7
+"""Time of a point of the path in its statistics, s."""
+LAID_OUT = {"ball-on-beam": 0.5, "wheel-on-rail": 2.0}
+"""Time of laying out the rest of a result, s."""
+REPORT_TIME = {"ball-on-beam": 4.0, "wheel-on-rail": 6.0}
+"""Time of starting the program, and of drawing and writing a report, s."""
+SINGLE_COMPILED = 10.0
+"""Time of compiling the contact in single precision, where that is not kept yet, s."""
+COUNTING_TIME = 12e-3
+"""Time of adding up the first 200 000 squares on the processor on which those were measured, s."""
 
 
 @dataclass(frozen=True)
-class Expected:
-    """What a scan will take, in order of magnitude: processors differ by a factor of two or three.
+class Work:
+    """What a run will take.
 
     Attributes
     ----------
-    positions, states : int
-        Size of the scan.
-    step : float
-        Distance of the positions, m.
-    seconds : float
-        Time on all threads, nothing of it found in the cache.
-    bytes : int
-        Size on disk.
-    single : bool
-        Whether the iteration will be in single precision.
+    scans : dict of str to Expected
+        ``"filters"`` where samples are scanned, ``"path"`` where `table` is among the laws.
+    seconds : dict of str to float
+        Time by part of the work, s.
     """
 
-    positions: int
-    states: int
-    step: float
-    seconds: float
-    bytes: int
-    single: bool
+    scans: dict[str, Expected]
+    seconds: dict[str, float]
 
     @property
-    def solutions(self) -> int:
-        """Contact solutions, at most: states that do not touch need none."""
-        return self.positions * self.states
+    def total(self) -> float:
+        """Time of all parts, s."""
+        return sum(self.seconds.values())
 
 
-def expected_scans(case: Case) -> dict[str, Expected]:
-    """Expect the scans of a case.
+def expect(prepared: Prepared, progress: Progress) -> Work:
+    """Expect the work of a case, from small pieces of it that are computed here.
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    prepared : Prepared
         The case.
+    progress : Progress
+        Called between the pieces.
 
     Returns
     -------
-    dict of Expected
-        ``"filters"`` where samples are scanned, ``"path"`` where `table` is among the laws.
-
-    Raises
-    ------
-    InputError
-        If the bodies do not fit the contact's window.
+    Work
+        On all threads of this machine, while nothing else is done on it and nothing is found in the cache;
+        most often within a third.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)  # the run tells
-        shape = _geometry(case)
-    contact, window = case.contact, window_cells(case.contact)
-    result = {}
-    if isinstance(case, WheelOnRailCase) or case.surface.has_samples:
-        rows = contact.samples * max(strip_rows(contact) - window, 1)
-        result["filters"] = _expected(case, shape, rows, filter_stride(shape), FILTER_SHARE)
-    if "table" in case.laws:
-        pace = case.speed / contact.spacing
-        rows = math.ceil(case.settled_time * pace) + math.ceil(case.rolled_time * pace) + 2 + window
-        result["path"] = _expected(case, shape, rows, table_stride(shape))
-    return result
+    case, samples = prepared.case, bool(prepared.textures.maps)
+    with one_thread_in_linear_algebra():
+        (compile_rail_kernels if isinstance(case, WheelOnRailCase) else compile_kernels)(progress)
+        pace = _pace()
+        scans = scan_sizes(case, prepared.shape, prepared.textures)
+        seconds = {"textures": prepared.processor}
+        if samples:
+            trial = try_contacts(prepared, progress)
+            scans = {name: _timed_scan(name, scan, trial, case) for name, scan in scans.items()}
+            seconds |= _contact_seconds(prepared, trial, scans, pace)
+        if isinstance(case, WheelOnRailCase):
+            seconds |= _track_seconds(prepared, progress, pace)
+        seconds |= _rolling_seconds(prepared, pace)
+    return Work(scans, seconds)
 
 
-def expected_area_ratio(case: Case) -> float | None:
+def expected_area_ratio(prepared: Prepared) -> float | None:
     """Expect the real contact area under the working load over that of smooth bodies.
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    prepared : Prepared
         The case.
 
     Returns
@@ -117,15 +109,8 @@ def expected_area_ratio(case: Case) -> float | None:
     float or None
         About what `asperity.scenarios.reducing.Reduction.area_ratio` will be, from the slope of the
         samples; None where the case has none.
-
-    Raises
-    ------
-    InputError
-        If a file does not hold what the case needs of it.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)
-        shape, samples = _geometry(case), _samples(case)
+    shape, samples = prepared.shape, prepared.textures.maps
     if not samples:
         return None
     slope = float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in samples])))
@@ -133,87 +118,89 @@ def expected_area_ratio(case: Case) -> float | None:
     return expected_area_ratio_of(slope, peak, shape.modulus)
 
 
-def _samples(case: Case) -> tuple[HeightMap, ...]:
-    """Samples like those of the case, without its path."""
-    rows = strip_rows(case.contact)
-    if isinstance(case, WheelOnRailCase):
-        short = {"duration": rows * case.contact.spacing / case.speed, "settling": 0.0}
-        return rail_textures.gather(case.model_copy(update=short)).maps
-    if case.surface.file is not None:
-        return measured_maps(case.surface, case.contact.spacing)[0]
-    if case.surface.rms is None:
-        return ()
-    size = (rows, window_cells(case.contact))
-    return (synthesised(case.surface, case.contact.spacing, size, case.seed),)
-
-
-def direct_time(case: Case) -> float:
-    """Time of a contact solution under the working load, s."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PhysicsWarning)
-        shape = _geometry(case)
-    return float(_solution_times(shape, np.array([shape.hertz.approach(shape.load)]))[0])
-
-
-def check_disk(expected: Expected, root: Path) -> None:
-    """Refuse a scan that the disk cannot hold.
+def expected_path_scan(prepared: Prepared, progress: Progress) -> Expected:
+    """Expect the scan of a path alone.
 
     Parameters
     ----------
-    expected : Expected
-        The scan.
-    root : Path
-        Folder of the cache.
+    prepared, progress
+        As in `expect`, of a case that has one.
 
-    Raises
-    ------
-    InputError
-        If the disk has less room.
+    Returns
+    -------
+    Expected
+        Its size and time.
     """
-    existing = next(folder for folder in (root.absolute(), *root.absolute().parents) if folder.exists())
-    free = shutil.disk_usage(existing).free
-    if free < expected.bytes:
-        raise InputError(
-            "disk of the cache",
-            f"{free / 2**20:.0f} MiB free in {root}",
-            f"{expected.bytes / 2**20:.0f} MiB for the scan of the path",
-            "Set $ASPERITY_CACHE to a folder on another disk, or free some space.",
-        )
+    case = prepared.case
+    with one_thread_in_linear_algebra():
+        (compile_rail_kernels if isinstance(case, WheelOnRailCase) else compile_kernels)(progress)
+        size = scan_sizes(case, prepared.shape, prepared.textures)["path"]
+        return _timed_scan("path", size, try_contacts(prepared, progress), case)
 
 
-def _geometry(case: Case) -> Geometry:
-    if isinstance(case, WheelOnRailCase):
-        return rail_geometry(case)
-    assert isinstance(case, BallOnBeamCase)
-    ball = Ball(case.ball.radius, case.ball.material, case.ball.load, case.ball.mass)
-    modulus = contact_modulus(case.ball.material, case.beam.material)
-    return ball_geometry(case, ball.static_load, modulus)
+def _timed_scan(name: str, scan: Expected, trial: ContactTrial, case: Case) -> Expected:
+    """Time of a scan: that of its positions, on as many threads as it has blocks."""
+    position = trial.filters if name == "filters" else trial.path
+    blocks = case.contact.samples if name == "filters" else -(-scan.positions // BLOCK)
+    seconds = scan.positions * position * (SINGLE_TIME if scan.single else 1.0)
+    return replace(scan, seconds=seconds / min(thread_count(), blocks))
 
 
-def _expected(case: Case, shape: Geometry, rows: int, stride: int, share: float = 1.0) -> Expected:
-    """Expect a scan whose forces are accurate to a share of what the case asks for."""
-    positions = -(-rows // stride)
-    approaches = _approaches(case, shape)
-    seconds = float(_solution_times(shape, approaches).sum()) * positions / thread_count()
-    cells = positions * approaches.size * shape.body.size
-    single = in_single(rtol_for(share * case.numerics.force_accuracy), cells)
-    seconds *= SINGLE_TIME if single else 1.0
-    size = positions * len(approaches) * 8 + -(-positions // BLOCK) * BLOCK_BYTES
-    return Expected(positions, len(approaches), stride * shape.spacing[0], seconds, size, single)
+def _contact_seconds(
+    prepared: Prepared, trial: ContactTrial, scans: dict[str, Expected], pace: float
+) -> dict[str, float]:
+    """Time of pressing the samples, of the scans, and of textures averaged under the patch."""
+    case, textures = prepared.case, prepared.textures
+    samples, laws = case.contact.samples, case.laws
+    rows = 0 if textures.path is None else textures.path.shape[0]
+    touched = rows * (1 + ("table" in laws)) + sum(strip.shape[0] for strip in textures.strips)
+    averaged = rows * (1 + ("areal" in laws) * len(trial.approaches))
+    found = {
+        "pressing the samples": samples * trial.load + samples * trial.curve / min(thread_count(), samples),
+        "averaging under the patch": touched * trial.touch + averaged * trial.average,
+    }
+    found |= {f"scanning for the {name}": scan.seconds for name, scan in scans.items()}
+    if any(scan.single for scan in scans.values()):
+        found["compiling"] = SINGLE_COMPILED * pace
+    if "direct" in laws:
+        found["direct"] = SOLUTIONS_PER_STEP * steps_of(case) * trial.direct
+    return found
 
 
-def _solution_times(shape: Geometry, approaches: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Time of a contact solution at each approach on one core, by the box around the overlap, s."""
-    radii = (shape.hertz.radius_x, shape.hertz.radius_y)
-    cells = np.ones(len(approaches))
-    for n, d, radius in zip(shape.body.shape, shape.spacing, radii, strict=True):
-        cells *= np.minimum(n, 2.0 * np.sqrt(2.0 * radius * approaches) / d)
-    return SOLUTION_TIME + CELL_TIME * cells
+def _track_seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, float]:
+    """Time of the moving kernel, its poles, and of the points that the wheel passes."""
+    case: Any = prepared.case
+    trial = try_track(prepared, progress)
+    poles = (case.numerics.poles or POLES) if case.numerics.kernel == "poles" else 0
+    return {
+        "moving kernel": trial.kernel / thread_count(),
+        "poles": poles * POLE_TIME * pace,
+        "passed points": len(case.point_positions) * trial.points,
+    }
 
 
-def _approaches(case: Case, shape: Geometry) -> NDArray[np.float64]:
-    """Overlaps of smooth bodies in the states: as given, or up to the force that chosen states reach."""
-    if case.contact.approaches is not None:
-        return np.maximum(np.array(case.contact.approaches), 0.0)
-    highest = shape.hertz.approach(min(shape.largest_force, HIGHEST_FORCE * shape.load))
-    return np.asarray(highest * np.linspace(0.0, 1.0, STATES) ** 1.3)
+def _rolling_seconds(prepared: Prepared, pace: float) -> dict[str, float]:
+    """Time of rolling all laws, of their spectra and statistics, and of writing the report."""
+    case = prepared.case
+    steps, laws, states = steps_of(case), len(case.laws), STATES
+    records = len(getattr(case, "point_positions", ())) * 2 + 4
+    beam = getattr(case, "beam", None)
+    records += 0 if beam is None else len(beam.sensor_positions)
+    path = prepared.textures.path
+    points = len(prepared.textures.line) if path is None else math.prod(path.shape)
+    written = steps * laws * records * NUMBER_TIME + points * POINT_TIME
+    return {
+        "rolling": steps * laws * (try_rolling(prepared) + states * STATE_TIME * pace),
+        "spectra and statistics": (written + LAID_OUT[case.kind]) * pace,
+        "report": REPORT_TIME[case.kind] * pace,
+    }
+
+
+def steps_of(case: Case) -> int:
+    """Time steps of a law, with its run-in."""
+    return round((case.settled_time + case.rolled_time) / case.time_step)
+
+
+def _pace() -> float:
+    """How much slower this processor is than the one on which constants of this module were measured."""
+    return min(timed(lambda: sum(i * i for i in range(200_000)))[1] for _ in range(3)) / COUNTING_TIME

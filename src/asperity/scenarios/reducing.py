@@ -145,13 +145,7 @@ def reduce(
         rtol=rtol_for(numerics.force_accuracy), progress=progress, remedy=remedy,
     )  # fmt: skip
     mean = ensemble.mean_force
-    if mean[-1] < shape.load:
-        raise InputError(
-            "contact.approaches",
-            f"up to {approaches[-1] * 1e6:.4g} um, where the samples carry {mean[-1]:.3g} N",
-            f"approaches that reach the working load of {shape.load:.3g} N and beyond",
-            f"Go to {2e6 * contacts[0].approach:.3g} um or more, or leave the key out.",
-        )
+    refuse_low_states(approaches, mean, shape, contacts[0].approach)
     # the curve, drawn through few states, may start a little before the first touch
     datums = {name: -min(touch, ensemble.curve.first_touch, -LEAST_DATUM) for name, touch in touches.items()}
     ensemble = replace(ensemble, datum=datums[contact.datum])
@@ -174,6 +168,44 @@ def reduce(
         sum(s.iterations for s in scans),
         sum(s.truncated for s in scans),
     )
+
+
+def refuse_low_states(
+    approaches: NDArray[np.float64], highest: NDArray[np.float64], shape: Geometry, working_approach: float
+) -> None:
+    """Refuse states that do not reach the working load, or of which only one is in contact.
+
+    Parameters
+    ----------
+    approaches : ndarray, shape (k,)
+        States, m.
+    highest : ndarray, shape (2,) or more
+        Mean force of the samples in the last states, N.
+    shape : Geometry
+        With the working load.
+    working_approach : float
+        Approach of a sample under it, m.
+
+    Raises
+    ------
+    InputError
+        If they are such.
+    """
+    reached = f"up to {approaches[-1] * 1e6:.4g} um, where the samples carry {highest[-1]:.3g} N"
+    if highest[-1] < shape.load:
+        raise InputError(
+            "contact.approaches",
+            reached,
+            f"approaches that reach the working load of {shape.load:.3g} N and beyond",
+            f"Go to {2e6 * working_approach:.3g} um or more, or leave the key out.",
+        )
+    if not highest[-2] > 0.0:
+        raise InputError(
+            "contact.approaches",
+            f"{reached}, and none at {approaches[-2] * 1e6:.4g} um",
+            "at least two approaches in contact",
+            f"Add some around {1e6 * working_approach:.3g} um, or leave the key out.",
+        )
 
 
 def _first_touches(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +25,15 @@ from asperity.scenarios.rail_textures import gather
 from asperity.scenarios.textures import Textures
 from asperity.store import Store, content_key
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
-from asperity.structures.rail_poles import RailPoles, rail_poles
+from asperity.structures.rail_poles import RailPoles, most_poles, rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
+
+if TYPE_CHECKING:
+    from asperity.scenarios.preparing import Prepared
+
+POLES = 100
+"""Poles of a rail where the case says nothing, if its kernel has lags enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,13 +65,58 @@ class Computed:
     points: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
-def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
-    """Gather, reduce and roll.
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """What is rolled in a case.
+
+    Attributes
+    ----------
+    wheel, track
+        The bodies.
+    """
+
+    wheel: Wheel
+    track: Track
+
+
+def bodies_of(case: WheelOnRailCase) -> Bodies:
+    """Build the bodies of a case.
 
     Parameters
     ----------
     case : WheelOnRailCase
         The case.
+
+    Returns
+    -------
+    Bodies
+        Wheel and track.
+
+    Raises
+    ------
+    InputError
+        If the wheel's receptance is none.
+    """
+    return Bodies(wheel_of(case), case.track_model())
+
+
+def geometry_of(case: WheelOnRailCase) -> Geometry:
+    """Lay out wheel and rail of a case on the contact grid, see `rail_geometry`."""
+    return rail_geometry(case)
+
+
+def textures_of(case: WheelOnRailCase) -> Textures:
+    """Gather the textures of a case, see `asperity.scenarios.rail_textures.gather`."""
+    return gather(case)
+
+
+def compute(prepared: Prepared, progress: Progress) -> Computed:
+    """Reduce and roll.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        A case from `asperity.scenarios.preparing.prepare`.
     progress : Progress
         Called during long work.
 
@@ -73,24 +125,23 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
     Computed
         All that was computed.
     """
-    store, watch = Store(), Stopwatch()
-    track, wheel = case.track_model(), wheel_of(case)
-    shape = rail_geometry(case)
-    textures = gather(case)
-    warn_of_start(case, "set settling")
-    _warn_of_defects(case, textures, shape)
-    watch.lap("textures")
+    case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
+    assert isinstance(case, WheelOnRailCase)
+    assert isinstance(bodies, Bodies)
+    track, wheel, store = bodies.track, bodies.wheel, Store()
+    watch = Stopwatch(textures=prepared.seconds)
     compile_rail_kernels(progress)  # not before the files are known to be right
     watch.lap("compiled functions")
     kernel = moving_kernel(track, case.speed, case.time_step, cache=store, progress=progress)
     rail: RailPoles | MovingKernel = kernel
     if case.numerics.kernel == "poles":
-        found = rail_poles(kernel, count=case.numerics.poles, cache=store)
+        count = case.numerics.poles or min(POLES, most_poles(kernel.weights.shape[1]))
+        found = rail_poles(kernel, count=count, cache=store)
         if found.accepted:
             rail = found
         else:
             warnings.warn(
-                f"{case.numerics.poles} poles miss the moving kernel by {100 * found.fit_error:.2g} %: the "
+                f"{count} poles miss the moving kernel by {100 * found.fit_error:.2g} %: the "
                 "track is scattered from the kernel itself, which is slower. Take more poles.",
                 UnconvergedWarning,
                 stacklevel=2,
@@ -111,7 +162,7 @@ def compute(case: WheelOnRailCase, progress: Progress) -> Computed:
             checkpoint=checkpoint if law.name == "direct" else None,
         )
 
-    chain = reduce_and_roll(case, textures, shape, roll_law, store, progress, watch)
+    chain = reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
     points = passed_points(kernel, list(chain.runs.values()), case.point_positions, progress)
     watch.lap("passed points")
     return Computed(case, chain, wheel, track, kernel, rail, points)
@@ -140,8 +191,15 @@ def wheel_of(case: WheelOnRailCase) -> Wheel:
     return Wheel.rigid(section.mass, section.load)
 
 
-def _warn_of_defects(case: WheelOnRailCase, textures: Textures, shape: Geometry) -> None:
-    """Say so where the window is too short for what a law shall see of a defect."""
+def warn_of(case: WheelOnRailCase, shape: Geometry, textures: Textures) -> None:
+    """Warn of a record that holds the start, and of a window too short for what a law shall see of a defect.
+
+    Parameters
+    ----------
+    case, shape, textures
+        The case, its geometry and its textures.
+    """
+    warn_of_start(case, "set settling")
     seen = [law for law in case.laws if law in NEED_GEOMETRY]
     if not seen or textures.defects is None or case.wheel.flat is None:
         return

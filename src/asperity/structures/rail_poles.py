@@ -100,8 +100,8 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = 
     that stays) and of the static sum together.
     """
     taps = kernel.weights.shape[1]
-    if count % 2 or not 4 <= count <= taps // 10:
-        allowed = f"an even number from 4 to {taps // 10}, a tenth of the kernel's lags"
+    if count % 2 or not 4 <= count <= most_poles(taps):
+        allowed = f"an even number from 4 to {most_poles(taps)}, a tenth of the kernel's lags"
         raise InputError("number of poles", count, allowed)
     key = content_key("rail-poles", kernel.weights, kernel.time_step, count, ITERATIONS, LINES)
     kept = cache.get(key) if cache is not None else None
@@ -117,6 +117,11 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = 
     if not np.isfinite(error):
         raise ComputationError("the fit of the moving kernel by poles broke down", "fewer poles")
     return RailPoles(kernel, fit.poles, fit.residues, error, static)
+
+
+def most_poles(lags: int) -> int:
+    """Largest even number of poles for a kernel of so many lags."""
+    return lags // 10 // 2 * 2
 
 
 def _poles(kernel: MovingKernel, count: int) -> NDArray[np.complex128]:

@@ -120,24 +120,6 @@ def flat_length(depth: float, radius: float) -> float:
     return math.sqrt(8.0 * radius * depth)
 
 
-def flat_depth(length: float, radius: float) -> float:
-    """Depth of a fresh wheel flat.
-
-    Parameters
-    ----------
-    length : float
-        Length of its chord, m.
-    radius : float
-        Of the wheel, m.
-
-    Returns
-    -------
-    float
-        Depth d = l²/8R at its middle, m.
-    """
-    return length**2 / (8.0 * radius)
-
-
 def flat_geometry(
     x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh", length: float | None = None
 ) -> NDArray[np.float64]:

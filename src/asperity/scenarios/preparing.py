@@ -1,0 +1,148 @@
+"""What comes before the work: the bodies, textures and geometry of a case, or all that is wrong with them."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from asperity.config import BallOnBeamCase, Case, WheelOnRailCase
+from asperity.contact.device import find_device
+from asperity.errors import CaseError, InputError, PhysicsWarning
+from asperity.reduction.filter import FEWEST_POSITIONS
+from asperity.scenarios import ball_on_beam, wheel_on_rail
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.line_filters import filter_stride
+from asperity.scenarios.scan_sizes import problem_of_disk, scan_sizes
+from asperity.scenarios.textures import Textures
+from asperity.store import Store
+from asperity.threads import one_thread_in_linear_algebra, thread_count
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A case that can be computed.
+
+    Attributes
+    ----------
+    case : Case
+        The case.
+    bodies : Bodies of its kind
+        What is rolled.
+    shape : Geometry
+        The gap of the bodies on the contact grid.
+    textures : Textures
+        What is rolled over.
+    caught : tuple of WarningMessage
+        Warnings met on the way.
+    seconds, processor : float
+        Time it took, and processor time, s.
+    """
+
+    case: Case
+    bodies: ball_on_beam.Bodies | wheel_on_rail.Bodies
+    shape: Geometry
+    textures: Textures
+    caught: tuple[warnings.WarningMessage, ...]
+    seconds: float
+    processor: float
+
+
+def prepare(case: Case) -> Prepared:
+    """Build and read all that a case needs, and refuse what cannot be computed.
+
+    Parameters
+    ----------
+    case : BallOnBeamCase or WheelOnRailCase
+        The case.
+
+    Returns
+    -------
+    Prepared
+        Everything but the work.
+
+    Raises
+    ------
+    InputError
+        If one thing is wrong.
+    CaseError
+        If several are, with all of them.
+    """
+    begin, spent = time.perf_counter(), time.process_time()
+    with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
+        warnings.simplefilter("always", PhysicsWarning)
+        tried = _Attempts()
+        kind: Any
+        if isinstance(case, WheelOnRailCase):
+            kind = wheel_on_rail
+        else:
+            assert isinstance(case, BallOnBeamCase)
+            kind = ball_on_beam
+        bodies = tried(lambda: kind.bodies_of(case))
+        shape = tried(lambda: kind.geometry_of(case))
+        textures = tried(lambda: kind.textures_of(case))
+        tried(thread_count)
+        tried(find_device)
+        tried.refuse(case.source)
+        assert bodies is not None
+        assert shape is not None
+        assert textures is not None
+        tried.errors += _problems(case, shape, textures)
+        tried.refuse(case.source)
+        kind.warn_of(case, shape, textures)
+    seconds, processor = time.perf_counter() - begin, time.process_time() - spent
+    return Prepared(case, bodies, shape, textures, tuple(caught), seconds, processor)
+
+
+class _Attempts:
+    """Tries one thing after the other, so that all errors come at once."""
+
+    def __init__(self) -> None:
+        self.errors: list[InputError] = []
+
+    def __call__(self, make: Callable[[], T]) -> T | None:
+        try:
+            return make()
+        except InputError as error:
+            self.errors.append(error)
+            return None
+
+    def refuse(self, source: str) -> None:
+        if len(self.errors) == 1:
+            raise self.errors[0]
+        if self.errors:
+            raise CaseError(source, [str(error) for error in self.errors])
+
+
+def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[InputError]:
+    """What fits neither samples nor window."""
+    contact, (nx, ny) = case.contact, shape.body.shape
+    smallest = min((min(sample.shape) for sample in textures.maps), default=nx)
+    if smallest < nx:
+        allowed = f"at most the measured map, {smallest * contact.spacing * 1e6:.4g} um"
+        received = f"{contact.window * 1e6:g} um"
+        yield InputError("contact.window", received, allowed, "Choose a smaller window.")
+        return
+    if textures.strips and any(strip.heights.any() for strip in textures.strips):
+        rows, stride = min(strip.shape[0] for strip in textures.strips), filter_stride(shape)
+        if (rows - nx) // stride + 1 < FEWEST_POSITIONS:
+            least = (nx + (FEWEST_POSITIONS - 1) * stride) * contact.spacing
+            received = f"strips of {rows * contact.spacing * 1e6:.4g} um"
+            allowed = f"at least {least * 1e6:.4g} um, in which the contact is filtered"
+            yield InputError(
+                "contact.sample_length", received, allowed, "Lengthen it, or measure larger maps."
+            )
+    path = scan_sizes(case, shape, textures).get("path")
+    if path is not None:
+        yield from problem_of_disk(path, Store().root)
+    if contact.hardness is not None:
+        largest = contact.hardness * contact.spacing**2 * nx * ny
+        needed = shape.load if contact.approaches is not None else shape.largest_force
+        if needed >= largest:
+            received = f"{contact.hardness / 1e9:.4g} GPa, with which the window carries {largest:.4g} N"
+            allowed = f"more than the {needed:.4g} N that are needed"
+            yield InputError("contact.hardness", received, allowed, "Enlarge contact.window.")

@@ -1,0 +1,343 @@
+"""Small pieces of a run, computed and timed, so that the whole of it can be expected."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from types import SimpleNamespace
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.contact import HalfSpace
+from asperity.errors import PhysicsWarning
+from asperity.pointforce import Hertz
+from asperity.progress import Progress
+from asperity.reduction.accuracy import FILTER_SHARE, rtol_for
+from asperity.reduction.areal import areal_texture, punch_weights
+from asperity.reduction.ensemble import patches
+from asperity.reduction.scan import first_touch, scan_forces
+from asperity.reduction.texture import StateTexture
+from asperity.rolling import ball_on_beam as ball_rolling
+from asperity.rolling import wheel_on_rail as wheel_rolling
+from asperity.rolling.passing import passed_points
+from asperity.scenarios import ball_on_beam, wheel_on_rail
+from asperity.scenarios.laws import table_stride
+from asperity.scenarios.line_filters import filter_stride
+from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.reducing import (
+    LIGHTEST_STATE,
+    STATES,
+    patch_planes,
+    refuse_low_states,
+)
+from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, moving_kernel
+from asperity.structures.rail_poles import RailPoles
+from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.strip import Strip
+
+T = TypeVar("T")
+
+PLACES = (0.25, 0.5, 0.75)
+"""Where along a strip positions are tried."""
+POSITIONS = 4
+"""Positions that are tried at each place after a first one, which starts cold."""
+LONG = 2.0
+"""Time of a trial, s, after which no further place is tried."""
+ROWS = 2000
+"""Rows of a path, at most, on which averages over patches are tried."""
+STEPS = 400
+"""Time steps that are tried."""
+SHORT_KERNEL, FEW = 0.03, (4, 12)
+"""Length, s, and start positions of the moving kernels that are tried."""
+LAGS = 4
+"""Times shorter than that is the kernel with which passed points are tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactTrial:
+    """Times of contact solutions and of what surrounds them, on one core.
+
+    Attributes
+    ----------
+    approaches : ndarray, shape (k,)
+        States much as the run will choose them, m.
+    loaded : int
+        States that have a filter.
+    load : float
+        Time of finding the working approach and the highest state of a sample, s.
+    curve : float
+        Time of a loading curve, s.
+    filters, path : float
+        Time of a position of the scans, all states together, s; zero where there is no such scan.
+    direct : float
+        Time of a solution from its neighbour's pressure, s.
+    touch, average : float
+        Time of a row in finding first touches, and in averaging under one patch, s.
+    """
+
+    approaches: NDArray[np.float64]
+    loaded: int
+    load: float
+    curve: float
+    filters: float
+    path: float
+    direct: float
+    touch: float
+    average: float
+
+
+@dataclass(frozen=True, eq=False)
+class TrackTrial:
+    """Times of what the rail adds, on one core, s.
+
+    Attributes
+    ----------
+    length : float
+        Length of the moving kernel, s.
+    kernel : float
+        The moving kernel, with the shorter ones before it.
+    points : float
+        One passed point, all laws together.
+    """
+
+    length: float
+    kernel: float
+    points: float
+
+
+def timed(task: Callable[[], T]) -> tuple[T, float]:
+    """Run a task silently, and measure its processor time, s: other work does not disturb it."""
+    begin = time.process_time()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        result = task()
+    return result, time.process_time() - begin
+
+
+def try_contacts(prepared: Prepared, progress: Progress) -> ContactTrial:
+    """Solve a few contacts of every kind that a case needs.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        A case with samples.
+    progress : Progress
+        Called between the kinds.
+
+    Returns
+    -------
+    ContactTrial
+        Times.
+
+    Raises
+    ------
+    InputError
+        If the approaches of the case do not reach its load.
+    """
+    case, shape, textures = prepared.case, prepared.shape, prepared.textures
+    contact, accuracy = case.contact, case.numerics.force_accuracy
+    message, (nx, ny) = "trying contacts", shape.body.shape
+    progress(0, 4, message)
+    weights = punch_weights(shape.spacing, shape.semi_axes)
+    samples = patches([m.heights for m in textures.maps], (nx, ny), contact.samples, weights)
+    half_space = HalfSpace((nx, ny), shape.spacing, shape.modulus, contact.hardness)
+    approaches, working, load = _states(prepared, half_space, samples)
+    progress(1, 4, message)
+    forces, curve = timed(lambda: _scan(samples[0], prepared, approaches, 1, rtol_for(accuracy)))
+    loaded = approaches[forces[:, 0] >= LIGHTEST_STATE * shape.load]
+    progress(2, 4, message)
+    filters = path = 0.0
+    if any(np.ptp(strip.heights) for strip in textures.strips) and len(loaded):
+        rtol = rtol_for(FILTER_SHARE * accuracy)
+        filters = _position_time(textures.strips[0], prepared, loaded, filter_stride(shape), rtol)
+    progress(3, 4, message)
+    if "table" in case.laws:
+        path = _position_time(
+            textures.surface, prepared, approaches, table_stride(shape), rtol_for(accuracy), level=True
+        )
+    rows = _middle(textures.path or textures.strips[0], ROWS)
+    _, touch = timed(lambda: first_touch(rows.heights[: nx + 100], shape.body))
+    axes = (min(shape.semi_axes[0], 0.45 * rows.size[0]), min(shape.semi_axes[1], 0.5 * rows.size[1]))
+    _, average = timed(lambda: areal_texture(rows, shape.spacing, [0.0, 1e-9], [axes, axes]))
+    solve = partial(half_space.solve, shape.body - samples[0], rtol=case.numerics.rtol)
+    start = solve(approach=working * 0.98).pressure
+    _, direct = timed(lambda: solve(approach=working, start=start))
+    progress(4, 4, message)
+    shared = touch / min(101, rows.shape[0] - nx + 1), average / (2 * rows.shape[0])
+    return ContactTrial(approaches, len(loaded), load, curve, filters, path, direct, *shared)
+
+
+def _states(
+    prepared: Prepared, half_space: HalfSpace, samples: list[NDArray[np.float64]]
+) -> tuple[NDArray[np.float64], float, float]:
+    """States much as the run will choose them, the working approach, and the time of finding them, s."""
+    shape, given = prepared.shape, prepared.case.contact.approaches
+    gap = shape.body - samples[0]
+    press = partial(half_space.solve, gap, load=shape.load, rtol=prepared.case.numerics.rtol)
+    timed(press)  # what the first one prepares, the others find
+    working, load = timed(press)
+    if given is not None:
+        approaches = np.array(given)
+        pressed = [[half_space.solve(shape.body - s, r).force for r in given[-2:]] for s in samples]
+        refuse_low_states(approaches, np.mean(pressed, axis=0), shape, working.approach)
+        return approaches, working.approach, load
+    highest, more = timed(lambda: half_space.solve(gap, load=shape.largest_force, rtol=1e-3))
+    touched = [*samples, *(strip.heights for strip in prepared.textures.strips)]
+    low = max(min(float(first_touch(z, shape.body).min()) for z in touched), shape.lowest_approach)
+    approaches = low + (highest.approach - low) * np.linspace(0.0, 1.0, STATES) ** 1.3
+    return approaches, working.approach, load + more
+
+
+def _scan(
+    heights: NDArray[np.float64],
+    prepared: Prepared,
+    approaches: NDArray[np.float64],
+    stride: int,
+    rtol: float,
+    planes: NDArray[np.float64] | None = None,
+) -> NDArray[np.float64]:
+    shape = prepared.shape
+    return scan_forces(
+        heights, shape.spacing, shape.body, shape.modulus, approaches, prepared.case.contact.hardness,
+        stride=stride, rtol=rtol, workers=1, planes=planes, device="cpu",
+    ).forces  # fmt: skip
+
+
+def _position_time(
+    strip: Strip,
+    prepared: Prepared,
+    approaches: NDArray[np.float64],
+    stride: int,
+    rtol: float,
+    *,
+    level: bool = False,
+) -> float:
+    """Time of a position in a long scan: of those that start from a neighbour, at some places."""
+    shape, found = prepared.shape, []
+    nx = shape.body.shape[0]
+    begin = time.process_time()
+    for place in PLACES:
+        first = round(place * max(strip.shape[0] - nx - POSITIONS * stride, 0))
+        rows = np.ascontiguousarray(strip.rows(first, min(first + nx + POSITIONS * stride, strip.shape[0])))
+        planes = np.zeros((len(rows) - nx) // stride + 1)
+        if level:  # states count from the plane that the patch feels
+            along = patch_planes(HeightMap(rows, shape.spacing), shape)
+            planes = along[nx // 2 : len(rows) - nx // 2 : stride][: len(planes)]
+        _, cold = timed(partial(_scan, rows[:nx], prepared, approaches, stride, rtol, planes[:1]))
+        if cold > LONG or len(planes) == 1:
+            return cold
+        _, all_of = timed(partial(_scan, rows, prepared, approaches, stride, rtol, planes))
+        found.append(max(all_of - cold, 0.1 * all_of) / (len(planes) - 1))
+        if time.process_time() - begin > LONG:
+            break
+    return float(np.mean(found))
+
+
+def _middle(strip: Strip, most: int) -> HeightMap:
+    """At most so many rows from the middle of a strip."""
+    first = max(0, (strip.shape[0] - most) // 2)
+    return HeightMap(strip.rows(first, min(first + most, strip.shape[0])), strip.spacing)
+
+
+def try_rolling(prepared: Prepared) -> float:
+    """Roll a few steps of smooth bodies over a smooth path.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        A case.
+
+    Returns
+    -------
+    float
+        Time of a step, s.
+    """
+    case, shape = prepared.case, prepared.shape
+    law = Hertz(shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
+    duration = STEPS * case.time_step
+    bodies: Any = prepared.bodies
+    if isinstance(bodies, ball_on_beam.Bodies):
+        beam, middle = bodies.beam, 0.5 * bodies.beam.length
+        duration = min(duration, 0.4 * bodies.beam.length / case.speed)
+        _, seconds = timed(
+            lambda: ball_rolling.roll(
+                beam, bodies.ball, law, speed=case.speed, start=middle, duration=duration,
+                time_step=case.time_step, sensors=[middle] * len(prepared.case.beam.sensor_positions),  # type: ignore[attr-defined]
+            )
+        )  # fmt: skip
+        return seconds / max(1.0, duration / case.time_step)
+    _, seconds = timed(
+        lambda: wheel_rolling.roll(
+            _rail_like(prepared), bodies.wheel, law, start=0.0, duration=duration, settling=0.0
+        )
+    )
+    return seconds / STEPS
+
+
+def _rail_like(prepared: Prepared) -> RailPoles | MovingKernel:
+    """A rail that costs as much as that of a case, and hardly moves."""
+    case: Any = prepared.case
+    lags = round(SHORTEST / case.time_step)
+    kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.full((STARTS, lags), 1e-20))
+    if case.numerics.kernel != "poles":
+        return kernel
+    count = (case.numerics.poles or wheel_on_rail.POLES) // 2
+    poles = 0.5 * np.exp(1j * np.linspace(0.1, 3.0, count))
+    return RailPoles(kernel, poles, np.full((STARTS, count), 1e-20 + 0j), 0.0, 0.0)
+
+
+def try_track(prepared: Prepared, progress: Progress) -> TrackTrial:
+    """Compute short moving kernels of a track, and let the wheel pass a point that remembers little.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        A wheel on a rail.
+    progress : Progress
+        Called between the pieces.
+
+    Returns
+    -------
+    TrackTrial
+        Times.
+    """
+    case: Any = prepared.case
+    track, speed, step = case.track_model(), case.speed, case.time_step
+    message = "trying the track"
+    progress(0, 3, message)
+    sparse, _ = timed(lambda: moving_kernel(track, speed, step, positions=2))
+    length = sparse.weights.shape[1] * step
+    progress(1, 3, message)
+    tried = partial(moving_kernel, track, speed, step, duration=SHORT_KERNEL)
+    times = [timed(partial(tried, positions=count))[1] for count in FEW]
+    progress(2, 3, message)
+    bays = speed / track.sleeper_spacing  # a second
+    each = (times[1] - times[0]) / ((FEW[1] ** 2 - FEW[0] ** 2) * SHORT_KERNEL * (bays * SHORT_KERNEL + 2))
+    shared = max(times[0] - each * FEW[0] ** 2 * SHORT_KERNEL * (bays * SHORT_KERNEL + 2), 0.0) / SHORT_KERNEL
+    lengths, kernel = [SHORTEST], 0.0
+    while lengths[-1] < 0.99 * length:
+        lengths.append(1.6 * lengths[-1])
+    for each_length in lengths:
+        kernel += shared * each_length + each * STARTS**2 * each_length * (bays * each_length + 2)
+    points = _point_time(prepared, length)
+    progress(3, 3, message)
+    return TrackTrial(length, kernel, points)
+
+
+def _point_time(prepared: Prepared, length: float) -> float:
+    """Time of a passed point, from one whose responses are shorter: it grows with their length."""
+    case: Any = prepared.case
+    short = length / LAGS
+    lags = max(8, round(short / case.time_step))
+    kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.zeros((1, lags)))
+    first, last = case.rolled_range
+    steps = round((last - first) / case.speed / case.time_step)
+    run: Any = SimpleNamespace(history=np.ones(steps), history_start=first, time=np.zeros(steps))
+    middle = 0.5 * (first + last)
+    _, seconds = timed(lambda: passed_points(kernel, [run] * len(case.laws), [middle]))
+    return seconds * LAGS
