@@ -49,7 +49,7 @@ class Ensemble:
 
     def add(self, computed: Computed) -> None:
         """Add a path."""
-        runs, step = computed.runs, computed.case.time_step
+        runs, step = computed.chain.runs, computed.case.time_step
         force = np.stack([runs[law].contact_force for law in LAWS])
         segment = min(force.shape[1], round(0.1 / step))
         self.centres, levels = band_levels(*psd(force, step, segment=segment), low=LOW, high=HIGH)
