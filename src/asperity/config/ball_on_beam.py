@@ -48,20 +48,30 @@ SETTLING_SHARE = 0.25
 class Ball(Section):
     """The ball that rolls: a rigid mass with its weight, or a given load."""
 
-    radius: Length = key("25 mm", "radius")
+    radius: Length = key("25 mm", "radius", within=("10 um", "10 m", "balls that roll on beams lie between"))
     material: OwnOrNamed = key("steel", "material")
-    mass: Mass | None = key(None, "mass", otherwise="from radius and density", example='"0.51 kg"')
+    mass: Mass | None = key(
+        None,
+        "mass",
+        otherwise="from radius and density",
+        example='"0.51 kg"',
+        within=("1e-12 kg", "1000 t", "balls that roll on beams lie between"),
+    )
     load: Force | None = key(
-        None, "constant force that presses the ball down", otherwise="its weight", example='"5 N"'
+        None,
+        "constant force that presses the ball down",
+        otherwise="its weight",
+        example='"5 N"',
+        within=("1 nN", "1 GN", "adhesion governs smaller loads"),
     )
 
 
 class Beam(Section):
     """The beam that is rolled over: finite, Euler–Bernoulli."""
 
-    length: Length = key("1 m", "length, along the path")
-    width: Length = key("50 mm", "width of the cross-section")
-    height: Length = key("10 mm", "height of the cross-section")
+    length: Length = key("1 m", "length, along the path", within=("1 mm", "1 km", "beams lie between"))
+    width: Length = key("50 mm", "width of the cross-section", within=("1 um", "10 m", "beams lie between"))
+    height: Length = key("10 mm", "height of the cross-section", within=("1 um", "10 m", "beams lie between"))
     material: OwnOrNamed = key("steel", "material")
     support: Annotated[str, BeforeValidator(Choice(("simply-supported", "free", "clamped")))] = key(
         "simply-supported", "both ends"
@@ -70,13 +80,17 @@ class Beam(Section):
         0.005, "loss factor of every bending mode"
     )
     suspension_frequency: Frequency = key(
-        "5 Hz", "natural frequency of the rigid beam on its soft suspension", goes_with="support=free"
+        "5 Hz",
+        "natural frequency of the rigid beam on its soft suspension",
+        goes_with="support=free",
+        within=("1 mHz", "1 kHz", "a suspension is softer than the beam"),
     )
     sensors: tuple[Position, ...] | None = key(
         None,
         "positions of the accelerometers from the beam's start",
         otherwise="at 20, 35, 50, 65 and 80 % of the length",
         example='["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"]',
+        within=("0 m", "1 km", "beams are shorter"),
     )
 
     @property
@@ -106,7 +120,11 @@ class BallOnBeamCase(Case):
     """
 
     kind: Annotated[str, BeforeValidator(Choice(("ball-on-beam",)))] = key("ball-on-beam", "what rolls")
-    speed: Speed = key("1 m/s", "rolling speed")
+    speed: Speed = key(
+        "1 m/s",
+        "rolling speed",
+        within=("0.1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
+    )
     laws: tuple[Law, ...] = key(
         ("areal", "shifted", "printed", "table", "linear-filtered", "linear"),
         "laws of the contact force; the first is the main one",
@@ -116,15 +134,21 @@ class BallOnBeamCase(Case):
         "where on the beam the record starts",
         otherwise="after the run-in, which begins at the beam's start",
         example='"0.2 m"',
+        within=("0 m", "1 km", "beams are shorter"),
     )
     duration: Duration | None = key(
-        None, "time that is recorded", otherwise="until the end of the beam, or of the line", example='"1 s"'
+        None,
+        "time that is recorded",
+        otherwise="until the end of the beam, or of the line",
+        example='"1 s"',
+        within=("1 us", "1 h", "records lie between"),
     )
     settling: DurationOrZero | None = key(
         None,
         "time that is rolled before the record starts, so that the start from rest is forgotten",
         otherwise="as long as the record, 50 ms to 0.2 s, as far as there is room before it",
         example='"0.2 s"',
+        within=("1 us", "1 h", "records lie between"),
     )
     surface: Surface = key({}, "what is rolled over: a measured map, or synthesised roughness")
     ball: Ball = key({}, "the ball that rolls")

@@ -253,10 +253,17 @@ class MaterialOrName:
         return MATERIALS[value]
 
 
+Limit = str | float
 _OF_A_MATERIAL: dict[str, Quantity | Number] = {
     "youngs_modulus": Quantity("Pa", above=0),
     "poisson_ratio": Number(above=-1, at_most=0.5),
     "density": Quantity("kg/m^3", above=0),
+}
+
+
+_PLAUSIBLE: dict[str, tuple[Limit, Limit, str]] = {
+    "youngs_modulus": ("1 kPa", "10 TPa", "solids that roll lie between"),
+    "density": ("1 kg/m^3", "100000 kg/m^3", "solids that roll lie between"),
 }
 
 
@@ -274,6 +281,7 @@ def _own_material(given: Mapping[Any, Any]) -> Material:
             continue
         try:
             found[name] = kind(given[name])
+            errors += _outside_of(name, found[name], kind, _PLAUSIBLE.get(name))
         except InputError as error:
             errors.append(InputError(name, error.received, error.allowed, error.remedy))
     name = given.get("name", f"{found.get('youngs_modulus', 0.0) / 1e9:.4g} GPa")
@@ -310,7 +318,15 @@ def allowed_in(field: FieldInfo) -> str:
     return f"a list, each {kind.allowed}" if several else kind.allowed
 
 
-def key(default: Any, meaning: str, *, otherwise: str = "", example: str = "", goes_with: str = "") -> Any:
+def key(
+    default: Any,
+    meaning: str,
+    *,
+    otherwise: str = "",
+    example: str = "",
+    goes_with: str = "",
+    within: tuple[Limit, Limit, str] | None = None,
+) -> Any:
     """Describe a key of a case.
 
     Parameters
@@ -325,12 +341,16 @@ def key(default: Any, meaning: str, *, otherwise: str = "", example: str = "", g
         How the key is written in TOML, where `default` is None.
     goes_with : str
         The key, ``key=value``, or keys with " or " between them, without which this one has no meaning.
+    within : tuple, optional
+        Least and largest plausible value, as they are written in TOML, and the reason.
 
     Returns
     -------
     pydantic field
     """
     extra = {"otherwise": otherwise, "example": example, "goes_with": goes_with, "default": default}
+    if within is not None:
+        extra["within"] = within
     return Field(default, description=meaning, json_schema_extra=extra)
 
 
@@ -352,7 +372,7 @@ class Section(BaseModel):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Section:
-        errors = [*_lonely(self), *self.problems()]
+        errors = [*_implausible(self)] or [*_lonely(self), *self.problems()]
         if errors:
             raise Problems(errors)
         return self
@@ -366,6 +386,31 @@ def is_active(section: BaseModel, name: str) -> bool:
     if value:
         return bool(getattr(section, companion) == value)
     return any(getattr(section, each) is not None for each in companion.split(" or "))
+
+
+def _implausible(section: BaseModel) -> Iterator[InputError]:
+    """Errors about numbers that no case of this field has."""
+    for name, field in type(section).model_fields.items():
+        given, kind = getattr(section, name), kind_of(field.annotation, field.metadata)
+        for value in given if isinstance(given, tuple) else (given,):
+            yield from _outside_of(name, value, kind, extra_of(field).get("within"))
+
+
+def _outside_of(
+    name: str, value: object, kind: Kind | None, within: tuple[Limit, Limit, str] | None
+) -> Iterator[InputError]:
+    """Error about a number out of its limits; zero and infinity, where they may stand, may."""
+    if within is None or not isinstance(value, int | float) or value == 0.0 or value == math.inf:
+        return
+    low, high, reason = within
+    unit = kind.dimension if isinstance(kind, Quantity) else ""
+    least, most = (quantity(limit, unit) if isinstance(limit, str) else limit for limit in (low, high))
+    if not least <= value <= most:
+        yield InputError(name, f"{value:.4g} {unit}".strip(), f"{low} to {high}", _sentence(reason))
+
+
+def _sentence(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}."
 
 
 def _lonely(section: BaseModel) -> Iterator[InputError]:

@@ -38,10 +38,18 @@ class TrackCase(Section):
 
     name: Annotated[str, BeforeValidator(Choice(tuple(TRACKS)))] = key("x2000", "named set of parameters")
     bending_stiffness: Annotated[float, BeforeValidator(Quantity("N m^2", above=0))] | None = key(
-        None, "bending stiffness of the rail", otherwise=_NAMED, example='"4.7 MN m^2"'
+        None,
+        "bending stiffness of the rail",
+        otherwise=_NAMED,
+        example='"4.7 MN m^2"',
+        within=("1 kN m^2", "1 GN m^2", "rails lie between"),
     )
     mass_per_length: Annotated[float, BeforeValidator(Quantity("kg/m", above=0))] | None = key(
-        None, "mass of the rail per length", otherwise=_NAMED, example='"60 kg/m"'
+        None,
+        "mass of the rail per length",
+        otherwise=_NAMED,
+        example='"60 kg/m"',
+        within=("1 kg/m", "1000 kg/m", "rails lie between"),
     )
     rail_loss_factor: LossFactor | None = key(
         None, "loss factor of the rail", otherwise=_NAMED, example="0.01"
@@ -51,15 +59,28 @@ class TrackCase(Section):
         "shear stiffness of the rail; with it, the rail is a Timoshenko beam",
         otherwise=_NAMED,
         example='"243 MN"',
+        within=("1 kN", "1 TN", "rails lie between"),
     )
     rotary_inertia: Annotated[float, BeforeValidator(Quantity("kg m", above=0))] | None = key(
-        None, "rotary inertia of the rail per length", otherwise=_NAMED, example='"0.24 kg m"'
+        None,
+        "rotary inertia of the rail per length",
+        otherwise=_NAMED,
+        example='"0.24 kg m"',
+        within=("1e-6 kg m", "1000 kg m", "rails lie between"),
     )
     pad_stiffness: Stiffness | None = key(
-        None, "stiffness of a rail pad", otherwise=_NAMED, example='"300 MN/m"'
+        None,
+        "stiffness of a rail pad",
+        otherwise=_NAMED,
+        example='"300 MN/m"',
+        within=("1 kN/m", "1 TN/m", "pads lie between"),
     )
     pad_damping: Damping | None = key(
-        None, "viscous damping of a pad", otherwise=_NAMED, example='"18 kN s/m"'
+        None,
+        "viscous damping of a pad",
+        otherwise=_NAMED,
+        example='"18 kN s/m"',
+        within=("1e-3 N s/m", "1e9 N s/m", "pads lie between"),
     )
     pad_loss_factor: LossFactor | None = key(
         None,
@@ -68,13 +89,25 @@ class TrackCase(Section):
         example="0.15",
     )
     sleeper_mass: Mass | None = key(
-        None, "mass of a sleeper under one rail: half a sleeper", otherwise=_NAMED, example='"150 kg"'
+        None,
+        "mass of a sleeper under one rail: half a sleeper",
+        otherwise=_NAMED,
+        example='"150 kg"',
+        within=("1 kg", "100 t", "sleepers lie between"),
     )
     ballast_stiffness: Stiffness | None = key(
-        None, "stiffness of the ballast under half a sleeper", otherwise=_NAMED, example='"150 MN/m"'
+        None,
+        "stiffness of the ballast under half a sleeper",
+        otherwise=_NAMED,
+        example='"150 MN/m"',
+        within=("1 kN/m", "1 TN/m", "ballast lies between"),
     )
     ballast_damping: Damping | None = key(
-        None, "viscous damping of the ballast", otherwise=_NAMED, example='"48 kN s/m"'
+        None,
+        "viscous damping of the ballast",
+        otherwise=_NAMED,
+        example='"48 kN s/m"',
+        within=("1e-3 N s/m", "1e9 N s/m", "ballast lies between"),
     )
     ballast_loss_factor: LossFactor | None = key(
         None,
@@ -83,9 +116,15 @@ class TrackCase(Section):
         example="0.4",
     )
     sleeper_spacing: Length | None = key(
-        None, "distance of the sleepers", otherwise=_NAMED, example='"0.6 m"'
+        None,
+        "distance of the sleepers",
+        otherwise=_NAMED,
+        example='"0.6 m"',
+        within=("0.1 m", "10 m", "sleepers are as far apart"),
     )
-    rail_head_radius: Length = key("0.3 m", "radius of the rail head across the rail")
+    rail_head_radius: Length = key(
+        "0.3 m", "radius of the rail head across the rail", within=("1 mm", "1 km", "rail heads lie between")
+    )
     rail_profile: ExistingFile | None = key(
         None,
         "measured shape of the rail head across the rail, instead of rail_head_radius",
@@ -98,6 +137,7 @@ class TrackCase(Section):
         "start counts from",
         otherwise="over a sleeper and at mid-span in the middle of the run",
         example='["9 m", "9.3 m"]',
+        within=("0 m", "100 km", "tracks are rolled over for less"),
     )
 
     @property
@@ -142,9 +182,19 @@ OVERRIDES = (
 class RailContact(ContactCase):
     """How the contact of wheel and rail is solved and reduced."""
 
-    spacing: Length = key("0.5 mm", "grid spacing of the contact solution")
+    spacing: Length = key(
+        "0.5 mm",
+        "grid spacing of the contact solution",
+        within=(
+            "1 um",
+            "10 mm",
+            "an elastic continuum is coarser than grains, and contacts are smaller than 10 mm",
+        ),
+    )
     window: Length = key(
-        "20 mm", "side of the square window in which contact is solved; wider than the contact"
+        "20 mm",
+        "side of the square window in which contact is solved; wider than the contact",
+        within=("10 um", "1 m", "contacts lie between grains and bodies"),
     )
 
 
@@ -156,6 +206,7 @@ class RailNumerics(Numerics):
         "time step",
         otherwise="near 1/8 of the highest frequency's period, on the grid of the contact if that is near",
         example='"25 us"',
+        within=("10 ns", "1 ms", "the spectra lie between"),
     )
     kernel: Annotated[str, BeforeValidator(Choice(("poles", "scatter")))] = key(
         "poles", "how the track's response is carried on in time: by fitted poles, or by its whole past"

@@ -43,6 +43,7 @@ class MeasuredLines(MeasuredLine):
         otherwise="for a single line",
         example='"5 mm"',
         goes_with="line",
+        within=("1 um", "1 m", "lines lie beside each other on one wheel or rail"),
     )
     processing: tuple[Step, ...] = key(
         (), "steps of EN 15610 that are applied to measured lines", goes_with="line"
@@ -68,12 +69,14 @@ class RailSurface(MeasuredLines, Surface):
         "longest wavelength of the samples",
         otherwise="with rms 20 mm, else all they hold",
         example='"20 mm"',
+        within=("1 um", "1 km", "waves lie between contacts and tracks"),
     )
     shortest: Length | None = key(
         None,
         "shortest wavelength of the samples",
         otherwise="with rms 1.25 mm, else all they hold",
         example='"1.25 mm"',
+        within=("0.1 um", "10 m", "waves lie between contacts and tracks"),
     )
     spectrum: Spectrum | None = key(
         None, "one-third-octave wavelength spectrum of the rail", example='"iso3095"'
@@ -82,28 +85,47 @@ class RailSurface(MeasuredLines, Surface):
         1.0,
         "correlation length across over that along the rail, at every wavelength; inf: the same all across",
         goes_with="spectrum",
+        within=(0.001, 1000000.0, 'beyond that it is the same all across: write "inf"'),
     )
     continuation: Annotated[str, BeforeValidator(Choice(("refuse", "mirror", "repeat")))] = key(
         "refuse", "how a record that is shorter than the run goes on"
     )
     accept_levels: YesNo = key(False, "take levels beyond 60 dB re 1 um as they are")
     corrugation: Length | None = key(
-        None, "amplitude of a corrugation on top of the rail's texture", example='"25 um"'
+        None,
+        "amplitude of a corrugation on top of the rail's texture",
+        example='"25 um"',
+        within=("1 nm", "10 mm", "corrugation lies between"),
     )
     corrugation_wavelength: Length | None = key(
-        None, "its wavelength", otherwise="must be given", example='"40 mm"', goes_with="corrugation"
+        None,
+        "its wavelength",
+        otherwise="must be given",
+        example='"40 mm"',
+        goes_with="corrugation",
+        within=("0.1 mm", "100 m", "corrugation lies between"),
     )
     corrugation_bandwidth: Annotated[float, BeforeValidator(Number(above=0, at_most=3))] | None = key(
-        None, "its bandwidth in octaves", otherwise="a sine", example="0.3", goes_with="corrugation"
+        None,
+        "its bandwidth in octaves",
+        otherwise="a sine",
+        example="0.3",
+        goes_with="corrugation",
+        within=(0.001, 3, "a narrower one is a sine: leave it out"),
     )
-    joint_depth: Length | None = key(None, "depth of a dipped joint", example='"1 mm"')
-    joint_length: Length = key("1 m", "length of the dip", goes_with="joint_depth")
+    joint_depth: Length | None = key(
+        None, "depth of a dipped joint", example='"1 mm"', within=("1 um", "100 mm", "dips lie between")
+    )
+    joint_length: Length = key(
+        "1 m", "length of the dip", goes_with="joint_depth", within=("1 mm", "100 m", "dips lie between")
+    )
     joint_position: Position | None = key(
         None,
         "position of the joint, from the sleeper that start counts from",
         otherwise="the middle of the run",
         example='"10 m"',
         goes_with="joint_depth",
+        within=("0 m", "100 km", "tracks are rolled over for less"),
     )
     smooth: YesNo = key(False, "a rail without texture")
 

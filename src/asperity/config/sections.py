@@ -55,6 +55,7 @@ class MeasuredMap(Section):
         otherwise="from the file",
         example='"1.5625 um"',
         goes_with="file",
+        within=("0.1 nm", "10 mm", "atoms are 0.1 nm apart, and contacts are smaller than 10 mm"),
     )
     index: Index | None = key(
         None,
@@ -97,6 +98,7 @@ class MeasuredLine(Section):
         otherwise="from the file",
         example='"1 mm"',
         goes_with="line",
+        within=("0.1 nm", "10 mm", "atoms are 0.1 nm apart, and contacts are smaller than 10 mm"),
     )
 
 
@@ -105,29 +107,47 @@ class Surface(MeasuredLine, MeasuredMap):
 
     synthesised_band: ClassVar = (0.4e-3, 16e-6)  # m, longest and shortest wavelength beside rms
 
-    rms: Length | None = key(None, "rms height of synthesised samples, instead of a file", example='"0.5 um"')
+    rms: Length | None = key(
+        None,
+        "rms height of synthesised samples, instead of a file",
+        example='"0.5 um"',
+        within=("1 pm", "1 mm", "less is smoother than atoms are, more is no roughness"),
+    )
     hurst: Annotated[float, BeforeValidator(Number(above=0, at_most=1))] = key(
-        0.8, "Hurst exponent of the synthesised texture", goes_with="rms"
+        0.8,
+        "Hurst exponent of the synthesised texture",
+        goes_with="rms",
+        within=(0.01, 1, "a spectrum has to fall"),
     )
     longest: Length | None = key(
         None,
         "longest wavelength of the samples",
         otherwise="with rms 0.4 mm, else all they hold",
         example='"0.4 mm"',
+        within=("10 nm", "10 m", "a texture is made of waves between atoms and bodies"),
     )
     shortest: Length | None = key(
         None,
         "shortest wavelength of the samples",
         otherwise="with rms 16 um, else all they hold",
         example='"16 um"',
+        within=("0.1 nm", "1 m", "a texture is made of waves between atoms and bodies"),
     )
     anisotropy: Annotated[float, BeforeValidator(Number(above=0, at_most=100))] = key(
-        1.0, "ratio of the correlation lengths along and across the path", goes_with="rms"
+        1.0,
+        "ratio of the correlation lengths along and across the path",
+        goes_with="rms",
+        within=(0.01, 100, "a texture more drawn out than that is a line across"),
     )
     spectrum: Annotated[str | Path, BeforeValidator(Choice(("iso3095",)))] | None = key(
         None, "one-third-octave wavelength spectrum of the line of the path", example='"iso3095"'
     )
-    level: Level = key("+0 dB", "level added to the spectrum", goes_with="spectrum")
+    level: Level = key(
+        "+0 dB",
+        "level added to the spectrum",
+        goes_with="spectrum",
+        within=("-120 dB", "120 dB", "a million times is another texture"),
+    )
 
     @property
     def has_samples(self) -> bool:
@@ -172,9 +192,19 @@ class Surface(MeasuredLine, MeasuredMap):
 class ContactCase(Section):
     """How the rough contact is solved and reduced."""
 
-    spacing: Length = key("8 um", "grid spacing of the contact solution")
+    spacing: Length = key(
+        "8 um",
+        "grid spacing of the contact solution",
+        within=(
+            "1 nm",
+            "10 mm",
+            "an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
+        ),
+    )
     window: Length = key(
-        "0.5 mm", "side of the square window in which contact is solved; wider than the contact"
+        "0.5 mm",
+        "side of the square window in which contact is solved; wider than the contact",
+        within=("10 nm", "1 m", "contacts lie between atoms and bodies"),
     )
     samples: Annotated[int, BeforeValidator(Number(at_least=1, at_most=10_000, whole=True))] = key(
         8, "number of surface samples for the stiffness and the filters"
@@ -184,15 +214,27 @@ class ContactCase(Section):
         "length of the strips from which filters are estimated",
         otherwise="16 windows, or the length of the map",
         example='"2 mm"',
+        within=("10 nm", "100 m", "samples lie between contacts and bodies"),
     )
     approaches: tuple[Approach, ...] | None = key(
         None,
         "approaches of the mean surfaces, increasing, at which the contact is reduced",
         otherwise="chosen from the load and the roughness",
         example='["-0.5 um", "0 um", "1 um"]',
+        within=("-10 mm", "10 mm", "contacts are closer than that"),
     )
-    damping: Damping = key("0 N s/m", "damping of the contact")
-    hardness: Pressure | None = key(None, "largest pressure", otherwise="elastic contact", example='"3 GPa"')
+    damping: Damping = key(
+        "0 N s/m",
+        "damping of the contact",
+        within=("1e-9 N s/m", "1e9 N s/m", "less damps nothing, more is rigid"),
+    )
+    hardness: Pressure | None = key(
+        None,
+        "largest pressure",
+        otherwise="elastic contact",
+        example='"3 GPa"',
+        within=("1 kPa", "1 TPa", "no solid is as soft, or as hard"),
+    )
     datum: Annotated[str, BeforeValidator(Choice(("samples", "path")))] = key(
         "samples",
         "from whose first touch the state r = approach + d0 counts: that of the samples (as printed), or of "
@@ -250,16 +292,23 @@ class ContactCase(Section):
 class Numerics(Section):
     """How finely time is resolved."""
 
-    highest_frequency: Frequency = key("5 kHz", "upper end of the spectra")
+    highest_frequency: Frequency = key(
+        "5 kHz", "upper end of the spectra", within=("0.1 Hz", "10 MHz", "rolling is slower than ultrasound")
+    )
     time_step: Duration | None = key(
         None,
         "time step",
         otherwise="near 1/20 of the highest frequency's period, a whole number or fraction of spacing/speed",
         example='"8 us"',
+        within=("1 ns", "1 s", "the spectra lie between"),
     )
     rtol: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
-        1e-6, "tolerance of single contact solutions and of `direct`, relative to the largest overlap"
+        1e-6,
+        "tolerance of single contact solutions and of `direct`, relative to the largest overlap",
+        within=(1e-12, 0.01, "double precision carries no more digits"),
     )
     force_accuracy: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
-        1e-4, "relative accuracy of the forces of scans and loading curves; of scans for filters a tenth"
+        1e-4,
+        "relative accuracy of the forces of scans and loading curves; of scans for filters a tenth",
+        within=(1e-07, 0.01, "the tables that are interpolated carry no more digits"),
     )

@@ -37,11 +37,21 @@ WheelRoughness = Annotated[str | Path, BeforeValidator(ChoiceOrFile(WHEEL_ROUGHN
 class WheelBody(Section):
     """The wheel without its texture: a mass under a constant load, its shape and its resonances."""
 
-    radius: Length = key("0.46 m", "rolling radius")
-    mass: Mass = key("600 kg", "mass on the contact, unsprung")
-    load: Force = key("65 kN", "static contact force, weight included")
+    radius: Length = key("0.46 m", "rolling radius", within=("10 mm", "10 m", "wheels lie between"))
+    mass: Mass = key(
+        "600 kg", "mass on the contact, unsprung", within=("1 kg", "100 t", "wheels lie between")
+    )
+    load: Force = key(
+        "65 kN",
+        "static contact force, weight included",
+        within=("1 N", "10 MN", "wheels on rails carry as much"),
+    )
     material: OwnOrNamed = key("steel", "material")
-    transverse_radius: LengthOrInfinite = key("inf", "radius of the tread across the rail")
+    transverse_radius: LengthOrInfinite = key(
+        "inf",
+        "radius of the tread across the rail",
+        within=("1 mm", "100 km", 'beyond that it is flat: write "inf"'),
+    )
     profile: ExistingFile | None = key(
         None,
         "measured shape of the tread across the rail, instead of transverse_radius",
@@ -80,16 +90,23 @@ class WheelCase(MeasuredLines, WheelBody):
     roughness: WheelRoughness | None = key(
         None, "one-third-octave wavelength spectrum of the tread", example='"disc"'
     )
-    roughness_level: Level = key("+0 dB", "level added to it", goes_with="roughness")
+    roughness_level: Level = key(
+        "+0 dB",
+        "level added to it",
+        goes_with="roughness",
+        within=("-120 dB", "120 dB", "a million times is another texture"),
+    )
     flat_depth: Length | None = key(
         None,
         "depth of a flat on the tread; with flat_length alone, that of its chord",
         example='"0.5 mm"',
+        within=("10 nm", "100 mm", "flats lie between"),
     )
     flat_length: Length | None = key(
         None,
         "length of the flat: that of its chord, sqrt(8 radius flat_depth); a worn one may be longer",
         example='"43 mm"',
+        within=("10 um", "1 m", "flats lie between"),
     )
     flat_shape: Annotated[str, BeforeValidator(Choice(("fresh", "worn")))] = key(
         "fresh", "a chord with sharp ends, or rounded", goes_with="flat_depth or flat_length"
@@ -98,6 +115,7 @@ class WheelCase(MeasuredLines, WheelBody):
         "0 m",
         "where the flat is on the tread, along the circumference from the point that touches at start",
         goes_with="flat_depth or flat_length",
+        within=("0 m", "100 m", "wheels are smaller"),
     )
 
     @property

@@ -40,15 +40,25 @@ class WheelOnRailCase(Case):
     """
 
     kind: Annotated[str, BeforeValidator(Choice(("wheel-on-rail",)))] = key("wheel-on-rail", "what rolls")
-    speed: Speed = key("56 m/s", "rolling speed")
+    speed: Speed = key(
+        "56 m/s",
+        "rolling speed",
+        within=("1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
+    )
     laws: tuple[Law, ...] = key(
         ("areal", "shifted", "printed", "linear-filtered", "linear"),
         "laws of the contact force; the first is the main one",
     )
-    start: Position = key("0 m", "where the record starts, from a sleeper")
-    duration: Duration = key("1 s", "time that is recorded")
+    start: Position = key(
+        "0 m",
+        "where the record starts, from a sleeper",
+        within=("0 m", "100 km", "tracks are rolled over for less"),
+    )
+    duration: Duration = key("1 s", "time that is recorded", within=("10 us", "1 h", "records lie between"))
     settling: DurationOrZero = key(
-        "0.3 s", "time that is rolled before the record starts, so that the start is forgotten"
+        "0.3 s",
+        "time that is rolled before the record starts, so that the start is forgotten",
+        within=("10 us", "1 h", "records lie between"),
     )
     surface: RailSurface = key({}, "texture of the rail: measured or synthesised, with defects on top")
     wheel: WheelCase = key({}, "the wheel that rolls")

@@ -221,6 +221,13 @@ def geometry(
             f"{load:.3g} N",
             "Enlarge the window.",
         )
+    if h > 2.0 * min(axes):
+        raise InputError(
+            "contact.spacing",
+            f"{h * 1e6:.3g} um",
+            f"less than {2e6 * min(axes):.2g} um, the width of the smooth contact under {load:.3g} N",
+            "Refine the spacing and the window with it, or press harder.",
+        )
     if h > min(axes) / 8:
         warnings.warn(
             f"contact.spacing = {h * 1e6:.3g} µm is coarser than an eighth of the contact radius "

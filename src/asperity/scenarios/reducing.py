@@ -136,6 +136,8 @@ def reduce(
     smooth = half_space.solve(shape.body, load=shape.load, rtol=numerics.rtol)
     touches = _first_touches(textures, shape, planes, samples)
     approaches = _approaches(contact, shape, touches["path"], samples, half_space)
+    if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
+        raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
     working = float(np.mean([c.approach for c in contacts]))
     remedy = shape.remedy_for_cut_off(
         float(approaches[-1]), working, -touches["path"], textures.widest_window
@@ -145,6 +147,8 @@ def reduce(
         rtol=rtol_for(numerics.force_accuracy), progress=progress, remedy=remedy,
     )  # fmt: skip
     mean = ensemble.mean_force
+    if contact.approaches is None and np.count_nonzero(mean) < 2:
+        raise _too_rough(textures, f"contact in {np.count_nonzero(mean)} of {len(mean)} states")
     refuse_low_states(approaches, mean, shape, contacts[0].approach)
     # the curve, drawn through few states, may start a little before the first touch
     datums = {name: -min(touch, ensemble.curve.first_touch, -LEAST_DATUM) for name, touch in touches.items()}
@@ -206,6 +210,17 @@ def refuse_low_states(
             "at least two approaches in contact",
             f"Add some around {1e6 * working_approach:.3g} um, or leave the key out.",
         )
+
+
+def _too_rough(textures: Textures, sign: str) -> InputError:
+    """Error about samples on which no contact can be followed from touch to load."""
+    rms = float(np.mean([np.std(sample.heights) for sample in textures.maps]))
+    return InputError(
+        "surface",
+        f"samples of {1e6 * rms:.3g} um rms, with {sign}",
+        "heights that are small against the window, and states of contact from the touch to the load",
+        "Check the unit of the heights.",
+    )
 
 
 def _first_touches(

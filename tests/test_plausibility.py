@@ -1,0 +1,74 @@
+"""Every number of a case has limits of what is plausible, with a reason."""
+
+import math
+
+import pytest
+
+from asperity.config import KINDS, case_of
+from asperity.config.describing import entries
+from asperity.config.keys import Number, Quantity, extra_of, kind_of
+from asperity.errors import CaseError
+from asperity.units import quantity
+
+NUMBERS = [
+    pytest.param(kind, entry, id=f"{kind} {entry.dotted}")
+    for kind, model in KINDS.items()
+    for entry in entries(model)
+    if isinstance(kind_of(entry.field.annotation, entry.field.metadata), Quantity | Number)
+]
+
+
+def limits(entry):
+    """Least and largest value in SI, and the unit; those of the kind, where it has both."""
+    kind = kind_of(entry.field.annotation, entry.field.metadata)
+    unit = kind.dimension if isinstance(kind, Quantity) else ""
+    if "within" in extra_of(entry.field):
+        low, high, reason = extra_of(entry.field)["within"]
+        assert len(reason) > 10
+        return *(quantity(v, unit) if isinstance(v, str) else v for v in (low, high)), unit
+    return kind.above if kind.at_least is None else kind.at_least, kind.at_most, unit
+
+
+@pytest.mark.parametrize(("kind", "entry"), NUMBERS)
+def test_every_number_has_limits(kind, entry):
+    low, high, _ = limits(entry)
+    assert -math.inf < low < high < math.inf
+
+
+@pytest.mark.parametrize(("kind", "entry"), NUMBERS)
+def test_numbers_beyond_their_limits_are_told_with_a_reason(kind, entry):
+    if "within" not in extra_of(entry.field):
+        pytest.skip("its kind has limits of its own")
+    low, high, unit = limits(entry)
+    _, _, reason = extra_of(entry.field)["within"]
+    section, _, name = entry.dotted.rpartition(".")
+    for value in (1.01 * high, low / 1.01 if low > 0 else 1.01 * low):
+        if value == 0.0:
+            continue
+        given = f"{value!r} {unit}" if unit else value
+        several = "tuple" in str(entry.field.annotation)
+        keys = {name: [given] if several else given}
+        with pytest.raises(CaseError) as caught:
+            texture = {"surface": {"rms": "0.3 um"} if kind == "ball-on-beam" else {"smooth": True}}
+            case_of({"kind": kind, **texture, **({section: keys} if section else keys)}, "", "case")
+        message = str(caught.value)
+        own = "; allowed: a" in message  # its kind, as a length greater than 0, is stricter
+        assert entry.dotted in message
+        assert own or reason[1:] in message
+
+
+def test_the_message_names_value_limits_and_reason():
+    with pytest.raises(CaseError) as caught:
+        case_of({"kind": "ball-on-beam", "surface": {"rms": "1e200 m"}}, "", "case")
+    assert (
+        "surface.rms: received 1e+200 m; allowed: 1 pm to 1 mm. Less is smoother than atoms are, more is no "
+        "roughness." in str(caught.value)
+    )
+
+
+def test_an_own_material_is_held_to_solids():
+    material = {"youngs_modulus": "1 Pa", "poisson_ratio": 0.3, "density": "1 t/mm^3"}
+    with pytest.raises(CaseError) as caught:
+        case_of({"kind": "ball-on-beam", "ball": {"material": material}}, "", "case")
+    assert "youngs_modulus: received 1 Pa; allowed: 1 kPa to 10 TPa" in str(caught.value)
+    assert "density: received 1e+12 kg/m^3; allowed: 1 kg/m^3 to 100000 kg/m^3" in str(caught.value)
