@@ -48,9 +48,10 @@ def test_numbers_beyond_their_limits_are_told_with_a_reason(kind, entry):
         given = f"{value!r} {unit}" if unit else value
         several = "tuple" in str(entry.field.annotation)
         keys = {name: [given] if several else given}
+        texture = {"surface": {"rms": "0.3 um"} if kind == "ball-on-beam" else {"smooth": True}}
+        case = {"kind": kind, **texture, **({section: keys} if section else keys)}
         with pytest.raises(CaseError) as caught:
-            texture = {"surface": {"rms": "0.3 um"} if kind == "ball-on-beam" else {"smooth": True}}
-            case_of({"kind": kind, **texture, **({section: keys} if section else keys)}, "", "case")
+            case_of(case, "", "case")
         message = str(caught.value)
         own = "; allowed: a" in message  # its kind, as a length greater than 0, is stricter
         assert entry.dotted in message

@@ -29,6 +29,14 @@ class Door(click.Group):
     0 done; 2 the input is wrong; 3 the computation failed; 130 interrupted.
     """
 
+    def make_context(self, *args: Any, **more: Any) -> click.Context:
+        """Read the words of the command line."""
+        try:
+            return super().make_context(*args, **more)
+        except KeyboardInterrupt:
+            click.echo(_INTERRUPTED, err=True)
+            sys.exit(INTERRUPTED)
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
         gc.set_threshold(COLLECT_AFTER)

@@ -1,0 +1,106 @@
+"""A disk that is full, or files that may not grow: one message, exit code 3, nothing half-written."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from program import LONG, RUN, ended, left, prepared, program, promised, same
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there is no such limit")
+
+SIZES = [2**k for k in range(12, 22)] if LONG else [20_000, 100_000, 500_000]
+
+
+@pytest.fixture(scope="module")
+def earlier(tmp_path_factory):
+    """A run that was finished while there was room."""
+    folder = prepared(tmp_path_factory.mktemp("earlier"))
+    assert ended(program(folder, *RUN))[0] == 0
+    return folder
+
+
+def limited(size):
+    def limit():
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return limit
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_files_that_may_not_grow(earlier, tmp_path, size):
+    folder = prepared(tmp_path)
+    code, told = ended(program(folder, *RUN, preexec_fn=limited(size)))
+    promised(code, told)
+    assert code in (0, 3)
+    assert code == 0 or "could not be written (files may not grow as large here)" in told
+    assert left(folder) == []
+    assert ended(program(folder, *RUN))[0] == 0
+    same(earlier / "out", folder / "out")
+
+
+@pytest.mark.parametrize("size", SIZES[:2])
+def test_an_earlier_run_stays_as_it_was(earlier, size):
+    before = (earlier / "out" / "run.nc").read_bytes()
+    words = RUN
+    code, told = ended(program(earlier, *words, preexec_fn=limited(size)))
+    promised(code, told)
+    assert code == 3
+    assert (earlier / "out" / "run.nc").read_bytes() == before
+    assert left(earlier) == []
+
+
+@pytest.fixture
+def small(tmp_path):
+    """A file system of half a mebibyte."""
+    place = tmp_path / "small"
+    place.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=512k", "tmpfs", str(place)]
+    if subprocess.run(mount, capture_output=True, check=False).returncode != 0:
+        pytest.skip("no file system can be mounted here")
+    yield place
+    subprocess.run(["umount", str(place)], check=True)
+
+
+@pytest.mark.parametrize("full", [False, True], ids=["small", "full"])
+@pytest.mark.parametrize("what", ["results", "cache", "kernels"])
+def test_a_full_file_system(earlier, small, tmp_path, what, full):
+    folder = prepared(tmp_path / "run")
+    if full:
+        with open(small / "full", "wb") as file:
+            try:
+                while True:
+                    file.write(bytes(4096))
+                    file.flush()
+            except OSError:
+                pass
+    out = small / "out" if what == "results" else folder / "out"
+    places = {"cache": "ASPERITY_CACHE", "kernels": "ASPERITY_KERNELS"}
+    env = {places[what]: str(small / what)} if what in places else {}
+    code, told = ended(program(folder, "run", "case.toml", "-o", str(out), "--no-report", env=env))
+    promised(code, told)
+    assert left(folder) == left(small) == []
+    if what == "results":
+        assert code == 3
+        assert "the disk is full (" in told
+        assert "are free)" in told
+    else:
+        assert code == 0
+        same(earlier / "out", out)
+        if full:
+            assert "not kept" in told or "cannot be kept" in told
+
+
+def test_nothing_can_be_written_anywhere(tmp_path):
+    """A read-only home, and no folder for temporary files: files stand where folders should."""
+    folder = prepared(tmp_path)
+    (folder / "file").write_text("")
+    env = {name: str(folder / "file" / "no") for name in ("ASPERITY_CACHE", "ASPERITY_KERNELS", "TMPDIR")}
+    if not os.access("/tmp", os.W_OK):
+        env["HOME"] = str(folder / "file")
+    code, told = ended(program(folder, *RUN, env=env), timeout=500)
+    promised(code, told)
+    assert code == 0
+    assert "finished work is not kept" in told

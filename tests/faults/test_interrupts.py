@@ -1,0 +1,111 @@
+"""Interrupts and kills at any moment: all that is written is whole, and the next run ends as ever."""
+
+import os
+import random
+import signal
+import sys
+import time
+
+import pytest
+from program import CASE, LONG, RUN, START, ended, left, prepared, program, promised, same
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are ended by signals")
+
+STUDY = 'case = "case.toml"\n[sweep]\nseed = [1, 2, 3]\n'
+AT_A_WRITE = """
+import os, sys
+from asperity import files
+number, before = int(os.environ["KILLED_AT"]), os.environ["KILLED"] == "before"
+replace, count = os.replace, 0
+
+def killed(part, path):
+    global count
+    count += 1
+    if count == number and before:
+        os.kill(os.getpid(), 9)
+    replace(part, path)
+    if count == number:
+        os.kill(os.getpid(), 9)
+
+files.os.replace = killed
+from asperity.__main__ import start
+start()
+"""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A run that nothing disturbs."""
+    folder = prepared(tmp_path_factory.mktemp("whole"))
+    assert ended(program(folder, *RUN))[0] == 0
+    return folder / "out"
+
+
+@pytest.mark.parametrize("when", ["before", "after"])
+@pytest.mark.parametrize("number", range(1, 26) if LONG else [1, 2, 5])
+def test_a_run_killed_at_a_write_goes_on(whole, tmp_path, number, when):
+    folder = prepared(tmp_path / "run")
+    killed = program(
+        folder, *RUN, code=AT_A_WRITE,
+        env={"KILLED_AT": str(number), "KILLED": when},
+    )  # fmt: skip
+    code, told = ended(killed)
+    assert code in (0, -signal.SIGKILL), told
+    assert ended(program(folder, *RUN))[0] == 0
+    same(whole, folder / "out")
+    assert left(folder) == []
+
+
+@pytest.mark.parametrize("seed", range(40 if LONG else 2))
+def test_a_run_killed_at_any_moment_goes_on(whole, tmp_path, seed):
+    folder = prepared(tmp_path / "run")
+    killed = program(folder, *RUN)
+    time.sleep(random.Random(seed).uniform(0.2, 4.0))
+    killed.kill()
+    ended(killed)
+    assert ended(program(folder, *RUN))[0] == 0
+    same(whole, folder / "out")
+    assert left(folder) == []
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize("words", [("new", "study"), ("check", "case.toml"), ("study", "study.toml")])
+def test_every_interrupt_is_told_in_a_word(tmp_path, name, words):
+    folder = prepared(prepared(tmp_path), STUDY, "study.toml")
+    for delay in [0.02 * n for n in range(40)] if LONG else [0.0, 0.15, 0.5, 1.5]:
+        code = f"print('started', flush=True); {START}"  # Python itself has no words for an interrupt
+        started = program(folder, *words, code=code, start_new_session=True)
+        assert started.stdout.readline() == "started\n"
+        time.sleep(delay)
+        os.killpg(started.pid, getattr(signal, name))
+        returned, told = ended(started)
+        if returned == -getattr(signal, name):  # before the program could say what to do then
+            assert delay < 0.2
+            continue
+        promised(returned, told)
+        assert returned in (0, 130)
+        assert returned == 0 or "interrupted" in told
+    assert left(folder) == []
+
+
+def test_two_runs_beside_each_other_are_the_same(whole, tmp_path):
+    folder = prepared(tmp_path / "beside")
+    count = 8 if LONG else 2
+    started = [program(folder, "run", "case.toml", "-o", f"out{n}", "--no-report") for n in range(count)]
+    for number, process in enumerate(started):
+        code, told = ended(process)
+        assert code == 0, told
+        same(whole, folder / f"out{number}")
+    assert left(folder) == []
+
+
+def test_of_two_runs_in_one_folder_one_is_refused(tmp_path):
+    folder = prepared(prepared(tmp_path), CASE.replace("5 N", "6 N"), "other.toml")
+    started = [
+        program(folder, "run", name, "-o", "out", "--no-report") for name in ("case.toml", "other.toml")
+    ]
+    found = sorted(ended(process) for process in started)
+    assert [code for code, _ in found] == [0, 2], found
+    refused = found[1][1]
+    assert "another run is writing" in refused or "the run of another case" in refused
+    assert left(folder) == []
