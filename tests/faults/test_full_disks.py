@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from contextlib import suppress
 
 import pytest
 from program import LONG, RUN, ended, left, prepared, program, promised, same
@@ -64,18 +65,19 @@ def small(tmp_path):
     subprocess.run(["umount", str(place)], check=True)
 
 
+def fill(place):
+    """Leave no byte free."""
+    with open(place / "full", "wb", buffering=0) as file, suppress(OSError):
+        while True:
+            file.write(bytes(4096))
+
+
 @pytest.mark.parametrize("full", [False, True], ids=["small", "full"])
 @pytest.mark.parametrize("what", ["results", "cache", "kernels"])
 def test_a_full_file_system(earlier, small, tmp_path, what, full):
     folder = prepared(tmp_path / "run")
     if full:
-        with open(small / "full", "wb") as file:
-            try:
-                while True:
-                    file.write(bytes(4096))
-                    file.flush()
-            except OSError:
-                pass
+        fill(small)
     out = small / "out" if what == "results" else folder / "out"
     places = {"cache": "ASPERITY_CACHE", "kernels": "ASPERITY_KERNELS"}
     env = {places[what]: str(small / what)} if what in places else {}
