@@ -8,7 +8,6 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from click.testing import CliRunner
 from asperity.cli import main
 from asperity.config import load_case, parse_case
 from asperity.errors import CoarseSamplingWarning, ComputationError, InputError
+from asperity.report.page import WHEEL_ON_RAIL
 from asperity.results import GROUPS, load
 from asperity.store import Store
 from asperity.studies.definition import load_study
@@ -543,10 +543,33 @@ def test_a_path_of_ten_metres_is_planned_and_announced(monkeypatch):
 
 def test_a_scan_that_the_disk_cannot_hold_is_refused(monkeypatch):
     Path("long.toml").write_text(LONG)
-    monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=2**20))
+    monkeypatch.setattr("asperity.scenarios.scan_sizes.free_space", lambda path: 2**20)
     message = call("run", "long.toml", "-o", "out", code=2).stderr
     assert "disk of the cache: received 1 MiB free" in message
     assert "ASPERITY_CACHE" in message
+
+
+def test_a_run_leaves_no_report_of_another(computed):
+    """Neither its page nor the CSVs of another kind of case; files of other names stay."""
+    call("run", "case.toml", "-o", "out")
+    Path("out", "measured.csv").write_text("x")
+    rail = [part.name for chapter in WHEEL_ON_RAIL for part in chapter.parts]
+    Path("out", f"{rail[0]}.csv").write_text("x")
+    call("run", "case.toml", "-o", "out", "--no-report")
+    names = sorted(path.name for path in Path("out").iterdir())
+    assert "run.nc" in names
+    assert "measured.csv" in names
+    assert "report.html" not in names
+    assert f"{rail[0]}.csv" not in names
+
+
+def test_results_that_the_disk_cannot_hold_are_refused_before_work(computed, monkeypatch):
+    monkeypatch.setattr("asperity.files.free_space", lambda path: 2**10)
+    message = call("run", "case.toml", "-o", "out", code=3).stderr
+    assert "the disk is full (" in message
+    assert "are needed, 1 KiB are free)" in message
+    assert computed == []
+    assert not Path("out").exists()
 
 
 # --- surface and cache
@@ -723,6 +746,7 @@ def test_surface_writes_pictures_only(ensemble):
 
 def test_cache_is_shown_and_cleared(own_folder, monkeypatch):
     monkeypatch.setenv("ASPERITY_KERNELS", str(own_folder / "kernels"))
+    monkeypatch.setattr("tempfile.tempdir", str(own_folder))
     cache, version = own_folder / "cache", own_folder / "kernels" / "0123456789abcdef"
     Store().put("scan-1", {"force": np.zeros(2**17)})
     (cache / ".scan-2.npz.01234567.part").write_bytes(bytes(2**10))
@@ -733,13 +757,15 @@ def test_cache_is_shown_and_cleared(own_folder, monkeypatch):
     told = [
         f"{cache}: 1 results, 1 MiB",
         f"{own_folder / 'kernels'}: 1 compiled functions, 1 MiB",
-        f"{cache}: 2 files left by interrupted runs, 2 KiB",
+        f"{cache}: 1 files left by interrupted runs, 1 KiB",
+        f"{own_folder / 'kernels'}: 1 files left by interrupted runs, 1 KiB",
     ]
     assert call("cache").stdout.splitlines() == told
     assert call("cache", "--clear").stdout.splitlines() == [
         f"{cache}: 1 results deleted, 1 MiB",
         f"{own_folder / 'kernels'}: 1 compiled functions deleted, 1 MiB",
-        f"{cache}: 2 files left by interrupted runs deleted, 2 KiB",
+        f"{cache}: 1 files left by interrupted runs deleted, 1 KiB",
+        f"{own_folder / 'kernels'}: 1 files left by interrupted runs deleted, 1 KiB",
     ]
     assert [path.name for path in cache.iterdir()] == ["notes.txt"]
     assert list(version.iterdir()) == []

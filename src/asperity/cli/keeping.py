@@ -30,12 +30,17 @@ def clear_kept() -> None:
 
 
 def _kept() -> Iterator[tuple[str, Path, list[Path]]]:
+    """What is kept, where, and its files; results are named even where there are none."""
     store = Store()
-    kernels, parts = kept_files()
     yield "results", store.root, store.files()
-    yield "compiled functions", next(folders(), store.root), kernels
-    if left := [*store.left_overs(), *parts]:
-        yield "files left by interrupted runs", store.root, left
+    left = {store.root: store.left_overs()}
+    for folder in folders():
+        kernels, left[folder] = kept_files(folder)
+        if kernels:
+            yield "compiled functions", folder, kernels
+    for folder, parts in left.items():
+        if parts:
+            yield "files left by interrupted runs", folder, parts
 
 
 def _size(files: list[Path]) -> int:

@@ -10,6 +10,7 @@ import click
 from asperity.cli.planning import announce_scan
 from asperity.config import Case
 from asperity.errors import InputError
+from asperity.files import alone_in, refuse_unwritable, require_space
 from asperity.progress import progress_bar
 
 
@@ -32,12 +33,21 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
     InputError
         If the case cannot be computed, or its results not go into `directory`.
     """
+    refuse_folder(case, directory, overwrite=overwrite)
+    with alone_in(directory):
+        refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
+        _run_alone(case, directory, report=report)
+
+
+def _run_alone(case: Case, directory: Path, *, report: bool) -> None:
+    """Compute a case and write its results, while no other run does into this folder."""
+    from asperity.report import remove_report, write_report
     from asperity.results import save
     from asperity.scenarios import run
     from asperity.scenarios.preparing import prepare
     from asperity.store import Store
 
-    refuse_folder(case, directory, overwrite=overwrite)
+    require_space(directory, _expected_size(case))
     prepared = prepare(case)
     with progress_bar() as progress:
         announce_scan(prepared, progress)
@@ -47,18 +57,22 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
         grade = warning.get("grade", "warning").capitalize()
         click.echo(f"{grade}: {warning['message']}{times}", err=True)
     written = save(tree, directory / "run.nc")
+    remove_report(directory)
     if verdict := tree.attrs.get("verdict"):
         click.echo(verdict)
     click.echo(f"Results: {written.resolve()}")
     if report:
-        from asperity.report import write_report
-
         write_report(tree, directory)
         click.echo(f"Report:  {(directory / 'report.html').resolve()}")
     store = Store()
     if size := store.size():
         kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"
         click.echo(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
+
+
+def _expected_size(case: Case) -> float:
+    """Bytes of results, about: a dozen numbers per law and time step, in run.nc and again as text."""
+    return 400.0 * len(case.laws) * case.rolled_time / case.time_step
 
 
 def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> None:
@@ -78,8 +92,6 @@ def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> No
     InputError
         If results cannot go there.
     """
-    from asperity.files import refuse_unwritable
-
     refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
     if overwrite:
         return

@@ -16,7 +16,7 @@ import numpy as np
 
 from asperity.config import WheelOnRailCase, load_case
 from asperity.errors import InputError
-from asperity.files import refuse_unwritable, write_bytes
+from asperity.files import alone_in, refuse_unwritable, write_bytes
 from asperity.progress import progress_bar
 from asperity.studies.definition import Study, study_of
 
@@ -60,8 +60,14 @@ def study_into(
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
     refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
-    if not overwrite:
-        _refuse_to_overwrite(study, directory)
+    with alone_in(directory):
+        if not overwrite:
+            _refuse_to_overwrite(study, directory)
+        _study_alone(study, directory, workers, scheduler)
+
+
+def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: str | None) -> None:
+    """Compute a study and write its table, while no other run does into this folder."""
     from xarray import DataTree
 
     from asperity.results import save

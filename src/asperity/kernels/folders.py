@@ -30,8 +30,13 @@ def folders() -> Iterator[Path]:
         yield temporary_folder() / "kernels"
 
 
-def kept_files() -> tuple[list[Path], list[Path]]:
-    """List what lies in these folders, of all versions of the kernels.
+def kept_files(folder: Path) -> tuple[list[Path], list[Path]]:
+    """List what lies in one of these folders, of all versions of the kernels.
+
+    Parameters
+    ----------
+    folder : Path
+        One of `folders`.
 
     Returns
     -------
@@ -40,7 +45,7 @@ def kept_files() -> tuple[list[Path], list[Path]]:
     """
     kernels: list[Path] = []
     parts: list[Path] = []
-    for place in {place for folder in folders() for place in folder.glob("[0-9a-f]" * STAMP)}:
+    for place in folder.glob("[0-9a-f]" * STAMP):
         if is_private(place):
             kernels += [file for file in place.iterdir() if not is_part(file)]
             parts += left_overs(place)

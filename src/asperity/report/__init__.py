@@ -2,7 +2,7 @@
 
 | name | what |
 |---|---|
-| `write_report` | ``report.html`` and one CSV file per figure |
+| `write_report`, `remove_report` | ``report.html`` and one CSV file per figure |
 | `surface_picture`, `lines_picture` | picture of a measured surface, or of lines side by side |
 """
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from xarray import DataTree
 
-__all__ = ["lines_picture", "surface_picture", "write_report"]
+__all__ = ["lines_picture", "remove_report", "surface_picture", "write_report"]
 
 
 def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
@@ -51,6 +51,26 @@ def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
     for part in drawable_parts(tree):
         write_csv(part.columns(tree), directory / f"{part.name}.csv")
     return write_bytes(directory / "report.html", text.encode("utf-8"))
+
+
+def remove_report(directory: str | os.PathLike[str]) -> None:
+    """Remove an earlier report, of any kind of case: it would not belong to the run beside it.
+
+    Parameters
+    ----------
+    directory : path
+        The folder; files of other names stay.
+    """
+    from contextlib import suppress
+
+    directory = Path(directory)
+    if not (directory / "report.html").exists():
+        return
+    from asperity.report.page import every_part
+
+    for name in ["report.html", *(f"{part.name}.csv" for part in every_part())]:
+        with suppress(OSError):
+            (directory / name).unlink(missing_ok=True)
 
 
 def surface_picture(heights: NDArray[Any], spacing: tuple[float, float], title: str) -> Figure:

@@ -78,6 +78,11 @@ def chapters(tree: DataTree) -> tuple[Chapter, ...]:
     return WHEEL_ON_RAIL if on_rail else BALL_ON_BEAM
 
 
+def every_part() -> list[Part]:
+    """Figures that the page of any kind of case may have."""
+    return [part for chapter in (*BALL_ON_BEAM, *WHEEL_ON_RAIL) for part in chapter.parts]
+
+
 @dataclass(frozen=True)
 class Picture:
     """A figure ready for the page: its SVG elements, for a wide and a narrow page, heading and caption."""

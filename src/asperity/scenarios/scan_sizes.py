@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from pathlib import Path
 from asperity.config import Case
 from asperity.contact.device import find_device
 from asperity.errors import InputError
+from asperity.files import amount, free_space
 from asperity.reduction.accuracy import FILTER_SHARE, in_single, rtol_for
 from asperity.reduction.scan import BLOCK
 from asperity.scenarios.geometry import Geometry
@@ -102,12 +102,11 @@ def problem_of_disk(expected: Expected, root: Path) -> Iterator[InputError]:
     InputError
         If the disk has less room.
     """
-    existing = next(folder for folder in (root.absolute(), *root.absolute().parents) if folder.exists())
-    free = shutil.disk_usage(existing).free
+    free = free_space(root)
     if free < expected.bytes:
         yield InputError(
             "disk of the cache",
-            f"{free / 2**20:.0f} MiB free in {root}",
-            f"{expected.bytes / 2**20:.0f} MiB for the scan of the path",
+            f"{amount(free)} free in {root}",
+            f"{amount(expected.bytes)} for the scan of the path",
             "Set $ASPERITY_CACHE to a folder on another disk, or free some space.",
         )
