@@ -13,25 +13,13 @@ from asperity.errors import Grade, PhysicsWarning
 NO_SIGNAL = "there is no signal in these bands, and nothing has no level"
 NO_FILTER = "the samples do not touch in these states, or have no waves of these lengths"
 REASONS = {
-    **dict.fromkeys(
-        (
-            "filter",
-            "filter_raw",
-            "filter_applied",
-            "filter_std",
-            "filter_signed",
-            "filter_coherence",
-            "filter_theory",
-            "filter_scale",
-        ),
-        NO_FILTER,
-    ),
+    "psd_path": "the path is shorter than these waves",
     "decay_rate_limit": "the standard sets no limit at these frequencies",
     "roughness_level": "this part has no roughness of these wavelengths",
     "roughness_limit": "the standard sets no limit at these wavelengths",
     "sound_power_level": "this source radiates nothing in these bands, or its method does not reach them",
 }
-"""Why a variable may lack values, by its name; levels that are not listed lack a signal."""
+"""Why a variable may lack values, by its name; others are filters, or levels without a signal."""
 UNKNOWN = "no reason is known"
 
 
@@ -55,15 +43,16 @@ def marked(group: xarray.Dataset) -> xarray.Dataset:
         If no reason is known.
     """
     changed: dict[str, Any] = {}
-    for name, values in group.data_vars.items():
+    for key, values in group.data_vars.items():
         if values.dtype.kind != "f" or np.isfinite(values.values).all():
             continue
+        name = str(key)
         level = str(values.attrs.get("units", "")).startswith("dB")
-        reason = REASONS.get(str(name), NO_SIGNAL if level else UNKNOWN)
+        reason = REASONS.get(name, NO_FILTER if "filter" in name else NO_SIGNAL if level else UNKNOWN)
         if reason == UNKNOWN:
             lost = int((~np.isfinite(values.values)).sum())
             message = f"{lost} of {values.size} values of {name} are not finite numbers, and {reason}"
             warnings.warn(PhysicsWarning(message, Grade.OUT), stacklevel=2)
         finite = values.where(np.isfinite(values))
-        changed[str(name)] = finite.assign_attrs(values.attrs | {"missing": reason})
+        changed[name] = finite.assign_attrs(values.attrs | {"missing": reason})
     return group.assign(changed)

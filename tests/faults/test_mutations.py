@@ -1,0 +1,185 @@
+"""Valid files, mutated from a fixed seed: a surface, a table, a case or one message comes out, in time."""
+
+import random
+import signal
+import sys
+import warnings
+from contextlib import contextmanager
+
+import h5netcdf
+import numpy as np
+import pytest
+from program import LONG
+
+from asperity.config import parse_case
+from asperity.errors import AsperityError, PhysicsWarning
+from asperity.results import load, save, variable
+from asperity.surfaces.readers import netcdf, read_surface
+from asperity.surfaces.readers.hints import checked_hints
+
+sys.path.insert(0, str(__import__("pathlib").Path(__file__).parents[1] / "surfaces"))
+from surface_files import sdf_ascii, sdf_binary, x3p
+
+MUTATIONS = 100_000 if LONG else 1500
+SECONDS = 5
+HINTS = {"height_unit": "um", "pixel": "2 um"}
+HEIGHTS = np.arange(12.0).reshape(3, 4)
+CASE = """
+kind = "ball-on-beam"
+speed = "2 m/s"
+laws = ["hertz", "linear"]
+[surface]
+rms = "0.3 um"
+[ball]
+material = { youngs_modulus = "72 GPa", poisson_ratio = 0.33, density = "2700 kg/m^3" }
+[beam]
+sensors = ["0.2 m", "0.5 m"]
+"""
+WORDS = [
+    b"nan",
+    b"inf",
+    b"-1",
+    b"1e400",
+    b"0x10",
+    b"1_0",
+    b"\x00",
+    b"\xff\xfe",
+    b"]" * 50,
+    b'"',
+    b"9" * 400,
+    b"/",
+]
+
+
+@contextmanager
+def in_time():
+    """Fail where a reader hangs."""
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def late(number, frame):
+        raise TimeoutError(f"more than {SECONDS} s")
+
+    before = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, SECONDS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def mutated(contents, source):
+    """Flip bits, cut, repeat, exchange or insert, once to four times."""
+    data = bytearray(contents)
+    for _ in range(source.randint(1, 4)):
+        place = source.randrange(len(data) + 1)
+        length = source.choice((1, 2, 4, 8, 64))
+        kind = source.randrange(6)
+        if kind == 0 and place < len(data):
+            data[place] ^= 1 << source.randrange(8)
+        elif kind == 1:
+            del data[place : place + length]
+        elif kind == 2:
+            data[place:place] = data[place : place + length] * source.choice((1, 2, 30))
+        elif kind == 3:
+            data[place : place + length] = bytes(source.choice((0, 255)) for _ in range(length))
+        elif kind == 4:
+            data[place:place] = source.choice(WORDS)
+        else:
+            del data[place:]
+        data = data or bytearray(b"\n")
+    return bytes(data)
+
+
+def surfaces(folder):
+    """Valid files of all formats that are read here."""
+    words = [[f"{v:g}" for v in row] for row in HEIGHTS.T]
+    np.savez(folder / "a.npz", z=HEIGHTS, pixel=2.0)
+    np.save(folder / "a.npy", HEIGHTS)
+    points = [f"{x} {y} {HEIGHTS[x, y]:g}" for x in range(3) for y in range(4)]
+    return {
+        "binary.sdf": sdf_binary(HEIGHTS, 5),
+        "ascii.sdf": sdf_ascii(words),
+        "a.x3p": x3p(folder / "a.x3p", [HEIGHTS], kind="F").read_bytes(),
+        "stored.x3p": x3p(folder / "b.x3p", [HEIGHTS], compress=False).read_bytes(),
+        "a.npz": (folder / "a.npz").read_bytes(),
+        "a.npy": (folder / "a.npy").read_bytes(),
+        "matrix.csv": "\n".join(";".join(row) for row in words).encode(),
+        "points.txt": ("x (mm) y (mm) z (um)\n" + "\n".join(points)).encode(),
+    }
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["binary.sdf", "ascii.sdf", "a.x3p", "stored.x3p", "a.npz", "a.npy", "matrix.csv", "points.txt"],
+)
+def test_mutated_surfaces(tmp_path, name):
+    contents, source = surfaces(tmp_path)[name], random.Random(name)
+    file = tmp_path / f"mutated-{name}"
+    hints = {} if file.suffix in (".sdf", ".x3p") or name == "points.txt" else HINTS
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        for _ in range(MUTATIONS):
+            file.write_bytes(mutated(contents, source))
+            with in_time():
+                try:
+                    surface = read_surface(file, **hints)
+                except AsperityError as error:
+                    assert len(str(error)) < 2000, error  # noqa: PT017 (either is right)
+                    continue
+            assert not np.isinf(surface.heights).any()
+
+
+def test_mutated_cases(tmp_path):
+    source = random.Random("case")
+    for _ in range(MUTATIONS):
+        text = mutated(CASE.encode(), source).decode("utf-8", errors="surrogateescape")
+        with in_time():
+            try:
+                case = parse_case(text, tmp_path / "case.toml")
+            except AsperityError:
+                continue
+        assert case.kind == "ball-on-beam"
+
+
+def test_mutated_netcdf(tmp_path):
+    """Parsed here, without the process of its own that bounds time and memory: what that costs is known."""
+    file = tmp_path / "a.nc"
+    with h5netcdf.File(file, "w") as made:
+        made.dimensions = {"x": 3, "y": 4}
+        made.create_variable("z", ("x", "y"), data=HEIGHTS, fletcher32=True).attrs["units"] = "um"
+    contents, source, hints = file.read_bytes(), random.Random("nc"), checked_hints(**HINTS)
+    # flips alone, behind the superblock: HDF5 itself is not under test
+    for _ in range(MUTATIONS // 100):
+        data = bytearray(contents)
+        data[source.randrange(2048, len(data))] ^= 1 << source.randrange(8)
+        file.write_bytes(data)
+        with in_time():
+            try:
+                netcdf.read(file, hints)
+            except AsperityError:
+                continue
+
+
+def test_no_damage_of_a_result_goes_unseen(tmp_path):
+    """Each byte class of ``run.nc``: superblock, headers, attributes, data, and the seal itself."""
+    import xarray
+
+    force = variable("time", np.random.default_rng(1).normal(size=2000), "N", "force")
+    groups = {f"/{name}": xarray.Dataset() for name in ("scenario", "surface", "contact", "spectra")}
+    groups["/rolling"] = xarray.Dataset({"contact_force": force})
+    groups["/"] = xarray.Dataset(attrs={"asperity_version": "1", "case": "kind", "warnings": "[]"})
+    file = save(xarray.DataTree.from_dict(groups), tmp_path / "run.nc")
+    whole, source = file.read_bytes(), random.Random("run")
+    for place in range(0, len(whole), 7 if LONG else 211):
+        data = bytearray(whole)
+        data[place] ^= 1 << source.randrange(8)
+        file.write_bytes(data)
+        if place >= len(whole) - 80 or place < 8:  # the seal's own words, or the signature
+            continue
+        with pytest.raises(AsperityError, match="a damaged file: its digest does not fit its contents"):
+            load(file)
+    file.write_bytes(whole)
+    assert load(file)["rolling/contact_force"].size == 2000

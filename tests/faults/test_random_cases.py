@@ -1,0 +1,102 @@
+"""Random legal cases from the schema: each is computed, every value finite or marked, or refused."""
+
+import random
+import warnings
+
+import numpy as np
+import pytest
+from program import LONG
+
+import asperity
+from asperity.config import KINDS, case_of
+from asperity.config.describing import entries
+from asperity.config.keys import Choice, Number, Quantity, extra_of, kind_of
+from asperity.errors import AsperityError
+from asperity.scenarios.missing import UNKNOWN
+from asperity.units import quantity
+
+SHORT = {
+    "ball-on-beam": {
+        "duration": "20 ms",
+        "laws": ["hertz", "linear"],
+        "surface": {"rms": "0.2 um"},
+        "contact": {"samples": 1},
+    },
+    "wheel-on-rail": {
+        "duration": "30 ms",
+        "settling": "20 ms",
+        "laws": ["hertz", "linear"],
+        "surface": {"spectrum": "iso3095"},
+        "contact": {"samples": 1},
+    },
+}
+LAWS = ["areal", "shifted", "printed", "table", "hertz", "linear", "linear-filtered", "hertz-filtered"]
+LEFT = ("duration", "settling", "laws", "kind", "seed", "samples", "window", "spacing", "time_step")
+"""Keys that decide how long a case takes."""
+
+
+def drawn(entry, source):
+    """A value of a key: near its default mostly, at a limit of what is plausible now and then; or None."""
+    kind, default = kind_of(entry.field.annotation, entry.field.metadata), entry.default
+    if isinstance(kind, Choice):
+        return source.choice(kind.words)
+    if isinstance(kind, Number) and not kind.whole and isinstance(default, int | float):
+        low, high = kind.at_least or kind.above or 0.0, kind.at_most or 10.0
+        return source.choice([low, high, source.uniform(low, high), 0.5 * default])
+    within = extra_of(entry.field).get("within")
+    if not isinstance(kind, Quantity) or within is None or "tuple" in str(entry.field.annotation):
+        return None
+    limits = [quantity(limit, kind.dimension) for limit in within[:2]]
+    example = default or extra_of(entry.field)["example"].strip('"')
+    if not isinstance(example, str) or example == "inf":
+        return None
+    value = quantity(example, kind.dimension) * 10.0 ** source.uniform(-0.7, 0.7)
+    if source.random() < 0.1:
+        value = source.choice(limits)
+    return f"{min(max(value, limits[0]), limits[1])!r} {kind.dimension}"
+
+
+def random_case(source):
+    kind = source.choice(list(KINDS))
+    case = {"kind": kind, **{k: dict(v) if isinstance(v, dict) else v for k, v in SHORT[kind].items()}}
+    case["laws"] = source.sample(LAWS, 2)
+    case["seed"] = source.randrange(100)
+    known = [entry for entry in entries(KINDS[kind]) if entry.name not in LEFT]
+    for entry in source.sample(known, source.randint(1, 5)):
+        section, _, name = entry.dotted.rpartition(".")
+        value = drawn(entry, source)
+        if value is not None:
+            (case.setdefault(section, {}) if section else case)[name] = value
+    return case
+
+
+def flaws(tree):
+    """Names of variables with values that are neither finite nor marked."""
+    for node in tree.subtree:
+        for name, values in node.to_dataset(inherit=False).variables.items():
+            if values.dtype.kind != "f" or np.isfinite(values.values).all():
+                continue
+            if np.isinf(values.values).any() or values.attrs.get("missing", UNKNOWN) == UNKNOWN:
+                yield f"{node.path}/{name}"
+
+
+@pytest.mark.parametrize("seed", range(300 if LONG else 10))
+def test_a_random_case_is_computed_or_refused(seed, tmp_path, monkeypatch):
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
+    source = random.Random(seed)
+    for _ in range(50):  # until one is legal
+        case = random_case(source)
+        try:
+            case_of(case, "", "case")
+        except AsperityError:
+            continue
+        break
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            tree = asperity.run(case)
+        except AsperityError as error:
+            assert len(str(error)) < 2000, case  # noqa: PT017 (either is right)
+            return
+    assert list(flaws(tree)) == [], case
+    assert np.isfinite(tree["rolling/contact_force"].values).all(), case
