@@ -33,9 +33,9 @@ NUMBER_TIME = 5e-7
 """Time of making a spectrum of a number of a record and of writing it, s."""
 POINT_TIME = 3e-7
 """Time of a point of the path in its statistics, s."""
-LAID_OUT = {"ball-on-beam": 0.5, "wheel-on-rail": 2.0}
+LAID_OUT = 0.5
 """Time of laying out the rest of a result, s."""
-REPORT_TIME = {"ball-on-beam": 4.0, "wheel-on-rail": 6.0}
+REPORT_TIME = {"ball-on-beam": 7.5, "wheel-on-rail": 13.0}
 """Time of starting the program, and of drawing and writing a report, s."""
 SINGLE_COMPILED = 10.0
 """Time of compiling the contact in single precision, where that is not kept yet, s."""
@@ -191,7 +191,7 @@ def _rolling_seconds(prepared: Prepared, pace: float) -> dict[str, float]:
     written = steps * laws * records * NUMBER_TIME + points * POINT_TIME
     return {
         "rolling": steps * laws * (try_rolling(prepared) + states * STATE_TIME * pace),
-        "spectra and statistics": (written + LAID_OUT[case.kind]) * pace,
+        "spectra and statistics": (written + LAID_OUT) * pace,
         "report": REPORT_TIME[case.kind] * pace,
     }
 
