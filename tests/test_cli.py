@@ -563,9 +563,10 @@ def test_a_run_leaves_no_report_of_another(computed):
     assert f"{rail[0]}.csv" not in names
 
 
-def test_results_that_the_disk_cannot_hold_are_refused_before_work(computed, monkeypatch):
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_results_that_the_disk_cannot_hold_are_refused_before_work(computed, monkeypatch, command):
     monkeypatch.setattr("asperity.files.free_space", lambda path: 2**10)
-    message = call("run", "case.toml", "-o", "out", code=3).stderr
+    message = call(command, "case.toml", "-o", "out", code=3).stderr
     assert "the disk is full (" in message
     assert "are needed, 1 KiB are free)" in message
     assert computed == []

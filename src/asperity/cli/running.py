@@ -47,7 +47,6 @@ def _run_alone(case: Case, directory: Path, *, report: bool) -> None:
     from asperity.scenarios.preparing import prepare
     from asperity.store import Store
 
-    require_space(directory, _expected_size(case))
     prepared = prepare(case)
     with progress_bar() as progress:
         announce_scan(prepared, progress)
@@ -91,8 +90,11 @@ def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> No
     ------
     InputError
         If results cannot go there.
+    ComputationError
+        If the disk is too full for them.
     """
     refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    require_space(directory, _expected_size(case))
     if overwrite:
         return
     allowed = "a new folder, or the folder of an earlier run of the same case"
