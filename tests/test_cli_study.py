@@ -86,6 +86,21 @@ def test_a_study_is_tabulated_and_written(computed):
     assert rows[1] == ["20.0", "x2000", "linear", "1", "0.1", "30.5", "30.5"]
 
 
+def test_names_in_a_table_are_no_formulas_and_no_markup(computed):
+    for name in ("=cmd|x.npy", "[red]a [um].npy"):
+        Path(name).write_bytes(b"1")
+    Path("study.toml").write_text(
+        '[case]\nkind = "ball-on-beam"\n[case.surface]\nheight_unit = "um"\n'
+        '[sweep]\n"surface.file" = ["=cmd|x.npy", "[red]a [um].npy"]\n'
+    )
+    outcome = call("study", "study.toml", "-o", "out")
+    assert "[red]a [um].npy" in outcome.stdout
+    with open("out/study.csv", newline="") as file:
+        _, *rows = csv.reader(file)
+    assert [row[0] for row in rows[::2]] == ["'=cmd|x.npy", "[red]a [um].npy"]
+    assert rows[0][2] == "1"  # numbers stay as they are
+
+
 def test_what_members_met_is_said_once(computed):
     said = call("sweep", "rail.toml", "--speed", "20 m/s").stderr
     assert "Warning (3 of 1 members): spacing is coarse" in said

@@ -436,7 +436,6 @@ def test_levels_are_read_in_the_ways_they_are_written(text, tmp_path):
         ("0.1, 3\n0.08, inf\n", "'0.08, inf' in line 2"),
         ("wavelength (kg), level (dB)\n0.1, 3\n", "the heading 'wavelength (kg)'; allowed: wavelength in m"),
         ("wavelength (m), level (dB re 1 nm)\n0.1, 3\n", "the heading 'level (dB re 1 nm)'"),
-        ("", "no line of numbers"),
         ("# nothing\n", "no line of numbers"),
         ("100 mm, 3\n80 mm, 2\n", "'100 mm, 3' in line 1"),
     ],

@@ -145,7 +145,8 @@ class TestDefinition:
     @pytest.mark.parametrize(
         ("text", "message"),
         [
-            ("", "case: received nothing; allowed: the path of a case"),
+            ("", "study.toml: received an empty file"),
+            ("# nothing", "case: received nothing; allowed: the path of a case"),
             ("case = 3", "case: received 3; allowed: the path of a case"),
             ("case = 'a.toml'\nwhat = 1", "what: received an unknown key; allowed: case and"),
             ("case = 'absent.toml'\n[sweep]\nseed = [1]", "absent.toml: received no such file"),

@@ -14,8 +14,9 @@ def start(name: str = "asperity") -> None:
 
             main(prog_name=name)
     except KeyboardInterrupt:
-        sys.stderr.write("interrupted\n")
-        sys.stderr.flush()
+        if sys.stderr is not None:  # it is closed
+            sys.stderr.write("interrupted\n")
+            sys.stderr.flush()
         os._exit(130)  # half-imported modules have nothing to put in order
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import numbers
 import os
+import stat
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from asperity.errors import InputError
 
 LONGEST = 60  # characters of a received value that a message repeats
+MOST_NAMES = 10  # of what is in a file, that a message lists
 
 
 def shown(value: object) -> str:
@@ -31,6 +34,8 @@ def _written(value: object) -> str:
         return repr(value.item() if isinstance(value, np.generic) else value)
     except ValueError:  # Python does not write out integers of many thousand digits
         return "a huge number"
+    except RecursionError:
+        return "lists or sections inside one another without end"
 
 
 def real(
@@ -202,6 +207,41 @@ def file_path(what: str, value: object, allowed: str) -> Path:
     if not isinstance(value, str | os.PathLike) or not str(value).strip():
         raise InputError(what, shown(value), allowed)
     return Path(value)
+
+
+def no_file(path: Path) -> str:
+    """Say why a path names no file that can be read; pipes and devices may never end.
+
+    Parameters
+    ----------
+    path : Path
+        The path.
+
+    Returns
+    -------
+    str
+        What was found there instead, for a message; empty if it is a regular file with contents.
+    """
+    try:
+        status = path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return "no such file"
+    except OSError as error:  # a name that is too long, a loop of links, a folder that is closed
+        return f"a path that cannot be followed ({error.strerror or error})"
+    except ValueError as error:  # a null character
+        return f"a path that cannot be followed ({error})"
+    if stat.S_ISDIR(status.st_mode):
+        return "a folder"
+    if not stat.S_ISREG(status.st_mode):
+        return "a pipe or a device, which may never end"
+    return "" if status.st_size else "an empty file"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Write out names for a message: the first ten, and how many more there are."""
+    shortened = [name if len(name) <= LONGEST else name[: LONGEST - 3] + "…" for name in names[:MOST_NAMES]]
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(shortened) + more
 
 
 def _number(value: object) -> float:

@@ -3,10 +3,51 @@
 from __future__ import annotations
 
 import codecs
+from pathlib import Path
 
+from asperity.arguments import no_file
 from asperity.errors import InputError
+from asperity.files import amount
 
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+
+
+def read_text(path: Path, source: str, allowed: str, *, largest: int, remedy: str = "") -> str:
+    """Read a text file that a person has written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    source : str
+        Its name, for messages.
+    allowed : str
+        What may stand there, for messages.
+    largest : int
+        Bytes that it may have.
+    remedy : str
+        What to do if there is no such file.
+
+    Returns
+    -------
+    str
+        The text, without a mark of its encoding.
+
+    Raises
+    ------
+    InputError
+        If it is no regular file with contents, cannot be read, is too large or no text.
+    """
+    if received := no_file(path):
+        raise InputError(source, received, allowed, remedy)
+    try:
+        with open(path, "rb") as file:
+            content = file.read(largest + 1)
+    except OSError as error:
+        raise InputError(source, f"a file that cannot be read ({error.strerror})", allowed) from None
+    if len(content) > largest:
+        raise InputError(source, f"more than {amount(largest)}", f"{allowed} of at most {amount(largest)}")
+    return decoded(content, source, allowed)
 
 
 def decoded(content: bytes, source: str, allowed: str) -> str:
@@ -46,3 +87,26 @@ def decoded(content: bytes, source: str, allowed: str) -> str:
         encoding = error.encoding[:6].upper()  # whatever the order of bytes
         received = f"a byte that is no {encoding} in line {line}"
         raise InputError(source, received, allowed, remedy) from None
+
+
+def number_in(text: str | bytes) -> float:
+    """Number that a text holds, as people and instruments write it.
+
+    Parameters
+    ----------
+    text : str or bytes
+        As ``"1.5e-3"``, ``"inf"`` or ``"nan"``, with or without white space around.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    ValueError
+        If it is none; ``"1_0"``, which is ten to Python, is none either.
+    """
+    if (b"_" if isinstance(text, bytes) else "_") in text:  # type: ignore[operator]
+        raise ValueError(f"no number: {text!r}")
+    return float(text)

@@ -4,6 +4,13 @@ from __future__ import annotations
 
 from enum import Enum
 
+from asperity.printable import printable
+
+LONGEST = 1000
+"""Characters of a name or value that a message repeats: more than the paths that people use."""
+MOST_ERRORS = 10
+"""Errors of a case that are listed: who has more corrects these first."""
+
 
 class AsperityError(Exception):
     """Base of all errors that a user can meet; ``exit_code`` is what the command line returns."""
@@ -30,12 +37,12 @@ class InputError(AsperityError, ValueError):
 
     def __init__(self, what: str, received: object, allowed: str, remedy: str = "") -> None:
         self.what, self.received, self.allowed, self.remedy = what, received, allowed, remedy
-        message = f"{what}: received {received}; allowed: {allowed}."
-        super().__init__(f"{message} {remedy}".strip())
+        message = f"{_cut(what)}: received {_cut(received)}; allowed: {allowed}."
+        super().__init__(printable(f"{message} {remedy}".strip()))
 
 
 class CaseError(InputError):
-    """One or more errors in a case, all reported at once.
+    """One or more errors in a case, reported at once: the first ten, and how many there are.
 
     Parameters
     ----------
@@ -48,7 +55,10 @@ class CaseError(InputError):
     def __init__(self, source: str, errors: list[str]) -> None:
         self.source, self.errors = source, list(errors)
         count = f"{len(errors)} error" + ("s" if len(errors) != 1 else "")
-        Exception.__init__(self, "\n".join([f"{source}: {count}", *(f"  - {e}" for e in errors)]))
+        listed = [f"  - {error}" for error in self.errors[:MOST_ERRORS]]
+        if len(self.errors) > MOST_ERRORS:
+            listed.append(f"  - and {len(self.errors) - MOST_ERRORS} more")
+        Exception.__init__(self, "\n".join([f"{printable(_cut(source))}: {count}", *listed]))
 
 
 class ComputationError(AsperityError):
@@ -64,7 +74,13 @@ class ComputationError(AsperityError):
 
     def __init__(self, what: str, remedy: str) -> None:
         self.what, self.remedy = what, remedy
-        super().__init__(f"{what}. Try: {remedy}.")
+        super().__init__(printable(f"{what}. Try: {remedy}."))
+
+
+def _cut(received: object) -> str:
+    """Write what was received, shortened where it is no name or value of a person."""
+    text = str(received)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
 
 
 class Grade(Enum):

@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from asperity.errors import ComputationError, InputError
+from asperity.errors import AsperityError, ComputationError, InputError
 
 try:
     import fcntl
@@ -26,6 +26,7 @@ _SEAL = b"\nasperity sha256 "
 _SEAL_SIZE = len(_SEAL) + 64
 _CHUNK = 2**20
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) if hasattr(errno, "EDQUOT") else (errno.ENOSPC, errno.EFBIG)
+_WRITABLE = "a folder that can be written to"
 _swept: set[Path] = set()
 
 
@@ -156,7 +157,9 @@ def _existing(path: Path) -> Path:
     return next(place for place in (path, *path.parents) if place.exists())
 
 
-def _not_written(path: Path, error: OSError) -> ComputationError:
+def _not_written(path: Path, error: OSError) -> AsperityError:
+    if error.errno == errno.ENAMETOOLONG:
+        return InputError(str(path), "a name that is too long", "names that the disk can hold")
     if error.errno in _FULL:
         with suppress(OSError):
             if error.errno == errno.EFBIG:
@@ -326,8 +329,8 @@ def alone_in(folder: Path) -> Iterator[None]:
     -----
     The folder itself is locked, so that nothing can be left in it; on Windows nothing is.
     """
-    made = not folder.exists()
     try:
+        made = not folder.exists()
         folder.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(folder, os.O_RDONLY) if fcntl is not None else None
     except OSError as error:
@@ -375,7 +378,10 @@ def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:
     InputError
         If it, or the first folder above it that exists, is a file or takes no new file.
     """
-    existing = _existing(folder)
+    try:
+        existing = _existing(folder)
+    except OSError as error:  # a name that is too long, a loop of links
+        raise InputError(what, f"{folder} ({error.strerror})", _WRITABLE, remedy) from None
     try:
         with tempfile.TemporaryFile(dir=existing):
             return
@@ -383,4 +389,4 @@ def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:
         if error.errno in _FULL:
             raise _too_large(folder, 0, 0) from error
         reason = f"{existing} is a file" if existing.is_file() else f"{existing}: {error.strerror or error}"
-    raise InputError(what, f"{folder} ({reason})", "a folder that can be written to", remedy) from None
+    raise InputError(what, f"{folder} ({reason})", _WRITABLE, remedy) from None

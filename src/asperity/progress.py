@@ -8,6 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol, TextIO
 
+from asperity.printable import printable
+from asperity.terminal import write
+
 QUIET_INTERVAL = 10.0  # s between lines where standard error is not a terminal
 
 
@@ -35,14 +38,14 @@ def progress_bar(stream: TextIO | None = None) -> Iterator[Progress]:
         A callable ``progress(done, total, message)``; a new `message` starts a new piece of work.
     """
     stream = sys.stderr if stream is None else stream
-    if not stream.isatty():
+    if stream is None or not stream.isatty():  # None: standard error is closed
         yield _PlainProgress(stream)
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
         TimeRemainingColumn(elapsed_when_finished=True),
@@ -52,7 +55,7 @@ def progress_bar(stream: TextIO | None = None) -> Iterator[Progress]:
 
         def update(done: int, total: int, message: str) -> None:
             if message not in tasks:
-                tasks[message] = bars.add_task(message, total=total)
+                tasks[message] = bars.add_task(printable(message), total=total)
             bars.update(tasks[message], completed=done, total=total)
 
         yield update
@@ -61,7 +64,7 @@ def progress_bar(stream: TextIO | None = None) -> Iterator[Progress]:
 class _PlainProgress:
     """A line at the start of a piece of work, and one every few seconds."""
 
-    def __init__(self, stream: TextIO) -> None:
+    def __init__(self, stream: TextIO | None) -> None:
         self.stream = stream
         self.message = ""
         self.first_done = 0
@@ -72,15 +75,11 @@ class _PlainProgress:
         if message != self.message:
             self.message, self.first_done = message, done
             self.started = self.written = now
-            print(f"{message} …", file=self.stream, flush=True)
+            write(self.stream, f"{message} …")
         elif now - self.written >= QUIET_INTERVAL:
             self.written = now
             remaining = (now - self.started) * (total - done) / max(done - self.first_done, 1)
-            print(
-                f"{message}: {done} of {total}, about {duration(remaining)} left",
-                file=self.stream,
-                flush=True,
-            )
+            write(self.stream, f"{message}: {done} of {total}, about {duration(remaining)} left")
 
 
 def duration(seconds: float) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from asperity.apart import apart, reason
-from asperity.arguments import file_path
+from asperity.arguments import file_path, no_file
 from asperity.errors import InputError
 from asperity.files import is_sealed, write_bytes
 
@@ -123,8 +123,18 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     }
 
     image = io.BytesIO()  # HDF5 itself ends the process where a disk is full
-    tree.to_netcdf(image, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
+    _storable(tree).to_netcdf(image, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
     return write_bytes(path, image.getbuffer(), sealed=True)
+
+
+def _storable(tree: xarray.DataTree) -> xarray.DataTree:
+    """Spell out what UTF-8 does not have, as bytes in names of files, in the words of a tree."""
+    tree = tree.copy()
+    for node in tree.subtree:
+        words = {name: value for name, value in node.attrs.items() if isinstance(value, str)}
+        spelled = {name: word.encode(errors="backslashreplace").decode() for name, word in words.items()}
+        node.attrs = node.attrs | spelled
+    return tree
 
 
 def load(path: str | os.PathLike[str]) -> xarray.DataTree:
@@ -146,11 +156,11 @@ def load(path: str | os.PathLike[str]) -> xarray.DataTree:
         If the file is missing, damaged, too large or not a result of this program.
     """
     path = file_path("result", path, "the path of a run.nc, or of the folder that holds one")
-    if path.is_dir():
+    if no_file(path) == "a folder":
         path = path / "run.nc"
     allowed = "a result file that a run has written (run.nc)"
-    if not path.is_file():
-        raise InputError(str(path), "no such file", allowed, "Check the path.")
+    if received := no_file(path):
+        raise InputError(str(path), received, allowed, "Check the path.")
     if path.stat().st_size > LARGEST_FILE:
         raise InputError(str(path), f"{path.stat().st_size / 2**30:.0f} GiB", f"{allowed} of at most 16 GiB")
     with open(path, "rb") as file:

@@ -189,7 +189,10 @@ class Store:
 
     def files(self) -> list[Path]:
         """List the files of this store, sorted by name."""
-        return sorted(self.root.glob("*.npz")) if self.root.is_dir() else []
+        try:
+            return sorted(self.root.glob("*.npz")) if self.root.is_dir() else []
+        except OSError:  # a name that is too long
+            return []
 
     def size(self) -> int:
         """Total size of the files, in bytes."""

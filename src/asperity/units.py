@@ -10,13 +10,14 @@ from typing import Any
 from asperity.errors import InputError
 
 _NUMBER = re.compile(
-    r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?inf|nan)(?![0-9.,_])\s*(.*)",
+    r"\s*+([+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][+-]?[0-9]++)?|[+-]?inf|nan)(?![0-9.,_])\s*+(.*)",
     re.IGNORECASE | re.DOTALL,
 )
 # Names, single-digit powers, products and quotients: nothing that takes the unit library long.
 _POWER = r"(?:(?:\^|\*\*)?-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"[A-Za-zµμΩ°%]+{_POWER}(?:\s*[ */·]\s*[A-Za-zµμΩ°%]+{_POWER})*")
 _LONGEST = 40  # characters
+_LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit have 70
 
 # What nearly every case is written in: its values need no unit library, which takes 0.3 s to be ready.
 _PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m", "N m^2")
@@ -100,7 +101,7 @@ def quantity(text: str, dimension: str) -> float:
     """
     received = repr(text if len(text) <= _LONGEST else text[:_LONGEST] + "…")
     allowed = f"a number and a unit, as '1 {dimension}'" if dimension else "a number"
-    match = _NUMBER.fullmatch(text)
+    match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST_QUANTITY else None
     if match is None:
         remedy = "Write the number first, with a decimal point, then the unit."
         raise InputError("quantity", received, allowed, remedy)

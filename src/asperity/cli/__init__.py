@@ -9,6 +9,7 @@ import click
 
 from asperity import __version__
 from asperity.cli.door import Door
+from asperity.terminal import say
 
 _case = click.argument("case", type=click.Path(path_type=Path))
 _output = click.option(
@@ -100,9 +101,9 @@ def new(kind: str) -> None:
     if kind == "study":
         from asperity.studies.definition import TEMPLATE
 
-        click.echo(TEMPLATE, nl=False)
+        say(TEMPLATE, lines=True)
     else:
-        click.echo(template(kind), nl=False)
+        say(template(kind), lines=True)
 
 
 @main.command()
@@ -263,4 +264,4 @@ def completion(shell: str) -> None:
 
     kind = get_completion_class(shell)
     assert kind is not None
-    click.echo(kind(main, {}, "asperity", "_ASPERITY_COMPLETE").source())
+    say(kind(main, {}, "asperity", "_ASPERITY_COMPLETE").source(), lines=True)

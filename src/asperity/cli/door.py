@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import atexit
 import gc
+import io
 import sys
 import traceback
 import warnings
-from io import TextIOWrapper
+from collections.abc import Sequence
 from typing import Any
 
 import click
@@ -15,6 +16,8 @@ import click
 from asperity.cli import plain_text
 from asperity.errors import AsperityError
 from asperity.interrupts import interruptible, was_interrupted
+from asperity.printable import printable
+from asperity.terminal import say, standard_streams
 
 FAILED = 3
 INTERRUPTED = 130
@@ -29,39 +32,52 @@ class Door(click.Group):
     0 done; 2 the input is wrong; 3 the computation failed; 130 interrupted.
     """
 
-    def make_context(self, *args: Any, **more: Any) -> click.Context:
-        """Read the words of the command line."""
-        try:
-            return super().make_context(*args, **more)
-        except KeyboardInterrupt:
-            click.echo(_INTERRUPTED, err=True)
-            sys.exit(INTERRUPTED)
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> Any:
+        """Run the program, with standard streams that need no reader."""
+        with standard_streams(errors=plain_text.NAME):  # a pipe without − gets - and goes on
+            try:
+                code = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+            except click.ClickException as error:
+                usage = io.StringIO()
+                error.show(usage)
+                say(usage.getvalue(), err=True, lines=True)
+                code = error.exit_code
+            except click.Abort:  # before a command has begun, or after its end
+                say(_INTERRUPTED, err=True)
+                code = INTERRUPTED
+        if standalone_mode:
+            sys.exit(code)
+        return code
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
         gc.set_threshold(COLLECT_AFTER)
         atexit.register(gc.freeze)  # a last search for unused objects would take a second
-        for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, TextIOWrapper):
-                stream.reconfigure(errors=plain_text.NAME)  # a pipe without − gets - and goes on
         with interruptible(), warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.showwarning = _WarningLines()
             try:
                 return super().invoke(ctx)
-            except (click.ClickException, click.exceptions.Exit, BrokenPipeError):
+            except (click.ClickException, click.exceptions.Exit):
                 raise
             except (KeyboardInterrupt, click.Abort):
-                click.echo(_INTERRUPTED, err=True)
+                say(_INTERRUPTED, err=True)
                 ctx.exit(INTERRUPTED)
             except Exception as error:
                 if was_interrupted():  # and an import has made another error of it
-                    click.echo(_INTERRUPTED, err=True)
+                    say(_INTERRUPTED, err=True)
                     ctx.exit(INTERRUPTED)
                 message, code = _outcome(error)
                 if ctx.params.get("debug"):
-                    click.echo(traceback.format_exc(), err=True)
-                click.echo(f"Error: {message}", err=True)
+                    say(traceback.format_exc(), err=True, lines=True)
+                say(f"Error: {message}", err=True, lines=True)
                 ctx.exit(code)
 
 
@@ -72,7 +88,7 @@ def _outcome(error: Exception) -> tuple[str, int]:
     if isinstance(error, MemoryError):
         remedy = "a smaller window, a shorter duration or a coarser spacing"
         return f"the memory of this machine is too small. Try: {remedy}.", FAILED
-    what = f"the program failed with {type(error).__name__}: {error}"
+    what = printable(f"the program failed with {type(error).__name__}: {error}")
     return f"{what}. Try: asperity --debug …, which shows where.", FAILED
 
 
@@ -94,4 +110,4 @@ class _WarningLines:
         """Print `message`, unless it has been printed before."""
         if str(message) not in self.shown and not issubclass(category, DeprecationWarning | ImportWarning):
             self.shown.add(str(message))
-            print(f"Warning: {message}", file=sys.stderr)
+            say(f"Warning: {message}", err=True)

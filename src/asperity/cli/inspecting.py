@@ -9,11 +9,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from asperity.errors import InputError
 from asperity.files import atomic_write
 from asperity.surfaces.readers.spelling import on_command_line, spelled
+from asperity.terminal import say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,16 +64,16 @@ def inspect(
     if side_by_side := _as_lines(surfaces, lines):
         _inspect_lines(side_by_side, title, picture, told=lines is not None)
         return
-    click.echo(f"{title}: {described(surfaces)}")
+    say(f"{title}: {described(surfaces)}")
     first = surfaces[0].levelled()
     if len(surfaces) > 1:
-        click.echo(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
+        say(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
         title += f", the first of {len(surfaces)} maps"
     for line in statistics_lines(first):
-        click.echo(line)
+        say(line)
     if line := homogeneity_line(first):
-        click.echo(line)
-    click.echo(f"Picture: {draw(first, title, picture).resolve()}")
+        say(line)
+    say(f"Picture: {draw(first, title, picture).resolve()}")
 
 
 def _as_lines(surfaces: list[HeightMap | Profile], told: bool | None) -> tuple[Profile, ...]:
@@ -93,17 +92,17 @@ def _inspect_lines(lines: tuple[Profile, ...], title: str, picture: Path, *, tol
     from asperity.report import lines_picture
     from asperity.surfaces.statistics import line_statistics
 
-    click.echo(f"{title}: {described_lines(lines)}")
+    say(f"{title}: {described_lines(lines)}")
     if not told:
-        click.echo("Taken for lines measured side by side, by its shape; --map takes it for a map.")
+        say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
     levelled = [line.levelled() for line in lines]
     found = line_statistics(levelled)
-    click.echo(f"Each line levelled; wavelengths {_band(found[0][0])}; mean (lowest to highest of a line):")
+    say(f"Each line levelled; wavelengths {_band(found[0][0])}; mean (lowest to highest of a line):")
     for item, low, high in found:
         spread = " to ".join(_scaled(replace(item, value=value)) for value in (low, high))
-        click.echo(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning} ({spread})")
+        say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning} ({spread})")
     figure = lines_picture([line.heights for line in levelled], lines[0].spacing, title)
-    click.echo(f"Picture: {_saved(figure, picture).resolve()}")
+    say(f"Picture: {_saved(figure, picture).resolve()}")
 
 
 def read(file: Path, index: int | None = None, **hints: Any) -> list[HeightMap | Profile]:

@@ -6,17 +6,16 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-import click
-
 from asperity.files import amount
 from asperity.kernels.folders import folders, kept_files
 from asperity.store import Store
+from asperity.terminal import say
 
 
 def show_kept() -> None:
     """Print what is kept, how much it is and where."""
     for what, where, files in _kept():
-        click.echo(f"{where}: {len(files)} {what}, {amount(_size(files))}")
+        say(f"{where}: {len(files)} {what}, {amount(_size(files))}")
 
 
 def clear_kept() -> None:
@@ -26,7 +25,7 @@ def clear_kept() -> None:
         for file in files:
             with suppress(OSError):  # another process was faster
                 file.unlink(missing_ok=True)
-        click.echo(f"{where}: {len(files)} {what} deleted, {amount(size)}")
+        say(f"{where}: {len(files)} {what} deleted, {amount(size)}")
 
 
 def _kept() -> Iterator[tuple[str, Path, list[Path]]]:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
 from typing import TYPE_CHECKING
-
-import click
 
 from asperity.config import Case, WheelOnRailCase
 from asperity.config.sections import MeasuredLine
 from asperity.errors import Grade, PhysicsWarning
 from asperity.progress import Progress, duration, progress_bar
+from asperity.terminal import say, say_table
 
 if TYPE_CHECKING:
     from asperity.scenarios.expecting import Work
@@ -33,31 +31,23 @@ def show_plan(prepared: Prepared, source: str) -> None:
     source : str
         Its file.
     """
-    from rich.console import Console
-    from rich.table import Table
-
     from asperity.scenarios.expecting import expect
 
     for warning in prepared.caught:
         grade = getattr(warning.message, "grade", Grade.WARNING).value.capitalize()
-        click.echo(f"{grade}: {warning.message}", err=True)
+        say(f"{grade}: {warning.message}", err=True)
     with progress_bar() as progress:
         expected = expect(prepared, progress)
-    console = Console(file=sys.stdout, markup=False, emoji=False)  # names of files may look like either
-    if not console.is_terminal:
-        console.width = 120
-    values = Table(title=f"{source}: a valid case", title_justify="left")
-    for heading in ("key", "value", "default", "what it is"):
-        values.add_column(heading)
-    for item in prepared.case.parameters():
-        default = "" if item["is_default"] else item["default"] or "none"
-        style = None if item["is_default"] else "bold"
-        values.add_row(item["key"], item["value"], default, item["note"], style=style)
-    console.print(values)
-    work = Table(title="What will be computed", title_justify="left", show_header=False)
-    for name, value in plan(prepared, expected):
-        work.add_row(name, value)
-    console.print(work)
+    items = prepared.case.parameters()
+    defaults = ["" if item["is_default"] else item["default"] or "none" for item in items]
+    values = [
+        (item["key"], item["value"], default, item["note"])
+        for item, default in zip(items, defaults, strict=True)
+    ]
+    changed = {number for number, item in enumerate(items) if not item["is_default"]}
+    headings = ("key", "value", "default", "what it is")
+    say_table(f"{source}: a valid case", headings, values, width=120, bold=changed)
+    say_table("What will be computed", (), plan(prepared, expected), width=120)
 
 
 def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
@@ -173,7 +163,7 @@ def announce_scan(prepared: Prepared, progress: Progress) -> None:
         return
     scan = expected_path_scan(prepared, progress)
     if scan.seconds > ANNOUNCED:
-        click.echo(f"Scan of the path: {described_scan(scan)}.", err=True)
+        say(f"Scan of the path: {described_scan(scan)}.", err=True)
 
 
 def _track(case: Case) -> list[tuple[str, str]]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import click
-
 from asperity.cli.planning import announce_scan
 from asperity.config import Case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, require_space
 from asperity.progress import progress_bar
+from asperity.terminal import say
 
 
 def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: bool = False) -> None:
@@ -54,19 +53,19 @@ def _run_alone(case: Case, directory: Path, *, report: bool) -> None:
     for warning in json.loads(tree.attrs.get("warnings", "[]")):
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
         grade = warning.get("grade", "warning").capitalize()
-        click.echo(f"{grade}: {warning['message']}{times}", err=True)
+        say(f"{grade}: {warning['message']}{times}", err=True)
     written = save(tree, directory / "run.nc")
     remove_report(directory)
     if verdict := tree.attrs.get("verdict"):
-        click.echo(verdict)
-    click.echo(f"Results: {written.resolve()}")
+        say(verdict)
+    say(f"Results: {written.resolve()}")
     if report:
         write_report(tree, directory)
-        click.echo(f"Report:  {(directory / 'report.html').resolve()}")
+        say(f"Report:  {(directory / 'report.html').resolve()}")
     store = Store()
     if size := store.size():
         kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"
-        click.echo(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
+        say(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
 
 
 def _expected_size(case: Case) -> float:

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
-import sys
 from contextlib import AbstractContextManager, nullcontext
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import click
 import numpy as np
+from numpy.typing import NDArray
 
+from asperity.comma_separated import write_csv
 from asperity.config import WheelOnRailCase, load_case
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable, write_bytes
+from asperity.files import alone_in, refuse_unwritable
 from asperity.progress import progress_bar
 from asperity.studies.definition import Study, study_of
+from asperity.terminal import say, say_table
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -75,7 +74,7 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
     from asperity.studies.running import study as computed
 
     size = " × ".join(f"{len(axis.values)} {axis.name}" for axis in study.axes)
-    click.echo(f"Study of {size}", err=True)
+    say(f"Study of {size}", err=True)
     place: AbstractContextManager[Executor | None] = nullcontext()
     if scheduler is not None:
         place = cluster(scheduler)
@@ -84,10 +83,9 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
     _show(table)
     _report(table)
     written = save(DataTree(table), directory / "study.nc")
-    text = table_text(table)
-    rows = write_bytes(directory / "study.csv", text.encode("utf-8"))
-    click.echo(f"Results: {written.resolve()}")
-    click.echo(f"Table:   {rows.resolve()}")
+    rows = write_csv(directory / "study.csv", *_table(table))
+    say(f"Results: {written.resolve()}")
+    say(f"Table:   {rows.resolve()}")
 
 
 def speeds_and_loads(case: Path, speeds: str | None, loads: str | None) -> Study:
@@ -129,57 +127,38 @@ def _refuse_to_overwrite(study: Study, directory: Path) -> None:
     try:
         with xarray.open_dataset(file, engine="h5netcdf") as found:
             earlier = dict(found.attrs)
+            swept = json.loads(earlier["sweep"])
     except Exception:  # h5py and xarray raise errors of many kinds on damaged files
-        earlier = {}
-    if earlier.get("case") != study.text or json.loads(earlier.get("sweep", "{}")) != study.sweep:
+        earlier, swept = {}, None
+    if earlier.get("case") != study.text or swept != study.sweep:
         remedy = "Choose another folder with -o, or replace it with --overwrite."
         allowed = "a new folder, or the folder of the same study"
         raise InputError(str(directory), "the study.nc of another study", allowed, remedy)
-
-
-def table_text(found: xarray.Dataset) -> str:
-    """Write a study as comma-separated text.
-
-    Parameters
-    ----------
-    found : Dataset
-        What a study returned.
-
-    Returns
-    -------
-    str
-        One row per member and law; one column per quantity, and per band where there are bands.
-    """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    heading, rows = _table(found)
-    writer.writerow(heading)
-    writer.writerows(rows)
-    return text.getvalue()
 
 
 def _table(found: xarray.Dataset, *, bands: bool = True) -> tuple[list[str], list[list[object]]]:
     """Heading and rows of a study, with or without the quantities that have bands."""
     axes = [*json.loads(found.attrs["sweep"]), *(["law"] if "law" in found.dims else [])]
     heading = [_titled(found[axis]) for axis in axes]
-    chosen: dict[str, list[str]] = {}
+    chosen: list[tuple[list[str], NDArray[Any]]] = []
     for name, values in found.data_vars.items():
         others = [str(dim) for dim in values.dims if dim not in axes]
         if len(others) > (1 if bands else 0):
             continue
-        chosen[str(name)] = others
+        own = [axis for axis in axes if axis in values.dims]
+        chosen.append((own, values.transpose(*own, *others).values))
         if not others:
             heading.append(_titled(values))
         for place in found[others[0]].values.tolist() if others else ():
             shown = place if isinstance(place, str) else f"{place:.6g} {_unit(found[others[0]])}".strip()
             heading.append(f"{name} {shown} [{values.attrs['units']}]")
+    labels = {axis: found[axis].values.tolist() for axis in axes}
     rows: list[list[object]] = []
     for places in product(*(range(found.sizes[axis]) for axis in axes)):
         here = dict(zip(axes, places, strict=True))
-        row: list[object] = [found[axis].values[place].item() for axis, place in here.items()]
-        for name in chosen:
-            one = found[name].isel({axis: here[axis] for axis in axes if axis in found[name].dims})
-            row += np.atleast_1d(one.values).tolist()
+        row: list[object] = [labels[axis][place] for axis, place in here.items()]
+        for own, numbers in chosen:
+            row += np.atleast_1d(numbers[tuple(here[axis] for axis in own)]).tolist()
         rows.append(row)
     return heading, rows
 
@@ -195,22 +174,11 @@ def _titled(values: xarray.DataArray) -> str:
 
 def _show(found: xarray.Dataset) -> None:
     """Print the quantities of a study that have no bands."""
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    console = Console(file=sys.stdout)
-    if not console.is_terminal:
-        console.width = 200
     heading, rows = _table(found, bands=False)
-    table = Table(title="Study", title_justify="left")
-    for name in heading:
-        table.add_column(Text(name))  # units in brackets are no markup
-    for row in rows[:MOST_ROWS]:
-        table.add_row(*(Text(item) if isinstance(item, str) else _short(item) for item in row))
-    console.print(table)
+    shown = ([item if isinstance(item, str) else _short(item) for item in row] for row in rows[:MOST_ROWS])
+    say_table("Study", heading, shown, width=200)
     if len(rows) > MOST_ROWS:
-        click.echo(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
+        say(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
 
 
 def _short(number: object) -> str:
@@ -222,11 +190,11 @@ def _report(found: xarray.Dataset) -> None:
     count = found["completed"].size
     for warning in json.loads(found.attrs["warnings"]):
         grade = warning.get("grade", "warning").capitalize()
-        click.echo(f"{grade} ({warning['members']} of {count} members): {warning['message']}", err=True)
+        say(f"{grade} ({warning['members']} of {count} members): {warning['message']}", err=True)
     for failure in json.loads(found.attrs["failures"]):
         names = failure["members"]
-        click.echo(f"Failed ({len(names)} of {count} members): {failure['message']}", err=True)
+        say(f"Failed ({len(names)} of {count} members): {failure['message']}", err=True, lines=True)
         for name in names[:MOST_NAMED]:
-            click.echo(f"  - {name}", err=True)
+            say(f"  - {name}", err=True)
         if len(names) > MOST_NAMED:
-            click.echo(f"  - and {len(names) - MOST_NAMED} more", err=True)
+            say(f"  - and {len(names) - MOST_NAMED} more", err=True)

@@ -12,7 +12,7 @@ from typing import Annotated, Any, NoReturn, get_args
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
-from asperity.arguments import shown
+from asperity.arguments import no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import factor, quantity
@@ -34,6 +34,10 @@ _WORDS = {
     "dB": ("a level", "+0 dB"),
 }
 
+
+LEAST, MOST = 1e-30, 1e30
+"""Numbers in SI lie between these: nothing in mechanics is outside, and ten multiplied are finite."""
+LONGEST_WORD = 100  # characters of a word for which one like it is sought
 
 BACKSLASH = (
     "In double quotes a backslash changes the letter after it: write Windows paths in single quotes, as in "
@@ -82,6 +86,8 @@ class Quantity:
             self._fail(value, error.remedy)
         if not math.isfinite(number) and not (self.infinite and number > 0):
             self._fail(value, "Give a finite value.")
+        if math.isfinite(number) and _is_absurd(number):
+            self._fail(value, f"In {self.dimension}, numbers lie between {LEAST:g} and {MOST:g}.")
         if _outside(number, self.above, self.at_least):
             self._fail(value)
         return number
@@ -115,7 +121,7 @@ class Number:
             remedy = "Write it without quotes and unit." if isinstance(value, str) else ""
             raise InputError("number", shown(value), self.allowed, remedy)
         finite = isinstance(value, int) or math.isfinite(value)
-        if not finite or _outside(value, self.above, self.at_least, self.at_most):
+        if not finite or _is_absurd(value) or _outside(value, self.above, self.at_least, self.at_most):
             raise InputError("number", shown(value), self.allowed)
         return value if self.whole else float(value)
 
@@ -167,7 +173,7 @@ class Text:
 
     def __call__(self, value: object) -> str:
         """Return the text."""
-        if not isinstance(value, str) or not value.strip():
+        if not isinstance(value, str) or not value.strip() or not _is_text(value):
             raise InputError("text", shown(value), self.allowed)
         return value
 
@@ -200,9 +206,11 @@ class File:
         if not isinstance(value, str | Path) or "\0" in str(value) or not str(value):
             raise InputError("file", shown(value), self.allowed)
         path = Path((info.context or {}).get("folder", ".")) / value
-        if not path.is_file():
-            escaped = any(not character.isprintable() for character in str(value))
-            remedy = BACKSLASH if escaped else f"There is no such file in {path.parent.resolve()}."
+        if reason := no_file(path):
+            remedy = f"It is {reason}."
+            if reason == "no such file":
+                escaped = any(not character.isprintable() for character in str(value))
+                remedy = BACKSLASH if escaped else f"There is no such file in {path.parent.resolve()}."
             raise InputError("file", shown(str(value)), self.allowed, remedy)
         return path
 
@@ -427,8 +435,20 @@ def _plain(value: object) -> object:
 
 def nearest(word: object, words: tuple[str, ...] | list[str]) -> str:
     """Sentence that names the nearest of `words`; empty if none is near."""
+    if len(str(word)) > LONGEST_WORD:
+        return ""
     found = difflib.get_close_matches(str(word).lower(), words, n=1, cutoff=0.6)
     return f'Did you mean "{found[0]}"?' if found else ""
+
+
+def _is_text(value: str) -> bool:
+    """Whether files can hold a text: no null character, no half of one."""
+    return "\0" not in value and not any("\ud800" <= character <= "\udfff" for character in value)
+
+
+def _is_absurd(value: float) -> bool:
+    """Whether a number is so large or small that its products are not finite."""
+    return value != 0 and not LEAST <= abs(value) <= MOST
 
 
 def _outside(value: float, above: float | None, at_least: float | None, at_most: float | None = None) -> bool:

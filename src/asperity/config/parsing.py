@@ -12,17 +12,27 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
+from asperity import decoding
 from asperity.arguments import file_path, shown
 from asperity.config.ball_on_beam import BallOnBeamCase
 from asperity.config.case import Case
 from asperity.config.keys import BACKSLASH, Problems, allowed_in, nearest
 from asperity.config.wheel_on_rail import WheelOnRailCase
 from asperity.config.writing import toml_text
-from asperity.decoding import decoded
 from asperity.errors import CaseError, InputError
 
 KINDS: dict[str, type[Case]] = {"ball-on-beam": BallOnBeamCase, "wheel-on-rail": WheelOnRailCase}
 LARGEST_CASE = 2**20  # bytes
+MOST_PARTS = 20
+"""Parts of a dotted key; those of a case have three. The time to read a key grows with the square of them."""
+MOST_VALUES = 2000
+"""Keys and values of lists in a case: some twenty times what the longest ones have."""
+DEEPEST = 10  # sections and lists inside one another; those of a case are three deep
+
+# Where a run of parts starts, parts and dots are taken whole, so that the search needs time like the text.
+_MANY_PARTS = re.compile(
+    r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % MOST_PARTS  # noqa: UP031
+)
 
 
 def load_case(path: str | os.PathLike[str]) -> Case:
@@ -79,19 +89,21 @@ def as_case(case: object) -> Case:
     return load_case(file_path("case", case, allowed))
 
 
-def plain(value: Any) -> Any:
+def plain(value: Any, depth: int = 0) -> Any:
     """Keys and values as TOML would give them: numbers of Python, lists, and paths as text."""
+    if depth > DEEPEST:
+        raise _too_deep("case")
     if isinstance(value, Mapping):
-        return {str(name): plain(item) for name, item in value.items()}
+        return {str(name): plain(item, depth + 1) for name, item in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
+        return [plain(item, depth + 1) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.item() if isinstance(value, np.generic) else value
 
 
 def read_text(path: str | os.PathLike[str], what: str, remedy: str) -> str:
-    """Read a small text file that a person has written.
+    """Read a case or a study that a person has written.
 
     Parameters
     ----------
@@ -110,18 +122,10 @@ def read_text(path: str | os.PathLike[str], what: str, remedy: str) -> str:
     Raises
     ------
     InputError
-        If the file is missing, too large or no text.
+        If the file is missing, no regular file, too large or no text.
     """
-    path = Path(path)
     allowed = f"the path of a {what} file (TOML)"
-    if not path.is_file():
-        received = "a folder" if path.is_dir() else "no such file"
-        raise InputError(str(path), received, allowed, remedy)
-    with open(path, "rb") as file:
-        content = file.read(LARGEST_CASE + 1)
-    if len(content) > LARGEST_CASE:
-        raise InputError(str(path), "more than 1 MiB", allowed, "Keep heights in a file of their own.")
-    return decoded(content, str(path), allowed)
+    return decoding.read_text(Path(path), str(path), allowed, largest=LARGEST_CASE, remedy=remedy)
 
 
 def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str, Any]:
@@ -146,14 +150,18 @@ def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str,
     InputError
         If the text is no TOML.
     """
+    allowed = f"a {what} in TOML"
+    text = text.replace("\r\n", "\n")
+    if _MANY_PARTS.search(text):
+        raise InputError(str(source), f"a key of more than {MOST_PARTS} parts", allowed)
     try:
-        return tomllib.loads(text.replace("\r\n", "\n"))
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # TOML errors, and numbers too long to read
         remedy = 'Strings and quantities stand in double quotes: speed = "1 m/s".'
-        place = re.search(r"at line (\d+)", str(error))
-        if place and "\\" in text.splitlines()[int(place[1]) - 1]:
+        place = re.search(r"\(at line (\d+), column \d+\)$", str(error))
+        if place and "\\" in text.split("\n")[int(place[1]) - 1]:
             remedy = BACKSLASH
-        raise InputError(str(source), f"no TOML ({error})", f"a {what} in TOML", remedy) from None
+        raise InputError(str(source), f"no TOML ({error})", allowed, remedy) from None
 
 
 def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
@@ -200,9 +208,12 @@ def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> 
 
     Raises
     ------
+    InputError
+        If there are more keys and values than a case can have.
     CaseError
         With all errors at once, if the keys are wrong.
     """
+    _refuse_vast(data, str(source))
     kind = data.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         raise CaseError(str(source), [str(not_a_kind(kind))])
@@ -215,6 +226,27 @@ def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> 
     return case
 
 
+def _refuse_vast(data: Mapping[str, Any], source: str) -> None:
+    """Refuse what would take long to check and fill screens with errors."""
+    level: list[Any] = [data]  # one depth after the other: nothing here may recurse
+    count = 0
+    for _ in range(DEEPEST):
+        inner = [item for each in level for item in (each.values() if isinstance(each, Mapping) else each)]
+        count += len(inner)
+        if count > MOST_VALUES:
+            allowed = f"a case with at most {MOST_VALUES}"
+            remedy = "Keep heights in a file of their own."
+            raise InputError(source, f"{count} keys and values", allowed, remedy)
+        level = [item for item in inner if isinstance(item, Mapping | list | tuple)]
+    if level:
+        raise _too_deep(source)
+
+
+def _too_deep(source: str) -> InputError:
+    received = f"sections or lists more than {DEEPEST} deep inside one another"
+    return InputError(source, received, "keys, sections, and lists of values")
+
+
 def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
     """Error about a kind of case that this version does not have; None stands for a missing key."""
     allowed = ", ".join(f'"{name}"' for name in names)
@@ -225,7 +257,7 @@ def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
 
 def _messages(error: ValidationError, model: type[BaseModel]) -> list[str]:
     messages: list[str] = []
-    for item in error.errors():
+    for item in error.errors(include_url=False):
         name = _dotted(item["loc"])
         cause = item.get("ctx", {}).get("error")
         if isinstance(cause, Problems):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -46,38 +47,37 @@ def entry_of(kind: object, dotted: str) -> Entry:
     raise InputError(dotted, "an unknown key", allowed, remedy)
 
 
-def value_of(entry: Entry, value: object, source: str | os.PathLike[str]) -> Any:
-    """Read one value of a key.
+def reader_of(entry: Entry, source: str | os.PathLike[str]) -> Callable[[object], Any]:
+    """Make what reads values of a key.
 
     Parameters
     ----------
     entry : Entry
         The key.
-    value : object
-        The value as it stands in TOML.
     source : str or path
         The case file; relative paths start at its folder.
 
     Returns
     -------
-    object
-        The value in SI.
-
-    Raises
-    ------
-    InputError
-        If the value is none that the key can have.
+    callable
+        Takes a value as it stands in TOML and returns it in SI; raises an `InputError` if the key cannot
+        have it.
     """
-    try:
-        kind: Any = entry.field.annotation
-        if entry.field.metadata:
-            kind = Annotated[(kind, *entry.field.metadata)]
-        return TypeAdapter(kind).validate_python(value, context={"folder": Path(source).parent})
-    except ValidationError as error:
-        cause = error.errors()[0].get("ctx", {}).get("error")
-        if isinstance(cause, InputError):
-            raise InputError(entry.dotted, cause.received, cause.allowed, cause.remedy) from None
-        raise InputError(entry.dotted, shown(value), allowed_in(entry.field)) from None
+    kind: Any = entry.field.annotation
+    if entry.field.metadata:
+        kind = Annotated[(kind, *entry.field.metadata)]
+    adapter, context = TypeAdapter(kind), {"folder": Path(source).parent}
+
+    def value_of(value: object) -> Any:
+        try:
+            return adapter.validate_python(value, context=context)
+        except ValidationError as error:
+            cause = error.errors(include_url=False)[0].get("ctx", {}).get("error")
+            if isinstance(cause, InputError):
+                raise InputError(entry.dotted, cause.received, cause.allowed, cause.remedy) from None
+            raise InputError(entry.dotted, shown(value), allowed_in(entry.field)) from None
+
+    return value_of
 
 
 def unit_of(entry: Entry) -> str | None:

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.decoding import decoded
+from asperity.arguments import shown
+from asperity.decoding import number_in, read_text
 from asperity.errors import InputError
 from asperity.units import factor
 
@@ -19,7 +20,7 @@ LARGEST_TABLE = 10 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
 FEWEST_LINES = 10  # of a receptance
 
-_UNIT = re.compile(r"[(\[](.*?)[)\]]")
+_UNIT = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 _BAND = 0.1  # of a decade
 
 
@@ -190,11 +191,9 @@ def read_table(path: Path, columns: tuple[Column, ...]) -> NDArray[np.float64]:
 
 def _lines(path: Path, allowed: str) -> list[tuple[int, list[str]]]:
     """Cells of each line that holds any, with its number."""
-    content = path.read_bytes()[: LARGEST_TABLE + 1]
-    if len(content) > LARGEST_TABLE:
-        raise InputError(path.name, "more than 10 MiB", allowed)
     found = []
-    for number, line in enumerate(decoded(content, path.name, allowed).splitlines(), start=1):
+    content = read_text(path, path.name, allowed, largest=LARGEST_TABLE)
+    for number, line in enumerate(content.splitlines(), start=1):
         text = line.partition("#")[0].strip()
         separator = next((mark for mark in (";", ",") if mark in text), None)
         if separator == ";":
@@ -206,7 +205,7 @@ def _lines(path: Path, allowed: str) -> list[tuple[int, list[str]]]:
 
 def _number(cell: str) -> float:
     try:
-        return float(cell)
+        return number_in(cell)
     except ValueError:
         return math.nan
 
@@ -214,13 +213,13 @@ def _number(cell: str) -> float:
 def _scale(heading: str, column: Column, path: Path) -> float:
     """SI value of the unit that a heading names in brackets; 1 without one."""
     match = _UNIT.search(heading)
-    unit = match[1].strip() if match else ""
+    unit = " ".join(match[1].split()) if match else ""
     if column.dimension == "dB":
-        unit = re.sub(r"\s*re\s*1\s*[uµμ]m$", "", unit)
+        unit = re.sub(r" ?re ?1 ?[uµμ]m$", "", unit)
     if unit in ("", "-", "1"):
         return 1.0
     try:
         return factor(unit, column.dimension)
     except InputError as error:
         allowed = f"{column.name} in {column.dimension or 'no unit'}"
-        raise InputError(path.name, f"the heading '{heading}'", allowed, error.remedy) from None
+        raise InputError(path.name, f"the heading {shown(heading)}", allowed, error.remedy) from None

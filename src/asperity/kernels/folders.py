@@ -45,7 +45,11 @@ def kept_files(folder: Path) -> tuple[list[Path], list[Path]]:
     """
     kernels: list[Path] = []
     parts: list[Path] = []
-    for place in folder.glob("[0-9a-f]" * STAMP):
+    try:
+        places = list(folder.glob("[0-9a-f]" * STAMP))
+    except OSError:  # a name that is too long
+        return [], []
+    for place in places:
         if is_private(place):
             kernels += [file for file in place.iterdir() if not is_part(file)]
             parts += left_overs(place)

@@ -42,8 +42,7 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     def decorate(function: Callable[..., Any]) -> Any:
         kernel = njit(**options)(function)
         if keep:
-            inlined = options.get("forceinline", False) or options.get("inline") == "always"
-            kernel._cache = Kept(function, inlined=inlined)
+            kernel._cache = Kept(function)
         return kernel
 
     return decorate

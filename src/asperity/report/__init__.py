@@ -50,7 +50,7 @@ def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
     text = page(tree)
     for part in drawable_parts(tree):
         write_csv(part.columns(tree), directory / f"{part.name}.csv")
-    return write_bytes(directory / "report.html", text.encode("utf-8"))
+    return write_bytes(directory / "report.html", text.encode("utf-8", errors="backslashreplace"))
 
 
 def remove_report(directory: str | os.PathLike[str]) -> None:

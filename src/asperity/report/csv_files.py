@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import math
 from pathlib import Path
 
 import numpy as np
 
-from asperity.files import write_bytes
+from asperity import comma_separated
 from asperity.report.part import Columns
 
 
@@ -25,19 +22,13 @@ def csv_text(columns: Columns) -> str:
     -------
     str
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    shown = [_fields(np.asarray(values, dtype=float)) for values in columns.values()]
-    writer.writerows(zip(*shown, strict=True))
-    return text.getvalue()
+    return comma_separated.csv_text(list(columns), _rows(columns))
 
 
-def _fields(values: np.ndarray) -> list[float | str]:
-    return ["" if math.isnan(value) else value for value in values.tolist()]
+def _rows(columns: Columns) -> list[tuple[float, ...]]:
+    return list(zip(*(np.asarray(values, dtype=float).tolist() for values in columns.values()), strict=True))
 
 
 def write_csv(columns: Columns, path: Path) -> Path:
     """Write `columns` to the file at `path`, completely or not at all."""
-
-    return write_bytes(path, csv_text(columns).encode("utf-8"))
+    return comma_separated.write_csv(path, list(columns), _rows(columns))

@@ -19,12 +19,13 @@ from asperity.arguments import file_path, shown
 from asperity.config import Case, case_of
 from asperity.config.describing import Entry
 from asperity.config.parsing import plain, read_text, read_toml
-from asperity.config.single_keys import entry_of, unit_of, value_of
+from asperity.config.single_keys import entry_of, reader_of, unit_of
 from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.store import content_key
 
 MOST_MEMBERS = 10_000
+MOST_KEYS = 100  # that are swept: more than a case has
 FORMAT = 1
 """Raise it when what is kept of a member no longer means what it meant."""
 TEMPLATE = """\
@@ -155,7 +156,7 @@ class Study:
         errors = [member.error for member in found if member.error is not None]
         if len(errors) == len(found):
             messages = dict.fromkeys(message for error in errors for message in error.errors)
-            raise CaseError(self.source, list(messages)[:20])
+            raise CaseError(self.source, list(messages))
         return found
 
     def _member(self, index: tuple[int, ...], digests: dict[Path, str]) -> Member:
@@ -164,7 +165,7 @@ class Study:
             case = case_of(_with_values(self.data, values), self.text, self.source)
         except CaseError as error:
             return Member(index, values, None, error, "")
-        content = _content(case.model_dump(), digests)
+        content = json.dumps(_content(case.model_dump(), digests), sort_keys=True)  # at once: there are many
         return Member(index, values, case, None, content_key("member", FORMAT, __version__, content))
 
 
@@ -264,9 +265,16 @@ def _checked(
         example = 'Write [sweep] and below it, for instance, speed = ["20 m/s", "56 m/s"].'
         raise CaseError(str(source), [str(InputError("sweep", received, "a key with its values", example))])
     errors: list[str] = []
-    axes = []
+    axes: list[Axis] = []
     for dotted, values in _flat(sweep):
+        if len(axes) + len(errors) >= MOST_KEYS:
+            errors.append(str(InputError("sweep", "more keys", f"at most {MOST_KEYS} keys")))
+            break
         try:
+            if dotted in (axis.name for axis in axes):
+                raise InputError(
+                    dotted, "the key more than once", "each key once", "Put all values into one list."
+                )
             axes.append(_axis(data.get("kind"), dotted, values, case_source))
         except InputError as error:
             name = error.what if error.what == "kind" else f"sweep.{error.what}"
@@ -298,15 +306,18 @@ def _axis(kind: object, dotted: str, values: object, source: Path) -> Axis:
         raise InputError(dotted, shown(values), "a list of values", "Put the values into [ ].")
     if not values:
         raise InputError(dotted, "an empty list", "one value or more", "Remove the key for that of the case.")
-    read: list[Any] = []
+    if len(values) > MOST_MEMBERS:
+        raise InputError(dotted, f"{len(values)} values", f"at most {MOST_MEMBERS}", "Split the study.")
+    read: dict[Any, None] = {}  # in their order
+    value_of = reader_of(entry, source)
     for number, value in enumerate(values, 1):
         try:
-            found = value_of(entry, value, source)
+            found = value_of(value)
         except InputError as error:
             raise InputError(f"{dotted}[{number}]", error.received, error.allowed, error.remedy) from None
         if found in read:
             raise InputError(dotted, f"{shown(value)} more than once", "each value once")
-        read.append(found)
+        read[found] = None
     return Axis(entry, tuple(values), tuple(read))
 
 

@@ -20,6 +20,8 @@ LEAST_POINTS = 8
 """Along each side of a map that has a spectrum."""
 LAGS = 2
 """Lengths of the map beyond which the correlation is taken as zero."""
+ROUNDING = 1e-12
+"""Heights, relative to the largest before levelling, that are nothing but rounding."""
 LONGEST = 2.0
 """Wavelength, in lengths of the map, that heights are given which the spectrum does not explain."""
 
@@ -71,7 +73,7 @@ def likeness(
     Raises
     ------
     InputError
-        If maps have missing points, different spacings or fewer than eight points along a side.
+        If maps have missing points, no roughness, different spacings or fewer than eight points along a side.
 
     Notes
     -----
@@ -104,6 +106,14 @@ def _prepared(maps: tuple[HeightMap, ...], spacing: float | tuple[float, float] 
             received = f"spacings {maps[0].spacing} and {one.spacing} m"
             raise InputError("maps", received, "one spacing for all", "Use resample first.")
     levelled = [level(one) for one in maps]
+    if all(
+        np.ptp(flat.heights) <= ROUNDING * np.abs(one.heights).max()
+        for flat, one in zip(levelled, maps, strict=True)
+    ):
+        received = f"a plane without roughness, {maps[0].source or 'a map'}"
+        raise InputError(
+            "maps", received, "maps with roughness", "Check the measurement, and which array is read."
+        )
     levelled = levelled if spacing is None else [resample(one, spacing) for one in levelled]
     smallest = min(min(one.shape) for one in levelled)
     if smallest < LEAST_POINTS:

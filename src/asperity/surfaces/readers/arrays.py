@@ -10,6 +10,7 @@ from zipfile import ZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import listed, shown
 from asperity.errors import InputError
 from asperity.surfaces.readers.guards import archive, check_claim, hostile, member_bytes
 from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
@@ -71,8 +72,8 @@ def read_npz(path: Path, hints: Hints) -> list[Surface]:
         if chosen is None:  # scalars such as a pixel size do not count
             chosen = only_one([name for name in names if _has_axes(opened, members[name])], path.name)
         if chosen not in members:
-            allowed = f"one of: {', '.join(names)}"
-            raise InputError(f"array in {path.name}", repr(chosen), allowed, "Choose one.")
+            allowed = f"one of: {listed(names)}"
+            raise InputError(f"array in {path.name}", shown(chosen), allowed, "Choose one.")
         array = _decoded(member_bytes(opened, members[chosen], path.name), path.name)
         return _surfaces(array, hints, f"{path.name}:{chosen}")
 
@@ -105,9 +106,9 @@ def only_one(names: list[str], source: str) -> str:
     """
     if len(names) == 1:
         return names[0]
-    listed = ", ".join(names) or "none"
+    received = listed(names) or "none"
     remedy = advice("array", names[0], "Choose one, as in", "Keep one in the file.") if names else ""
-    raise InputError(f"arrays of heights in {source}", listed, "exactly one", remedy)
+    raise InputError(f"arrays of heights in {source}", received, "exactly one", remedy)
 
 
 def _decoded(data: bytes, source: str) -> NDArray[Any]:

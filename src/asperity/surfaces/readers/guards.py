@@ -10,7 +10,8 @@ from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree
 
 from asperity.apart import reason
-from asperity.arguments import file_path, shown
+from asperity.arguments import file_path, listed, no_file
+from asperity.decoding import number_in
 from asperity.errors import InputError
 
 MAX_FILE_BYTES = 4 << 30  # largest file, and largest content of an archive
@@ -37,25 +38,20 @@ def readable_file(path: str | Path) -> Path:
     Raises
     ------
     InputError
-        If there is no such file, it is a directory, cannot be opened, is empty or is larger than 4 GiB.
+        If there is no such file, it is a folder, a pipe or a device, cannot be read, is empty or is larger
+        than 4 GiB.
     """
     file = file_path("surface file", path, "the path of a file")
+    allowed = "a file with heights"
+    if received := no_file(file):
+        remedies = {"a folder": "Name a file inside it.", "an empty file": "Export it again."}
+        raise InputError(str(file), received, allowed, remedies.get(received, "Check the path."))
     try:
-        if file.is_dir():
-            raise InputError("surface file", f"the directory {file}", "a file", "Name a file inside it.")
-        if not file.exists() and str(file).isprintable():
-            raise InputError(str(file), "no such file", "a file with heights", "Check the path.")
-        if not file.is_file():
-            raise InputError("surface file", f"{shown(str(file))}, no file", "a file", "Check the path.")
         with file.open("rb"):
             size = file.stat().st_size
-    except InputError:
-        raise
-    except (OSError, ValueError) as error:  # ValueError: a null character in the path
-        remedy = "Check its name and permissions."
-        raise InputError("surface file", f"{file} ({error})", "a readable file", remedy) from None
-    if size == 0:
-        raise InputError("surface file", f"{file}, which is empty", "a file with heights", "Export it again.")
+    except OSError as error:
+        received = f"a file that cannot be read ({error.strerror})"
+        raise InputError(str(file), received, allowed, "Check its permissions.") from None
     if size > MAX_FILE_BYTES:
         allowed = f"at most {MAX_FILE_BYTES} bytes"
         raise InputError(f"size of {file.name}", f"{size} bytes", allowed, "Crop or split the measurement.")
@@ -145,7 +141,7 @@ def number(source: str, name: str, text: str | None) -> float:
         If the field is missing or is not a finite number.
     """
     try:
-        value = float(text if text is not None else "nan")
+        value = number_in(text if text is not None else "nan")
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
@@ -237,8 +233,8 @@ def member_bytes(opened: zipfile.ZipFile, name: str, source: str, limit: int = M
         If there is no such member or it is too large.
     """
     if name not in opened.namelist():
-        present = ", ".join(opened.namelist()[:10])
-        raise InputError(source, f"no member {name[:80]!r}", f"one of: {present}", "Export the file again.")
+        present = f"one of: {listed(opened.namelist())}"
+        raise InputError(source, f"no member {name[:80]!r}", present, "Export the file again.")
     with opened.open(name) as stream:
         data = stream.read(limit + 1)
     if len(data) > limit:

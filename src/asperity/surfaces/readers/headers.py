@@ -9,11 +9,12 @@ from asperity.errors import InputError
 from asperity.surfaces.readers.spelling import advice
 from asperity.units import factor, quantity
 
-_NUMBER = r"[-+]?\d+(?:[.,]\d*)?(?:[eE][-+]?\d+)?"
-_BRACKET = re.compile(r"[\[(]\s*([^\s\[\]()\d]{1,20})\s*[\])]")
-_UNIT_LINE = re.compile(r"^\s*(.*?)\bunits?\b\s*[:=]?\s*[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
+_NUMBER = r"[-+]?\d++(?:[.,]\d*+)?(?:[eE][-+]?\d++)?"
+# For lines in which one blank stands for all white space: whatever the line, they need time like its length.
+_BRACKET = re.compile(r"[\[(] ?([^\s\[\]()\d]{1,20}) ?[\])]")
+_UNIT_LINE = re.compile(r"(.*?)\bunits?\b ?[:=]? ?[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
 _PIXEL_LINE = re.compile(
-    rf"^\s*(pixel(?:[ _]size)?|spacing|sample spacing|dx|dy)\s*[:=]?\s*({_NUMBER})\s*([^\s\d;,]{{1,20}})\s*$",
+    rf"(pixel(?:[ _]size)?|spacing|sample spacing|dx|dy) ?[:=]? ?({_NUMBER}) ?([^\s\d;,]{{1,20}})",
     re.IGNORECASE,
 )
 _LATERAL_WORDS = {"x", "y", "xy", "lateral", "length", "distance", "position", "pixel"}
@@ -62,13 +63,14 @@ def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> Head
         If a stated unit is no length.
     """
     cleaned = [line.strip().lstrip("#%/!").strip() for line in lines]
+    single = [" ".join(line.split()) for line in cleaned]
     titles = _column_units(cleaned, delimiter, columns)
-    lateral, height = _unit_lines(cleaned)
+    lateral, height = _unit_lines(single)
     return Header(
         height_unit=titles.get("z", height),
         x_unit=titles.get("x", lateral),
         y_unit=titles.get("y", titles.get("x", lateral)),
-        spacing=_pixel_lines(cleaned),
+        spacing=_pixel_lines(single),
     )
 
 
@@ -76,7 +78,7 @@ def _column_units(lines: list[str], delimiter: str | None, columns: int) -> dict
     """Units of the column titles: of x, y, z for two or three columns, else of the heights alone."""
     axes = {2: "xz", 3: "xyz"}.get(columns)
     for line in reversed(lines):
-        found = _BRACKET.findall(line)
+        found = _brackets(line)
         if axes is None:
             if len(found) == 1 and not _is_lateral(line):
                 return {"z": _length(found[0])}
@@ -85,9 +87,13 @@ def _column_units(lines: list[str], delimiter: str | None, columns: int) -> dict
         if len(titles) != columns and len(found) == columns:
             return {axis: _length(unit) for axis, unit in zip(axes, found, strict=True)}
         if found and len(titles) == columns:
-            units = [_BRACKET.findall(title) for title in titles]
+            units = [_brackets(title) for title in titles]
             return {axis: _length(unit[-1]) for axis, unit in zip(axes, units, strict=True) if unit}
     return {}
+
+
+def _brackets(text: str) -> list[str]:
+    return _BRACKET.findall(" ".join(text.split()))
 
 
 def _unit_lines(lines: list[str]) -> tuple[float | None, float | None]:
@@ -104,7 +110,7 @@ def _unit_lines(lines: list[str]) -> tuple[float | None, float | None]:
 def _pixel_lines(lines: list[str]) -> tuple[float, float] | None:
     found = {}
     for line in lines:
-        match = _PIXEL_LINE.match(line)
+        match = _PIXEL_LINE.fullmatch(line)
         if match:
             found[match[1].lower()] = quantity(f"{match[2].replace(',', '.')} {match[3]}", "m")
     both = [found[name] for name in found if name not in ("dx", "dy")]

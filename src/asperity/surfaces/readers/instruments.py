@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from asperity.arguments import listed, shown
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers.guards import MAX_POINTS, hostile
@@ -67,7 +68,9 @@ def _channel(reader: Any, name: str | None, source: str) -> Any:
         return reader.default_channel
     named = {channel.name: channel for channel in reader.channels}
     if name not in named:
-        raise InputError(f"array in {source}", repr(name), f"one of: {', '.join(named)}", "Choose a channel.")
+        raise InputError(
+            f"array in {source}", shown(name), f"one of: {listed(list(named))}", "Choose a channel."
+        )
     return named[name]
 
 

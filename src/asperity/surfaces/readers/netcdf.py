@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import listed, shown
 from asperity.errors import InputError
 from asperity.surfaces.readers.arrays import only_one
 from asperity.surfaces.readers.grid import uniform_step
@@ -75,8 +76,8 @@ def _chosen(opened: Any, name: str | None, source: str) -> Any:
     except KeyError:
         variable = None
     if variable is None or not hasattr(variable, "dimensions") or not hasattr(variable, "dtype"):
-        allowed = f"one of: {', '.join(candidates)}, or group/variable"
-        raise InputError(f"array in {source}", repr(name), allowed, "Choose one.")
+        allowed = f"one of: {listed(candidates)}, or group/variable"
+        raise InputError(f"array in {source}", shown(name), allowed, "Choose one.")
     return variable
 
 

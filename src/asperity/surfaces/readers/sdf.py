@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.readers.guards import check_claim, count, hostile, number
 from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
@@ -88,7 +89,7 @@ def _read_ascii(data: bytes, source: str) -> tuple[dict[str, str], NDArray[np.fl
             source, f"{len(words)} heights", f"the {points} that its header claims", "Export it again."
         )
     _data_type(header, source)
-    return header, np.array([float(word) for word in words]).reshape(shape)
+    return header, np.array([number_in(word) for word in words]).reshape(shape)
 
 
 def _shape(header: dict[str, str], source: str) -> tuple[int, int]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers.grid import line, rasterised
@@ -145,7 +147,7 @@ def _numbers(words: list[str]) -> list[float] | None:
             row.append(np.nan)
             continue
         try:
-            row.append(float(word))
+            row.append(number_in(word))
         except ValueError:
             return None
     return row
@@ -163,8 +165,8 @@ def _rectangular(rows: list[list[float]], blanks: list[int], source: str) -> NDA
             raise InputError(source, received, allowed, "Mark missing heights with NaN.")
     check_claim(source, (len(rows), columns), 1, len(rows) * columns)
     if columns == 1:  # an empty line between single heights is a missing height
-        for position in reversed([b for b in blanks if 0 < b < len(rows)]):
-            rows.insert(position, [np.nan])
+        gaps = Counter(blank for blank in blanks if blank)
+        rows = [each for i, row in enumerate(rows) for each in (*[[np.nan]] * gaps[i], row)]
     return np.array(rows)
 
 

@@ -11,6 +11,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers.grid import line, rasterised
@@ -159,7 +160,7 @@ def _listed(
             if len(words) != len(names):
                 allowed = f"{len(names)} numbers apart by semicolons"
                 raise InputError(source, f"the point {datum.text!r}"[:80], allowed, "Export it again.")
-            table[:, i] = [float(word) for word in words]
+            table[:, i] = [number_in(word) for word in words]
     return dict(zip(names, table, strict=True))
 
 

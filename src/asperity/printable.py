@@ -1,0 +1,42 @@
+"""Text of others, made fit to be shown: a name is read, it controls nothing."""
+
+from __future__ import annotations
+
+import unicodedata
+
+_UNSEEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
+"""Classes of characters that are not seen but act: controls, directions of writing, half pairs, breaks."""
+
+
+def printable(text: str, *, lines: bool = False) -> str:
+    r"""Spell out the characters of a text that would act instead of being seen.
+
+    Parameters
+    ----------
+    text : str
+        Any text: names and values that others have given.
+    lines : bool
+        Whether line ends and tabs may stay.
+
+    Returns
+    -------
+    str
+        With ``\x1b`` for an escape, ``\u202e`` for a change of direction, ``\xff`` for a byte of a file name
+        that is no UTF-8.
+    """
+    if text.isprintable():
+        return text
+    kept = "\n\t" if lines else ""
+    return "".join(
+        _spelled(character)
+        if unicodedata.category(character) in _UNSEEN and character not in kept
+        else character
+        for character in text
+    )
+
+
+def _spelled(character: str) -> str:
+    byte = ord(character) - 0xDC00  # how Python carries bytes that are no UTF-8
+    if 0x80 <= byte <= 0xFF:
+        return f"\\x{byte:02x}"
+    return character.encode("unicode_escape").decode("ascii")

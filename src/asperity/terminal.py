@@ -1,0 +1,164 @@
+"""The one place that writes to the terminal: names are shown as text, and nobody has to listen."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any, TextIO
+
+from asperity.errors import ComputationError
+from asperity.printable import printable
+
+_NOBODY_LISTENS = (errno.EPIPE, errno.EIO, errno.EBADF)
+"""The reader of a pipe has ended, a terminal has gone, a stream is closed."""
+
+
+def say(text: str, *, err: bool = False, lines: bool = False) -> None:
+    """Print text.
+
+    Parameters
+    ----------
+    text : str
+        What to print, on a line of its own; what would control the terminal is spelled out.
+    err : bool
+        Whether to print on standard error.
+    lines : bool
+        Whether line ends and tabs in it are meant.
+    """
+    write(sys.stderr if err else sys.stdout, text, lines=lines)
+
+
+def write(stream: TextIO | None, text: str, *, lines: bool = False) -> None:
+    """Write text to a stream as `say` does; None is a stream that is closed."""
+    if stream is not None:
+        stream.write(printable(text.removesuffix("\n"), lines=lines) + "\n")
+        stream.flush()
+
+
+def say_table(
+    title: str,
+    headings: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    *,
+    width: int,
+    bold: Collection[int] = (),
+) -> None:
+    """Print a table.
+
+    Parameters
+    ----------
+    title : str
+        What stands above it.
+    headings : sequence of str
+        Of its columns; none for a table without them.
+    rows : iterable of sequence of str
+        Its cells.
+    width : int
+        Characters of a line where standard output is no terminal.
+    bold : collection of int
+        Numbers of the rows that stand out, from 0.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(file=sys.stdout, markup=False, emoji=False, highlight=False)
+    if not console.is_terminal:
+        console.width = width
+    table = Table(title=printable(title), title_justify="left", show_header=bool(headings))
+    for heading in headings:
+        table.add_column(printable(heading))
+    for number, row in enumerate(rows):
+        table.add_row(*map(printable, row), style="bold" if number in bold else None)
+    console.print(table)
+
+
+@contextmanager
+def standard_streams(errors: str) -> Iterator[None]:
+    """Make standard output and error fit to be written to, whoever reads them, while a command runs.
+
+    Parameters
+    ----------
+    errors : str
+        The handler of characters that an encoding lacks.
+
+    Notes
+    -----
+    Where a stream is closed, no file that is opened later may take its number: what libraries print would go
+    into that file. Where a reader has ended, as ``head`` does, the command goes on unheard.
+    """
+    _open_closed()
+    before = sys.stdout, sys.stderr
+    try:
+        for name in ("stdout", "stderr"):
+            stream: Any = getattr(sys, name)
+            if hasattr(stream, "reconfigure"):
+                stream.reconfigure(errors=errors)
+            setattr(sys, name, _Patient(stream, name))
+        yield
+    finally:
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(ComputationError, ValueError):  # ValueError: closed by the command itself
+                stream.flush()
+        sys.stdout, sys.stderr = before
+
+
+def _open_closed() -> None:
+    """Put the null device in the place of standard streams that are closed."""
+    names = ("stdin", "stdout", "stderr")
+    for number in range(len(names)):
+        try:
+            os.fstat(number)
+        except OSError:
+            null = os.open(os.devnull, os.O_RDWR)  # takes the lowest free number
+            if null != number:
+                os.dup2(null, number)
+                os.close(null)
+            os.set_inheritable(number, True)
+    for number, name in enumerate(names):
+        if getattr(sys, name) is None:
+            stream = open(number, "w" if number else "r", encoding="utf-8", closefd=False)  # noqa: SIM115
+            setattr(sys, name, stream)
+
+
+class _Patient:
+    """A text stream that goes on when nobody reads it any more."""
+
+    def __init__(self, stream: TextIO, name: str) -> None:
+        self._stream, self._name = stream, name
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        """Write text."""
+        try:
+            return self._stream.write(text)
+        except OSError as error:
+            self._give_up(error)
+            return len(text)
+
+    def writelines(self, lines: Iterable[str]) -> None:
+        """Write several texts."""
+        self.write("".join(lines))
+
+    def flush(self) -> None:
+        """Hand over what is written."""
+        try:
+            self._stream.flush()
+        except OSError as error:
+            self._give_up(error)
+
+    def _give_up(self, error: OSError) -> None:
+        """Send what is still to come nowhere; what stands on a full disk is told, unless nobody hears it."""
+        null = os.open(os.devnull, os.O_WRONLY)
+        with suppress(OSError, ValueError):  # ValueError: a stream without a number
+            os.dup2(null, self._stream.fileno())
+        os.close(null)
+        if self._name == "stdout" and error.errno not in _NOBODY_LISTENS:
+            raise ComputationError(
+                f"standard output could not be written ({error.strerror or error})",
+                "another place for it, or free space on its disk",
+            ) from error
