@@ -92,6 +92,22 @@ def test_load_against_an_active_set_method(contact, share):
     assert expected.sum() * half_space.cell_area == pytest.approx(load, rel=1e-5)
 
 
+@pytest.mark.parametrize("hardness", np.linspace(1.84e9, 2.6e9, 20))
+def test_a_load_that_leaves_every_cell_at_a_bound(hardness):
+    load, half = 5 * hardness * half_space.cell_area, np.full((10, 1), 0.5 * hardness)
+    found = half_space.solve(gap, load=load, start=half)
+    x = np.arange(10) - 5.0
+    gap = 1e-8 * x[:, None] ** 2 + 2.5e-9
+    half_space = HalfSpace((10, 1), (1e-6, 1e-6), 1e11, hardness)
+    found = half_space.solve(
+        gap, load=5 * hardness * half_space.cell_area, start=np.full((10, 1), 0.5 * hardness)
+    )
+    assert found.converged
+    np.testing.assert_array_equal(np.sort(found.pressure.ravel()), [0.0] * 5 + [hardness] * 5)
+    lack = found.approach - gap - half_space.displacement(found.pressure)
+    assert lack[found.pressure > 0.0].min() >= 0.0 >= lack[found.pressure == 0.0].max()
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10_000), st.floats(-2.0, 2.0), st.booleans(), st.sampled_from(["none", "full", "any"]))
 def test_rough_contacts_of_many_asperities(seed, cap, under_load, start):

@@ -12,6 +12,25 @@ EXACT, SHIFTS = 1e-13, 100
 """Accuracy of the sum, and how often it is tried to reach it."""
 
 
+@compiled(**INNER)
+def rounding(hardness: float, total: float) -> float:
+    """Pressure within which a cell is at a bound: where all are, rounding of the sum leaves none between.
+
+    Parameters
+    ----------
+    hardness : float
+        Upper bound of the pressure, Pa.
+    total : float
+        Sum of the pressure, Pa; negative if the approach is given, where nothing is kept but the bounds.
+
+    Returns
+    -------
+    float
+        Pa; zero without an upper bound.
+    """
+    return EXACT * min(hardness, total) if total >= 0.0 and hardness < np.inf else 0.0
+
+
 @compiled(**INNER, **REASSOCIATE)
 def find_level(b: Box, hardness: float) -> float:
     """Find the approach beyond that of the overlap: the mean residual of the cells between the bounds.
@@ -199,5 +218,7 @@ def carry(b: Box, hardness: float, total: float, stiffness: float) -> None:
         for q in range(len(b.pressure)):
             b.direction[q], b.unit[q] = stiffness * b.overlap[q], stiffness
         project_at_load(b, 1.0, 0.0, hardness, total)
+    margin = rounding(hardness, total)
     for q in range(len(b.pressure)):
-        b.pressure[q] = b.step[q]
+        kept = 0.0 if b.step[q] <= margin else b.step[q]
+        b.pressure[q] = hardness if kept >= hardness - margin else kept

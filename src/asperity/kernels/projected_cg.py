@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.at_load import balance, find_level, mark_free, project_at_load
+from asperity.kernels.at_load import balance, find_level, mark_free, project_at_load, rounding
 from asperity.kernels.box import REACH, Box
 from asperity.kernels.convolution import Convolution, convolve
 from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
@@ -145,12 +145,15 @@ def _leaves(b: Box, share: float, hardness: float) -> bool:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def _advance(b: Box, share: float, hardness: float) -> None:
-    """Go a share of the step, within the bounds but for rounding."""
+def _advance(b: Box, share: float, hardness: float, margin: float) -> None:
+    """Go a share of the step, within the bounds, and on them within a margin."""
     real = b.z.dtype.type
     zero, factor, cap = real(0.0), real(share), real(hardness)
+    low, high = real(margin), real(hardness - margin)
     for q in range(len(b.z)):
-        b.pressure[q] = min(max(b.pressure[q] + factor * b.step[q], zero), cap)
+        wanted = b.pressure[q] + factor * b.step[q]
+        wanted = zero if wanted <= low else wanted
+        b.pressure[q] = cap if wanted >= high else wanted
     for q in range(len(b.z)):  # few arrays to a loop: else the compiler does not make vectors of it
         b.previous[q] = b.residual[q]
         b.residual[q] += factor * b.response[q]
@@ -231,6 +234,7 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
         Whether there is a step that lowers the energy: if not, rounding allows no more.
     """
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
+    margin = rounding(cap, task.total)
     rho, length, iteration, moving = 0.0, 1.0, done, True
     while iteration < task.max_iterations:
         if at_load:
@@ -269,7 +273,7 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
             share = 1.0 if share >= WHOLE else share
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
-        _advance(b, share, cap)
+        _advance(b, share, cap, margin)
     return iteration, moving
 
 
