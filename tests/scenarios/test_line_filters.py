@@ -231,7 +231,7 @@ class TestLaws:
 
     def test_result_says_what_an_unfiltered_law_is(self, tree):
         meanings = json.loads(tree["scenario"].attrs["laws"])
-        assert meanings["printed-unfiltered"].endswith("Here with the unfiltered line texture.")
+        assert meanings["printed-unfiltered"].endswith("filtered line texture. Here without the filter.")
         assert meanings["hertz-filtered"].endswith("Here with the filtered line texture.")
 
 

@@ -218,7 +218,7 @@ class ContactCase(Section):
     )
     approaches: tuple[Approach, ...] | None = key(
         None,
-        "approaches of the mean surfaces, increasing, at which the contact is reduced",
+        "increasing approaches at which the contact is reduced, from the plane that the nominal patch feels",
         otherwise="chosen from the load and the roughness",
         example='["-0.5 um", "0 um", "1 um"]',
         within=("-10 mm", "10 mm", "contacts are closer than that"),

@@ -28,7 +28,9 @@ class Entry(NamedTuple):
 
 LAWS: dict[str, Entry] = {
     "printed": Entry(Printed, "The thesis as printed: secant stiffness times the filtered line texture."),
-    "shifted": Entry(Shifted, "The same state functions, shifted by the texture; follows slow bumps fully."),
+    "shifted": Entry(
+        Shifted, "The state functions, shifted by the filtered line texture: follows slow bumps."
+    ),
     "areal": Entry(Areal, "Force on the texture averaged over the contact by the flat-punch weight."),
     "table": Entry(Table, "The scanned three-dimensional contact force, looked up."),
     "direct": Entry(Direct, "The three-dimensional contact, solved in every time step: the reference."),

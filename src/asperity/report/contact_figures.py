@@ -114,7 +114,7 @@ def _pressure_caption(tree: DataTree) -> str:
     outline = "semi-axis of Hertz's contact in rolling direction" if oval else "radius of Hertz's contact"
     for name, label, unit in (
         ("working_load", "working load", "N"),
-        ("working_approach", "approach of the mean surfaces", "m"),
+        ("working_approach", "approach", "m"),
         ("hertz_radius", f"{outline} (dashed {'ellipse' if oval else 'circle'})", "m"),
         *([("hertz_radius_across", "across", "m")] if oval else []),
         ("contact_area", "area in contact", "m²"),

@@ -100,9 +100,16 @@ def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
     ]
 
 
+_VARIANTS = {
+    "": "",
+    "filtered": " Here with the filtered line texture.",
+    "unfiltered": " Here without the filter.",
+}
+
+
 def _meaning(name: str) -> str:
     base, _, variant = name.partition("-")
-    return LAWS[base].meaning + (f" Here with the {variant} line texture." if variant else "")
+    return LAWS[base].meaning + _VARIANTS[variant]
 
 
 def _listed(chain: Chain[Any], numerics: Iterable[tuple[str, str]]) -> list[dict[str, str]]:
