@@ -94,14 +94,12 @@ def test_load_against_an_active_set_method(contact, share):
 
 @pytest.mark.parametrize("hardness", np.linspace(1.84e9, 2.6e9, 20))
 def test_a_load_that_leaves_every_cell_at_a_bound(hardness):
-    load, half = 5 * hardness * half_space.cell_area, np.full((10, 1), 0.5 * hardness)
-    found = half_space.solve(gap, load=load, start=half)
+    """Five of ten cells yield and five carry nothing: no cell tells the approach, rounding must not."""
     x = np.arange(10) - 5.0
     gap = 1e-8 * x[:, None] ** 2 + 2.5e-9
     half_space = HalfSpace((10, 1), (1e-6, 1e-6), 1e11, hardness)
-    found = half_space.solve(
-        gap, load=5 * hardness * half_space.cell_area, start=np.full((10, 1), 0.5 * hardness)
-    )
+    load, half = 5 * hardness * half_space.cell_area, np.full((10, 1), 0.5 * hardness)
+    found = half_space.solve(gap, load=load, start=half)
     assert found.converged
     np.testing.assert_array_equal(np.sort(found.pressure.ravel()), [0.0] * 5 + [hardness] * 5)
     lack = found.approach - gap - half_space.displacement(found.pressure)
