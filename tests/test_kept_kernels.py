@@ -60,6 +60,46 @@ def test_a_kernel_is_compiled_once(folder, module):
     assert store.is_private(folder)
 
 
+CALLING = """
+from asperity.kernels.options import INNER, LOOP, compiled
+
+@compiled(**INNER)
+def inlined(x):
+    return x + 1.0
+
+@compiled(**LOOP)
+def called(x):
+    return 2.0 * inlined(x)
+
+@compiled(**LOOP)
+def calling(x):
+    return called(x) + 1.0
+"""
+
+
+def test_a_kernel_is_linked_with_those_it_calls_as_when_it_was_compiled(folder, tmp_path, monkeypatch):
+    """Its own copies of them may differ in the last digit, and a second run would from the first."""
+    path = tmp_path / "calling_kernel.py"
+    path.write_text(CALLING)
+    read = []
+    verified = kept._verified
+    monkeypatch.setattr(kept, "_verified", lambda place, name: read.append(name) or verified(place, name))
+    for _ in range(2):
+        read.clear()
+        monkeypatch.setattr(kept, "_CALLED", {})
+        spec = importlib.util.spec_from_file_location("calling_kernel", path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        assert module.calling(1.0) == 5.0
+    assert sum(module.calling.stats.cache_hits.values()) == 1
+    assert ["calling" in read[0], "called" in read[1], len(read)] == [True, True, 2]
+    files(folder)[0].parent.joinpath(read[1]).unlink()
+    spec.loader.exec_module(module)
+    monkeypatch.setattr(kept, "_CALLED", {})
+    assert module.calling(1.0) == 5.0
+    assert sum(module.calling.stats.cache_misses.values()) == 1
+
+
 def test_a_kept_kernel_is_dropped_when_a_source_changes(folder, module, monkeypatch):
     fresh(module)
     module.write_text(MODULE + "\n")

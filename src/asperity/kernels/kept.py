@@ -48,13 +48,16 @@ class Kept:
     ----------
     function : callable
         The function in Python.
+    inlined : bool
+        Whether nothing is left of it where other kernels call it.
 
     Notes
     -----
     Stands for `numba.core.caching.FunctionCache`, which trusts what it finds and fails where it cannot write.
     """
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    def __init__(self, function: Callable[..., Any], *, inlined: bool = False) -> None:
+        self.inlined = inlined
         self.name = re.sub(r"[^\w.]", "", f"{function.__module__}.{function.__qualname__}")
         own = Path(function.__code__.co_filename)
         self.source = own.read_bytes() if own.is_file() else b""
@@ -80,12 +83,7 @@ class Kept:
             None if it has to be compiled.
         """
         context.refresh()
-        name = self.file_name(signature, context.codegen())
-        for folder in folders():
-            payload = _verified(folder / SOURCES, name)
-            if payload is not None:
-                return CompileResult._rebuild(context, *pickle.loads(payload))  # noqa: S301 (our own, see above)
-        return None
+        return _loaded(self.file_name(signature, context.codegen()), context)
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep the machine code of a signature, in the first folder that takes it.
@@ -99,7 +97,13 @@ class Kept:
         """
         if result.lifted or result.library.has_dynamic_globals:
             return
-        name, payload = self.file_name(signature, result.codegen), dumps(result._reduce())
+        name = self.file_name(signature, result.codegen)
+        called = [
+            kernel for kernel, library in _CALLED.items() if library in result.library._linking_libraries
+        ]
+        payload = dumps((called, result._reduce()))
+        if not self.inlined:
+            _CALLED[name] = result.library
         if not any(_written(folder, name, payload) for folder in folders()):
             _warn_unkept()
 
@@ -133,6 +137,30 @@ class Kept:
 
     def flush(self) -> None:
         """Do nothing: what is out of date is not found."""
+
+
+_CALLED: dict[str, Any] = {}
+"""Libraries of this process by the names of their files, but for functions that are inlined."""
+
+
+def _loaded(name: str, context: Any) -> Any:
+    """Load a file, after those of the kernels that it calls; None if one of them cannot be trusted.
+
+    A kernel brings copies of those that it calls, compiled again beside it: their last digits may differ. The
+    linker takes the first it gets, which is that of the kernel itself where it has just been compiled.
+    """
+    for folder in folders():
+        payload = _verified(folder / SOURCES, name)
+        if payload is None:
+            continue
+        called, data = pickle.loads(payload)  # noqa: S301 (our own, see above)
+        for other in called:
+            if other not in _CALLED and _loaded(other, context) is None:
+                return None
+        result = CompileResult._rebuild(context, *data)
+        _CALLED.setdefault(name, result.library)
+        return result
+    return None
 
 
 def _digest(name: str, payload: bytes) -> bytes:

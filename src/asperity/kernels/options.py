@@ -42,7 +42,8 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     def decorate(function: Callable[..., Any]) -> Any:
         kernel = njit(**options)(function)
         if keep:
-            kernel._cache = Kept(function)
+            inlined = options.get("forceinline", False) or options.get("inline") == "always"
+            kernel._cache = Kept(function, inlined=inlined)
         return kernel
 
     return decorate
