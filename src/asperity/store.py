@@ -23,7 +23,7 @@ from asperity.files import amount, atomic_write, is_sealed, left_overs
 
 FORMAT = 1  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
-MOST_HELD = 2**30  # bytes; what no disk takes is held in memory up to here
+MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
 
 
 def content_key(name: str, *parts: object) -> str:
