@@ -73,7 +73,7 @@ def fill(place):
 
 
 @pytest.mark.parametrize("full", [False, True], ids=["small", "full"])
-@pytest.mark.parametrize("what", ["results", "cache", "kernels"])
+@pytest.mark.parametrize("what", ["results", "cache", *(["kernels"] if LONG else [])])
 def test_a_full_file_system(earlier, small, tmp_path, what, full):
     folder = prepared(tmp_path / "run")
     if full:
