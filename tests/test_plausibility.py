@@ -60,9 +60,9 @@ def test_numbers_beyond_their_limits_are_told_with_a_reason(kind, entry):
 
 def test_the_message_names_value_limits_and_reason():
     with pytest.raises(CaseError) as caught:
-        case_of({"kind": "ball-on-beam", "surface": {"rms": "1e200 m"}}, "", "case")
+        case_of({"kind": "ball-on-beam", "surface": {"rms": "1e20 m"}}, "", "case")
     assert (
-        "surface.rms: received 1e+200 m; allowed: 1 pm to 1 mm. Less is smoother than atoms are, more is no "
+        "surface.rms: received 1e+20 m; allowed: 1 pm to 1 mm. Less is smoother than atoms are, more is no "
         "roughness." in str(caught.value)
     )
 

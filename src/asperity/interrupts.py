@@ -48,11 +48,11 @@ def was_interrupted() -> bool:
 
 @contextmanager
 def no_interrupt_for_children() -> Iterator[None]:
-    """Let processes that are started here never receive Ctrl-C; one that comes meanwhile waits."""
+    """Let processes started here receive neither Ctrl-C nor a hang-up; what comes meanwhile waits."""
     if sys.platform == "win32":
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
         yield
     finally:

@@ -165,9 +165,10 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that end with this one, however it ends."""
     context = multiprocessing.get_context("spawn")  # forked processes may hang in compiled threads
     watched, held = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(
-        workers, context, initializer=_begin, initargs=(watched, max(1, processors() // workers))
-    )
+    with no_interrupt_for_children():  # one that keeps track of shared memory
+        pool = ProcessPoolExecutor(
+            workers, context, initializer=_begin, initargs=(watched, max(1, processors() // workers))
+        )
     try:
         yield pool
         pool.shutdown()
