@@ -197,11 +197,18 @@ def svg(figure: Figure, name: str, title: str) -> str:
         text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
         for index, colour in enumerate(COLOURS):
             text = text.replace(colour, f"var(--c{index})")
-        return re.sub(r"(\d\.\d\d)\d+", r"\1", text)  # a hundredth of a point is finer than any screen
+        text = re.sub(r"(\d\.\d\d)\d+", r"\1", text)  # a hundredth of a point is finer than any screen
+        return re.sub(r' d="([^"]*)"', lambda m: f' d="{tight(m[1])}"', text)
 
     inner = re.sub(r"<[^<>]+>", rewritten, inner)
     label = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     return f'<svg role="img" aria-label="{label}" {box.group(0) if box else ""}>{inner}'
+
+
+def tight(path: str) -> str:
+    """Path of an SVG element in fewer letters: a pair of numbers behind another is a line by itself."""
+    path = re.sub(r"\s*([A-Za-z])\s*", r"\1", path.strip())
+    return path if re.search("[^MLz0-9. -]", path) else re.sub(r"(?<=\d)L", " ", path)
 
 
 def colour_variables(dark: bool) -> str:
