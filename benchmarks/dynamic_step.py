@@ -27,12 +27,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.config import parse_case
 from asperity.errors import PhysicsWarning
-from asperity.pointforce import Law
+from asperity.kinds.ball_on_beam.compute import Computed, compute
+from asperity.kinds.ball_on_beam.roll import Rolling, roll
+from asperity.kinds.cases import parse_case
+from asperity.laws import Law
 from asperity.progress import progress_bar
-from asperity.rolling.ball_on_beam import Rolling, roll
-from asperity.scenarios.ball_on_beam import Computed, compute
 from asperity.scenarios.laws import Workshop
 from asperity.scenarios.preparing import prepare
 from asperity.store import Store

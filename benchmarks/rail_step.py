@@ -24,13 +24,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from asperity.contact import Hertz as HertzContact
-from asperity.pointforce import Hertz, Law, Linear, Shifted, Table
+from asperity.kinds.wheel_on_rail.roll import roll
+from asperity.laws import Hertz, Law, Linear, Shifted, Table
 from asperity.reduction.fir import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference.rail_roughness import iso_3095_limit
-from asperity.rolling.wheel_on_rail import roll
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailPoles, rail_poles
 from asperity.structures.track import Track

@@ -23,10 +23,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from asperity.config import BallOnBeamCase, parse_case
 from asperity.errors import PhysicsWarning
+from asperity.kinds.ball_on_beam.case import BallOnBeam
+from asperity.kinds.ball_on_beam.compute import Computed, compute
+from asperity.kinds.cases import parse_case
 from asperity.progress import progress_bar
-from asperity.scenarios.ball_on_beam import Computed, compute
 from asperity.scenarios.preparing import prepare
 from asperity.spectra import band_levels, psd
 
@@ -66,7 +67,7 @@ class Ensemble:
         return np.asarray(levels - levels[0])
 
 
-def case_of(options: argparse.Namespace, seed: int) -> BallOnBeamCase:
+def case_of(options: argparse.Namespace, seed: int) -> BallOnBeam:
     """One member of the ensemble."""
     return parse_case(
         f"""

@@ -27,9 +27,9 @@ import xarray
 from matplotlib.figure import Figure
 
 import asperity
-from asperity.config import parse_case
+from asperity.kinds.cases import parse_case
 from asperity.reference.materials import material
-from asperity.report.style import frequency_axis, sequence, styled
+from asperity.reporting.style import frequency_axis, sequence, styled
 from asperity.structures.beam import Beam
 
 CASE = """

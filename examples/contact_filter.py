@@ -36,7 +36,7 @@ from asperity.reduction.filter import ContactFilter, estimate_filter, filter_spe
 from asperity.reduction.scan import first_touch
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reference.materials import contact_modulus, material
-from asperity.report.style import sequence, styled, wavenumber_axis
+from asperity.reporting.style import sequence, styled, wavenumber_axis
 from asperity.surfaces.synthesis import self_affine
 
 STEEL = material("steel")

@@ -35,7 +35,7 @@ from asperity.reduction.areal import punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
 from asperity.reduction.scan import first_touch
 from asperity.reference.materials import contact_modulus, material
-from asperity.report.style import styled
+from asperity.reporting.style import styled
 from asperity.surfaces.synthesis import self_affine
 
 STEEL = material("steel")

@@ -34,15 +34,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from asperity.config import WheelOnRailCase, parse_case
-from asperity.pointforce import Law, Linear, Printed
+from asperity.kinds.cases import parse_case
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.compute import Computed, compute
+from asperity.kinds.wheel_on_rail.linear_reference import mean_square_transfer
+from asperity.kinds.wheel_on_rail.roll import roll
+from asperity.kinds.wheel_on_rail.sound_power import rolling_sound_power
+from asperity.laws import Law, Linear, Printed
 from asperity.reference import cnossos
-from asperity.report.style import band_axis, styled
-from asperity.rolling.linear_reference import mean_square_transfer
-from asperity.rolling.noise import rolling_sound_power
-from asperity.rolling.wheel_on_rail import roll
+from asperity.reporting.style import band_axis, styled
 from asperity.scenarios.preparing import prepare
-from asperity.scenarios.wheel_on_rail import Computed, compute
 from asperity.spectra import band_levels, psd
 
 CASE = """
@@ -112,7 +113,7 @@ def laws(computed: Computed) -> tuple[dict[str, Law], float, float]:
 
 def forces(level: float = 0.0) -> Forces:
     case = parse_case(CASE.format(level=level))
-    assert isinstance(case, WheelOnRailCase)
+    assert isinstance(case, WheelOnRail)
     computed = compute(prepare(case), lambda done, total, message: None)
     compared, tangent, secant = laws(computed)
     segment = round(0.2 / case.time_step)

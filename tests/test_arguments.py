@@ -190,7 +190,7 @@ def _own_cache(tmp_path, monkeypatch):
 
 @pytest.mark.usefixtures("_own_cache")
 def test_a_mapping_of_keys_is_run_as_its_toml_text():
-    from asperity.config import parse_case
+    from asperity.kinds.cases import parse_case
 
     result = asperity.run(KEYS)
     again = asperity.run(parse_case(result.attrs["case"]))

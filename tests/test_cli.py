@@ -15,9 +15,9 @@ import xarray as xr
 from click.testing import CliRunner
 
 from asperity.cli import main
-from asperity.config import load_case, parse_case
 from asperity.errors import CoarseSamplingWarning, ComputationError, InputError
-from asperity.report.page import WHEEL_ON_RAIL
+from asperity.kinds.cases import load_case, parse_case
+from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
 from asperity.results import GROUPS, load
 from asperity.store import Store
 from asperity.studies.definition import load_study
@@ -51,9 +51,9 @@ def computed(monkeypatch):
     def write_report(tree, directory):
         (Path(directory) / "report.html").write_text("<html>")
 
-    monkeypatch.setattr(importlib.import_module("asperity.scenarios"), "run", run, raising=False)
+    monkeypatch.setattr(importlib.import_module("asperity.running"), "run", run, raising=False)
     monkeypatch.setattr(
-        importlib.import_module("asperity.report"), "write_report", write_report, raising=False
+        importlib.import_module("asperity.kinds.report"), "write_report", write_report, raising=False
     )
     return cases
 
@@ -62,7 +62,7 @@ def failing_with(monkeypatch, error):
     def run(case, progress=None):
         raise error
 
-    monkeypatch.setattr(importlib.import_module("asperity.scenarios"), "run", run, raising=False)
+    monkeypatch.setattr(importlib.import_module("asperity.running"), "run", run, raising=False)
 
 
 def call(*arguments, code=0):
@@ -285,7 +285,7 @@ def test_warnings_are_printed_once_on_one_line(monkeypatch):
             warnings.warn("the grid is coarse", CoarseSamplingWarning, stacklevel=2)
         raise ComputationError("it failed", "something else")
 
-    monkeypatch.setattr(importlib.import_module("asperity.scenarios"), "run", run, raising=False)
+    monkeypatch.setattr(importlib.import_module("asperity.running"), "run", run, raising=False)
     outcome = call("run", "case.toml", code=3)
     assert "Warning: the grid is coarse" in outcome.stderr.splitlines()
     assert outcome.stderr.count("coarse") == 1
@@ -469,8 +469,8 @@ def test_check_reads_the_measured_map():
 
 def test_the_plan_counts_contact_solutions(monkeypatch):
     from asperity.cli.planning import plan
+    from asperity.running import prepare
     from asperity.scenarios.expecting import Work
-    from asperity.scenarios.preparing import prepare
     from asperity.scenarios.scan_sizes import scan_sizes
 
     laws = 'laws = ["table", "direct"]\n'
@@ -535,7 +535,7 @@ def test_a_path_of_ten_metres_is_planned_and_announced(monkeypatch):
     def interrupted(case, progress):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("asperity.scenarios.run", interrupted)
+    monkeypatch.setattr("asperity.running.run", interrupted)
     outcome = call("run", "long.toml", "-o", "out", code=130)
     assert f"Scan of the path: {planned[1]} positions" in outcome.stderr
     assert "goes on after its last finished block" in outcome.stderr

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from asperity.cli import main
-from asperity.config import load_case
+from asperity.kinds.cases import load_case
 
 RAIL = 'kind = "wheel-on-rail"\nduration = "0.2 s"\nsettling = "0.1 s"\n[surface]\nspectrum = "iso3095"\n'
 

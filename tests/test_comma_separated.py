@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from asperity.comma_separated import csv_text, write_csv
-from asperity.report import csv_files
+from asperity.reporting import csv_files
 
 
 @pytest.mark.parametrize("word", ["=cmd|' /C calc'!A0", "+1+1", "-2+3", "@SUM(A1)"])

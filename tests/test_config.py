@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from asperity.config import LAWS, demo_case, load_case, parse_case, template
+from asperity.config.case import LAWS
 from asperity.errors import CaseError, InputError
+from asperity.kinds.cases import demo_case, load_case, parse_case, template
 
 MINIMAL = 'kind = "ball-on-beam"\n[surface]\nrms = "0.5 um"\n'
 

@@ -6,9 +6,11 @@ import tomllib
 import numpy as np
 import pytest
 
-from asperity.config import LAWS, WheelOnRailCase, load_case, parse_case, template
-from asperity.config.tables import MODES, read_levels, read_modes, read_receptance, read_table
+from asperity.config.case import LAWS
 from asperity.errors import CaseError, InputError
+from asperity.kinds.cases import load_case, parse_case, template
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.tables import MODES, read_levels, read_modes, read_receptance, read_table
 
 INTERFACE = """
 kind = "wheel-on-rail"
@@ -65,7 +67,7 @@ def errors_of(text, source="case.toml"):
 
 def test_the_case_of_the_interface():
     case = parse_case(INTERFACE)
-    assert isinstance(case, WheelOnRailCase)
+    assert isinstance(case, WheelOnRail)
     assert (case.speed, case.wheel.radius, case.wheel.mass, case.wheel.load) == (56.0, 0.46, 600.0, 65e3)
     assert case.wheel.transverse_radius == math.inf
     assert (case.track.name, case.track.rail_head_radius) == ("nordborg", 0.3)

@@ -5,7 +5,7 @@ import pytest
 
 from asperity.contact import HalfSpace, Hertz
 from asperity.errors import InputError, TruncatedContactWarning
-from asperity.pointforce import Areal, Direct, Printed, Shifted, Table, force
+from asperity.laws import Areal, Direct, Printed, Shifted, Table, force
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import filtered_texture
 from asperity.reduction.scan import scan_forces

@@ -14,11 +14,13 @@ import xarray as xr
 from asperity.arguments import listed, no_file, shown
 from asperity.config.describing import entries
 from asperity.config.keys import Quantity, kind_of
-from asperity.config.parsing import KINDS, as_case, load_case, parse_case, read_toml
-from asperity.config.tables import LEVELS, read_levels, read_table
+from asperity.config.parsing import read_toml
 from asperity.decoding import number_in
 from asperity.errors import CaseError, ComputationError, InputError
 from asperity.files import alone_in, refuse_unwritable, write_bytes
+from asperity.kinds import KINDS
+from asperity.kinds.cases import as_case, load_case, parse_case
+from asperity.kinds.wheel_on_rail.tables import LEVELS, read_levels, read_table
 from asperity.results import GROUPS, load, save
 from asperity.store import Store
 from asperity.studies.definition import load_study, study_of
@@ -172,7 +174,7 @@ HOSTILE = [
 def test_any_value_of_any_key_is_right_or_a_clear_error(kind):
     """In a case, and swept by a study."""
     base = {"kind": kind, "surface": {"rms": "1 um"}}
-    for entry in entries(KINDS[kind]):
+    for entry in entries(KINDS[kind].case):
         found = kind_of(entry.field.annotation, entry.field.metadata)
         unit = found.dimension if isinstance(found, Quantity) else "m"
         section, _, name = entry.dotted.rpartition(".")

@@ -7,7 +7,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.rolling.linear_reference import force_transfer, linear_force_psd, mean_square_transfer
+from asperity.kinds.wheel_on_rail.linear_reference import (
+    force_transfer,
+    linear_force_psd,
+    mean_square_transfer,
+)
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 

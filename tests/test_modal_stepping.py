@@ -14,7 +14,7 @@ from asperity.kernels.modal import (
     refine,
     roll_steps,
 )
-from asperity.pointforce import Hertz
+from asperity.laws import Hertz
 
 H = 2e-3
 

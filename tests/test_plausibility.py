@@ -4,15 +4,16 @@ import math
 
 import pytest
 
-from asperity.config import KINDS, case_of
 from asperity.config.describing import entries
 from asperity.config.keys import Number, Quantity, extra_of, kind_of
 from asperity.errors import CaseError
+from asperity.kinds import KINDS
+from asperity.kinds.cases import case_of
 from asperity.units import quantity
 
 NUMBERS = [
     pytest.param(kind, entry, id=f"{kind} {entry.dotted}")
-    for kind, model in KINDS.items()
+    for kind, model in ((name, kind.case) for name, kind in KINDS.items())
     for entry in entries(model)
     if isinstance(kind_of(entry.field.annotation, entry.field.metadata), Quantity | Number)
 ]

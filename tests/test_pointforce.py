@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.pointforce import count_beyond, evaluate, evaluate_all, with_damping
-from asperity.pointforce import LAWS, Areal, Hertz, Linear, Printed, Shifted, Table, force
-from asperity.pointforce.base import Prepared, on_curve
+from asperity.laws import LAWS, Areal, Hertz, Linear, Printed, Shifted, Table, force
+from asperity.laws.base import Prepared, on_curve
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture

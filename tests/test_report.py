@@ -12,12 +12,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from asperity.errors import ComputationError
-from asperity.report import lines_picture, surface_picture, write_report
-from asperity.report.csv_files import csv_text
-from asperity.report.data import engineering, nominal_band, power_of_ten
-from asperity.report.page import BALL_ON_BEAM, drawable_parts, page
-from asperity.report.spectrum_figures import SPECTRUM
-from asperity.report.style import (
+from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
+from asperity.kinds.report import page, parts_of, write_report
+from asperity.reporting import lines_picture, surface_picture
+from asperity.reporting.csv_files import csv_text
+from asperity.reporting.data import engineering, nominal_band, power_of_ten
+from asperity.reporting.spectrum_figures import SPECTRUM
+from asperity.reporting.style import (
     COLOURS,
     LAW_STYLES,
     envelope,
@@ -25,8 +26,8 @@ from asperity.report.style import (
     smooth_on_log_axis,
     styled,
 )
-from asperity.report.tables import reference_table, validity_table
-from asperity.report.time_figures import TIME, piece
+from asperity.reporting.tables import reference_table, validity_table
+from asperity.reporting.time_figures import TIME, piece
 from asperity.results import load, save
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import DATUM, LAWS, LOAD, report_tree
@@ -191,7 +192,7 @@ def test_figure_without_its_numbers_is_left_out(part):
 def test_numbers_that_are_all_missing_count_as_missing():
     tree = small()
     tree["contact"]["filter"] = tree["contact"]["filter"] * np.nan
-    assert "contact_filter" not in [part.name for part in drawable_parts(tree)]
+    assert "contact_filter" not in [part.name for part in parts_of(tree)]
 
 
 def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
@@ -382,7 +383,7 @@ def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
             known = {"units": "1", "long_name": str(name), "missing": "as drawn"}
             node[name].attrs.update(known | values.attrs)
     loaded = load(save(tree, tmp_path / "run.nc"))
-    assert drawable_parts(loaded) == list(PARTS)
+    assert parts_of(loaded) == list(PARTS)
     for part in PARTS:
         assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
 

@@ -8,13 +8,15 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from asperity.report import style, write_report
-from asperity.report.csv_files import csv_text
-from asperity.report.marks import sleeper_spacing, speed
-from asperity.report.motion_figures import point_labels
-from asperity.report.page import BALL_ON_BEAM, WHEEL_ON_RAIL, chapters, drawable_parts, page
-from asperity.report.rail_force_figures import AROUND_PEAK, around_peak
-from asperity.report.tables import sound_power_table
+from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
+from asperity.kinds.report import chapters_of, page, parts_of, write_report
+from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
+from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
+from asperity.kinds.wheel_on_rail.figures.marks import sleeper_spacing, speed
+from asperity.kinds.wheel_on_rail.figures.motion import point_labels
+from asperity.reporting import style
+from asperity.reporting.csv_files import csv_text
+from asperity.reporting.tables import sound_power_table
 from asperity.results import load, save
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import report_tree
@@ -83,8 +85,8 @@ def test_page_is_whole_and_loads_nothing(text, folder):
 
 
 def test_kind_of_case_chooses_the_chapters(tree):
-    assert chapters(tree) == WHEEL_ON_RAIL
-    assert chapters(report_tree(["areal"], steps=500)) == BALL_ON_BEAM
+    assert chapters_of(tree) == WHEEL_ON_RAIL
+    assert chapters_of(report_tree(["areal"], steps=500)) == BALL_ON_BEAM
     ball = {part.name for chapter in BALL_ON_BEAM for part in chapter.parts}
     assert not {"receptance", "roughness", "sound_power", "displacement"} & ball
 
@@ -92,7 +94,7 @@ def test_kind_of_case_chooses_the_chapters(tree):
 def test_result_without_a_kind_is_known_by_its_track():
     tree = without_attrs()
     tree["scenario"].attrs = {}
-    assert chapters(tree) == WHEEL_ON_RAIL
+    assert chapters_of(tree) == WHEEL_ON_RAIL
 
 
 @pytest.mark.parametrize("part", PARTS.values(), ids=lambda part: part.name)
@@ -204,7 +206,7 @@ def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
             known = {"units": "1", "long_name": str(name), "missing": "as drawn"}
             node[name].attrs.update(known | values.attrs)
     loaded = load(save(tree, tmp_path / "run.nc"))
-    assert drawable_parts(loaded) == list(PARTS.values())
+    assert parts_of(loaded) == list(PARTS.values())
     for part in PARTS.values():
         assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
 
@@ -218,7 +220,7 @@ def test_smooth_surface_has_no_map_and_no_spectrum():
     tree = small()
     for name in ("sample_heights", "psd_sample", "psd_path"):
         tree["surface"][name].values[:] = 0.0
-    drawn = {part.name for part in drawable_parts(tree)}
+    drawn = {part.name for part in parts_of(tree)}
     assert set(PARTS) - drawn == {"texture_sample", "texture_psd"}
 
 

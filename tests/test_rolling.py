@@ -17,12 +17,12 @@ from asperity.errors import (
     Outcome,
     UnconvergedWarning,
 )
-from asperity.pointforce import LAWS, Hertz, Linear, Printed, Shifted, Table
+from asperity.kinds.ball_on_beam.roll import roll
+from asperity.laws import LAWS, Hertz, Linear, Printed, Shifted, Table
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.ball_on_beam import roll
 from asperity.rolling.events import contact_losses
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam

@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 
 from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflectionWarning
 from asperity.kernels.modal import modal_coefficients
-from asperity.pointforce import Hertz, Linear
+from asperity.kinds.ball_on_beam import roll as ball_on_beam
+from asperity.kinds.wheel_on_rail import roll as wheel_on_rail
+from asperity.laws import Hertz, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling import ball_on_beam, stability, wheel_on_rail
+from asperity.rolling import stability
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 from asperity.structures.moving_kernel import moving_kernel

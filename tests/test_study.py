@@ -15,9 +15,9 @@ import pytest
 import xarray
 
 import asperity
-from asperity.config import load_case, parse_case
 from asperity.errors import CaseError, ComputationError, InputError
-from asperity.scenarios import run
+from asperity.kinds.cases import load_case, parse_case
+from asperity.running import run
 from asperity.store import Store
 from asperity.studies import executors, member
 from asperity.studies.definition import TEMPLATE, load_study, study_of

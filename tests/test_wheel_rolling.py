@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.pointforce import Hertz, Linear
+from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
+from asperity.kinds.wheel_on_rail.passing import passed_points
+from asperity.kinds.wheel_on_rail.roll import roll
+from asperity.laws import Hertz, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.rail_roughness import iso_3095_limit
-from asperity.rolling.linear_reference import linear_force_psd
-from asperity.rolling.passing import passed_points
-from asperity.rolling.wheel_on_rail import roll
 from asperity.spectra import band_levels, psd
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
@@ -215,7 +215,7 @@ class TestCheckpoint:
         settings = {"start": 0.0, "duration": 0.1, "settling": 0.1}
         whole = roll(poles, WHEEL, law, **settings)
         kept = Kept()
-        monkeypatch.setattr("asperity.rolling.rail_stepper.CHUNK", 700)
+        monkeypatch.setattr("asperity.kinds.wheel_on_rail.stepper.CHUNK", 700)
 
         def stop(done, total, message):
             if done >= 1400:

@@ -15,7 +15,7 @@ _HOME = {
     "Track": "structures.track",
     "read_surface": "surfaces.readers",
     "scan": "reduction.scan",
-    "run": "scenarios",
+    "run": "running",
     "load": "results",
     "study": "studies.running",
 }

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from program import LONG
 
-from asperity.config import parse_case
 from asperity.errors import AsperityError, PhysicsWarning
+from asperity.kinds.cases import parse_case
 from asperity.results import load, save, variable
 from asperity.surfaces.readers import netcdf, read_surface
 from asperity.surfaces.readers.hints import checked_hints

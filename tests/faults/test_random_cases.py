@@ -8,10 +8,11 @@ import pytest
 from program import LONG
 
 import asperity
-from asperity.config import KINDS, case_of
 from asperity.config.describing import entries
 from asperity.config.keys import Choice, Number, Quantity, extra_of, kind_of
 from asperity.errors import AsperityError
+from asperity.kinds import KINDS
+from asperity.kinds.cases import case_of
 from asperity.scenarios.missing import UNKNOWN
 from asperity.units import quantity
 
@@ -61,7 +62,7 @@ def random_case(source):
     case = {"kind": kind, **{k: dict(v) if isinstance(v, dict) else v for k, v in SHORT[kind].items()}}
     case["laws"] = source.sample(LAWS, 2)
     case["seed"] = source.randrange(100)
-    known = [entry for entry in entries(KINDS[kind]) if entry.name not in LEFT]
+    known = [entry for entry in entries(KINDS[kind].case) if entry.name not in LEFT]
     for entry in source.sample(known, source.randint(1, 5)):
         section, _, name = entry.dotted.rpartition(".")
         value = drawn(entry, source)

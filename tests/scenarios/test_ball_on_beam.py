@@ -8,14 +8,14 @@ import pytest
 import xarray
 
 import asperity
-from asperity.config import parse_case
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.pointforce.base import force
-from asperity.report.tables import homogeneity_table
-from asperity.scenarios import ball_on_beam, run
-from asperity.scenarios.ball_on_beam import ball_geometry
-from asperity.scenarios.beam_textures import gather
-from asperity.scenarios.preparing import prepare
+from asperity.kinds.ball_on_beam import compute as ball_on_beam
+from asperity.kinds.ball_on_beam.geometry import ball_geometry
+from asperity.kinds.ball_on_beam.textures import gather
+from asperity.kinds.cases import parse_case
+from asperity.laws.base import force
+from asperity.reporting.tables import homogeneity_table
+from asperity.running import prepare, run
 from asperity.spectra import nominal_frequency
 
 CASE = """

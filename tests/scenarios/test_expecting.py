@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 
-from asperity.config import parse_case
 from asperity.errors import CaseError, InputError
+from asperity.kinds.ball_on_beam import plan as ball_plan
+from asperity.kinds.ball_on_beam.compute import compute
+from asperity.kinds.cases import parse_case
+from asperity.kinds.wheel_on_rail import plan as rail_plan
+from asperity.kinds.wheel_on_rail.plan import TrackTrial, step_seconds, try_track
+from asperity.running import prepare
 from asperity.scenarios import expecting
-from asperity.scenarios.ball_on_beam import compute
 from asperity.scenarios.expecting import expect, expected_path_scan
-from asperity.scenarios.preparing import prepare
 from asperity.scenarios.scan_sizes import scan_sizes
-from asperity.scenarios.trial import ContactTrial, TrackTrial, try_contacts, try_rolling, try_track
+from asperity.scenarios.trial import ContactTrial, try_contacts
 from asperity.store import Store
 from asperity.structures.moving_kernel import moving_kernel
 
@@ -85,10 +88,11 @@ def tried(monkeypatch):
     """Trials with known times, on one thread of the reference."""
     monkeypatch.setenv("ASPERITY_THREADS", "1")
     monkeypatch.setattr(expecting, "_pace", lambda: 1.0)
-    monkeypatch.setattr(expecting, "try_rolling", lambda prepared: 1e-6)
+    for plan in (ball_plan, rail_plan):
+        monkeypatch.setattr(plan, "step_seconds", lambda prepared: 1e-6)
     contacts = ContactTrial(np.linspace(0, 1e-6, 14), 12, 3.0, 5.0, 0.01, 0.02, 7e-4, 1e-5, 1e-6)
     monkeypatch.setattr(expecting, "try_contacts", lambda prepared, progress: contacts)
-    monkeypatch.setattr(expecting, "try_track", lambda prepared, progress: TrackTrial(0.12, 11.0, 13.0))
+    monkeypatch.setattr(rail_plan, "try_track", lambda prepared, progress: TrackTrial(0.12, 11.0, 13.0))
 
 
 @pytest.mark.usefixtures("tried")
@@ -153,7 +157,7 @@ def test_the_length_of_a_kernel_is_found_before_it_is_computed(track):
 @pytest.mark.parametrize("kernel", ["poles", "scatter"])
 def test_rolling_is_tried_on_the_rail_of_the_case(kernel):
     text = RAIL.format(duration="40 ms") + f'kernel = "{kernel}"\n'
-    assert try_rolling(prepare(parse_case(text))) > 0.0
+    assert step_seconds(prepare(parse_case(text))) > 0.0
 
 
 def test_all_errors_come_at_once_and_a_single_one_as_it_is(monkeypatch):

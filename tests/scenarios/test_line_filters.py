@@ -7,13 +7,14 @@ import warnings
 import numpy as np
 import pytest
 
-from asperity.config import parse_case
 from asperity.errors import PhysicsWarning
-from asperity.pointforce import Printed, Shifted
+from asperity.kinds.ball_on_beam import compute as ball_on_beam
+from asperity.kinds.cases import parse_case
+from asperity.kinds.report import parts_of
+from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
+from asperity.laws import Printed, Shifted
 from asperity.reduction.fir import response
-from asperity.report.page import drawable_parts
-from asperity.scenarios import ball_on_beam, run, wheel_on_rail
-from asperity.scenarios.preparing import prepare
+from asperity.running import prepare, run
 
 BALL = """
 kind = "ball-on-beam"
@@ -81,7 +82,7 @@ def warned_of_filters(tree):
 
 
 def caption(tree, name):
-    return next(part for part in drawable_parts(tree) if part.name == name).caption(tree)
+    return next(part for part in parts_of(tree) if part.name == name).caption(tree)
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -6,7 +6,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import PhysicsWarning
-from asperity.report.page import page
+from asperity.kinds.report import page
 from asperity.results import variable
 from asperity.scenarios.missing import NO_SIGNAL, UNKNOWN, marked
 

@@ -6,14 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from asperity.config import parse_case
 from asperity.errors import InputError, ShortRecordWarning
-from asperity.rolling.linear_reference import force_transfer
-from asperity.scenarios import run
+from asperity.kinds.cases import parse_case
+from asperity.kinds.wheel_on_rail.compute import compute
+from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
+from asperity.kinds.wheel_on_rail.textures import textures_of
+from asperity.running import prepare, run
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.preparing import prepare
-from asperity.scenarios.rail_textures import gather
-from asperity.scenarios.wheel_on_rail import compute
 
 MEASURED = Path(__file__).parents[3] / "shared" / "data" / "wheel_lines_um_1mm.npz"
 CASE = """
@@ -65,7 +64,7 @@ def turn(points, seed=0):
 class TestRail:
     def test_line_is_the_same_all_across(self, folder):
         write_line(folder, 6.0)
-        found = gather(case(folder, LINE.format("refuse")))
+        found = textures_of(case(folder, LINE.format("refuse")))
         np.testing.assert_allclose(np.ptp(found.path.heights, axis=1), 0.0, atol=1e-15)
         assert np.std(found.line) == pytest.approx(1e-6 * np.std(turn(6000)), rel=0.1)
         assert "EN 15610" in found.origin
@@ -74,12 +73,12 @@ class TestRail:
     def test_record_shorter_than_the_run_is_refused_by_default(self, folder):
         write_line(folder, 2.0)
         with pytest.raises(InputError, match="rail's record: received 2 m"):
-            gather(case(folder, LINE.format("refuse")))
+            textures_of(case(folder, LINE.format("refuse")))
 
     @pytest.mark.parametrize("how", ["mirror", "repeat"])
     def test_record_goes_on_as_the_case_says(self, folder, how):
         write_line(folder, 2.0)
-        found = gather(case(folder, LINE.format(how)))
+        found = textures_of(case(folder, LINE.format(how)))
         first = found.line[:2000]
         again = found.line[2000:3000] if how == "repeat" else found.line[1998:998:-1]
         expected = first[:1000] if how == "repeat" else found.line[2000:3000]
@@ -89,31 +88,31 @@ class TestRail:
     def test_several_lines_need_their_distance(self, folder):
         np.savez(folder / "lines.npz", rail=np.stack([turn(6000, s) for s in range(3)]))
         with pytest.raises(InputError, match=r"surface\.line_distance: received no distance for 3 lines"):
-            gather(case(folder, LINES))
-        found = gather(case(folder, LINES + 'line_distance = "5 mm"'))
+            textures_of(case(folder, LINES))
+        found = textures_of(case(folder, LINES + 'line_distance = "5 mm"'))
         assert np.ptp(found.path.heights, axis=1).max() > 0.0
 
     def test_wrong_unit_asks(self, folder):
         np.savez(folder / "lines.npz", rail=turn(6000)[None])
         surface = LINES.replace('"um"', '"m"')
         with pytest.raises(InputError, match="Is the unit of the heights right"):
-            gather(case(folder, surface))
-        assert gather(case(folder, surface + "accept_levels = true")).line.std() > 0.1
+            textures_of(case(folder, surface))
+        assert textures_of(case(folder, surface + "accept_levels = true")).line.std() > 0.1
 
     def test_gaps_are_refused_unless_filled(self, folder):
         line = turn(6000)
         line[3000] = np.nan
         np.savez(folder / "lines.npz", rail=line[None])
         with pytest.raises(InputError, match="missing points inside"):
-            gather(case(folder, LINES))
-        found = gather(case(folder, LINES + 'processing = ["fill"]'))
+            textures_of(case(folder, LINES))
+        found = textures_of(case(folder, LINES + 'processing = ["fill"]'))
         assert "1 points filled" in found.origin
 
 
 class TestWheel:
     def test_turn_of_the_record_is_the_turn_of_the_wheel(self, folder):
         np.savez(folder / "lines.npz", wheel=turn(2870)[None])
-        found = gather(case(folder, wheel=LINES, duration="80 ms"))
+        found = textures_of(case(folder, wheel=LINES, duration="80 ms"))
         wheel = found.parts["wheel"]
         np.testing.assert_array_equal(wheel[2870:], wheel[:-2870])
         assert found.line is not None
@@ -121,19 +120,19 @@ class TestWheel:
     def test_line_shorter_than_a_turn_is_refused(self, folder):
         np.savez(folder / "lines.npz", wheel=turn(2500)[None])
         with pytest.raises(InputError, match=r"wheel\.line: received 2\.5 m"):
-            gather(case(folder, wheel=LINES))
+            textures_of(case(folder, wheel=LINES))
 
     def test_short_lines_are_left_out(self, folder):
         lines = np.stack([turn(2890, s) for s in range(3)])
         lines[1, 2000:] = np.nan
         np.savez(folder / "lines.npz", wheel=lines)
         with pytest.warns(ShortRecordWarning, match="1 of 3 lines of the wheel"):
-            gather(case(folder, wheel=LINES + 'line_distance = "5 mm"'))
+            textures_of(case(folder, wheel=LINES + 'line_distance = "5 mm"'))
 
     def test_lines_measured_to_and_fro_are_brought_into_register(self, folder):
         same = turn(2890)
         np.savez(folder / "lines.npz", wheel=np.stack([same, same[::-1], np.roll(same, 7)]))
-        found = gather(case(folder, wheel=LINES + 'line_distance = "5 mm"'))
+        found = textures_of(case(folder, wheel=LINES + 'line_distance = "5 mm"'))
         assert "2 brought into register (1 turned round)" in found.origin
         inside = found.path.heights[:, 5:-5]
         np.testing.assert_allclose(np.ptp(inside, axis=1), 0.0, atol=1e-7)

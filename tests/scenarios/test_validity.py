@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from asperity.cli.planning import plan
-from asperity.config import parse_case
 from asperity.errors import Grade, PhysicsWarning
+from asperity.kinds.cases import parse_case
 from asperity.reduction.scan import scan, warn_of_flaws, window_for
-from asperity.scenarios import run
+from asperity.running import prepare, run
 from asperity.scenarios.expecting import Work, expected_area_ratio
-from asperity.scenarios.preparing import prepare
 from asperity.scenarios.validity import SLOPE
 from asperity.surfaces.levelling import band_limit
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for

@@ -8,15 +8,15 @@ import pytest
 import xarray
 
 import asperity
-from asperity.config import parse_case
 from asperity.contact import Hertz
 from asperity.errors import InputError
+from asperity.kinds.cases import parse_case
+from asperity.kinds.wheel_on_rail.geometry import geometry_of
+from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses, loss_variables
+from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.reference.cnossos import rail_roughness
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
-from asperity.scenarios import run
-from asperity.scenarios.rail_geometry import rail_geometry
-from asperity.scenarios.rail_losses import described_losses, expected_error_of_losses, loss_variables
-from asperity.scenarios.rail_textures import gather
+from asperity.running import run
 from asperity.studies.running import study
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
@@ -193,7 +193,7 @@ class TestLossFactors:
         assert "of the nominal one: rail 0.9" in numerics["stiffness at rest"]
 
     def test_a_large_one_is_warned_of(self, tree, monkeypatch):
-        monkeypatch.setattr("asperity.rolling.loss_factors.DOUBTFUL", 0.01)
+        monkeypatch.setattr("asperity.kinds.wheel_on_rail.loss_factors.DOUBTFUL", 0.01)
         again = run(case(laws=["linear"]))  # the same track, kept
         assert "LossFactorWarning" in [entry["category"] for entry in json.loads(again.attrs["warnings"])]
         assert "LossFactorWarning" not in tree.attrs["warnings"]
@@ -231,7 +231,7 @@ class TestAgainstDirect:
 class TestTextures:
     def test_wheel_repeats_with_its_circumference_from_the_start(self):
         small = case(surface="smooth = true")
-        found = gather(small)
+        found = textures_of(small)
         turn = round(2 * np.pi * 0.46 / 1e-3)
         wheel = found.parts["wheel"]
         assert len(wheel) > turn
@@ -240,32 +240,34 @@ class TestTextures:
         assert not found.parts["rail"].any()
 
     def test_rail_and_wheel_add_up(self):
-        found = gather(case())
+        found = textures_of(case())
         np.testing.assert_allclose(found.line, found.parts["rail"] + found.parts["wheel"], atol=1e-12)
         np.testing.assert_array_equal(found.line, found.path.heights[:, found.path.shape[1] // 2])
 
     def test_levels_of_the_rail_are_those_of_its_spectrum(self):
         long = parse_case(case(wheel="").text.replace('"40 ms"', '"0.8 s"'), "case.toml")
-        rail = gather(long).parts["rail"]
+        rail = textures_of(long).parts["rail"]
         wavelength, level = band_levels_of(Profile(rail, 1e-3), shortest=4e-3, longest=0.1)
         given, wanted = rail_roughness("iso3095")
         expected = np.interp(-np.log(wavelength), -np.log(given), wanted)
         np.testing.assert_allclose(level, expected, atol=1.5)  # one line of a strip scatters
 
     def test_samples_are_flat_where_nothing_is_rough(self):
-        found = gather(case(surface="smooth = true", wheel='flat_depth = "0.2 mm"'))
+        found = textures_of(case(surface="smooth = true", wheel='flat_depth = "0.2 mm"'))
         assert len(found.maps) == 1
         assert not np.ptp(found.maps[0].heights)
 
     def test_path_shorter_than_the_strips_is_refused(self):
         long = parse_case(case().text.replace('"60 mm"', '"9 m"'), "case.toml")
         with pytest.raises(InputError, match=r"duration: received 0\.04 s, a path of"):
-            gather(long)
+            textures_of(long)
 
 
 class TestDefects:
     def test_flat_lies_where_it_is_said_and_returns_each_turn(self):
-        found = gather(case(surface="smooth = true", wheel='flat_depth = "0.3 mm"\nflat_position = "1 m"'))
+        found = textures_of(
+            case(surface="smooth = true", wheel='flat_depth = "0.3 mm"\nflat_position = "1 m"')
+        )
         at = found.start + 1e-3 * np.arange(len(found.line))
         assert found.trajectory.min() == pytest.approx(-0.3e-3, rel=1e-2)
         assert at[np.argmin(found.trajectory)] == pytest.approx(1.0, abs=2e-3)
@@ -273,19 +275,19 @@ class TestDefects:
 
     def test_worn_flat_is_as_long_as_it_is_said(self):
         wheel = 'flat_depth = "0.3 mm"\nflat_length = "80 mm"\nflat_shape = "worn"\nflat_position = "1 m"'
-        found = gather(case(surface="smooth = true", wheel=wheel))
+        found = textures_of(case(surface="smooth = true", wheel=wheel))
         at = found.start + 1e-3 * np.arange(len(found.line))
         struck = at[(found.defects < 0) & (np.abs(at - 1.0) < 0.2)]
         assert np.ptp(struck) == pytest.approx(80e-3, abs=3e-3)
 
     def test_corrugation_is_texture_and_no_defect(self):
-        found = gather(case(surface='corrugation = "20 um"\ncorrugation_wavelength = "50 mm"', wheel=""))
+        found = textures_of(case(surface='corrugation = "20 um"\ncorrugation_wavelength = "50 mm"', wheel=""))
         assert found.defects is None
         assert np.ptp(found.line) == pytest.approx(40e-6, rel=1e-2)
         assert not np.ptp(found.strips[0].heights)
 
     def test_wheel_does_not_fall_as_deep_into_a_joint_as_it_dips(self):
-        found = gather(case(surface='joint_depth = "2 mm"\njoint_position = "1 m"', wheel=""))
+        found = textures_of(case(surface='joint_depth = "2 mm"\njoint_position = "1 m"', wheel=""))
         assert np.all(found.trajectory >= found.defects - 1e-12)
         assert found.defects.min() < found.trajectory.min() < 0.0
 
@@ -313,7 +315,7 @@ def fine(**keys):
 
 class TestGeometry:
     def test_radii_make_hertz(self):
-        shape = rail_geometry(fine(wheel='transverse_radius = "0.5 m"'))
+        shape = geometry_of(fine(wheel='transverse_radius = "0.5 m"'))
         assert shape.hertz.radius_x == 0.46
         assert shape.hertz.radius_y == pytest.approx(1 / (1 / 0.3 + 1 / 0.5))
         assert shape.largest_force < 8 * 65e3  # what the window holds
@@ -323,7 +325,7 @@ class TestGeometry:
         rows = "\n".join(f"{a * 1e3:.4f}\t{-(a**2) / 0.6 * 1e6:.6f}" for a in y)
         (tmp_path / "head.txt").write_text("y [mm]\tz [um]\n" + rows + "\n")
         measured = fine(track='rail_profile = "head.txt"', source=tmp_path / "case.toml")
-        shape, round_head = rail_geometry(measured), rail_geometry(fine())
+        shape, round_head = geometry_of(measured), geometry_of(fine())
         assert shape.hertz.radius_y == pytest.approx(0.3, rel=1e-3)
         np.testing.assert_allclose(shape.body, round_head.body, atol=1e-9)
 
@@ -331,16 +333,16 @@ class TestGeometry:
         rows = "\n".join(f"{a:.4f}\t{-(a**2):.6f}" for a in np.linspace(-5, 5, 41))
         (tmp_path / "head.txt").write_text("y [mm]\tz [um]\n" + rows + "\n")
         with pytest.raises(InputError, match=r"track\.rail_profile: received a section 10 mm wide"):
-            rail_geometry(fine(track='rail_profile = "head.txt"', source=tmp_path / "case.toml"))
+            geometry_of(fine(track='rail_profile = "head.txt"', source=tmp_path / "case.toml"))
 
     def test_bodies_that_fit_each_other_are_refused(self, tmp_path):
         rows = "\n".join(f"{a:.4f}\t{a**2 * 10:.6f}" for a in np.linspace(-30, 30, 121))
         (tmp_path / "tread.txt").write_text("y [mm]\tz [um]\n" + rows + "\n")
         with pytest.raises(InputError, match="bodies that"):
-            rail_geometry(fine(wheel='profile = "tread.txt"', source=tmp_path / "case.toml"))
+            geometry_of(fine(wheel='profile = "tread.txt"', source=tmp_path / "case.toml"))
 
     def test_wheel_and_rail_under_their_load(self):
-        shape = rail_geometry(fine())
+        shape = geometry_of(fine())
         expected = Hertz(shape.modulus, 0.46, 0.3)
         assert expected.stiffness_constant == pytest.approx(9.413e10, rel=1e-3)
         assert shape.semi_axes == pytest.approx((6.20e-3, 4.67e-3), rel=1e-3)

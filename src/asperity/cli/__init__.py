@@ -77,14 +77,14 @@ def main(debug: bool) -> None:
 def demo(directory: Path, overwrite: bool) -> None:
     """Run a small example that needs no input, and say where its report lies."""
     from asperity.cli.running import run_into
-    from asperity.config import demo_case
+    from asperity.kinds.cases import demo_case
 
     run_into(demo_case(), directory, overwrite=overwrite)
 
 
 def _templates(context: click.Context, argument: click.Parameter, incomplete: str) -> list[str]:
     """Complete what 'asperity new' can write."""
-    from asperity.config import KINDS
+    from asperity.kinds import KINDS
 
     return [name for name in (*KINDS, "study") if name.startswith(incomplete)]
 
@@ -93,8 +93,8 @@ def _templates(context: click.Context, argument: click.Parameter, incomplete: st
 @click.argument("kind", metavar="ball-on-beam|wheel-on-rail|study", shell_complete=_templates)
 def new(kind: str) -> None:
     """Write a commented case, or a study of one, to standard output."""
-    from asperity.config import KINDS, template
-    from asperity.config.parsing import not_a_kind
+    from asperity.kinds import KINDS
+    from asperity.kinds.cases import not_a_kind, template
 
     if kind not in (names := (*KINDS, "study")):
         raise not_a_kind(kind, names)
@@ -118,8 +118,8 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> None:
     """
     from asperity.cli.planning import show_plan
     from asperity.cli.running import refuse_folder
-    from asperity.config import load_case
-    from asperity.scenarios.preparing import prepare
+    from asperity.kinds.cases import load_case
+    from asperity.running import prepare
 
     loaded = load_case(case)
     refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
@@ -135,7 +135,7 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> None:
 def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> None:
     """Compute a case: writes run.nc, report.html and the CSV of every figure."""
     from asperity.cli.running import run_into
-    from asperity.config import load_case
+    from asperity.kinds.cases import load_case
 
     run_into(load_case(case), directory or Path("runs") / case.stem, report=report, overwrite=overwrite)
 

@@ -89,7 +89,7 @@ def _as_lines(surfaces: list[HeightMap | Profile], told: bool | None) -> tuple[P
 
 def _inspect_lines(lines: tuple[Profile, ...], title: str, picture: Path, *, told: bool) -> None:
     """Print what is in lines side by side, and draw them."""
-    from asperity.report import lines_picture
+    from asperity.reporting import lines_picture
     from asperity.surfaces.statistics import line_statistics
 
     say(f"{title}: {described_lines(lines)}")
@@ -229,7 +229,7 @@ def draw(surface: HeightMap | Profile, title: str, picture: Path) -> Path:
     Path
         The file written.
     """
-    from asperity.report import surface_picture
+    from asperity.reporting import surface_picture
     from asperity.surfaces.heightmap import HeightMap
 
     spacing = surface.spacing if isinstance(surface, HeightMap) else (surface.spacing, surface.spacing)

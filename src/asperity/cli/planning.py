@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING
 
-from asperity.config import Case, WheelOnRailCase
+from asperity.config.case import Case
 from asperity.config.sections import MeasuredLine
 from asperity.errors import Grade, PhysicsWarning
 from asperity.progress import Progress, duration, progress_bar
@@ -84,7 +84,7 @@ def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
         ("textures", prepared.textures.origin),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
         ("time", f"{case.rolled_time:g} s{run_in}, {steps} steps of {case.time_step * 1e6:.4g} µs"),
-        *_track(case),
+        *prepared.kind.plan.rows(case),
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
         *_real_contact(prepared),
@@ -166,25 +166,6 @@ def announce_scan(prepared: Prepared, progress: Progress) -> None:
         say(f"Scan of the path: {described_scan(scan)}.", err=True)
 
 
-def _track(case: Case) -> list[tuple[str, str]]:
-    """Characteristic numbers of the track."""
-    if not isinstance(case, WheelOnRailCase):
-        return []
-    from asperity.rolling.loss_factors import warn_of_loss_factors
-    from asperity.scenarios.rail_losses import described_losses, expected_error_of_losses
-
-    track, losses = case.track_model(), expected_error_of_losses(case)
-    warn_of_loss_factors(losses)
-    frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, sleeper passing"
-    passing = f"{case.speed / track.sleeper_spacing:.4g} Hz, critical speed {track.critical_speed:.4g} m/s"
-    points = ", ".join(f"{position:g} m" for position in case.point_positions)
-    return [
-        ("track", f"{frequencies} {passing}"),
-        *described_losses(losses, case.wheel.load),
-        ("rail motion recorded at", points),
-    ]
-
-
 def _measured(case: Case) -> list[tuple[str, str]]:
     """Say what is in the measured files."""
     from asperity.cli.inspecting import described, described_lines
@@ -197,11 +178,9 @@ def _measured(case: Case) -> list[tuple[str, str]]:
         warnings.simplefilter("ignore", PhysicsWarning)  # said before
         if case.surface.file is not None:
             found.append(("measured map", described(list(read_maps(case.surface)))))
-        sections: list[tuple[str, MeasuredLine]] = [("surface", case.surface)]
-        if isinstance(case, WheelOnRailCase):
-            sections.append(("wheel", case.wheel))
-        for name, section in sections:
-            if section.line is not None:
+        for name in type(case).model_fields:
+            section = getattr(case, name)
+            if isinstance(section, MeasuredLine) and section.line is not None:
                 lines = read_lines(section, name)
                 words = described([lines])
                 if isinstance(lines, HeightMap):

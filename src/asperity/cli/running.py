@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from asperity.cli.planning import announce_scan
-from asperity.config import Case
+from asperity.config.case import Case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, require_space
 from asperity.progress import progress_bar
@@ -18,7 +18,7 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    case : BallOnBeam or WheelOnRail
         The case.
     directory : Path
         Where ``run.nc``, ``report.html`` and the CSVs go.
@@ -40,10 +40,9 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
 
 def _run_alone(case: Case, directory: Path, *, report: bool) -> None:
     """Compute a case and write its results, while no other run does into this folder."""
-    from asperity.report import remove_report, write_report
+    from asperity.kinds.report import remove_report, write_report
     from asperity.results import save
-    from asperity.scenarios import run
-    from asperity.scenarios.preparing import prepare
+    from asperity.running import prepare, run
     from asperity.store import Store
 
     prepared = prepare(case)
@@ -78,7 +77,7 @@ def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> No
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    case : BallOnBeam or WheelOnRail
         The case.
     directory : Path
         Where its results shall go.

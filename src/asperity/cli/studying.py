@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.comma_separated import write_csv
-from asperity.config import WheelOnRailCase, load_case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable
+from asperity.kinds.cases import kind_of, load_case
 from asperity.progress import progress_bar
 from asperity.studies.definition import Study, study_of
 from asperity.terminal import say, say_table
@@ -108,7 +108,7 @@ def speeds_and_loads(case: Path, speeds: str | None, loads: str | None) -> Study
     InputError
         If neither is given, or a value is wrong.
     """
-    body = "wheel" if isinstance(load_case(case), WheelOnRailCase) else "ball"
+    body = kind_of(load_case(case)).rolling
     given = {"speed": speeds, f"{body}.load": loads}
     words = {name: text.split(",") for name, text in given.items() if text is not None}
     sweep = {name: [word.strip() for word in values] for name, values in words.items()}

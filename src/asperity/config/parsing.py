@@ -5,23 +5,20 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, ValidationError
 
 from asperity import decoding
-from asperity.arguments import file_path, shown
-from asperity.config.ball_on_beam import BallOnBeamCase
+from asperity.arguments import shown
 from asperity.config.case import Case
 from asperity.config.keys import BACKSLASH, Problems, allowed_in, nearest
-from asperity.config.wheel_on_rail import WheelOnRailCase
-from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
 
-KINDS: dict[str, type[Case]] = {"ball-on-beam": BallOnBeamCase, "wheel-on-rail": WheelOnRailCase}
+C = TypeVar("C", bound=Case)
 LARGEST_CASE = 2**20  # bytes
 MOST_PARTS = 20
 """Parts of a dotted key; those of a case have three. The time to read a key grows with the square of them."""
@@ -33,60 +30,6 @@ DEEPEST = 10  # sections and lists inside one another; those of a case are three
 _MANY_PARTS = re.compile(
     r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % MOST_PARTS  # noqa: UP031
 )
-
-
-def load_case(path: str | os.PathLike[str]) -> Case:
-    """Read a case from a TOML file.
-
-    Parameters
-    ----------
-    path : path
-        The case file.
-
-    Returns
-    -------
-    BallOnBeamCase or WheelOnRailCase
-        The case, in SI.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, too large, no text or no TOML.
-    CaseError
-        With all errors at once, if the keys are wrong.
-    """
-    remedy = "Check the path, or write a case with 'asperity new ball-on-beam > case.toml'."
-    return parse_case(read_text(path, "case", remedy), path)
-
-
-def as_case(case: object) -> Case:
-    """Take a case in any of its forms.
-
-    Parameters
-    ----------
-    case : path, mapping or case object
-        A TOML file; or its keys and values, sections as mappings, quantities as text with units; relative
-        paths then start at the working folder.
-
-    Returns
-    -------
-    BallOnBeamCase or WheelOnRailCase
-        The case, in SI.
-
-    Raises
-    ------
-    InputError
-        If it is none of these, or the file cannot be read.
-    CaseError
-        With all errors at once, if the keys are wrong.
-    """
-    if isinstance(case, Case):
-        return case
-    if isinstance(case, Mapping):
-        data = plain(case)
-        return case_of(data, toml_text(data), "case")
-    allowed = "the path of a case file, its keys as a mapping, or a case object"
-    return load_case(file_path("case", case, allowed))
 
 
 def plain(value: Any, depth: int = 0) -> Any:
@@ -164,36 +107,13 @@ def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str,
         raise InputError(str(source), f"no TOML ({error})", allowed, remedy) from None
 
 
-def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
-    """Read a case from its text.
+def validated(model: type[C], data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> C:
+    """Make a case of a known kind from its keys and values.
 
     Parameters
     ----------
-    text : str
-        The case in TOML.
-    source : str or path
-        Where the text comes from, for messages; relative paths in the case start at its folder.
-
-    Returns
-    -------
-    BallOnBeamCase or WheelOnRailCase
-        The case, in SI.
-
-    Raises
-    ------
-    InputError
-        If the text is no TOML.
-    CaseError
-        With all errors at once, if the keys are wrong.
-    """
-    return case_of(read_toml(text, "case", source), text, source)
-
-
-def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> Case:
-    """Make a case of keys and values.
-
-    Parameters
-    ----------
+    model : class of cases
+        Its kind.
     data : dict
         Keys and values as TOML gives them, sections as dicts.
     text : str
@@ -203,21 +123,14 @@ def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> 
 
     Returns
     -------
-    BallOnBeamCase or WheelOnRailCase
+    Case
         The case, in SI.
 
     Raises
     ------
-    InputError
-        If there are more keys and values than a case can have.
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    _refuse_vast(data, str(source))
-    kind = data.get("kind")
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise CaseError(str(source), [str(not_a_kind(kind))])
-    model = KINDS[kind]
     try:
         case = model.model_validate(data, context={"folder": Path(source).parent})
     except ValidationError as error:
@@ -226,7 +139,7 @@ def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> 
     return case
 
 
-def _refuse_vast(data: Mapping[str, Any], source: str) -> None:
+def refuse_vast(data: Mapping[str, Any], source: str) -> None:
     """Refuse what would take long to check and fill screens with errors."""
     level: list[Any] = [data]  # one depth after the other: nothing here may recurse
     count = 0
@@ -245,14 +158,6 @@ def _refuse_vast(data: Mapping[str, Any], source: str) -> None:
 def _too_deep(source: str) -> InputError:
     received = f"sections or lists more than {DEEPEST} deep inside one another"
     return InputError(source, received, "keys, sections, and lists of values")
-
-
-def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
-    """Error about a kind of case that this version does not have; None stands for a missing key."""
-    allowed = ", ".join(f'"{name}"' for name in names)
-    if kind is None:
-        return InputError("kind", "nothing", allowed, 'Write kind = "ball-on-beam" as the first line.')
-    return InputError("kind", shown(kind), allowed, nearest(kind, list(names)))
 
 
 def _messages(error: ValidationError, model: type[BaseModel]) -> list[str]:

@@ -10,19 +10,19 @@ from typing import Annotated, Any
 from pydantic import TypeAdapter, ValidationError
 
 from asperity.arguments import shown
+from asperity.config.case import Case
 from asperity.config.describing import Entry, entries
 from asperity.config.keys import Number, Quantity, allowed_in, kind_of, nearest
-from asperity.config.parsing import KINDS, not_a_kind
 from asperity.errors import InputError
 
 
-def entry_of(kind: object, dotted: str) -> Entry:
+def entry_of(model: type[Case], dotted: str) -> Entry:
     """Find a key of a kind of case.
 
     Parameters
     ----------
-    kind : str
-        What rolls.
+    model : class of cases
+        The kind.
     dotted : str
         The key with its section, as ``"wheel.load"``.
 
@@ -34,15 +34,14 @@ def entry_of(kind: object, dotted: str) -> Entry:
     Raises
     ------
     InputError
-        If there is no such kind, or it has no such key.
+        If it has no such key.
     """
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise not_a_kind(kind)
-    found = {entry.dotted: entry for entry in entries(KINDS[kind])}
+    found = {entry.dotted: entry for entry in entries(model)}
     if dotted in found:
         return found[dotted]
     homes = [name for name in found if name.rpartition(".")[2] == dotted]
     remedy = f'Write it with its section, "{homes[0]}".' if homes else nearest(dotted, list(found))
+    kind = model.model_fields["kind"].default
     allowed = f'a key of a {kind} case, with its section, as "contact.spacing"'
     raise InputError(dotted, "an unknown key", allowed, remedy)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.errors import ExtrapolationWarning, Grade, UnconvergedWarning, percent
 from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all
-from asperity.pointforce.base import SteppedLaw
+from asperity.laws.base import SteppedLaw
 
 STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itself solved to a tolerance
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from asperity.errors import CoarseSamplingWarning
 from asperity.kernels.modal import modal_coefficients
 from asperity.kernels.pointforce import Prepared, evaluate_all
-from asperity.pointforce.base import SteppedLaw
+from asperity.laws.base import SteppedLaw
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.wheel import Wheel
 

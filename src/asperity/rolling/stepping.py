@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.modal import refine, tolerance
 from asperity.kernels.pointforce import Prepared, with_damping
-from asperity.pointforce.base import SteppedLaw
+from asperity.laws.base import SteppedLaw
 from asperity.progress import Progress
 
 STEPPED_BLOCK = 8  # steps between looks at the clock when the law is evaluated from Python

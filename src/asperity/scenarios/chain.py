@@ -11,10 +11,9 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config import Case
-from asperity.config.case import SETTLED
+from asperity.config.case import SETTLED, Case
 from asperity.errors import ShortRecordWarning
-from asperity.pointforce import Law
+from asperity.laws import Law
 from asperity.progress import Progress
 from asperity.reduction.scan import ScannedForces
 from asperity.rolling.events import ContactLoss

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from asperity.config import Case, WheelOnRailCase
+from asperity.config.case import Case
 from asperity.progress import Progress
 from asperity.reduction.real_contact import expected_area_ratio as expected_area_ratio_of
 from asperity.reduction.scan import BLOCK
-from asperity.scenarios.compiling import compile_kernels, compile_rail_kernels
 from asperity.scenarios.preparing import Prepared
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.scan_sizes import Expected, scan_sizes
-from asperity.scenarios.trial import ContactTrial, timed, try_contacts, try_rolling, try_track
-from asperity.scenarios.wheel_on_rail import POLES
+from asperity.scenarios.trial import ContactTrial, timed, try_contacts
 from asperity.surfaces.statistics import rms_slope
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 
@@ -27,16 +24,12 @@ SOLUTIONS_PER_STEP = 3
 """Solutions of `direct` in a time step: two or three."""
 STATE_TIME = 1.5e-7
 """Time of laying a state function out for a time step, s."""
-POLE_TIME = 6e-3
-"""Time of fitting a pole, s."""
 NUMBER_TIME = 5e-7
 """Time of making a spectrum of a number of a record and of writing it, s."""
 POINT_TIME = 3e-7
 """Time of a point of the path in its statistics, s."""
 LAID_OUT = 0.5
 """Time of laying out the rest of a result, s."""
-REPORT_TIME = {"ball-on-beam": 7.5, "wheel-on-rail": 13.0}
-"""Time of starting the program, and of drawing and writing a report, s."""
 SINGLE_COMPILED = 10.0
 """Time of compiling the contact in single precision, where that is not kept yet, s."""
 COUNTING_TIME = 12e-3
@@ -82,7 +75,7 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
     """
     case, samples = prepared.case, bool(prepared.textures.maps)
     with one_thread_in_linear_algebra():
-        (compile_rail_kernels if isinstance(case, WheelOnRailCase) else compile_kernels)(progress)
+        prepared.kind.compile_kernels(progress)
         pace = _pace()
         scans = scan_sizes(case, prepared.shape, prepared.textures)
         seconds = {"textures": prepared.processor}
@@ -90,8 +83,7 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
             trial = try_contacts(prepared, progress)
             scans = {name: _timed_scan(name, scan, trial, case) for name, scan in scans.items()}
             seconds |= _contact_seconds(prepared, trial, scans, pace)
-        if isinstance(case, WheelOnRailCase):
-            seconds |= _track_seconds(prepared, progress, pace)
+        seconds |= prepared.kind.plan.seconds(prepared, progress, pace)
         seconds |= _rolling_seconds(prepared, pace)
     return Work(scans, seconds)
 
@@ -133,7 +125,7 @@ def expected_path_scan(prepared: Prepared, progress: Progress) -> Expected:
     """
     case = prepared.case
     with one_thread_in_linear_algebra():
-        (compile_rail_kernels if isinstance(case, WheelOnRailCase) else compile_kernels)(progress)
+        prepared.kind.compile_kernels(progress)
         size = scan_sizes(case, prepared.shape, prepared.textures)["path"]
         return _timed_scan("path", size, try_contacts(prepared, progress), case)
 
@@ -167,32 +159,18 @@ def _contact_seconds(
     return found
 
 
-def _track_seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, float]:
-    """Time of the moving kernel, its poles, and of the points that the wheel passes."""
-    case: Any = prepared.case
-    trial = try_track(prepared, progress)
-    poles = (case.numerics.poles or POLES) if case.numerics.kernel == "poles" else 0
-    return {
-        "moving kernel": trial.kernel / thread_count(),
-        "poles": poles * POLE_TIME * pace,
-        "passed points": len(case.point_positions) * trial.points,
-    }
-
-
 def _rolling_seconds(prepared: Prepared, pace: float) -> dict[str, float]:
     """Time of rolling all laws, of their spectra and statistics, and of writing the report."""
     case = prepared.case
     steps, laws, states = steps_of(case), len(case.laws), STATES
-    records = len(getattr(case, "point_positions", ())) * 2 + 4
-    beam = getattr(case, "beam", None)
-    records += 0 if beam is None else len(beam.sensor_positions)
+    plan = prepared.kind.plan
     path = prepared.textures.path
     points = len(prepared.textures.line) if path is None else math.prod(path.shape)
-    written = steps * laws * records * NUMBER_TIME + points * POINT_TIME
+    written = steps * laws * plan.records(case) * NUMBER_TIME + points * POINT_TIME
     return {
-        "rolling": steps * laws * (try_rolling(prepared) + states * STATE_TIME * pace),
+        "rolling": steps * laws * (plan.step_seconds(prepared) + states * STATE_TIME * pace),
         "spectra and statistics": (written + LAID_OUT) * pace,
-        "report": REPORT_TIME[case.kind] * pace,
+        "report": plan.REPORT * pace,
     }
 
 

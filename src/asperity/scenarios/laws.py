@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase, Numerics
-from asperity.pointforce import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
+from asperity.laws import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
 from asperity.progress import Progress
 from asperity.reduction.accuracy import rtol_for
 from asperity.reduction.areal import areal_texture

@@ -8,12 +8,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from asperity.config import BallOnBeamCase, Case, WheelOnRailCase
+from asperity.config.case import Case
 from asperity.contact.device import find_device
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.reduction.filter import FEWEST_POSITIONS
-from asperity.scenarios import ball_on_beam, wheel_on_rail
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.kind import Kind
 from asperity.scenarios.line_filters import filter_stride
 from asperity.scenarios.scan_sizes import problem_of_disk, scan_sizes
 from asperity.scenarios.textures import Textures
@@ -31,6 +31,8 @@ class Prepared:
     ----------
     case : Case
         The case.
+    kind : Kind
+        Its kind.
     bodies : Bodies of its kind
         What is rolled.
     shape : Geometry
@@ -44,7 +46,8 @@ class Prepared:
     """
 
     case: Case
-    bodies: ball_on_beam.Bodies | wheel_on_rail.Bodies
+    kind: Kind
+    bodies: Any
     shape: Geometry
     textures: Textures
     caught: tuple[warnings.WarningMessage, ...]
@@ -52,13 +55,15 @@ class Prepared:
     processor: float
 
 
-def prepare(case: Case) -> Prepared:
+def prepare(case: Case, kind: Kind) -> Prepared:
     """Build and read all that a case needs, and refuse what cannot be computed.
 
     Parameters
     ----------
-    case : BallOnBeamCase or WheelOnRailCase
+    case : Case
         The case.
+    kind : Kind
+        Its kind.
 
     Returns
     -------
@@ -76,12 +81,6 @@ def prepare(case: Case) -> Prepared:
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
         warnings.simplefilter("always", PhysicsWarning)
         tried = _Attempts()
-        kind: Any
-        if isinstance(case, WheelOnRailCase):
-            kind = wheel_on_rail
-        else:
-            assert isinstance(case, BallOnBeamCase)
-            kind = ball_on_beam
         bodies = tried(lambda: kind.bodies_of(case))
         shape = tried(lambda: kind.geometry_of(case))
         textures = tried(lambda: kind.textures_of(case))
@@ -95,7 +94,7 @@ def prepare(case: Case) -> Prepared:
         tried.refuse(case.source)
         kind.warn_of(case, shape, textures)
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
-    return Prepared(case, bodies, shape, textures, tuple(caught), seconds, processor)
+    return Prepared(case, kind, bodies, shape, textures, tuple(caught), seconds, processor)
 
 
 class _Attempts:

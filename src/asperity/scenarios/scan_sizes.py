@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from asperity.config import Case
+from asperity.config.case import Case
 from asperity.contact.device import find_device
 from asperity.errors import InputError
 from asperity.files import amount, free_space

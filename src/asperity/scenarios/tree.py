@@ -15,7 +15,7 @@ import xarray
 from asperity import __version__
 from asperity.contact.device import find_device
 from asperity.errors import Grade, PhysicsWarning
-from asperity.pointforce import LAWS
+from asperity.laws import LAWS
 from asperity.results import BASELINES, checked, difference_name, variable
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.missing import marked

@@ -7,25 +7,18 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from types import SimpleNamespace
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
-from asperity.pointforce import Hertz
 from asperity.progress import Progress
 from asperity.reduction.accuracy import FILTER_SHARE, rtol_for
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import patches
 from asperity.reduction.scan import first_touch, scan_forces
-from asperity.reduction.texture import StateTexture
-from asperity.rolling import ball_on_beam as ball_rolling
-from asperity.rolling import wheel_on_rail as wheel_rolling
-from asperity.rolling.passing import passed_points
-from asperity.scenarios import ball_on_beam, wheel_on_rail
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.line_filters import filter_stride
 from asperity.scenarios.preparing import Prepared
@@ -35,8 +28,6 @@ from asperity.scenarios.reducing import (
     patch_planes,
     refuse_low_states,
 )
-from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, moving_kernel
-from asperity.structures.rail_poles import RailPoles
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Strip
 
@@ -52,10 +43,6 @@ ROWS = 2000
 """Rows of a path, at most, on which averages over patches are tried."""
 STEPS = 400
 """Time steps that are tried."""
-SHORT_KERNEL, FEW = 0.03, (4, 12)
-"""Length, s, and start positions of the moving kernels that are tried."""
-LAGS = 4
-"""Times shorter than that is the kernel with which passed points are tried."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,25 +76,6 @@ class ContactTrial:
     direct: float
     touch: float
     average: float
-
-
-@dataclass(frozen=True, eq=False)
-class TrackTrial:
-    """Times of what the rail adds, on one core, s.
-
-    Attributes
-    ----------
-    length : float
-        Length of the moving kernel, s.
-    kernel : float
-        The moving kernel, with the shorter ones before it.
-    points : float
-        One passed point, all laws together.
-    """
-
-    length: float
-    kernel: float
-    points: float
 
 
 def timed(task: Callable[[], T]) -> tuple[T, float]:
@@ -242,102 +210,3 @@ def _middle(strip: Strip, most: int) -> HeightMap:
     """At most so many rows from the middle of a strip."""
     first = max(0, (strip.shape[0] - most) // 2)
     return HeightMap(strip.rows(first, min(first + most, strip.shape[0])), strip.spacing)
-
-
-def try_rolling(prepared: Prepared) -> float:
-    """Roll a few steps of smooth bodies over a smooth path.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        A case.
-
-    Returns
-    -------
-    float
-        Time of a step, s.
-    """
-    case, shape = prepared.case, prepared.shape
-    law = Hertz(shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
-    duration = STEPS * case.time_step
-    bodies: Any = prepared.bodies
-    if isinstance(bodies, ball_on_beam.Bodies):
-        beam, middle = bodies.beam, 0.5 * bodies.beam.length
-        duration = min(duration, 0.4 * bodies.beam.length / case.speed)
-        _, seconds = timed(
-            lambda: ball_rolling.roll(
-                beam, bodies.ball, law, speed=case.speed, start=middle, duration=duration,
-                time_step=case.time_step, sensors=[middle] * len(prepared.case.beam.sensor_positions),  # type: ignore[attr-defined]
-            )
-        )  # fmt: skip
-        return seconds / max(1.0, duration / case.time_step)
-    _, seconds = timed(
-        lambda: wheel_rolling.roll(
-            _rail_like(prepared), bodies.wheel, law, start=0.0, duration=duration, settling=0.0
-        )
-    )
-    return seconds / STEPS
-
-
-def _rail_like(prepared: Prepared) -> RailPoles | MovingKernel:
-    """A rail that costs as much as that of a case, and hardly moves."""
-    case: Any = prepared.case
-    lags = round(SHORTEST / case.time_step)
-    kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.full((STARTS, lags), 1e-20))
-    if case.numerics.kernel != "poles":
-        return kernel
-    count = (case.numerics.poles or wheel_on_rail.POLES) // 2
-    poles = 0.5 * np.exp(1j * np.linspace(0.1, 3.0, count))
-    return RailPoles(kernel, poles, np.full((STARTS, count), 1e-20 + 0j), 0.0, 0.0)
-
-
-def try_track(prepared: Prepared, progress: Progress) -> TrackTrial:
-    """Compute short moving kernels of a track, and let the wheel pass a point that remembers little.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        A wheel on a rail.
-    progress : Progress
-        Called between the pieces.
-
-    Returns
-    -------
-    TrackTrial
-        Times.
-    """
-    case: Any = prepared.case
-    track, speed, step = case.track_model(), case.speed, case.time_step
-    message = "trying the track"
-    progress(0, 3, message)
-    sparse, _ = timed(lambda: moving_kernel(track, speed, step, positions=2))
-    length = sparse.weights.shape[1] * step
-    progress(1, 3, message)
-    tried = partial(moving_kernel, track, speed, step, duration=SHORT_KERNEL)
-    times = [timed(partial(tried, positions=count))[1] for count in FEW]
-    progress(2, 3, message)
-    bays = speed / track.sleeper_spacing  # a second
-    each = (times[1] - times[0]) / ((FEW[1] ** 2 - FEW[0] ** 2) * SHORT_KERNEL * (bays * SHORT_KERNEL + 2))
-    shared = max(times[0] - each * FEW[0] ** 2 * SHORT_KERNEL * (bays * SHORT_KERNEL + 2), 0.0) / SHORT_KERNEL
-    lengths, kernel = [SHORTEST], 0.0
-    while lengths[-1] < 0.99 * length:
-        lengths.append(1.6 * lengths[-1])
-    for each_length in lengths:
-        kernel += shared * each_length + each * STARTS**2 * each_length * (bays * each_length + 2)
-    points = _point_time(prepared, length)
-    progress(3, 3, message)
-    return TrackTrial(length, kernel, points)
-
-
-def _point_time(prepared: Prepared, length: float) -> float:
-    """Time of a passed point, from one whose responses are shorter: it grows with their length."""
-    case: Any = prepared.case
-    short = length / LAGS
-    lags = max(8, round(short / case.time_step))
-    kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.zeros((1, lags)))
-    first, last = case.rolled_range
-    steps = round((last - first) / case.speed / case.time_step)
-    run: Any = SimpleNamespace(history=np.ones(steps), history_start=first, time=np.zeros(steps))
-    middle = 0.5 * (first + last)
-    _, seconds = timed(lambda: passed_points(kernel, [run] * len(case.laws), [middle]))
-    return seconds * LAGS

@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 
 from asperity import __version__
 from asperity.arguments import file_path, shown
-from asperity.config import Case, case_of
+from asperity.config.case import Case
 from asperity.config.describing import Entry
 from asperity.config.parsing import plain, read_text, read_toml
 from asperity.config.single_keys import entry_of, reader_of, unit_of
 from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
+from asperity.kinds.cases import case_of, kind_named
 from asperity.store import content_key
 
 MOST_MEMBERS = 10_000
@@ -301,7 +302,7 @@ def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, An
 def _axis(kind: object, dotted: str, values: object, source: Path) -> Axis:
     if dotted == "kind":
         raise InputError("kind", "a swept key", "one kind of case in a study", "Write a study for each kind.")
-    entry = entry_of(kind, dotted)
+    entry = entry_of(kind_named(kind).case, dotted)
     if not isinstance(values, list | tuple):
         raise InputError(dotted, shown(values), "a list of values", "Put the values into [ ].")
     if not values:

@@ -56,8 +56,8 @@ def compute_member(key: str, data: dict[str, Any], source: str) -> dict[str, NDA
     dict of str to ndarray, or Failure
         What `asperity.studies.kept.packed` makes of its result; a failure where there is none.
     """
-    from asperity.config import case_of
-    from asperity.scenarios import run
+    from asperity.kinds.cases import case_of
+    from asperity.running import run
     from asperity.store import Store
     from asperity.studies.kept import kept, packed
 

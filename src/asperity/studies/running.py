@@ -9,7 +9,7 @@ from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import shown, whole
-from asperity.config import Case
+from asperity.config.case import Case
 from asperity.errors import ComputationError, InputError
 from asperity.studies.definition import Member, Study, load_study, study_of
 from asperity.studies.executors import locally, through

@@ -1,0 +1,1 @@
+"""A ball rolls over a rough beam."""

@@ -1,0 +1,62 @@
+"""The ball and the beam of a case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from asperity.kinds.ball_on_beam.case import BallOnBeam
+from asperity.structures.ball import Ball
+from asperity.structures.beam import Beam
+
+MODES_BEYOND = 4.0
+"""Beam modes are kept up to this multiple of the highest frequency."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """What is rolled in a case.
+
+    Attributes
+    ----------
+    ball, beam
+        The bodies.
+    """
+
+    ball: Ball
+    beam: Beam
+
+
+def bodies_of(case: BallOnBeam) -> Bodies:
+    """Build the bodies of a case.
+
+    Parameters
+    ----------
+    case : BallOnBeam
+        The case.
+
+    Returns
+    -------
+    Bodies
+        Ball and beam.
+
+    Raises
+    ------
+    InputError
+        If the beam has no natural frequency in the range.
+    """
+    beam = Beam.rectangular(
+        case.beam.length,
+        case.beam.width,
+        case.beam.height,
+        case.beam.material,
+        support=case.beam.support,
+        loss_factor=case.beam.loss_factor,
+        highest_frequency=MODES_BEYOND * case.numerics.highest_frequency,
+        suspension_frequency=case.beam.suspension_frequency,
+    )
+    return Bodies(ball_of(case), beam)
+
+
+def ball_of(case: BallOnBeam) -> Ball:
+    """Build the ball of a case."""
+    return Ball(case.ball.radius, case.ball.material, case.ball.load, case.ball.mass)

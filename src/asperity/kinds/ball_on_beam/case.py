@@ -1,0 +1,266 @@
+"""The case of a ball that rolls over a beam: its keys, their defaults, and what must fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, model_validator
+
+from asperity.config.case import (
+    LAWS,
+    SETTLED,
+    Case,
+    Law,
+    problem_of_steps,
+    problems_of_laws,
+    problems_of_sampling,
+    time_step_on_grid,
+)
+from asperity.config.keys import (
+    Choice,
+    Duration,
+    DurationOrZero,
+    Force,
+    Frequency,
+    Length,
+    Mass,
+    Number,
+    OwnOrNamed,
+    Position,
+    Section,
+    Speed,
+    key,
+)
+from asperity.config.sections import ContactCase, Numerics, Surface
+from asperity.errors import InputError
+from asperity.results import BASELINES
+from asperity.scenarios.kind import Words
+
+NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
+NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line
+
+LONGEST_SETTLING = 0.2
+"""Longest run-in that is chosen, s: after it no one-third octave from 40 Hz on holds the start from rest."""
+SETTLING_SHARE = 0.25
+"""Share of the beam that a chosen run-in takes at most, where the record lasts until its end."""
+
+
+class Ball(Section):
+    """The ball that rolls: a rigid mass with its weight, or a given load."""
+
+    radius: Length = key("25 mm", "radius", within=("10 um", "10 m", "balls that roll on beams lie between"))
+    material: OwnOrNamed = key("steel", "material")
+    mass: Mass | None = key(
+        None,
+        "mass",
+        otherwise="from radius and density",
+        example='"0.51 kg"',
+        within=("1e-12 kg", "1000 t", "balls that roll on beams lie between"),
+    )
+    load: Force | None = key(
+        None,
+        "constant force that presses the ball down",
+        otherwise="its weight",
+        example='"5 N"',
+        within=("1 nN", "1 GN", "adhesion governs smaller loads"),
+    )
+
+
+class Beam(Section):
+    """The beam that is rolled over: finite, Euler–Bernoulli."""
+
+    length: Length = key("1 m", "length, along the path", within=("1 mm", "1 km", "beams lie between"))
+    width: Length = key("50 mm", "width of the cross-section", within=("1 um", "10 m", "beams lie between"))
+    height: Length = key("10 mm", "height of the cross-section", within=("1 um", "10 m", "beams lie between"))
+    material: OwnOrNamed = key("steel", "material")
+    support: Annotated[str, BeforeValidator(Choice(("simply-supported", "free", "clamped")))] = key(
+        "simply-supported", "both ends"
+    )
+    loss_factor: Annotated[float, BeforeValidator(Number(at_least=0, at_most=0.5))] = key(
+        0.005, "loss factor of every bending mode"
+    )
+    suspension_frequency: Frequency = key(
+        "5 Hz",
+        "natural frequency of the rigid beam on its soft suspension",
+        goes_with="support=free",
+        within=("1 mHz", "1 kHz", "a suspension is softer than the beam"),
+    )
+    sensors: tuple[Position, ...] | None = key(
+        None,
+        "positions of the accelerometers from the beam's start",
+        otherwise="at 20, 35, 50, 65 and 80 % of the length",
+        example='["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"]',
+        within=("0 m", "1 km", "beams are shorter"),
+    )
+
+    @property
+    def sensor_positions(self) -> tuple[float, ...]:
+        """Positions of the accelerometers in m, with the default filled in."""
+        if self.sensors is not None:
+            return self.sensors
+        return tuple(share * self.length for share in (0.2, 0.35, 0.5, 0.65, 0.8))
+
+    def problems(self) -> Iterator[InputError]:
+        """At least one sensor, and all on the beam."""
+        if self.sensors == ():
+            yield InputError(
+                "sensors", "an empty list", "at least one position", "Remove the key for the default."
+            )
+        for position in self.sensors or ():
+            if position > self.length:
+                allowed = f"positions on the beam, 0 to {self.length:g} m"
+                yield InputError("sensors", f"{position:g} m", allowed)
+
+
+class BallOnBeam(Case):
+    """A ball rolls over a rough beam.
+
+    Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
+    default and allowed values are printed by ``asperity new ball-on-beam``.
+    """
+
+    kind: Annotated[str, BeforeValidator(Choice(("ball-on-beam",)))] = key("ball-on-beam", "what rolls")
+    speed: Speed = key(
+        "1 m/s",
+        "rolling speed",
+        within=("0.1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
+    )
+    laws: tuple[Law, ...] = key(
+        ("areal", "shifted", "printed", "table", "linear-filtered", "linear"),
+        "laws of the contact force; the first is the main one",
+    )
+    start: Position | None = key(
+        None,
+        "where on the beam the record starts",
+        otherwise="after the run-in, which begins at the beam's start",
+        example='"0.2 m"',
+        within=("0 m", "1 km", "beams are shorter"),
+    )
+    duration: Duration | None = key(
+        None,
+        "time that is recorded",
+        otherwise="until the end of the beam, or of the line",
+        example='"1 s"',
+        within=("1 us", "1 h", "records lie between"),
+    )
+    settling: DurationOrZero | None = key(
+        None,
+        "time that is rolled before the record starts, so that the start from rest is forgotten",
+        otherwise="as long as the record, 50 ms to 0.2 s, as far as there is room before it",
+        example='"0.2 s"',
+        within=("1 us", "1 h", "records lie between"),
+    )
+    surface: Surface = key({}, "what is rolled over: a measured map, or synthesised roughness")
+    ball: Ball = key({}, "the ball that rolls")
+    beam: Beam = key({}, "the beam that is rolled over")
+    contact: ContactCase = key({}, "how the rough contact is solved and reduced")
+    numerics: Numerics = key({}, "how finely time is resolved")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _laws_that_the_surface_allows(cls, data: Any) -> Any:
+        """Leave out of the default laws those that need more texture than a line has."""
+        if not isinstance(data, dict) or "laws" in data or not isinstance(data.get("surface"), dict):
+            return data
+        surface = data["surface"]
+        if not {"line", "spectrum"} & surface.keys():
+            return data
+        rough = {"file", "rms"} & surface.keys()
+        return {**data, "laws": [*(["shifted", "printed"] if rough else ["hertz-filtered"]), *BASELINES]}
+
+    @property
+    def time_step(self) -> float:
+        """Time step in s: as given, or near 1/(20 f_max) with positions on the grid of the contact solution.
+
+        The distance rolled in one step is then a whole multiple, or a whole fraction, of ``contact.spacing``.
+        """
+        if self.numerics.time_step is not None:
+            return self.numerics.time_step
+        per_cell = self.contact.spacing / self.speed
+        wanted = 1 / (20 * self.numerics.highest_frequency)
+        return time_step_on_grid(wanted, per_cell)
+
+    @property
+    def record_start(self) -> float:
+        """Position in m on the beam where the record starts: as given, or after the run-in."""
+        return self.start if self.start is not None else self.speed * self.settled_time
+
+    @property
+    def settled_time(self) -> float:
+        """Time in s that is rolled before the record starts.
+
+        As given; else as long as the record, from `SETTLED` to `LONGEST_SETTLING`, as far as there is room.
+        """
+        if self.settling is not None:
+            return self.settling
+        longest, whole = LONGEST_SETTLING, self.beam.length / self.speed
+        before = whole if self.start is None else self.start / self.speed
+        if self.duration is None:
+            return min(longest, before, SETTLING_SHARE * whole)
+        wanted = min(max(self.duration, SETTLED), longest)
+        return max(min(wanted, before, whole - self.duration), 0.0)
+
+    @property
+    def rolled_time(self) -> float:
+        """Time in s that is recorded: as given, or until the end of the beam."""
+        if self.duration is not None:
+            return self.duration
+        return (self.beam.length - self.record_start) / self.speed
+
+    def problems(self) -> Iterator[InputError]:
+        """What must fit together across the sections."""
+        yield from _problems_of_laws(self)
+        yield from problems_of_sampling(self)
+        yield from _problems_of_path(self)
+        if self.contact.window > 2 * self.ball.radius:
+            allowed = f"at most the ball's diameter, {2e3 * self.ball.radius:g} mm"
+            yield InputError("contact.window", f"{self.contact.window * 1e3:g} mm", allowed)
+
+
+def _problems_of_laws(case: BallOnBeam) -> Iterator[InputError]:
+    yield from problems_of_laws(case)
+    for law in sorted(set(case.laws)):
+        if case.surface.has_line and law in NEED_AREAL_PATH:
+            allowed = "laws that need no texture beside the line: " + _listed(
+                set(LAWS) - set(NEED_AREAL_PATH)
+            )
+            yield InputError("laws", f'"{law}" with a path given as a line', allowed)
+        elif not case.surface.has_samples and law not in NEED_NO_SAMPLES:
+            remedy = 'Give samples as well: file = "…" or rms = "…" in [surface].'
+            yield InputError(
+                "laws", f'"{law}" without samples of the surface', _listed(NEED_NO_SAMPLES), remedy
+            )
+
+    if case.contact.linearise == "rough" and not case.surface.has_samples:
+        yield InputError("contact.linearise", '"rough" without samples of the surface', '"hertz"')
+
+
+def _problems_of_path(case: BallOnBeam) -> Iterator[InputError]:
+    length, start, rolled = case.beam.length, case.record_start, case.rolled_time
+    if start >= length:
+        what = "start" if case.start is not None else "start, after settling"
+        yield InputError(what, f"{start:g} m", f"a position on the beam, less than {length:g} m")
+    elif case.speed * case.settled_time > start * (1 + 1e-9):
+        received = f"{case.settled_time:g} s, which begins at {case.rolled_range[0]:g} m"
+        allowed = f"at most {start / case.speed:.6g} s, so that the run-in begins on the beam"
+        yield InputError("settling", received, allowed, "Shorten it, or start farther along the beam.")
+    elif start + case.speed * rolled > length * (1 + 1e-9):
+        received = f"{rolled:g} s, which ends at {start + case.speed * rolled:g} m"
+        allowed = f"at most {(length - start) / case.speed:.6g} s, where the beam of {length:g} m ends"
+        yield InputError("duration", received, allowed)
+    else:
+        yield from problem_of_steps(case, case.settled_time + rolled)
+
+
+def _listed(words: set[str] | tuple[str, ...]) -> str:
+    return ", ".join(f'"{word}"' for word in LAWS if word in words)
+
+
+CASE = BallOnBeam
+ROLLING = "ball"
+WORDS = Words(
+    "A ball rolls over a rough beam.",
+    " in [surface]: file, rms, line or spectrum",
+    {"surface.rms": '"0.5 um"'},
+)

@@ -1,0 +1,98 @@
+"""A ball rolls over a rough beam: the whole chain from texture to spectra."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from asperity.kinds.ball_on_beam.bodies import Bodies
+from asperity.kinds.ball_on_beam.case import BallOnBeam
+from asperity.kinds.ball_on_beam.compiling import compile_kernels
+from asperity.kinds.ball_on_beam.roll import Rolling, roll
+from asperity.laws import Law
+from asperity.progress import Progress
+from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
+from asperity.scenarios.textures import Textures
+from asperity.store import Store, content_key
+from asperity.structures.ball import Ball
+from asperity.structures.beam import Beam
+
+if TYPE_CHECKING:
+    from asperity.scenarios.preparing import Prepared
+
+
+@dataclass(frozen=True, eq=False)
+class Computed:
+    """Everything that was computed for a case, before it is laid out as a result.
+
+    Attributes
+    ----------
+    case : BallOnBeam
+        The case.
+    chain : Chain
+        Textures, state functions, laws and runs.
+    ball, beam
+        What was rolled.
+    """
+
+    case: BallOnBeam
+    chain: Chain[Rolling]
+    ball: Ball
+    beam: Beam
+
+
+def compute(prepared: Prepared, progress: Progress) -> Computed:
+    """Reduce and roll.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        A case from `asperity.scenarios.preparing.prepare`.
+    progress : Progress
+        Called during long work.
+
+    Returns
+    -------
+    Computed
+        All that was computed.
+    """
+    case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
+    assert isinstance(case, BallOnBeam)
+    assert isinstance(bodies, Bodies)
+    ball, beam, store, watch = bodies.ball, bodies.beam, Store(), Stopwatch(textures=prepared.seconds)
+    compile_kernels(progress)  # not before the files are known to be right
+    watch.lap("compiled functions")
+    pace = case.contact.spacing / case.speed
+    duration = min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace)
+    checkpoint = Checkpoint(store, _run_key(case, textures, duration)) if "direct" in case.laws else None
+
+    def roll_law(law: Law) -> Rolling:
+        return roll(
+            beam,
+            ball,
+            law,
+            speed=case.speed,
+            start=case.record_start,
+            duration=duration,
+            settling=case.settled_time,
+            time_step=case.time_step,
+            sensors=case.beam.sensor_positions,
+            highest_frequency=case.numerics.highest_frequency,
+            progress=progress,
+            checkpoint=checkpoint if law.name == "direct" else None,
+        )
+
+    chain = reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
+    return Computed(case, chain, ball, beam)
+
+
+def _run_key(case: BallOnBeam, textures: Textures, duration: float) -> str:
+    """Name of a direct run: everything that its motion depends on."""
+    assert textures.path is not None
+    scalars = [
+        case.speed, case.record_start, case.settled_time, duration, case.time_step, case.numerics.rtol,
+        case.numerics.highest_frequency, case.contact.hardness, case.contact.damping,
+        list(case.beam.sensor_positions),
+    ]  # fmt: skip
+    sections = [case.ball.model_dump(mode="json"), case.beam.model_dump(mode="json")]
+    return content_key("direct", textures.path.rows(0, textures.path.shape[0]), scalars, sections)

@@ -1,0 +1,48 @@
+"""What rolling a ball over a beam takes, from a few steps of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from asperity.config.case import Case
+from asperity.kinds.ball_on_beam.roll import roll
+from asperity.laws import Hertz
+from asperity.progress import Progress
+from asperity.reduction.texture import StateTexture
+from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.trial import STEPS, timed
+
+REPORT = 7.5
+"""Time of starting the program, and of drawing and writing a report, s."""
+
+
+def rows(case: Case) -> list[tuple[str, str]]:
+    """What else will be computed, in words: nothing."""
+    return []
+
+
+def records(case: Any) -> int:
+    """Histories that a law leaves behind."""
+    return 4 + len(case.beam.sensor_positions)
+
+
+def seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, float]:
+    """Time of what is computed once for all laws, s: nothing."""
+    return {}
+
+
+def step_seconds(prepared: Prepared) -> float:
+    """Time of a step of smooth bodies over a smooth path, s."""
+    case: Any = prepared.case
+    beam, ball = prepared.bodies.beam, prepared.bodies.ball
+    law = Hertz(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
+    middle, duration = 0.5 * beam.length, min(STEPS * case.time_step, 0.4 * beam.length / case.speed)
+    _, taken = timed(
+        lambda: roll(
+            beam, ball, law, speed=case.speed, start=middle, duration=duration,
+            time_step=case.time_step, sensors=[middle] * len(case.beam.sensor_positions),
+        )
+    )  # fmt: skip
+    return taken / max(1.0, duration / case.time_step)

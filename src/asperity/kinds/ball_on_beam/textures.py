@@ -1,0 +1,138 @@
+"""The textures of a ball-on-beam case."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+from asperity.kinds.ball_on_beam.case import BallOnBeam
+from asperity.reference.rail_roughness import iso_3095_limit
+from asperity.scenarios.chain import warn_of_start
+from asperity.scenarios.geometry import Geometry, window_cells
+from asperity.scenarios.reading import read_lines
+from asperity.scenarios.textures import (
+    Textures,
+    measured_maps,
+    middle_line,
+    mirrored_before,
+    mirrored_words,
+    path_of,
+    strip_rows,
+    strips_of,
+    synthesised,
+    synthesised_path,
+)
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.strip import Strip
+from asperity.surfaces.synthesis import from_bands
+
+
+def textures_of(case: BallOnBeam) -> Textures:
+    """Gather the textures of a case.
+
+    Parameters
+    ----------
+    case : BallOnBeam
+        The case.
+
+    Returns
+    -------
+    Textures
+        With a window before and beyond the path.
+    """
+    return gather(case, window_cells(case.contact))
+
+
+def warn_of(case: BallOnBeam, shape: Geometry, textures: Textures) -> None:
+    """Warn of what is doubtful before anything is computed.
+
+    Parameters
+    ----------
+    case, shape, textures
+        The case, its geometry and its textures.
+    """
+    warn_of_start(case, "shorten the duration or start farther along the beam")
+
+
+def gather(case: BallOnBeam, margin: int) -> Textures:
+    """Read or synthesise all textures of a case.
+
+    Parameters
+    ----------
+    case : BallOnBeam
+        The case.
+    margin : int
+        Rows needed before the start of the path and beyond its end.
+
+    Returns
+    -------
+    Textures
+        Samples, strips and path.
+
+    Raises
+    ------
+    InputError
+        If a file does not hold what the case needs of it.
+    """
+    seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
+    ny, spacing = window_cells(case.contact), case.contact.spacing
+    lead = math.ceil(case.settled_time * case.speed / spacing)
+    rows = lead + math.ceil(case.rolled_time * case.speed / spacing) + 1 + 2 * margin
+    missing, origin = 0.0, ""
+    maps: tuple[HeightMap, ...] = ()
+    strips: tuple[HeightMap, ...] = ()
+    path: Strip | None = None
+    if case.surface.file is not None:
+        maps, missing = measured_maps(case.surface, spacing)
+        strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
+        path, path_origin = path_of(maps, (rows, ny), seeds[0], run_in=lead)
+        origin = f"{len(maps)} measured from {case.surface.file.name}; {strip_origin}; {path_origin}"
+    elif case.surface.rms is not None:
+        size = (strip_rows(case.contact), ny)
+        strips = tuple(synthesised(case.surface, spacing, size, seed) for seed in seeds[1:])
+        maps, path = strips, synthesised_path(case.surface, spacing, (rows, ny), seeds[0])
+        origin = "samples and path synthesised: self-affine, Gaussian"
+    if case.surface.has_line:
+        line, line_origin = _line(case, rows - lead, 2 * margin + 2, lead, seeds[0])
+        path, origin = None, "; ".join(filter(None, [origin, line_origin]))
+    elif path is not None:
+        line = middle_line(path)
+    before = margin + lead
+    start = case.record_start - before * spacing
+    return Textures(maps, strips, path, line, start, before, margin, missing, origin)
+
+
+def _line(case: BallOnBeam, rows: int, least: int, lead: int, seed: int) -> tuple[NDArray[np.float64], str]:
+    """Line of the path: `lead` points for the run-in, then `rows`, at least `least`, for the record."""
+    spacing = case.contact.spacing
+    if case.surface.spectrum is not None:
+        wavelengths, levels = iso_3095_limit()
+        # a line that closes on itself: longer than the path and than the longest band
+        points = max(rows + lead, math.ceil(1.2 * wavelengths.max() / spacing))
+        profile = from_bands(points, spacing, wavelengths, levels + case.surface.level, seed)
+        return profile.heights[: rows + lead], f"path of ISO 3095:2013 limit {case.surface.level:+g} dB"
+    assert case.surface.line is not None
+    measured = read_lines(case.surface, "surface")
+    if not isinstance(measured, Profile):
+        remedy = "Give a map as surface.file."
+        raise InputError("surface.line", "a map of heights", "a line of heights", remedy)
+    if measured.missing_share > 0.0:
+        raise InputError("surface.line", "points without a height", "a complete line", "Fill it first.")
+    profile = level(resample(level(measured), spacing))
+    length = profile.heights.size * spacing
+    if case.duration is None:
+        rows = min(rows, profile.heights.size)  # the run lasts as long as the line
+    if profile.heights.size < rows or rows < least:
+        raise InputError(
+            "surface.line",
+            f"{length:.4g} m",
+            f"at least {max(rows, least) * spacing:.4g} m: the path and a window at both ends",
+            "Give a shorter duration, or a longer line.",
+        )
+    held = profile.heights[: rows + lead]
+    origin = f"path measured, {case.surface.line.name}{mirrored_words(held, rows + lead)}"
+    return mirrored_before(held, rows + lead), origin

@@ -1,0 +1,201 @@
+"""Cases of any kind: from files, texts and mappings; and as a commented text."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from importlib import resources
+from typing import Any
+
+from asperity.arguments import file_path, shown
+from asperity.config.case import Case
+from asperity.config.describing import commented
+from asperity.config.keys import nearest
+from asperity.config.parsing import plain, read_text, read_toml, refuse_vast, validated
+from asperity.config.writing import toml_text
+from asperity.errors import CaseError, InputError
+from asperity.kinds import KINDS
+from asperity.scenarios.kind import Kind
+
+_HEAD = """\
+# {title} Run it with: asperity run CASE
+# Every key may be left out, but for kind and a source of texture{source}.
+# Lines that start with '#' show keys that have no fixed default, or that go with another key.
+
+"""
+
+
+def load_case(path: str | os.PathLike[str]) -> Case:
+    """Read a case from a TOML file.
+
+    Parameters
+    ----------
+    path : path
+        The case file.
+
+    Returns
+    -------
+    BallOnBeam or WheelOnRail
+        The case, in SI.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, too large, no text or no TOML.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    remedy = "Check the path, or write a case with 'asperity new ball-on-beam > case.toml'."
+    return parse_case(read_text(path, "case", remedy), path)
+
+
+def as_case(case: object) -> Case:
+    """Take a case in any of its forms.
+
+    Parameters
+    ----------
+    case : path, mapping or case object
+        A TOML file; or its keys and values, sections as mappings, quantities as text with units; relative
+        paths then start at the working folder.
+
+    Returns
+    -------
+    BallOnBeam or WheelOnRail
+        The case, in SI.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, or the file cannot be read.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    if isinstance(case, Case):
+        return case
+    if isinstance(case, Mapping):
+        data = plain(case)
+        return case_of(data, toml_text(data), "case")
+    allowed = "the path of a case file, its keys as a mapping, or a case object"
+    return load_case(file_path("case", case, allowed))
+
+
+def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
+    """Read a case from its text.
+
+    Parameters
+    ----------
+    text : str
+        The case in TOML.
+    source : str or path
+        Where the text comes from, for messages; relative paths in the case start at its folder.
+
+    Returns
+    -------
+    BallOnBeam or WheelOnRail
+        The case, in SI.
+
+    Raises
+    ------
+    InputError
+        If the text is no TOML.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    return case_of(read_toml(text, "case", source), text, source)
+
+
+def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> Case:
+    """Make a case of keys and values.
+
+    Parameters
+    ----------
+    data : dict
+        Keys and values as TOML gives them, sections as dicts.
+    text : str
+        The TOML text they come from.
+    source : str or path
+        Where that comes from, for messages; relative paths start at its folder.
+
+    Returns
+    -------
+    BallOnBeam or WheelOnRail
+        The case, in SI.
+
+    Raises
+    ------
+    InputError
+        If there are more keys and values than a case can have.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    refuse_vast(data, str(source))
+    try:
+        kind = kind_named(data.get("kind"))
+    except InputError as error:
+        raise CaseError(str(source), [str(error)]) from None
+    return validated(kind.case, data, text, source)
+
+
+def kind_of(case: Case) -> Kind:
+    """Find the kind of a case."""
+    return KINDS[case.kind]
+
+
+def kind_named(name: object) -> Kind:
+    """Find a kind by its name.
+
+    Parameters
+    ----------
+    name : str
+        As ``"ball-on-beam"``.
+
+    Returns
+    -------
+    Kind
+        The kind.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
+    if not isinstance(name, str) or name not in KINDS:
+        raise not_a_kind(name)
+    return KINDS[name]
+
+
+def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
+    """Error about a kind of case that this version does not have; None stands for a missing key."""
+    allowed = ", ".join(f'"{name}"' for name in names)
+    if kind is None:
+        return InputError("kind", "nothing", allowed, 'Write kind = "ball-on-beam" as the first line.')
+    return InputError("kind", shown(kind), allowed, nearest(kind, list(names)))
+
+
+def template(kind: str) -> str:
+    """Write a commented case: every key with its value, what it is, what is allowed and its default.
+
+    Parameters
+    ----------
+    kind : str
+        What rolls: ``"ball-on-beam"`` or ``"wheel-on-rail"``.
+
+    Returns
+    -------
+    str
+        A valid case in TOML.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
+    found = kind_named(kind)
+    head = _HEAD.format(title=found.words.title, source=found.words.sources)
+    return head + commented(found.case, found.words.written_out)
+
+
+def demo_case() -> Case:
+    """Return the case of ``asperity demo``: synthesised roughness, a few seconds of work."""
+    text = resources.files(__package__).joinpath("demo.toml").read_text(encoding="utf-8")
+    return parse_case(text, "demo.toml")

@@ -1,0 +1,81 @@
+"""The report of a run of any kind: a page, and the numbers of its figures."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from xarray import DataTree
+
+from asperity.files import write_bytes
+from asperity.kinds import KINDS
+from asperity.reporting import page as pages
+from asperity.reporting.chapter import Chapter
+from asperity.reporting.csv_files import write_csv
+from asperity.reporting.data import group_attrs
+from asperity.reporting.page import drawable_parts
+from asperity.reporting.part import Part
+
+
+def chapters_of(tree: DataTree) -> tuple[Chapter, ...]:
+    """Chapters for the kind of case that `tree` is the result of; of all kinds where it does not say."""
+    stated = group_attrs(tree, "scenario").get("kind")
+    if stated in KINDS:
+        return KINDS[stated].chapters
+    every = {chapter.name: chapter for kind in KINDS.values() for chapter in kind.chapters}
+    return tuple(every.values())
+
+
+def parts_of(tree: DataTree) -> list[Part]:
+    """Figures that `tree` holds the data of, in the order of the page."""
+    return drawable_parts(tree, chapters_of(tree))
+
+
+def page(tree: DataTree) -> str:
+    """The whole page of a run, see `asperity.reporting.page.page`."""
+    return pages.page(tree, chapters_of(tree))
+
+
+def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
+    """Write the report of a run: one page, and one CSV file per figure.
+
+    Parameters
+    ----------
+    tree : xarray.DataTree
+        The result of a run. Whatever it lacks is left out of the report.
+    directory : path
+        Folder that receives ``report.html`` and the CSV files; made if missing.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    ComputationError
+        If a file cannot be written.
+    """
+    directory = Path(directory)
+    text = page(tree)
+    for part in parts_of(tree):
+        write_csv(part.columns(tree), directory / f"{part.name}.csv")
+    return write_bytes(directory / "report.html", text.encode("utf-8", errors="backslashreplace"))
+
+
+def remove_report(directory: str | os.PathLike[str]) -> None:
+    """Remove an earlier report, of any kind of case: it would not belong to the run beside it.
+
+    Parameters
+    ----------
+    directory : path
+        The folder; files of other names stay.
+    """
+    directory = Path(directory)
+    if not (directory / "report.html").exists():
+        return
+    parts = (part for kind in KINDS.values() for chapter in kind.chapters for part in chapter.parts)
+    for name in ["report.html", *(f"{part.name}.csv" for part in parts)]:
+        with suppress(OSError):
+            (directory / name).unlink(missing_ok=True)

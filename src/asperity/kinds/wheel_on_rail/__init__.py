@@ -1,0 +1,1 @@
+"""A wheel rolls on an infinite track."""

@@ -1,0 +1,68 @@
+"""The wheel and the track of a case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """What is rolled in a case.
+
+    Attributes
+    ----------
+    wheel, track
+        The bodies.
+    """
+
+    wheel: Wheel
+    track: Track
+
+
+def bodies_of(case: WheelOnRail) -> Bodies:
+    """Build the bodies of a case.
+
+    Parameters
+    ----------
+    case : WheelOnRail
+        The case.
+
+    Returns
+    -------
+    Bodies
+        Wheel and track.
+
+    Raises
+    ------
+    InputError
+        If the wheel's receptance is none.
+    """
+    return Bodies(wheel_of(case), case.track_model())
+
+
+def wheel_of(case: WheelOnRail) -> Wheel:
+    """Build the wheel of a case.
+
+    Parameters
+    ----------
+    case : WheelOnRail
+        The case.
+
+    Returns
+    -------
+    Wheel
+        Rigid, or with the modes or the receptance that the case names.
+    """
+    section = case.wheel
+    if section.modes is not None:
+        return Wheel.from_modes(section.mass, section.load, *read_modes(section.modes))
+    if section.receptance is not None:
+        highest = case.numerics.highest_frequency
+        measured = read_receptance(section.receptance)
+        return Wheel.from_receptance(section.mass, section.load, *measured, highest_frequency=highest)
+    return Wheel.rigid(section.mass, section.load)

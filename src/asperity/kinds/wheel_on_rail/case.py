@@ -1,0 +1,241 @@
+"""The case of a wheel that rolls on an infinite track: its keys, defaults, and what must fit together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator
+
+from asperity.config.case import (
+    Case,
+    Law,
+    problem_of_steps,
+    problems_of_laws,
+    problems_of_sampling,
+    time_step_on_grid,
+)
+from asperity.config.describing import with_unit
+from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed, key
+from asperity.errors import InputError
+from asperity.kinds.wheel_on_rail.surface_keys import RailSurface
+from asperity.kinds.wheel_on_rail.tables import check_levels, read_levels
+from asperity.kinds.wheel_on_rail.track_keys import OVERRIDES, NoiseCase, RailContact, RailNumerics, TrackCase
+from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
+from asperity.scenarios.kind import Words
+
+if TYPE_CHECKING:
+    from asperity.structures.track import Track
+
+STEPS_PER_PERIOD = 8  # of the highest frequency
+CLOSE = 1.2  # a time step may be changed by this factor to bring positions onto the grid
+
+
+class WheelOnRail(Case):
+    """A wheel rolls on a rail of infinite length on discrete supports.
+
+    Each key's meaning, default and allowed values are printed by ``asperity new wheel-on-rail``. Positions
+    count along the rail, in m from a sleeper. Every law is allowed: textures are laid out as strips.
+    """
+
+    kind: Annotated[str, BeforeValidator(Choice(("wheel-on-rail",)))] = key("wheel-on-rail", "what rolls")
+    speed: Speed = key(
+        "56 m/s",
+        "rolling speed",
+        within=("1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
+    )
+    laws: tuple[Law, ...] = key(
+        ("areal", "shifted", "printed", "linear-filtered", "linear"),
+        "laws of the contact force; the first is the main one",
+    )
+    start: Position = key(
+        "0 m",
+        "where the record starts, from a sleeper",
+        within=("0 m", "100 km", "tracks are rolled over for less"),
+    )
+    duration: Duration = key("1 s", "time that is recorded", within=("10 us", "1 h", "records lie between"))
+    settling: DurationOrZero = key(
+        "0.3 s",
+        "time that is rolled before the record starts, so that the start is forgotten",
+        within=("10 us", "1 h", "records lie between"),
+    )
+    surface: RailSurface = key({}, "texture of the rail: measured or synthesised, with defects on top")
+    wheel: WheelCase = key({}, "the wheel that rolls")
+    track: TrackCase = key({}, "the track that is rolled over")
+    contact: RailContact = key({}, "how the rough contact is solved and reduced")
+    numerics: RailNumerics = key({}, "how finely time and the track are resolved")
+    noise: NoiseCase = key({}, "how force is turned into sound power")
+
+    @property
+    def time_step(self) -> float:
+        """Time step in s: as given, or near 1/(8 f_max).
+
+        Where that changes it by less than 20 %, the distance rolled in one step is a whole multiple, or a
+        whole fraction, of ``contact.spacing``.
+        """
+        if self.numerics.time_step is not None:
+            return self.numerics.time_step
+        per_cell = self.contact.spacing / self.speed
+        wanted = 1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency)
+        cells = round(wanted / per_cell)
+        found = cells * per_cell if cells else time_step_on_grid(wanted, per_cell)
+        return found if 1 / CLOSE <= found / wanted <= CLOSE else wanted
+
+    @property
+    def record_start(self) -> float:
+        """Position in m, from a sleeper, where the record starts."""
+        return self.start
+
+    @property
+    def settled_time(self) -> float:
+        """Time in s that is rolled before the record starts."""
+        return self.settling
+
+    @property
+    def rolled_time(self) -> float:
+        """Time in s that is recorded; `settling` comes before it."""
+        return self.duration
+
+    @property
+    def point_positions(self) -> tuple[float, ...]:
+        """Positions in m at which the rail's motion is recorded, with the default filled in."""
+        if self.track.points is not None:
+            return self.track.points
+        bay = self.track_model().sleeper_spacing
+        sleeper = bay * round((self.start + self.speed * self.duration / 2) / bay)
+        return sleeper, sleeper + bay / 2
+
+    def track_model(self) -> Track:
+        """Build the track of this case.
+
+        Returns
+        -------
+        Track
+            The named set with the case's own keys in it.
+        """
+        from asperity.structures.track import Track
+
+        return Track.named(self.track.name, **self.track.overrides)
+
+    def parameters(self) -> list[dict[str, Any]]:
+        """List the keys that matter in this case, for people, with the values of the named track.
+
+        Returns
+        -------
+        list of dict
+            As `Case.parameters`.
+        """
+        track, own = self.track_model(), self.track.overrides
+        listed = []
+        for item in super().parameters():
+            section, _, name = item["key"].partition(".")
+            if section == "track" and name in OVERRIDES and name not in own:
+                value = getattr(track, name)
+                if value is None:
+                    continue
+                text = with_unit(value, type(self.track).model_fields[name])
+                item = item | {"value": text, "default": text}
+            listed.append(item)
+        return listed
+
+    def problems(self) -> Iterator[InputError]:
+        """What must fit together across the sections."""
+        yield from problems_of_laws(self)
+        yield from problems_of_sampling(self)
+        yield from problem_of_steps(self, self.settling + self.duration)
+        yield from _problems_of_texture(self)
+        yield from _problems_of_levels(self)
+        yield from _problems_of_track(self)
+        yield from _problem_of_poles(self)
+        yield from _problems_of_path(self)
+        widest = 2 * min(self.wheel.radius, self.track.rail_head_radius)
+        if self.contact.window > widest:
+            allowed = f"at most the smaller diameter of wheel and rail head, {1e3 * widest:g} mm"
+            yield InputError("contact.window", f"{self.contact.window * 1e3:g} mm", allowed)
+
+
+def _problems_of_texture(case: WheelOnRail) -> Iterator[InputError]:
+    surface, spacing = case.surface, case.contact.spacing
+    if not (surface.has_texture or case.wheel.has_texture or surface.smooth):
+        allowed = "file, rms, line, spectrum or a defect in [surface]; roughness, line or a flat in [wheel]"
+        yield InputError("surface", "no texture", allowed, "For a smooth rail, set smooth = true.")
+    if surface.corrugation_wavelength is not None and surface.corrugation_wavelength < 2 * spacing:
+        received = f"{surface.corrugation_wavelength * 1e3:g} mm on a spacing of {spacing * 1e3:g} mm"
+        allowed = f"at least two spacings, {2e3 * spacing:g} mm"
+        yield InputError("surface.corrugation_wavelength", received, allowed)
+
+
+def _problems_of_levels(case: WheelOnRail) -> Iterator[InputError]:
+    """Band levels that no wheel or rail has ask for their unit."""
+    if case.surface.accept_levels:
+        return
+    for name, table, level in (
+        ("surface.spectrum", case.surface.spectrum, case.surface.level),
+        ("wheel.roughness", case.wheel.roughness, case.wheel.roughness_level),
+    ):
+        levels = read_levels(table)[1] if isinstance(table, Path) else np.zeros(1)
+        if table is not None:
+            try:
+                check_levels(levels + level, name)
+            except InputError as error:
+                yield error
+
+
+def _problems_of_track(case: WheelOnRail) -> Iterator[InputError]:
+    """A track that exists and is damped, on which the wheel is slower than the waves that it sends out."""
+    try:
+        track = case.track_model()
+    except InputError as error:
+        yield InputError("track", error.received, error.allowed, error.remedy)
+        return
+    if not track.is_damped:
+        remedy = "Give the rail a loss factor, or damping to pads or ballast."
+        yield InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
+    try:
+        track.refuse_speed(case.speed)
+    except InputError as error:
+        yield InputError("speed", f"{case.speed:g} m/s", error.allowed, error.remedy)
+
+
+def _problem_of_poles(case: WheelOnRail) -> Iterator[InputError]:
+    """No more poles than the shortest kernel of a track can tell apart."""
+    if case.numerics.poles is None:
+        return
+    from asperity.structures.moving_kernel import SHORTEST
+    from asperity.structures.rail_poles import most_poles
+
+    most = most_poles(round(SHORTEST / case.time_step))
+    if case.numerics.poles > most:
+        allowed = f"an even number up to {most}, a tenth of the time steps that the track remembers"
+        remedy = "Take fewer poles, or a shorter time step."
+        yield InputError("numerics.poles", case.numerics.poles, allowed, remedy)
+
+
+def _problems_of_path(case: WheelOnRail) -> Iterator[InputError]:
+    length, contact = case.speed * case.duration, case.contact
+    filters = (contact.filter_taps or 0) * contact.spacing
+    if length < max(contact.window, filters):
+        received = f"{case.duration:g} s, in which {length * 1e3:.4g} mm are rolled"
+        allowed = f"at least contact.window, {contact.window * 1e3:g} mm"
+        if filters > contact.window:
+            allowed = f"at least contact.filter_taps spacings, {filters * 1e3:g} mm"
+        yield InputError("duration", received, allowed, "A path must be longer than window and filters.")
+    (first, last), joint = case.rolled_range, case.surface.joint_position
+    if joint is not None and not first <= joint <= last:
+        allowed = f"a position that is rolled over, {first:g} m to {last:g} m"
+        yield InputError("surface.joint_position", f"{joint:g} m", allowed)
+    for point in case.track.points or ():
+        if not case.start <= point <= last:
+            allowed = f"positions that are passed, {case.start:g} m to {last:g} m"
+            yield InputError("track.points", f"{point:g} m", allowed)
+
+
+CASE = WheelOnRail
+ROLLING = "wheel"
+WORDS = Words(
+    "A wheel rolls on an infinite track.",
+    ", of rail or wheel, or smooth = true",
+    {"surface.spectrum": '"iso3095"', "wheel.roughness": '"disc"'},
+)

@@ -1,0 +1,130 @@
+"""A wheel rolls on an infinite track: the whole chain from texture to sound power."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import UnconvergedWarning
+from asperity.kinds.wheel_on_rail.bodies import Bodies
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.compiling import compile_kernels
+from asperity.kinds.wheel_on_rail.passing import passed_points
+from asperity.kinds.wheel_on_rail.roll import WheelRolling, roll
+from asperity.laws import Law
+from asperity.progress import Progress
+from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
+from asperity.scenarios.textures import Textures
+from asperity.store import Store, content_key
+from asperity.structures.moving_kernel import MovingKernel, moving_kernel
+from asperity.structures.rail_poles import RailPoles, most_poles, rail_poles
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+if TYPE_CHECKING:
+    from asperity.scenarios.preparing import Prepared
+
+POLES = 100
+"""Poles of a rail where the case says nothing, if its kernel has lags enough."""
+
+
+@dataclass(frozen=True, eq=False)
+class Computed:
+    """Everything that was computed for a case, before it is laid out as a result.
+
+    Attributes
+    ----------
+    case : WheelOnRail
+        The case.
+    chain : Chain
+        Textures, state functions, laws and runs.
+    wheel, track
+        What was rolled.
+    kernel : MovingKernel
+        Response of the rail under the moving contact.
+    rail : RailPoles or MovingKernel
+        How it was carried on in time.
+    points : tuple of ndarray (laws, points, n)
+        Displacement, m, and velocity, m/s, of the passed points.
+    """
+
+    case: WheelOnRail
+    chain: Chain[WheelRolling]
+    wheel: Wheel
+    track: Track
+    kernel: MovingKernel
+    rail: RailPoles | MovingKernel
+    points: tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+def compute(prepared: Prepared, progress: Progress) -> Computed:
+    """Reduce and roll.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        A case from `asperity.scenarios.preparing.prepare`.
+    progress : Progress
+        Called during long work.
+
+    Returns
+    -------
+    Computed
+        All that was computed.
+    """
+    case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
+    assert isinstance(case, WheelOnRail)
+    assert isinstance(bodies, Bodies)
+    track, wheel, store = bodies.track, bodies.wheel, Store()
+    watch = Stopwatch(textures=prepared.seconds)
+    compile_kernels(progress)  # not before the files are known to be right
+    watch.lap("compiled functions")
+    kernel = moving_kernel(track, case.speed, case.time_step, cache=store, progress=progress)
+    rail: RailPoles | MovingKernel = kernel
+    if case.numerics.kernel == "poles":
+        count = case.numerics.poles or min(POLES, most_poles(kernel.weights.shape[1]))
+        found = rail_poles(kernel, count=count, cache=store)
+        if found.accepted:
+            rail = found
+        else:
+            warnings.warn(
+                f"{count} poles miss the moving kernel by {100 * found.fit_error:.2g} %: the "
+                "track is scattered from the kernel itself, which is slower. Take more poles.",
+                UnconvergedWarning,
+                stacklevel=2,
+            )
+    watch.lap("track")
+    checkpoint = Checkpoint(store, _run_key(case, textures)) if "direct" in case.laws else None
+
+    def roll_law(law: Law) -> WheelRolling:
+        return roll(
+            rail,
+            wheel,
+            law,
+            start=case.start,
+            duration=case.duration,
+            settling=case.settling,
+            highest_frequency=case.numerics.highest_frequency,
+            progress=progress,
+            checkpoint=checkpoint if law.name == "direct" else None,
+        )
+
+    chain = reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
+    points = passed_points(kernel, list(chain.runs.values()), case.point_positions, progress)
+    watch.lap("passed points")
+    return Computed(case, chain, wheel, track, kernel, rail, points)
+
+
+def _run_key(case: WheelOnRail, textures: Textures) -> str:
+    """Name of a direct run: everything that its motion depends on."""
+    scalars = [case.speed, case.start, case.duration, case.settling, case.time_step, case.numerics.rtol]
+    contact = [case.contact.hardness, case.contact.damping, case.contact.spacing]
+    sections = [s.model_dump(mode="json") for s in (case.wheel, case.track, case.numerics)]
+    files = [case.wheel.profile, case.track.rail_profile, case.wheel.modes, case.wheel.receptance]
+    content = [path.read_bytes().hex() for path in files if path is not None]
+    heights = textures.surface.rows(0, len(textures.line))
+    return content_key("direct-rail", heights, scalars, contact, sections, content)

@@ -1,0 +1,86 @@
+"""Defects of rail and wheel along the path: corrugation, a dipped joint, a wheel flat."""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
+from asperity.surfaces.en15610 import roll_over
+from asperity.surfaces.heightmap import Profile
+
+NEED_GEOMETRY = ("table", "direct")
+"""Laws that see the shape of a defect; the others follow the wheel's centre over it."""
+
+
+def corrugated(case: WheelOnRail, rows: int, seed: int) -> NDArray[np.float64]:
+    """Corrugation of the rail along the path.
+
+    Parameters
+    ----------
+    case : WheelOnRail
+        The case.
+    rows : int
+        Points along the path.
+    seed : int
+        Of a corrugation with a bandwidth.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        Heights, m, the same all across; zero without a corrugation.
+    """
+    surface = case.surface
+    if surface.corrugation is None or surface.corrugation_wavelength is None:
+        return np.zeros(rows)
+    made = corrugation(
+        rows,
+        case.contact.spacing,
+        wavelength=surface.corrugation_wavelength,
+        amplitude=surface.corrugation,
+        bandwidth=surface.corrugation_bandwidth,
+        seed=seed,
+    )
+    return made.heights
+
+
+def defects(
+    case: WheelOnRail, position: NDArray[np.float64], turn: int
+) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | None]:
+    """Wheel flat and dipped joint along the path.
+
+    Parameters
+    ----------
+    case : WheelOnRail
+        The case.
+    position : ndarray, shape (rows,)
+        Positions of the path, m from a sleeper.
+    turn : int
+        Cells of one turn of the wheel.
+
+    Returns
+    -------
+    geometry, trajectory : ndarray, shape (rows,), or None
+        Heights of the defects, and of the wheel's centre rolling over them, m; None without defects.
+    """
+    geometry, trajectory = np.zeros(len(position)), np.zeros(len(position))
+    surface, wheel, spacing = case.surface, case.wheel, case.contact.spacing
+    if surface.joint_depth is not None:
+        joint = surface.joint_position
+        if joint is None:
+            joint = case.start + 0.5 * case.speed * case.duration
+        dip = dipped_joint(position - joint, surface.joint_depth, surface.joint_length)
+        geometry += dip
+        trajectory += roll_over(Profile(dip, spacing), wheel.radius).heights
+    if wheel.flat is not None:
+        depth, length = wheel.flat
+        around = turn * spacing
+        along = np.mod(position - case.start - wheel.flat_position + 0.5 * around, around) - 0.5 * around
+        shape = cast(FlatShape, wheel.flat_shape)
+        worn = length if shape == "worn" else None
+        geometry += flat_geometry(along, depth, wheel.radius, shape, worn)
+        trajectory += flat_trajectory(along, depth, wheel.radius, shape, worn)
+    return (geometry, trajectory) if geometry.any() else (None, None)

@@ -1,0 +1,1 @@
+"""Figures of the report that only a wheel on a rail has."""

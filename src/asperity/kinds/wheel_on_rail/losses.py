@@ -1,0 +1,152 @@
+"""What stands for the loss factors of a track in time, and how far the contact force is off for it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+
+import numpy as np
+import xarray
+
+from asperity.errors import PhysicsWarning
+from asperity.kinds.wheel_on_rail.bodies import wheel_of
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.compute import Computed
+from asperity.kinds.wheel_on_rail.geometry import geometry_of
+from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, loss_factor_error, signed
+from asperity.results import variable
+from asperity.scenarios.laws import working_point
+from asperity.spectra import nominal_frequency
+from asperity.structures.causal_track import causal_track
+
+LEAST_SHOWN = 0.05
+"""Errors below this, dB, are not listed."""
+
+
+def error_of_losses(computed: Computed) -> LossFactorError:
+    """Error of the contact force in bands, for the contact stiffness at the load.
+
+    Parameters
+    ----------
+    computed : Computed
+        What was computed.
+
+    Returns
+    -------
+    LossFactorError
+        Zero where the track has no loss factors.
+    """
+    case = computed.case
+    _, stiffness = working_point(case.contact, computed.chain.shape, computed.chain.reduction)
+    return loss_factor_error(computed.track, computed.wheel, stiffness, case.numerics.highest_frequency)
+
+
+def expected_error_of_losses(case: WheelOnRail) -> LossFactorError:
+    """Expect the error of the contact force in bands, with the stiffness of smooth bodies.
+
+    Parameters
+    ----------
+    case : WheelOnRail
+        The case.
+
+    Returns
+    -------
+    LossFactorError
+        As `error_of_losses`.
+
+    Raises
+    ------
+    InputError
+        If the wheel's file cannot be read, or the bodies do not fit the contact's window.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)  # the run tells
+        shape, wheel = geometry_of(case), wheel_of(case)
+    _, stiffness = working_point(case.contact, shape, None)
+    return loss_factor_error(case.track_model(), wheel, stiffness, case.numerics.highest_frequency)
+
+
+def loss_variables(error: LossFactorError) -> dict[str, xarray.Variable]:
+    """Lay out the stiffnesses that relax, and the errors in bands.
+
+    Parameters
+    ----------
+    error : LossFactorError
+        Of the track of a case.
+
+    Returns
+    -------
+    dict of str to Variable
+        None where the track has no loss factors.
+    """
+    track = causal_track(error.track)
+    relaxed = {name: getattr(track.relaxations, name, None) for name in ("rail", "pad", "ballast")}
+    layers = {
+        name: found.at(2.0 * np.pi * error.bands) for name, found in relaxed.items() if found is not None
+    }
+    if not layers:
+        return {}
+    stiffness = np.array(list(layers.values()))
+    factors = [getattr(error.track, f"{name}_loss_factor") for name in layers]
+    return {
+        "band": variable("band", error.bands, "Hz", "one-third-octave band centre"),
+        "layer": variable("layer", np.array(list(layers)), "1", "part of the track with a loss factor"),
+        "loss_factor_force_error": variable(
+            "band",
+            error.force,
+            "dB",
+            "level of the linear contact force in time over that of constant loss factors",
+        ),
+        "loss_factor_rail_error": variable(
+            "band",
+            error.rail,
+            "dB",
+            "level of the rail's receptance in time over that of constant loss factors",
+        ),
+        "loss_factor": variable("layer", np.array(factors), "1", "constant loss factor"),
+        "relaxed_stiffness": variable(
+            ("layer", "band"), stiffness.real, "1", "stiffness in time over the nominal one"
+        ),
+        "relaxed_loss_factor": variable(
+            ("layer", "band"), stiffness.imag / stiffness.real, "1", "loss factor in time"
+        ),
+    }
+
+
+def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str, str]]:
+    """Say how far the force is off in each band, and how much softer the track is at rest.
+
+    Parameters
+    ----------
+    error : LossFactorError
+        Of the track of a case.
+    load : float
+        Of the wheel, N.
+
+    Yields
+    ------
+    (str, str)
+        Name and value; nothing where the track has no loss factors.
+    """
+    nominal, track = error.track, causal_track(error.track)
+    if nominal.is_causal or track.relaxations is None:
+        return
+    off = [
+        f"{nominal_frequency(band)} {signed(level)}"
+        for band, level in zip(error.bands, error.force, strict=True)
+        if abs(level) >= LEAST_SHOWN
+    ]
+    shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]
+    yield "loss factors in time", f"error of the contact force, dB: {', '.join(shown)}"
+    parts = (
+        ("rail", track.relaxations.rail),
+        ("pads", track.relaxations.pad),
+        ("ballast", track.relaxations.ballast),
+    )
+    shares = ", ".join(f"{part} {found.static:.2f}" for part, found in parts if found is not None)
+    half = 0.5 * track.sleeper_spacing
+    rest, was = (1e3 * each.static_deflection(load, half) for each in (track, nominal))
+    told = (
+        f"of the nominal one: {shares}; the load at mid-span rests {rest:.3g} mm down, nominally {was:.3g} mm"
+    )
+    yield "stiffness at rest", told

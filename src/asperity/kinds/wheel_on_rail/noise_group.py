@@ -1,0 +1,114 @@
+"""What a contact law means for rolling noise: sound power of track and wheel by CNOSSOS-EU."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from numpy.typing import NDArray
+
+from asperity.kinds.wheel_on_rail.compute import Computed
+from asperity.kinds.wheel_on_rail.sound_power import SOURCES, SoundPower, rolling_sound_power
+from asperity.reference import cnossos
+from asperity.results import variable
+from asperity.spectra import HALF_BAND
+from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.levels import band_levels_of
+
+EMPTY = -200.0
+"""Level of a band without texture, dB re 1 µm."""
+
+
+def noise_variables(
+    computed: Computed, band: NDArray[np.float64], force_level: NDArray[np.float64]
+) -> dict[str, xarray.Variable]:
+    """Sound power of each law: that of the linear contact, changed in each band by as much as the force.
+
+    Parameters
+    ----------
+    computed : Computed
+        What was computed.
+    band : ndarray, shape (b,)
+        Band centres, Hz.
+    force_level : ndarray, shape (laws, b)
+        dB re 1 N.
+
+    Returns
+    -------
+    dict of str to Variable
+        Nothing without the linear law or without roughness.
+
+    Notes
+    -----
+    The linear law follows the bare line, so its sound power is that of CNOSSOS-EU without the contact
+    filter A3: the difference of another law holds what its contact filters. Bands in which the
+    force is not computed are left out of all totals.
+    """
+    laws = list(computed.chain.runs)
+    if "linear" not in laws or not np.ptp(computed.chain.textures.line):
+        return {}
+    linear, filtered = (_within(_linear(computed, name), band) for name in (None, _filter_of(computed)))
+    difference = force_level - force_level[laws.index("linear")]
+    powers = [linear.with_difference(band, np.where(np.isfinite(d), d, np.nan)) for d in difference]
+    return {
+        "source": variable("source", np.array(SOURCES), "1", "what radiates"),
+        "noise_band": variable("noise_band", linear.band, "Hz", "one-third-octave band centre"),
+        "sound_power_level": variable(
+            ("law", "source", "noise_band"),
+            np.stack([power.levels for power in powers]),
+            "dB re 1 pW",
+            "sound power level of rolling",
+        ),
+        "sound_power_level_a": variable(
+            ("law", "source"),
+            np.stack([power.a_weighted for power in powers]),
+            "dB(A) re 1 pW",
+            "A-weighted sound power level of rolling, over the bands computed",
+        ),
+        "cnossos_sound_power_level_a": variable(
+            "source",
+            filtered.a_weighted,
+            "dB(A) re 1 pW",
+            "A-weighted sound power level by CNOSSOS-EU with its contact filter, over the bands computed",
+            contact_filter=_filter_of(computed),
+        ),
+    }
+
+
+def _filter_of(computed: Computed) -> str:
+    wheel = computed.case.wheel
+    return cnossos.nearest_contact_filter(wheel.load, 2.0 * wheel.radius)
+
+
+def _linear(computed: Computed, contact_filter: str | None) -> SoundPower:
+    """Sound power of CNOSSOS-EU, with or without a contact filter."""
+    case, textures = computed.case, computed.chain.textures
+    rail, wheel = (_levels(textures.parts[part], case.contact.spacing) for part in ("rail", "wheel"))
+    return rolling_sound_power(
+        case.speed,
+        rail,
+        wheel,
+        cnossos.track_transfer(case.noise.track_pad),
+        cnossos.wheel_transfer(case.noise.wheel_transfer),
+        contact_filter=None if contact_filter is None else cnossos.contact_filter(contact_filter),
+        axles=case.noise.axles,
+    )
+
+
+def _within(power: SoundPower, band: NDArray[np.float64]) -> SoundPower:
+    """Keep the bands for which there are roughness and force."""
+    shown = (power.band > band[0] / 1.05) & (power.band < band[-1] * 1.05)
+    shown &= ~np.isnan(power.levels).any(axis=0)
+    return SoundPower(power.band[shown], power.levels[:, shown])
+
+
+def _levels(
+    line: NDArray[np.float64], spacing: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Band levels of the line that is rolled over, at the wavelengths of CNOSSOS-EU, where it is rough."""
+    if not np.ptp(line):
+        return None
+    known = cnossos.wavelengths()
+    shortest, longest = max(known.min(), 2.0 * spacing * HALF_BAND), known.max()
+    wavelength, level = band_levels_of(Profile(line, spacing))
+    inside = (wavelength > shortest / 1.05) & (wavelength < longest * 1.05)
+    return wavelength[inside], np.where(np.isfinite(level), level, EMPTY)[inside]

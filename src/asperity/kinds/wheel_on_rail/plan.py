@@ -1,0 +1,156 @@
+"""What rolling a wheel on a rail takes, from small pieces of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from asperity.kinds.wheel_on_rail.compute import POLES
+from asperity.kinds.wheel_on_rail.loss_factors import warn_of_loss_factors
+from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses
+from asperity.kinds.wheel_on_rail.passing import passed_points
+from asperity.kinds.wheel_on_rail.roll import roll
+from asperity.laws import Hertz
+from asperity.progress import Progress
+from asperity.reduction.texture import StateTexture
+from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.trial import STEPS, timed
+from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, moving_kernel
+from asperity.structures.rail_poles import RailPoles
+from asperity.threads import thread_count
+
+REPORT = 13.0
+"""Time of starting the program, and of drawing and writing a report, s."""
+POLE_TIME = 6e-3
+"""Time of fitting a pole, s."""
+SHORT_KERNEL, FEW = 0.03, (4, 12)
+"""Length, s, and start positions of the moving kernels that are tried."""
+LAGS = 4
+"""Times shorter than that is the kernel with which passed points are tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class TrackTrial:
+    """Times of what the rail adds, on one core, s.
+
+    Attributes
+    ----------
+    length : float
+        Length of the moving kernel, s.
+    kernel : float
+        The moving kernel, with the shorter ones before it.
+    points : float
+        One passed point, all laws together.
+    """
+
+    length: float
+    kernel: float
+    points: float
+
+
+def rows(case: Any) -> list[tuple[str, str]]:
+    """Characteristic numbers of the track, in words."""
+    track, losses = case.track_model(), expected_error_of_losses(case)
+    warn_of_loss_factors(losses)
+    frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, sleeper passing"
+    passing = f"{case.speed / track.sleeper_spacing:.4g} Hz, critical speed {track.critical_speed:.4g} m/s"
+    points = ", ".join(f"{position:g} m" for position in case.point_positions)
+    return [
+        ("track", f"{frequencies} {passing}"),
+        *described_losses(losses, case.wheel.load),
+        ("rail motion recorded at", points),
+    ]
+
+
+def records(case: Any) -> int:
+    """Histories that a law leaves behind."""
+    return 4 + 2 * len(case.point_positions)
+
+
+def seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, float]:
+    """Time of the moving kernel, its poles, and of the points that the wheel passes, s."""
+    case: Any = prepared.case
+    trial = try_track(prepared, progress)
+    poles = (case.numerics.poles or POLES) if case.numerics.kernel == "poles" else 0
+    return {
+        "moving kernel": trial.kernel / thread_count(),
+        "poles": poles * POLE_TIME * pace,
+        "passed points": len(case.point_positions) * trial.points,
+    }
+
+
+def step_seconds(prepared: Prepared) -> float:
+    """Time of a step of smooth bodies over a smooth path, s."""
+    case = prepared.case
+    law = Hertz(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
+    rail, wheel, duration = _rail_like(prepared), prepared.bodies.wheel, STEPS * case.time_step
+    _, taken = timed(lambda: roll(rail, wheel, law, start=0.0, duration=duration, settling=0.0))
+    return taken / STEPS
+
+
+def _rail_like(prepared: Prepared) -> RailPoles | MovingKernel:
+    """A rail that costs as much as that of a case, and hardly moves."""
+    case: Any = prepared.case
+    lags = round(SHORTEST / case.time_step)
+    kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.full((STARTS, lags), 1e-20))
+    if case.numerics.kernel != "poles":
+        return kernel
+    count = (case.numerics.poles or POLES) // 2
+    poles = 0.5 * np.exp(1j * np.linspace(0.1, 3.0, count))
+    return RailPoles(kernel, poles, np.full((STARTS, count), 1e-20 + 0j), 0.0, 0.0)
+
+
+def try_track(prepared: Prepared, progress: Progress) -> TrackTrial:
+    """Compute short moving kernels of a track, and let the wheel pass a point that remembers little.
+
+    Parameters
+    ----------
+    prepared : Prepared
+        A wheel on a rail.
+    progress : Progress
+        Called between the pieces.
+
+    Returns
+    -------
+    TrackTrial
+        Times.
+    """
+    case: Any = prepared.case
+    track, speed, step = case.track_model(), case.speed, case.time_step
+    message = "trying the track"
+    progress(0, 3, message)
+    sparse, _ = timed(lambda: moving_kernel(track, speed, step, positions=2))
+    length = sparse.weights.shape[1] * step
+    progress(1, 3, message)
+    tried = partial(moving_kernel, track, speed, step, duration=SHORT_KERNEL)
+    times = [timed(partial(tried, positions=count))[1] for count in FEW]
+    progress(2, 3, message)
+    bays = speed / track.sleeper_spacing  # a second
+    each = (times[1] - times[0]) / ((FEW[1] ** 2 - FEW[0] ** 2) * SHORT_KERNEL * (bays * SHORT_KERNEL + 2))
+    shared = max(times[0] - each * FEW[0] ** 2 * SHORT_KERNEL * (bays * SHORT_KERNEL + 2), 0.0) / SHORT_KERNEL
+    lengths, kernel = [SHORTEST], 0.0
+    while lengths[-1] < 0.99 * length:
+        lengths.append(1.6 * lengths[-1])
+    for each_length in lengths:
+        kernel += shared * each_length + each * STARTS**2 * each_length * (bays * each_length + 2)
+    points = _point_time(prepared, length)
+    progress(3, 3, message)
+    return TrackTrial(length, kernel, points)
+
+
+def _point_time(prepared: Prepared, length: float) -> float:
+    """Time of a passed point, from one whose responses are shorter: it grows with their length."""
+    case: Any = prepared.case
+    short = length / LAGS
+    lags = max(8, round(short / case.time_step))
+    kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.zeros((1, lags)))
+    first, last = case.rolled_range
+    steps = round((last - first) / case.speed / case.time_step)
+    run: Any = SimpleNamespace(history=np.ones(steps), history_start=first, time=np.zeros(steps))
+    middle = 0.5 * (first + last)
+    _, seconds = timed(lambda: passed_points(kernel, [run] * len(case.laws), [middle]))
+    return seconds * LAGS

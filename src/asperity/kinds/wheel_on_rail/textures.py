@@ -1,0 +1,188 @@
+"""The textures of a wheel-on-rail case: rail and turning wheel on one strip, samples and defects."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError, TruncatedContactWarning
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.defects import NEED_GEOMETRY, corrugated, defects
+from asperity.kinds.wheel_on_rail.lines import rail_lines, wheel_lines
+from asperity.kinds.wheel_on_rail.records import Grid, Record, rail_levels, spectrum_strip, wheel_levels
+from asperity.scenarios.chain import warn_of_start
+from asperity.scenarios.geometry import Geometry, window_cells
+from asperity.scenarios.textures import (
+    Textures,
+    measured_maps,
+    path_of,
+    strip_rows,
+    strips_of,
+    synthesised,
+)
+from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.levelling import level
+
+LEAST_LENGTH = 5.0
+"""Synthesised strips are at least so long, m, so that they hold all bands of the spectra."""
+
+
+def textures_of(case: WheelOnRail) -> Textures:
+    """Read or synthesise all textures of a case.
+
+    Parameters
+    ----------
+    case : WheelOnRail
+        The case.
+
+    Returns
+    -------
+    Textures
+        Samples, strips and path: what rail and wheel bear together, rail positions in m from a sleeper.
+
+    Raises
+    ------
+    InputError
+        If a file does not hold what the case needs of it.
+
+    Notes
+    -----
+    Heights of wheel and rail add up; the wheel's repeat with its circumference, rounded to whole cells.
+    Samples and strips are cut from the path, before defects are put on it, unless [surface] names samples
+    and the wheel is smooth.
+    """
+    contact, margin = case.contact, window_cells(case.contact)
+    before = margin + math.ceil(case.speed * case.settling / contact.spacing)
+    rows = before + math.ceil(case.speed * case.duration / contact.spacing) + 1 + margin
+    grid = Grid(rows, margin, contact.spacing)
+    seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(contact.samples + 3)]
+    maps, strips, missing, sampled = _samples(case, seeds[3:])
+    rail = _rail(case, grid, maps, seeds[0])
+    turn = _wheel(case, grid, seeds[1])
+    around = (np.arange(rows) - before) % len(turn.heights)
+    rough = rail.heights + turn.heights[around]
+    if not maps or turn.heights.any():
+        maps = strips = _cut(rough, case)
+        sampled = f"{len(strips)} samples cut from the path"
+    on_rail = corrugated(case, rows, seeds[2])
+    path = HeightMap(rough + on_rail[:, None], (contact.spacing, contact.spacing))
+    middle = margin // 2
+    start = case.start - before * contact.spacing
+    at = start + contact.spacing * np.arange(rows, dtype=np.float64)
+    geometry, trajectory = defects(case, at, len(turn.heights))
+    lines = {name: body.lines for name, body in (("rail", rail), ("wheel", turn)) if body.lines}
+    parts = {
+        "rail": rail.heights[:, middle] + on_rail,
+        "wheel": turn.heights[around, middle],
+    }
+    return Textures(
+        maps,
+        strips,
+        path,
+        np.ascontiguousarray(path.heights[:, middle]),
+        start,
+        before,
+        margin,
+        missing,
+        "; ".join(filter(None, [f"rail: {rail.origin}", f"wheel: {turn.origin}", sampled])),
+        parts,
+        geometry,
+        trajectory,
+        areal=(rail.areal or turn.areal) and not lines,
+        lines=lines,
+    )
+
+
+def _samples(
+    case: WheelOnRail, seeds: list[int]
+) -> tuple[tuple[HeightMap, ...], tuple[HeightMap, ...], float, str]:
+    """Samples and strips that the surface section names; none where they are to be cut from the path."""
+    surface, contact = case.surface, case.contact
+    if surface.file is not None:
+        maps, missing = measured_maps(surface, contact.spacing)
+        strips, origin = strips_of(maps, contact, seeds)
+        return maps, strips, missing, f"{len(maps)} samples measured, {surface.file.name}; {origin}"
+    if surface.rms is not None:
+        shape = (strip_rows(contact), window_cells(contact))
+        strips = tuple(synthesised(surface, contact.spacing, shape, seed) for seed in seeds)
+        return strips, strips, 0.0, "samples synthesised like the rail"
+    return (), (), 0.0, ""
+
+
+def _rail(case: WheelOnRail, grid: Grid, maps: tuple[HeightMap, ...], seed: int) -> Record:
+    surface, shape = case.surface, (grid.rows, grid.lines)
+    if surface.spectrum is not None:
+        wavelength, levels, name = rail_levels(surface.spectrum)
+        longer = Grid(max(grid.rows, math.ceil(LEAST_LENGTH / grid.spacing)), grid.lines, grid.spacing)
+        levels = levels + surface.level
+        strip = spectrum_strip(wavelength, levels, longer, lateral=surface.lateral, seed=seed, name=name)
+        return replace(
+            strip, heights=strip.heights[: grid.rows], origin=f"{strip.origin}, {surface.level:+g} dB"
+        )
+    if surface.line is not None:
+        return rail_lines(surface, grid)
+    if surface.rms is not None:
+        return Record(synthesised(surface, grid.spacing, shape, seed).heights, "self-affine, Gaussian")
+    if maps:
+        path, origin = path_of(maps, shape, seed)
+        return Record(path.rows(0, path.shape[0]), origin)
+    return Record(np.zeros(shape), "smooth", areal=False)
+
+
+def _wheel(case: WheelOnRail, grid: Grid, seed: int) -> Record:
+    """One turn of the wheel, closed on itself; row 0 touches the rail where the record starts."""
+    wheel = case.wheel
+    turn = Grid(round(wheel.circumference / grid.spacing), grid.lines, grid.spacing)
+    if wheel.roughness is not None:
+        wavelength, levels, name = wheel_levels(wheel.roughness)
+        levels = levels + wheel.roughness_level
+        lateral = case.surface.lateral
+        strip = spectrum_strip(wavelength, levels, turn, lateral=lateral, seed=seed, name=name)
+        return replace(strip, origin=f"{strip.origin}, {wheel.roughness_level:+g} dB")
+    if wheel.line is not None:
+        return wheel_lines(wheel, turn, check=not case.surface.accept_levels)
+    return Record(np.zeros((turn.rows, turn.lines)), "smooth", areal=False)
+
+
+def _cut(heights: NDArray[np.float64], case: WheelOnRail) -> tuple[HeightMap, ...]:
+    """Strips for stiffness and filters, spread evenly along the path; a single flat one if it is smooth."""
+    contact, rows = case.contact, strip_rows(case.contact)
+    if len(heights) < rows:
+        raise InputError(
+            "duration",
+            f"{case.duration:g} s, a path of {len(heights) * contact.spacing:.4g} m with its run-in",
+            f"at least {rows * contact.spacing:.4g} m, the strips from which filters are estimated",
+            "Roll longer, or lower contact.sample_length.",
+        )
+    count = contact.samples if heights.any() else 1
+    firsts = np.linspace(0, len(heights) - rows, count + 2)[1:-1].round().astype(int)
+    spacing = (contact.spacing, contact.spacing)
+    return tuple(level(HeightMap(heights[i : i + rows], spacing)) for i in firsts)
+
+
+def warn_of(case: WheelOnRail, shape: Geometry, textures: Textures) -> None:
+    """Warn of a record that holds the start, and of a window too short for what a law shall see of a defect.
+
+    Parameters
+    ----------
+    case, shape, textures
+        The case, its geometry and its textures.
+    """
+    warn_of_start(case, "set settling")
+    seen = [law for law in case.laws if law in NEED_GEOMETRY]
+    if not seen or textures.defects is None or case.wheel.flat is None:
+        return
+    _, length = case.wheel.flat
+    window, a = case.contact.window, shape.semi_axes[0]
+    if length + 2 * a > window:
+        warnings.warn(
+            f"the flat is {length * 1e3:.3g} mm long and the contact {2e3 * a:.3g} mm, together more than "
+            f"contact.window = {window * 1e3:.3g} mm: where the wheel stands on the flat's ends, "
+            f"{' and '.join(seen)} cut the contact off. Enlarge the window.",
+            TruncatedContactWarning,
+            stacklevel=2,
+        )

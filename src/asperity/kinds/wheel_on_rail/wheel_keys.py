@@ -1,0 +1,180 @@
+"""The wheel of a case: its mass, load, shape, resonances and texture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import BeforeValidator
+
+from asperity.config.keys import (
+    Choice,
+    ChoiceOrFile,
+    ExistingFile,
+    Force,
+    Length,
+    LengthOrInfinite,
+    Level,
+    Mass,
+    OwnOrNamed,
+    Position,
+    Section,
+    key,
+)
+from asperity.errors import InputError
+from asperity.kinds.wheel_on_rail.surface_keys import TABLE_OF_LEVELS, MeasuredLines, problems_of_table
+from asperity.kinds.wheel_on_rail.tables import read_levels, read_modes, read_receptance
+
+WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")
+DEEPEST_FLAT = 0.01  # of the wheel's radius
+CLOSE_LENGTH = 0.05  # by which a measured length may differ from that of the chord
+
+WheelRoughness = Annotated[str | Path, BeforeValidator(ChoiceOrFile(WHEEL_ROUGHNESS, TABLE_OF_LEVELS))]
+
+
+class WheelBody(Section):
+    """The wheel without its texture: a mass under a constant load, its shape and its resonances."""
+
+    radius: Length = key("0.46 m", "rolling radius", within=("10 mm", "10 m", "wheels lie between"))
+    mass: Mass = key(
+        "600 kg", "mass on the contact, unsprung", within=("1 kg", "100 t", "wheels lie between")
+    )
+    load: Force = key(
+        "65 kN",
+        "static contact force, weight included",
+        within=("1 N", "10 MN", "wheels on rails carry as much"),
+    )
+    material: OwnOrNamed = key("steel", "material")
+    transverse_radius: LengthOrInfinite = key(
+        "inf",
+        "radius of the tread across the rail",
+        within=("1 mm", "100 km", 'beyond that it is flat: write "inf"'),
+    )
+    profile: ExistingFile | None = key(
+        None,
+        "measured shape of the tread across the rail, instead of transverse_radius",
+        example='"tread.csv"',
+    )
+    modes: ExistingFile | None = key(
+        None,
+        "table of the wheel's modes: frequency (Hz), damping ratio, modal mass (kg)",
+        otherwise="a rigid wheel",
+        example='"modes.csv"',
+    )
+    receptance: ExistingFile | None = key(
+        None,
+        "table of the wheel's receptance: frequency (Hz), real and imaginary part (m/N)",
+        otherwise="a rigid wheel",
+        example='"receptance.csv"',
+    )
+
+    @property
+    def circumference(self) -> float:
+        """Length of the tread around the wheel in m."""
+        return 2 * math.pi * self.radius
+
+    def problems_of_body(self) -> Iterator[InputError]:
+        """One shape, and one set of resonances."""
+        for one, other in (("profile", "transverse_radius"), ("modes", "receptance")):
+            if {one, other} <= self.model_fields_set:
+                yield InputError("", f"both {one} and {other}", "one of them", "Remove one.")
+        yield from problems_of_table(self, "modes", read_modes)
+        yield from problems_of_table(self, "receptance", read_receptance)
+
+
+class WheelCase(MeasuredLines, WheelBody):
+    """The wheel: a body, and the texture of its tread."""
+
+    roughness: WheelRoughness | None = key(
+        None, "one-third-octave wavelength spectrum of the tread", example='"disc"'
+    )
+    roughness_level: Level = key(
+        "+0 dB",
+        "level added to it",
+        goes_with="roughness",
+        within=("-120 dB", "120 dB", "a million times is another texture"),
+    )
+    flat_depth: Length | None = key(
+        None,
+        "depth of a flat on the tread; with flat_length alone, that of its chord",
+        example='"0.5 mm"',
+        within=("10 nm", "100 mm", "flats lie between"),
+    )
+    flat_length: Length | None = key(
+        None,
+        "length of the flat: that of its chord, sqrt(8 radius flat_depth); a worn one may be longer",
+        example='"43 mm"',
+        within=("10 um", "1 m", "flats lie between"),
+    )
+    flat_shape: Annotated[str, BeforeValidator(Choice(("fresh", "worn")))] = key(
+        "fresh", "a chord with sharp ends, or rounded", goes_with="flat_depth or flat_length"
+    )
+    flat_position: Position = key(
+        "0 m",
+        "where the flat is on the tread, along the circumference from the point that touches at start",
+        goes_with="flat_depth or flat_length",
+        within=("0 m", "100 m", "wheels are smaller"),
+    )
+
+    @property
+    def has_texture(self) -> bool:
+        """Whether the tread has any texture or defect."""
+        return self.roughness is not None or self.line is not None or self.flat is not None
+
+    @property
+    def flat(self) -> tuple[float, float] | None:
+        """Depth and length of the flat in m; None without one."""
+        depth, length = self.flat_depth, self.flat_length
+        if depth is None:
+            return None if length is None else (self._chord_depth(length), length)
+        chord = math.sqrt(8.0 * self.radius * depth)
+        return depth, chord if length is None or self.flat_shape == "fresh" else max(length, chord)
+
+    def _chord_depth(self, length: float) -> float:
+        return length**2 / (8.0 * self.radius)
+
+    def problems(self) -> Iterator[InputError]:
+        """A sound body, one source of texture, and a flat that is small against the wheel."""
+        yield from self.problems_of_body()
+        yield from self.problems_of_lines()
+        if self.roughness is not None and self.line is not None:
+            yield InputError("", "both roughness and line", "one of them", "Remove one.")
+        yield from self._problems_of_flat()
+        yield from problems_of_table(self, "roughness", read_levels)
+
+    def _problems_of_flat(self) -> Iterator[InputError]:
+        """A flat that is small against the wheel, and whose length belongs to its depth."""
+        if self.flat is None:
+            return
+        deepest = DEEPEST_FLAT * self.radius
+        allowed = f"at most {DEEPEST_FLAT:g} of the radius, {deepest * 1e3:g} mm"
+        if self.flat_depth is None:
+            longest = math.sqrt(8.0 * self.radius * deepest)
+            if self.flat[1] > longest:
+                allowed = f"at most {longest * 1e3:.4g} mm, where the depth of its chord is {allowed}"
+                yield InputError("flat_length", f"{self.flat[1] * 1e3:g} mm", allowed)
+        elif self.flat_depth > deepest:
+            yield InputError("flat_depth", f"{self.flat_depth * 1e3:g} mm", allowed)
+        elif self.flat_length is not None:
+            yield from self._problem_of_both(self.flat_depth, self.flat_length)
+        if self.flat_position >= self.circumference:
+            allowed = f"less than the circumference, {self.circumference:.4g} m"
+            yield InputError("flat_position", f"{self.flat_position:g} m", allowed)
+
+    def _problem_of_both(self, depth: float, length: float) -> Iterator[InputError]:
+        """A fresh flat is a chord; a worn one is at least as long, and at most as the wheel's radius."""
+        chord = math.sqrt(8.0 * self.radius * depth)
+        worn = self.flat_shape == "worn"
+        longest = self.radius if worn else chord * (1.0 + CLOSE_LENGTH)
+        if chord * (1.0 - CLOSE_LENGTH) <= length <= longest:
+            return
+        allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), within {CLOSE_LENGTH:.0%}"
+        remedy = f"The chord of this length is {self._chord_depth(length) * 1e3:.3g} mm deep."
+        if worn:
+            allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), to the wheel's radius"
+        elif length > chord:
+            remedy += ' A worn flat may be longer: flat_shape = "worn".'
+        received = f"{length * 1e3:g} mm beside a depth of {depth * 1e3:g} mm"
+        yield InputError("flat_length", received, allowed, remedy)

@@ -1,0 +1,57 @@
+"""`linear`: the contact linearised at its working point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from numpy.typing import ArrayLike
+
+from asperity.kernels.pointforce import Prepared
+from asperity.laws.base import check_damping, on_curve
+from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.texture import StateTexture
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """F = P + k (approach - s0 - h) + c times the approach rate, in contact or not; may pull.
+
+    Parameters
+    ----------
+    force : float
+        P at the working point, N.
+    stiffness : float
+        Tangent stiffness k at the working point, N/m.
+    approach : float
+        s0 at the working point, m.
+    texture : StateTexture or None
+        Texture that the force follows, filtered or not, m; None for a smooth path.
+    damping : float
+        c, N s/m.
+
+    Raises
+    ------
+    InputError
+        If the stiffness is not positive or the damping is negative.
+    """
+
+    force: float
+    stiffness: float
+    approach: float = 0.0
+    texture: StateTexture | None = None
+    damping: float = 0.0
+    name: str = "linear"
+
+    def __post_init__(self) -> None:
+        check_damping(self.damping)
+        ForceCurve.linear(self.force, self.stiffness, self.approach)
+
+    def prepare(self, positions: ArrayLike) -> Prepared:
+        """Lay the law out on positions (n,) of the contact, m."""
+        return on_curve(
+            ForceCurve.linear(self.force, self.stiffness, self.approach),
+            self.texture,
+            positions,
+            damping=self.damping,
+            damped_in_flight=True,
+        )

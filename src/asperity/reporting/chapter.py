@@ -1,0 +1,25 @@
+"""What a chapter of the report consists of, and those that all kinds of case share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from xarray import DataTree
+
+from asperity.reporting.contact_figures import CONTACT as CONTACT_PARTS
+from asperity.reporting.part import Part
+from asperity.reporting.tables import Table, validity_table
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """What a chapter can hold: its figures, then its tables."""
+
+    name: str
+    title: str
+    parts: tuple[Part, ...]
+    tables: tuple[Callable[[DataTree], Table | None], ...] = ()
+
+
+CONTACT = Chapter("contact", "Contact", CONTACT_PARTS, (validity_table,))

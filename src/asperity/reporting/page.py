@@ -1,0 +1,168 @@
+"""The page: everything that the template shows, collected from a result tree."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
+from xarray import DataTree
+
+from asperity.reporting.chapter import Chapter
+from asperity.reporting.data import entries, group_attrs, missing
+from asperity.reporting.part import Part
+from asperity.reporting.style import colour_variables, law_style, narrow_page, svg
+from asperity.reporting.tables import Table
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure ready for the page: its SVG elements, for a wide and a narrow page, heading and caption."""
+
+    name: str
+    title: str
+    caption: str
+    svg: Markup
+    narrow: Markup
+
+
+@dataclass(frozen=True)
+class Section:
+    """A chapter of the page with its figures and tables, in the order they are shown."""
+
+    name: str
+    title: str
+    blocks: list[Picture | Table]
+
+
+def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
+    """Figures that `tree` holds the data of, in the order of the page."""
+    return [part for chapter in chapters for part in chapter.parts if part.drawable(tree)]
+
+
+def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
+    return [_picture(tree, part) for part in parts if part.drawable(tree)]
+
+
+def _picture(tree: DataTree, part: Part) -> Picture:
+    wide = svg(part.draw(tree), part.name, part.title)
+    with narrow_page():
+        narrow = svg(part.draw(tree), f"{part.name}-narrow", part.title)
+    lost = missing(tree, *part.needs, *part.any_of)
+    caption = f"{part.caption(tree)} {lost}".strip()
+    return Picture(part.name, part.title, caption, Markup(wide), Markup(narrow))
+
+
+def sections(tree: DataTree, chapters: Sequence[Chapter]) -> list[Section]:
+    """Chapters of the page; a chapter without any data is left out."""
+    found = (
+        Section(
+            chapter.name,
+            chapter.title,
+            [*_pictures(tree, chapter.parts), *(t for make in chapter.tables if (t := make(tree)))],
+        )
+        for chapter in chapters
+    )
+    return [section for section in found if section.blocks]
+
+
+def _records(attrs: Mapping[Any, Any], name: str) -> list[dict[str, Any]]:
+    return [entry for entry in entries(attrs, name, []) if isinstance(entry, dict)]
+
+
+_GRADES = {"out of range": ("out", "out of range"), "warning": ("", "warnings"), "note": ("note", "notes")}
+"""Look and plural of the grades of warnings, the gravest first."""
+
+
+def _warnings(root: Mapping[Any, Any]) -> list[dict[str, Any]]:
+    """Warnings on the physics with their grade and its look."""
+    graded = [{"grade": "warning", **warning} for warning in _records(root, "warnings")]
+    return [warning | {"look": _GRADES.get(warning["grade"], ("", ""))[0]} for warning in graded]
+
+
+def _graded(warnings: list[dict[str, Any]]) -> str:
+    """Say how many warnings there are of each grade, as ``"1 out of range, 2 warnings"``."""
+    counts = {grade: sum(w["grade"] == grade for w in warnings) for grade in _GRADES}
+    named = [f"{n} {grade if n == 1 else _GRADES[grade][1]}" for grade, n in counts.items() if n]
+    return ", ".join(named) or f"{len(warnings)} warnings"
+
+
+def _law_key(tree: DataTree) -> list[dict[str, str]]:
+    meanings = entries(group_attrs(tree, "scenario"), "laws", {})
+    return [
+        {"name": str(law), "meaning": str(text), "colour": law_style(law, "")["color"]}
+        for law, text in meanings.items()
+    ]
+
+
+def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
+    """Parameters by the table of the case file they stand in, in their order."""
+    groups: dict[str, list[dict[str, Any]]] = {}
+    for parameter in parameters:
+        table, dot, key = str(parameter.get("key", "")).rpartition(".")
+        groups.setdefault(table if dot else "", []).append(parameter | {"short": key})
+    return list(groups.items())
+
+
+_UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
+
+
+@cache
+def _template() -> Template:
+    environment = Environment(
+        loader=PackageLoader("asperity.reporting", ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["unbroken"] = _unbroken
+    return environment.get_template("report.html.jinja")
+
+
+def _unbroken(text: str) -> str:
+    """Keep numbers and their units on one line."""
+    return re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
+
+
+def page(tree: DataTree, chapters: Sequence[Chapter]) -> str:
+    """The whole page as HTML text.
+
+    Parameters
+    ----------
+    tree : xarray.DataTree
+        A result of a run.
+    chapters : sequence of Chapter
+        What its kind of case can show.
+
+    Returns
+    -------
+    str
+        One self-contained document: styles and figures inside, nothing loaded from elsewhere.
+    """
+    root, scenario = dict(tree.attrs), group_attrs(tree, "scenario")
+    parameters = _records(scenario, "parameters")
+    warnings = _warnings(root)
+    return _template().render(
+        title=root.get("title") or scenario.get("kind") or "Rolling contact",
+        verdict=root.get("verdict", ""),
+        version=root.get("asperity_version", "unknown"),
+        created=root.get("created", ""),
+        seed=root.get("seed", ""),
+        case=root.get("case", ""),
+        kind=scenario.get("kind", ""),
+        citations=[str(text) for text in entries(root, "citations", [])],
+        warnings=warnings,
+        graded=_graded(warnings),
+        case_groups=_case_groups(parameters),
+        changed=sum(not parameter.get("is_default", True) for parameter in parameters),
+        numerics=_records(scenario, "numerics"),
+        laws=_law_key(tree),
+        sections=sections(tree, chapters),
+        light=Markup(colour_variables(dark=False)),
+        dark=Markup(colour_variables(dark=True)),
+    )

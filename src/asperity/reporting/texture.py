@@ -1,0 +1,393 @@
+"""Figures of the texture: map of a sample, strip of the path, spectra against wavenumber."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.reporting.data import engineering, number, present, values
+from asperity.reporting.part import Columns, Part
+from asperity.reporting.style import (
+    INK,
+    LAW_STYLES,
+    MUTED,
+    envelope,
+    new_figure,
+    note_at,
+    power_axis,
+    side_by_side,
+    smooth_on_log_axis,
+    styled,
+    wavenumber_axis,
+)
+
+SLENDER = 2.5  # times longer than wide: such a map gets the whole width
+STRETCHES = 1200  # of the envelope of a long line
+PIXELS = 320  # along each side of a drawn map; denser maps show every n-th point
+_BLUE, _ORANGE = LAW_STYLES["areal"].colour, LAW_STYLES["shifted"].colour
+
+
+def length_unit(extent: float) -> tuple[float, str]:
+    """Unit in which a length of `extent` m reads well: its size in m and its symbol."""
+    for size, symbol in ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm")):
+        if extent >= 0.5 * size:
+            return size, symbol
+    return 1e-9, "nm"
+
+
+def draw_map(
+    axes: Axes,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    field: NDArray[np.float64],
+    unit: tuple[float, str],
+    equal: bool = True,
+    **options: Any,
+) -> ScalarMappable:
+    """Draw a field (nx, ny) with x to the right and y up, both in `unit`, thinned to what can be seen."""
+    skip_x, skip_y = (
+        max(1, -(-n // limit)) for n, limit in zip(field.shape, (3 * PIXELS, PIXELS), strict=True)
+    )
+    if equal:
+        skip_x = max(skip_x, -(-field.shape[0] // PIXELS))
+    half = [(c[1] - c[0]) / 2 if len(c) > 1 else 0.5 for c in (x, y)]
+    extent = [x[0] - half[0], x[-1] + half[0], y[0] - half[1], y[-1] + half[1]]
+    image = axes.imshow(
+        field[::skip_x, ::skip_y].T,
+        origin="lower",
+        extent=tuple(edge / unit[0] for edge in extent),
+        aspect="equal" if equal else "auto",
+        **options,
+    )
+    axes.grid(visible=False)
+    axes.set_xlabel(f"x / {unit[1]} (rolling direction →)")
+    axes.set_ylabel(f"y / {unit[1]}")
+    return image
+
+
+def height_scale(heights: NDArray[np.float64]) -> tuple[float, str, dict[str, Any]]:
+    """Unit of heights, its symbol, and colours symmetric to the mean that leave out 0.1 % at either end."""
+    finite = heights[np.isfinite(heights)]
+    middle = finite.mean()
+    reach = np.abs(np.percentile(finite, [0.1, 99.9]) - middle).max() or 1e-9
+    size, symbol = length_unit(reach)
+    return size, symbol, {"vmin": (middle - reach) / size, "vmax": (middle + reach) / size, "cmap": "cividis"}
+
+
+Distribution = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Edges of bins of height, m, and the probability density in them, 1/m."""
+
+
+def distribution(heights: NDArray[np.float64]) -> Distribution:
+    """Distribution of heights in m; missing points are left out."""
+    finite = heights[np.isfinite(heights)]
+    bins = int(np.clip(2 * len(finite) ** (1 / 3), 10, 80))  # Rice's rule
+    low, high = finite.min(), finite.max()
+    if low == high:
+        low, high = low - 0.5e-9, high + 0.5e-9
+    density, edges = np.histogram(finite, bins=bins, range=(low, high), density=True)
+    return edges, density
+
+
+def height_histogram(axes: Axes, named: dict[str, Distribution], unit: tuple[float, str]) -> None:
+    """Draw how often each height occurs, per series in `named`, with the normal distribution of the first."""
+    colours = [_BLUE, _ORANGE]
+    for (name, (edges, density)), colour in zip(named.items(), colours, strict=False):
+        axes.stairs(density * unit[0], edges / unit[0], color=colour, label=name, linewidth=1.4)
+    edges, density = next(iter(named.values()))
+    middle, share = (edges[1:] + edges[:-1]) / 2, density * np.diff(edges)
+    mean = float(np.sum(middle * share))
+    spread = float(np.sqrt(np.sum((middle - mean) ** 2 * share))) or unit[0]
+    z = np.linspace(edges[0], edges[-1], 200)
+    normal = np.exp(-((z - mean) ** 2) / (2 * spread**2)) / (spread * np.sqrt(2 * np.pi)) * unit[0]
+    axes.plot(z / unit[0], normal, color=MUTED, linewidth=0.9, linestyle="--", label="normal")
+    axes.xaxis.set_major_locator(MaxNLocator(6))
+    axes.set_yscale("log")
+    axes.set_ylim(normal.max() * 1e-4, normal.max() * 4)
+    power_axis(axes.yaxis)
+    axes.set_xlabel(f"height / {unit[1]} (out of the material →)")
+    axes.set_ylabel(f"probability density / (1/{unit[1]})")
+    axes.legend(loc="upper left")
+
+
+def _map_and_histogram(slender: bool) -> tuple[Figure, Axes, Axes]:
+    """Figure with room for a map and a histogram: beneath each other for a map that is long and narrow."""
+    if slender:
+        figure = new_figure(4.6)
+        upper, lower = figure.subplots(2, 1, height_ratios=[1, 1.4])
+        return figure, upper, lower
+    figure, (left, right) = side_by_side(4.2, (1.25, 1))
+    return figure, left, right
+
+
+@styled()
+def sample_figure(tree: DataTree) -> Figure:
+    """Map of the first sample, and how its heights are distributed."""
+    heights = values(tree, "surface/sample_heights", "x", "y")
+    x, y = values(tree, "surface/x"), values(tree, "surface/y")
+    size, symbol, colours = height_scale(heights)
+    figure, left, right = _map_and_histogram(bool(np.ptp(x) > SLENDER * np.ptp(y)))
+    image = draw_map(left, x, y, heights / size, length_unit(np.ptp(x)), **colours)
+    left.set_title("first sample" + _between(tree))
+    figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9, pad=0.02)
+    named = {"sample": distribution(heights)}
+    if present(tree, "surface/path_height_density"):
+        middle = values(tree, "surface/path_height")
+        half = (middle[1] - middle[0]) / 2
+        edges = np.append(middle - half, middle[-1] + half)
+        named["path, whole"] = (edges, values(tree, "surface/path_height_density"))
+    height_histogram(right, named, (size, symbol))
+    right.set_title("heights")
+    return figure
+
+
+def _between(tree: DataTree) -> str:
+    """What to add to the title of a map that lines were laid out as."""
+    return ", as laid out between lines" if tree["surface"].attrs.get("across") == "lines" else ""
+
+
+def sample_columns(tree: DataTree) -> Columns:
+    """Heights of the first sample: one row per x, one column per y."""
+    return _matrix(tree, "surface/sample_heights", "x", "y", "z", "m")
+
+
+def _matrix(tree: DataTree, path: str, x: str, y: str, symbol: str, unit: str) -> Columns:
+    group = path.partition("/")[0]
+    field = values(tree, path, x, y)
+    columns: Columns = {"x [m]": values(tree, f"{group}/{x}")}
+    for index, position in enumerate(values(tree, f"{group}/{y}")):
+        columns[f"{symbol}(y={position:.9g} m) [{unit}]"] = field[:, index]
+    return columns
+
+
+@styled()
+def path_figure(tree: DataTree) -> Figure:
+    """Strip of the path, and its middle line; a path given as a line has the line alone."""
+    drawn = [draw for path, draw in _PATH_PANELS.items() if present(tree, path)]
+    figure = new_figure(3.9 if len(drawn) == 2 else 2.2)
+    for axes, draw in zip(figure.subplots(len(drawn), 1, squeeze=False)[:, 0], drawn, strict=True):
+        draw(axes, tree)
+    return figure
+
+
+def _draw_strip(axes: Axes, tree: DataTree) -> None:
+    heights = values(tree, "surface/path_heights", "path_x", "path_y")
+    x, y = values(tree, "surface/path_x"), values(tree, "surface/path_y")
+    size, symbol, colours = height_scale(heights)
+    image = draw_map(axes, x, y, heights / size, length_unit(np.ptp(x)), equal=False, **colours)
+    axes.set_title(f"a piece of the path, seen from above (y stretched){_between(tree)}")
+    axes.figure.colorbar(image, ax=axes, label=f"height / {symbol}", extend="both", pad=0.01)
+
+
+def _draw_line(axes: Axes, tree: DataTree) -> None:
+    distance, line = values(tree, "surface/distance"), values(tree, "surface/line")
+    along, along_symbol = length_unit(np.ptp(distance))
+    size, symbol = length_unit(np.nanmax(np.abs(line)) or 1e-9)
+    starts, low, high = envelope(line / size, STRETCHES)
+    axes.fill_between(distance[starts] / along, low, high, color=_BLUE, linewidth=0.4)
+    axes.set_xlim(distance[0] / along, distance[-1] / along)
+    axes.set_xlabel(f"distance / {along_symbol}")
+    axes.set_ylabel(f"height / {symbol}")
+    axes.set_title("middle line of the whole path (envelope)")
+
+
+_PATH_PANELS = {"surface/path_heights": _draw_strip, "surface/line": _draw_line}
+
+
+def path_columns(tree: DataTree) -> Columns:
+    """Lowest and highest point of the middle line of the path, in the stretches that are drawn."""
+    distance, line = values(tree, "surface/distance"), values(tree, "surface/line")
+    starts, low, high = envelope(line, STRETCHES)
+    return {"x [m]": distance[starts], "lowest z [m]": low, "highest z [m]": high}
+
+
+_SPECTRA = {
+    "psd_sample": ("samples, mean", _BLUE, "-"),
+    "psd_path": ("path", _ORANGE, (0, (5, 1.5))),
+}
+
+
+@styled()
+def psd_figure(tree: DataTree) -> Figure:
+    """Power spectral densities of samples and path in the rolling direction."""
+    figure = new_figure(3.9)
+    axes = figure.subplots()
+    wavenumber = values(tree, "surface/surface_wavenumber")
+    drawn = []
+    for name, (label, colour, dashes) in _SPECTRA.items():
+        if not present(tree, f"surface/{name}"):
+            continue
+        psd = values(tree, f"surface/{name}")
+        kept = (wavenumber > 0) & (psd > 0) & np.isfinite(psd)
+        if not kept.any():
+            continue
+        k, level = smooth_on_log_axis(wavenumber[kept], psd[kept])
+        axes.loglog(k, level, color=colour, linestyle=dashes, label=label, linewidth=1.5)
+        drawn.append((k, level))
+    if drawn:
+        levels = np.concatenate([level for _, level in drawn])
+        axes.set_ylim(max(levels.min() / 2, levels.max() * 1e-8), levels.max() * 4)
+        wavenumber_axis(axes, min(k[0] for k, _ in drawn), max(k[-1] for k, _ in drawn))
+    _mark_contact(axes, tree)
+    power_axis(axes.yaxis)
+    axes.set_ylabel("one-sided PSD / m³")
+    axes.legend(loc="lower left")
+    return figure
+
+
+def _mark_contact(axes: Axes, tree: DataTree) -> None:
+    radius = number(tree, "contact", "hertz_radius")
+    if radius is None or radius <= 0:
+        return
+    axes.axvline(1 / (2 * radius), color=INK, linewidth=0.9, linestyle=":")
+    label = f"length of the contact, 2a = {engineering(2 * radius, 'm')}"
+    note_at(axes, 1 / (2 * radius), 0.97, label, va="top")
+
+
+def psd_columns(tree: DataTree) -> Columns:
+    """Spectra against wavenumber, all lines."""
+    columns: Columns = {"wavenumber [1/m]": values(tree, "surface/surface_wavenumber")}
+    for name, (label, _, _) in _SPECTRA.items():
+        if present(tree, f"surface/{name}"):
+            columns[f"PSD of {label} [m^3]"] = values(tree, f"surface/{name}")
+    return columns
+
+
+def _sample_caption(tree: DataTree) -> str:
+    missing = number(tree, "surface", "missing_share") or 0.0
+    source = tree["surface"].attrs.get("source") or "not stated"
+    return (
+        f"Source: {source}; {100 * missing:.3g} % of its points had no height. Heights are positive out of "
+        "the material; the colours leave out 0.1 % of the points at either end."
+    )
+
+
+_SPECTRUM_PATHS = tuple(f"surface/{name}" for name in _SPECTRA)
+
+TEXTURE = (
+    Part(
+        "texture_sample",
+        "Texture of the samples",
+        ("surface/sample_heights",),
+        sample_figure,
+        sample_columns,
+        _sample_caption,
+        worth=lambda tree: bool(np.nanmax(np.abs(values(tree, "surface/sample_heights"))) > 0),
+    ),
+    Part(
+        "texture_path",
+        "Texture of the path",
+        ("surface/line", "surface/distance"),
+        path_figure,
+        path_columns,
+        lambda tree: (
+            "Heights of the path, positive out of the material. The CSV file holds the envelope of its "
+            "middle line; run.nc has every point of it"
+            + (", and the piece seen from above." if "path_heights" in tree["surface"] else ".")
+        ),
+    ),
+    Part(
+        "texture_psd",
+        "Texture against wavenumber",
+        ("surface/surface_wavenumber",),
+        psd_figure,
+        psd_columns,
+        lambda _: (
+            "Power spectral density of the lines in rolling direction, mean over the lines, one-sided "
+            "per cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that."
+        ),
+        any_of=_SPECTRUM_PATHS,
+        worth=lambda tree: any(
+            (values(tree, path) > 0).any() for path in _SPECTRUM_PATHS if present(tree, path)
+        ),
+    ),
+)
+
+
+@styled()
+def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], title: str) -> Figure:
+    """Draw what a surface file holds: its map and the distribution of its heights.
+
+    Parameters
+    ----------
+    heights : (nx, ny) array, or (n,) array for a line
+        Heights in m, positive out of the material; NaN where missing.
+    spacing : (float, float)
+        Distance of neighbouring points along x and y in m.
+    title : str
+        Heading, as the name of the file.
+
+    Returns
+    -------
+    Figure
+    """
+    heights = np.asarray(heights, dtype=np.float64)
+    size, symbol, colours = height_scale(heights)
+    length = np.asarray(heights.shape, dtype=np.float64) * spacing[: heights.ndim]
+    figure, left, right = _map_and_histogram(heights.ndim == 1 or bool(length[0] > SLENDER * length[1]))
+    figure.set_facecolor("white")  # it goes to a file of its own
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+    x = spacing[0] * np.arange(heights.shape[0], dtype=np.float64)
+    unit = length_unit(np.ptp(x))
+    if heights.ndim == 1:
+        starts, low, high = envelope(heights / size, STRETCHES)
+        left.fill_between(x[starts] / unit[0], low, high, color=_BLUE, linewidth=0.6)
+        left.set_xlabel(f"x / {unit[1]}")
+        left.set_ylabel(f"height / {symbol}")
+    else:
+        y = spacing[1] * np.arange(heights.shape[1], dtype=np.float64)
+        extreme = max(length) > 12 * min(length)
+        image = draw_map(left, x, y, heights / size, unit, equal=not extreme, **colours)
+        figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9)
+    left.xaxis.set_major_locator(MaxNLocator(6))
+    height_histogram(right, {"heights": distribution(heights)}, (size, symbol))
+    return figure
+
+
+@styled()
+def lines_picture(lines: Sequence[NDArray[np.float64]], spacing: float, title: str) -> Figure:
+    """Draw lines that were measured side by side, one above the other, and the distribution of their heights.
+
+    Parameters
+    ----------
+    lines : sequence of (n,) arrays
+        Levelled heights in m, positive out of the material; NaN where missing.
+    spacing : float
+        Distance of neighbouring points along the lines in m.
+    title : str
+        Heading, as the name of the file.
+
+    Returns
+    -------
+    Figure
+    """
+    together = np.concatenate(lines)
+    size, symbol, _ = height_scale(together)
+    reach = np.ptp(np.nanpercentile(together, [0.1, 99.9])) / size
+    figure, (left, right) = side_by_side(2.4 + 0.42 * len(lines), (2.4, 1))
+    figure.set_facecolor("white")  # it goes to a file of its own
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+    longest = max(map(len, lines)) * spacing
+    unit = length_unit(longest)
+    for row, (line, colour) in enumerate(zip(lines, cycle((_BLUE, _ORANGE)), strict=False)):
+        starts, low, high = envelope(line / size, STRETCHES)
+        at = starts * spacing / unit[0]
+        left.fill_between(at, low - row * reach, high - row * reach, color=colour, linewidth=0.5)
+    left.set_xlim(0, longest / unit[0])
+    left.set_ylim(-(len(lines) - 0.4) * reach, 0.6 * reach)
+    left.set_yticks([-row * reach for row in range(len(lines))], [f"{n + 1}" for n in range(len(lines))])
+    left.set_xlabel(f"distance along the lines / {unit[1]}")
+    left.set_ylabel("line")
+    left.set_title(f"lines, {reach:.3g} {symbol} apart")
+    height_histogram(right, {"heights": distribution(together)}, (size, symbol))
+    right.set_title("heights of all lines")
+    return figure

@@ -1,0 +1,72 @@
+"""Running a case of any kind."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from asperity.arguments import shown
+from asperity.errors import InputError
+
+if TYPE_CHECKING:
+    import xarray
+
+    from asperity.config.case import Case
+    from asperity.progress import Progress
+    from asperity.scenarios.preparing import Prepared
+
+
+def run(
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case | Prepared, progress: Progress | None = None
+) -> xarray.DataTree:
+    """Compute a case.
+
+    Parameters
+    ----------
+    case : path, mapping or case object
+        A TOML case file; its keys and values, sections as mappings; a case object; or what
+        `prepare` made of one.
+    progress : callable, optional
+        ``progress(done, total, message)``, called during long work.
+
+    Returns
+    -------
+    xarray.DataTree
+        Groups scenario, surface, contact, rolling and spectra, and track for a wheel on rail; see
+        `asperity.results`.
+
+    Raises
+    ------
+    InputError
+        If the case, or a file it names, is wrong.
+    ComputationError
+        If a computation fails.
+    """
+    from asperity.errors import PhysicsWarning
+    from asperity.kinds.cases import as_case
+    from asperity.scenarios.preparing import Prepared
+    from asperity.threads import one_thread_in_linear_algebra
+
+    loaded = case if isinstance(case, Prepared) else as_case(case)
+    if progress is not None and not callable(progress):
+        raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
+    with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
+        warnings.simplefilter("always", PhysicsWarning)
+        prepared = loaded if isinstance(loaded, Prepared) else prepare(loaded)
+        caught += prepared.caught
+        quiet = progress or (lambda done, total, message: None)
+        result = prepared.kind.computed(prepared, quiet, caught)
+    for message in caught:
+        if not issubclass(message.category, PhysicsWarning):
+            warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
+    return result
+
+
+def prepare(case: Case) -> Prepared:
+    """Prepare a case of any kind, see `asperity.scenarios.preparing.prepare`."""
+    from asperity.kinds.cases import kind_of
+    from asperity.scenarios import preparing
+
+    return preparing.prepare(case, kind_of(case))
