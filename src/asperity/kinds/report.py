@@ -19,12 +19,13 @@ from asperity.reporting.part import Part
 
 
 def chapters_of(tree: DataTree) -> tuple[Chapter, ...]:
-    """Chapters for the kind of case that `tree` is the result of; of all kinds where it does not say."""
+    """Chapters for the kind of case that `tree` is the result of; where it does not say, that shows most."""
     stated = group_attrs(tree, "scenario").get("kind")
     if stated in KINDS:
         return KINDS[stated].chapters
-    every = {chapter.name: chapter for kind in KINDS.values() for chapter in kind.chapters}
-    return tuple(every.values())
+    return max(
+        (kind.chapters for kind in KINDS.values()), key=lambda chapters: len(drawable_parts(tree, chapters))
+    )
 
 
 def parts_of(tree: DataTree) -> list[Part]:
