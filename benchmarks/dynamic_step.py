@@ -33,8 +33,8 @@ from asperity.kinds.ball_on_beam.roll import Rolling, roll
 from asperity.kinds.cases import parse_case
 from asperity.laws import Law
 from asperity.progress import progress_bar
+from asperity.running import prepare
 from asperity.scenarios.laws import Workshop
-from asperity.scenarios.preparing import prepare
 from asperity.store import Store
 
 COMPILED = ["linear", "hertz", "printed", "shifted", "areal", "table"]

@@ -28,7 +28,7 @@ from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.compute import Computed, compute
 from asperity.kinds.cases import parse_case
 from asperity.progress import progress_bar
-from asperity.scenarios.preparing import prepare
+from asperity.running import prepare
 from asperity.spectra import band_levels, psd
 
 LAWS = [

@@ -43,7 +43,7 @@ from asperity.kinds.wheel_on_rail.sound_power import rolling_sound_power
 from asperity.laws import Law, Linear, Printed
 from asperity.reference import cnossos
 from asperity.reporting.style import band_axis, styled
-from asperity.scenarios.preparing import prepare
+from asperity.running import prepare
 from asperity.spectra import band_levels, psd
 
 CASE = """
