@@ -1,7 +1,23 @@
-"""What all tests share."""
+"""What all tests share: a cache of their own, kernels that are compiled once, signals that reach children."""
 
 import os
+import signal
+import tempfile
 from pathlib import Path
 
-# Kernels are compiled once, whichever cache a test uses. Set before they are imported.
+# Both are set before asperity is imported. Kernels outlast a session: compiling them all takes minutes.
 os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pytest_cache" / "kernels"))
+_cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
+os.environ["ASPERITY_CACHE"] = _cache.name
+
+
+def pytest_configure():
+    """Let children obey signals that the shell of a background job ignores: they inherit no handlers."""
+    for name in ("SIGINT", "SIGHUP", "SIGTERM"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, lambda number, frame: None)
+
+
+def pytest_unconfigure():
+    _cache.cleanup()

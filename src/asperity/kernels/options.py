@@ -3,6 +3,9 @@
 They get named tuples of arrays; counting references to those arrays at every call costs ten times the
 arithmetic. Functions that allocate nothing do not need to count (``_nrt``), and inside one compiled loop
 nothing is left of the calls (``forceinline``).
+
+``_nrt`` and ``forceinline`` are options that numba does not document, and ``_cache`` of a kernel is private.
+They are tested with numba 0.60 to 0.68: the oldest that is allowed and the newest there is.
 """
 
 from __future__ import annotations

@@ -1,0 +1,79 @@
+"""What stands around the code: versions that agree, workflows that call the same commands, addresses."""
+
+import importlib.util
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+
+import asperity
+from asperity.kernels import options
+
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+
+def text(name):
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def workflow(name):
+    return yaml.safe_load(text(f".github/workflows/{name}.yml"))
+
+
+def commands(job):
+    return [step["run"] for step in job["steps"] if "run" in step]
+
+
+def test_the_version_is_the_same_everywhere():
+    assert f"\nversion: {asperity.__version__}\n" in text("CITATION.cff")
+    assert f"\n## {asperity.__version__} " in text("CHANGELOG.md")
+    assert "version" in PROJECT["dynamic"]
+
+
+def test_the_gate_and_the_workflows_call_the_same_commands():
+    jobs = workflow("checks")["jobs"]
+    assert text(".ci/run").rstrip().endswith(".ci/checks")
+    assert ".ci/checks" in commands(jobs["checks"])
+    assert any(command.startswith(".ci/checks --cov") for command in commands(jobs["coverage"]))
+    assert ".ci/build" in commands(jobs["build"])
+    assert workflow("release")["jobs"]["checks"]["uses"] == "./.github/workflows/checks.yml"
+    (hook,) = yaml.safe_load(text(".pre-commit-config.yaml"))["repos"][0]["hooks"]
+    assert hook["entry"] == ".ci/lint"
+    assert ".ci/lint" in text(".ci/checks")
+
+
+def test_the_oldest_versions_are_tested():
+    oldest, newest = workflow("checks")["jobs"]["checks"]["strategy"]["matrix"]["versions"]
+    (numba,) = [name for name in PROJECT["dependencies"] if name.startswith("numba")]
+    assert oldest["numba"].replace("==", ">=").removesuffix(".*") == numba
+    assert PROJECT["requires-python"] == f">={oldest['python']}"
+    assert newest["numba"] == "numba"
+    assert f"numba {numba.removeprefix('numba>=')} to" in " ".join(options.__doc__.split())
+
+
+def test_addresses_are_those_of_the_repository_that_builds():
+    pytest.importorskip("hatchling")
+    spec = importlib.util.spec_from_file_location("hatch_build", ROOT / "hatch_build.py")
+    hook = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(hook)
+    assert hook.addresses({}) == {}
+    hosted = {"GITHUB_SERVER_URL": "https://host", "GITHUB_REPOSITORY": "people/asperity"}
+    assert hook.addresses(hosted)["Issues"] == "https://host/people/asperity/issues"
+
+
+@pytest.mark.parametrize("form", ["fault", "number", "idea"])
+def test_forms_of_issues_are_complete(form):
+    found = yaml.safe_load(text(f".github/ISSUE_TEMPLATE/{form}.yml"))
+    assert {"name", "description", "body"} <= set(found)
+    names = [field["id"] for field in found["body"]]
+    assert len(set(names)) == len(names)
+    assert all(field["attributes"]["label"] for field in found["body"])
+
+
+def test_every_link_of_a_page_leads_somewhere():
+    for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("benchmarks/*.md")]:
+        for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+            assert "://" in target or (page.parent / target).exists(), f"{page.name}: {target}"
