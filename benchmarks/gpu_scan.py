@@ -25,7 +25,7 @@ import asperity
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.device import Device, gpu, processor
 from asperity.errors import InputError
-from asperity.kernels.padded import convolve, padded_length, padded_spectrum
+from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum
 from asperity.reduction.batched_scan import solve_rows
 from asperity.reduction.scan import BLOCK, TRUNCATED, scan_forces
 from asperity.surfaces.synthesis import self_affine
@@ -112,7 +112,7 @@ def transform_time(cells: int, members: int, rounds: int, device: Device) -> flo
 
     def convolutions() -> None:
         for _ in range(repeats):
-            found = convolve(field, spectrum, padded_length(n), xp)
+            found = convolve_padded(field, spectrum, padded_length(n), xp)
         device.to_host(found[0, 0, 0])  # waits for the device
 
     return best(convolutions, rounds) / repeats / members

@@ -7,12 +7,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from asperity.kernels.modal import (
-    Motion,
-    Record,
+    BeamMotion,
+    BeamRecord,
     System,
     modal_coefficients,
     refine,
-    roll_steps,
+    roll_beam,
 )
 from asperity.laws import Hertz
 
@@ -86,7 +86,7 @@ def flight_system(modes=3, h=1e-4):
 
 
 def motion_at(modes, ball, velocity, q):
-    return Motion(
+    return BeamMotion(
         np.array(q, dtype=float),
         np.zeros(modes),
         np.zeros(modes),
@@ -100,7 +100,7 @@ def motion_at(modes, ball, velocity, q):
 
 
 def records(n):
-    return Record(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros((2, n)))
+    return BeamRecord(np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n), np.zeros((2, n)))
 
 
 def test_flight_is_a_parabola_and_the_beam_rings_freely():
@@ -109,7 +109,7 @@ def test_flight_is_a_parabola_and_the_beam_rings_freely():
     motion, record = motion_at(3, -1.0, 0.3, [1e-3, -5e-4, 2e-4]), records(n + 1)
     shapes = np.ones((n + 1, 3))
     law = Hertz(1e10).prepare(np.zeros(n + 1))
-    assert roll_steps(system, motion, record, law, shapes, np.zeros_like(shapes), 0, n, np.inf)
+    assert roll_beam(system, motion, record, law, shapes, np.zeros_like(shapes), 0, n, np.inf)
     t = system.time_step * np.arange(1, n + 1)
     assert_allclose(record.force, 0.0, atol=0.0)
     assert_allclose(record.ball[1:], -1.0 + 0.3 * t + 0.5 * (4.9 / 0.5) * t**2, rtol=1e-12)
@@ -128,7 +128,7 @@ def test_ball_bounces_elastically():
         n = int(0.0652 / h)
         motion, record = motion_at(3, -1e-3, 0.0, np.zeros(3)), records(n + 1)
         nodes = np.zeros((n + 1, 3))  # over a node of all modes the beam does not give
-        assert roll_steps(
+        assert roll_beam(
             system, motion, record, Hertz(1e9).prepare(np.zeros(n + 1)), nodes, nodes, 0, n, np.inf
         )
         landed = int(np.argmax(record.force > 0))
@@ -155,9 +155,7 @@ def test_force_that_is_not_finite_stops_the_run():
     system, _, _ = flight_system()
     motion, record = motion_at(3, np.nan, 0.0, np.zeros(3)), records(11)
     shapes = np.ones((11, 3))
-    assert not roll_steps(
-        system, motion, record, Hertz(1e9).prepare(np.zeros(11)), shapes, shapes, 0, 10, 1e9
-    )
+    assert not roll_beam(system, motion, record, Hertz(1e9).prepare(np.zeros(11)), shapes, shapes, 0, 10, 1e9)
 
 
 @pytest.mark.parametrize("phase", [0.01, 1.0, 20.0])

@@ -11,7 +11,7 @@ from asperity.contact import HalfSpace, Hertz
 from asperity.contact.batched import solve_batched
 from asperity.contact.device import find_device, gpu, processor
 from asperity.errors import ComputationError, InputError
-from asperity.kernels.padded import convolve, padded_length, padded_spectrum
+from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS = 115e9
@@ -226,7 +226,7 @@ def test_members_that_converge_early_stay_as_they_are():
 def test_batched_convolution_is_the_double_sum():
     rng = np.random.default_rng(0)
     table, field = rng.standard_normal((6, 5)), rng.standard_normal((3, 6, 5))
-    found = convolve(field, padded_spectrum(table, 6, 5), padded_length(5), np)
+    found = convolve_padded(field, padded_spectrum(table, 6, 5), padded_length(5), np)
     i, j = np.arange(6), np.arange(5)
     kernel = table[abs(i[:, None] - i)[:, None, :, None], abs(j[:, None] - j)[None, :, None, :]]
     np.testing.assert_allclose(found, np.einsum("ijkl,bkl->bij", kernel, field), atol=1e-12)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from asperity.contact.device import Device
 from asperity.contact.halfspace import MAX_ITERATIONS, HalfSpace
 from asperity.errors import ComputationError
-from asperity.kernels.batched_cg import first_guess, solve
+from asperity.kernels.batched_cg import first_guess, solve_batch
 from asperity.kernels.padded import padded_length, padded_spectrum
 
 Array = Any
@@ -200,7 +200,7 @@ def _solve_batch(
         if bool(fresh.any()):
             guess = first_guess(overlap, spectrum, my, cap, xp)
             p = xp.where(fresh[:, None, None], guess, p)
-        iterations, worst = solve(
+        iterations, worst = solve_batch(
             overlap, spectrum, my, taps, p, cap, softest, rtol * largest, MAX_ITERATIONS, xp
         )
         pressure[cells] = p

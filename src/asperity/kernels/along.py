@@ -7,26 +7,17 @@ import numpy as np
 from asperity.kernels.options import compiled
 
 BLOCK = 512
+"""Points whose coefficients are found at once."""
 OVERLAP = 24
+"""Points by which blocks overlap: from point to point an end is felt by 2 − √3 less, 2e-14 over these."""
 
 
 @compiled(cache=True, nogil=True)
 def spline_coefficients(values):  # type: ignore[no-untyped-def]
-    """B-spline coefficients of natural cubic splines on a uniform grid.
+    """B-spline coefficients (m + 2, s) of natural cubic splines through values (m, s), m ≥ 2.
 
-    Parameters
-    ----------
-    values : ndarray (m, s)
-        Samples of s rows, m >= 2.
-
-    Returns
-    -------
-    ndarray (m + 2, s)
-        Coefficients, one beyond each end.
-
-    Notes
-    -----
-    c[i−1] + 4 c[i] + c[i+1] = 6 f[i], and c = f at both ends, where the curvature is zero.
+    One lies beyond each end. c[i−1] + 4 c[i] + c[i+1] = 6 f[i], and c = f at both ends, where the curvature
+    is zero.
     """
     m, s = values.shape
     coefficients = np.empty((m + 2, s))
@@ -50,22 +41,11 @@ def spline_coefficients(values):  # type: ignore[no-untyped-def]
 
 @compiled(cache=True, nogil=True)
 def splines_along(values, index):  # type: ignore[no-untyped-def]
-    """Natural cubic splines of rows at places on their grid.
+    """Natural cubic splines of rows (s, m), m ≥ 2, at n places on their grid: values (n, s).
 
-    The rows are worked off in blocks that stay in the processor's cache; a block overlaps its neighbours by
-    as many points as make the cut at its ends felt by less than 1e-13.
-
-    Parameters
-    ----------
-    values : ndarray (s, m)
-        Samples of s rows, m >= 2.
-    index : ndarray (n,)
-        Places in units of the grid, 0 to m − 1; rising places are fastest.
-
-    Returns
-    -------
-    ndarray (n, s)
-        Values of all rows.
+    Places count in steps of the grid from 0 to m − 1; rising ones are fastest. The rows are worked off in
+    blocks that stay in the processor's cache; a block overlaps its neighbours by as many points as make the
+    cut at its ends felt by less than 1e-13.
     """
     s, m = values.shape
     result = np.empty((index.shape[0], s))

@@ -9,44 +9,22 @@ from asperity.kernels.box import FAR, REACH, Box
 from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 
 EXACT, SHIFTS = 1e-13, 100
-"""Accuracy of the sum, and how often it is tried to reach it."""
+"""Accuracy of the sum, some hundred roundings of it, and how often it is tried to reach it."""
 
 
 @compiled(**INNER)
 def rounding(hardness: float, total: float) -> float:
-    """Pressure within which a cell is at a bound: where all are, rounding of the sum leaves none between.
+    """Pressure, Pa, within which a cell is at a bound: where all are, rounding leaves none between.
 
-    Parameters
-    ----------
-    hardness : float
-        Upper bound of the pressure, Pa.
-    total : float
-        Sum of the pressure, Pa; negative if the approach is given, where nothing is kept but the bounds.
-
-    Returns
-    -------
-    float
-        Pa; zero without an upper bound.
+    Zero without an upper bound, and for a negative `total` (Pa, over the cells): the approach is given then,
+    and nothing kept but the bounds.
     """
     return EXACT * min(hardness, total) if total >= 0.0 and hardness < np.inf else 0.0
 
 
 @compiled(**INNER, **REASSOCIATE)
 def find_level(b: Box, hardness: float) -> float:
-    """Find the approach beyond that of the overlap: the mean residual of the cells between the bounds.
-
-    Parameters
-    ----------
-    b : Box
-        Holds pressure and residual.
-    hardness : float
-        Upper bound of the pressure, Pa.
-
-    Returns
-    -------
-    float
-        Approach, m.
-    """
+    """Find the approach beyond that of the overlap, m: the mean residual of the cells between the bounds."""
     added, count = 0.0, 0.0
     for q in range(len(b.pressure)):
         p = b.pressure[q]
@@ -71,17 +49,7 @@ def _between_bounds(b: Box) -> float:
 
 @compiled(**INNER)
 def mark_free(b: Box, hardness: float, level: float) -> None:
-    """Mask ones with the free set: cells that no bound holds.
-
-    Parameters
-    ----------
-    b : Box
-        Holds pressure and residual.
-    hardness : float
-        Upper bound of the pressure, Pa.
-    level : float
-        Approach beyond that of the overlap, m.
-    """
+    """Mask ones with the free set: cells that no bound holds at a level, m, beyond the overlap's approach."""
     target = b.masked[REACH * b.pitch :]
     for q in range(len(b.pressure)):
         p, r = b.pressure[q], b.residual[q] - level
@@ -89,23 +57,8 @@ def mark_free(b: Box, hardness: float, level: float) -> None:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def balance(b: Box, share: float, level: float) -> tuple[float, float]:
-    """Take a share of `unit` off z.
-
-    Parameters
-    ----------
-    b : Box
-        Holds z, `unit`, the masked free set, and the residual.
-    share : float
-        The share, m.
-    level : float
-        Approach beyond that of the overlap, m.
-
-    Returns
-    -------
-    product, change : float
-        As of `preconditioner.precondition`.
-    """
+def balance_load(b: Box, share: float, level: float) -> tuple[float, float]:
+    """Take a share of `unit`, m, off z; return product and change as `preconditioner.precondition` does."""
     rho, change, free = 0.0, 0.0, b.masked[REACH * b.pitch :]
     for q in range(len(b.z)):
         z = b.z[q] - share * b.unit[q]
@@ -153,30 +106,10 @@ def project_at_load(
 ) -> tuple[float, float, bool]:
     """Set the step to a length along the direction, projected on the bounds and on the load.
 
-    What the projection takes is shifted along `unit`: the sum grows along straight lines with the shift, so
-    that a Newton iteration within a bracket finds it.
-
-    Parameters
-    ----------
-    b : Box
-        Holds pressure, direction, `unit` and residual; receives the step.
-    length : float
-        Length along the direction.
-    level : float
-        Approach beyond that of the overlap, m.
-    hardness : float
-        Upper bound of the pressure, Pa.
-    total : float
-        Sum of the pressure after the step, Pa.
-
-    Returns
-    -------
-    work : float
-        Work of the step against the residual; zero if there is no such shift.
-    clipped : float
-        Cells that the bounds held back.
-    found : bool
-        Whether there is such a shift.
+    The load is the sum of the pressure, Pa. What the projection takes is shifted along `unit`: the sum grows
+    along straight lines with the shift, so that a Newton iteration within a bracket finds it. Returns the
+    work of the step against the residual (zero if there is no such shift), the cells that the bounds held
+    back, and whether there is such a shift.
     """
     low, high, shift, reach = -np.inf, np.inf, 0.0, 0.0
     for _ in range(SHIFTS):
@@ -198,18 +131,10 @@ def project_at_load(
 
 @compiled(**LOOP)
 def carry(b: Box, hardness: float, total: float, stiffness: float) -> None:
-    """Scale the pressure to the load, within the bounds.
+    """Scale about the pressure of a box to the sum that it has to carry, Pa, within the bounds.
 
-    Parameters
-    ----------
-    b : Box
-        Holds the overlap and about the pressure.
-    hardness : float
-        Upper bound of the pressure, Pa.
-    total : float
-        Sum of the pressure, Pa, which the overlapping cells can carry.
-    stiffness : float
-        Pressure per overlap, Pa/m: what is scaled if that pressure acts on too few cells.
+    The overlapping cells can carry that. Where the pressure acts on too few cells, the overlap times a
+    stiffness (Pa/m) is scaled instead.
     """
     for q in range(len(b.pressure)):
         b.direction[q] = b.unit[q] = b.pressure[q]

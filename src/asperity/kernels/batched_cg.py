@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from asperity.kernels.padded import convolve
+from asperity.kernels.padded import convolve_padded
 from asperity.kernels.projected_cg import LEAST, MOST, OFTEN, PATIENCE, WHOLE
 
 Array = Any
@@ -40,24 +40,14 @@ class _Members(NamedTuple):
 def first_guess(overlap: Array, spectrum: Array, my: int, hardness: float, xp: Any) -> Array:
     """Pressures of Hertzian form over the deeper half of each overlap, scaled to least energy.
 
-    Parameters
-    ----------
-    overlap : array, shape (b, nx, ny)
-        Overlaps of the undeformed bodies, m, each positive somewhere.
-    spectrum, my, hardness, xp
-        As in `solve`.
-
-    Returns
-    -------
-    array, shape (b, nx, ny)
-        Pressures within the bounds, Pa.
+    Overlaps (b, nx, ny), m, each positive somewhere; pressures within the bounds, Pa.
     """
     p = xp.sqrt(xp.maximum(overlap - 0.5 * overlap.max(axis=(1, 2))[:, None, None], 0.0))
-    scale = _dot(p, overlap) / _dot(p, convolve(p, spectrum, my, xp))
+    scale = _dot(p, overlap) / _dot(p, convolve_padded(p, spectrum, my, xp))
     return xp.minimum(p * scale[:, None, None], hardness)
 
 
-def solve(
+def solve_batch(
     overlap: Array,
     spectrum: Array,
     my: int,
@@ -71,39 +61,14 @@ def solve(
 ) -> tuple[Array, Array]:
     """Solve 0 ≤ p ≤ hardness ⟂ K p − overlap for many overlaps, from `pressure`, which is overwritten.
 
-    Parameters
-    ----------
-    overlap : array, shape (b, nx, ny)
-        Overlaps of the undeformed bodies, m.
-    spectrum : array, shape (mx, my // 2 + 1)
-        Kernel on the box, from `padded.padded_spectrum`, m/Pa.
-    my : int
-        ``padded_length(ny)``.
-    taps : tuple of float
-        The six of `preconditioner.inverse_stencil`, Pa/m.
-    pressure : array, shape (b, nx, ny)
-        Starts within the bounds; on return the solutions, Pa.
-    hardness : float
-        Upper bound of the pressure, Pa (may be infinite).
-    softest : float
-        No pressure of unit norm displaces by more, m/Pa.
-    tolerance : array, shape (b,)
-        Largest complementarity residual of each, m.
-    max_iterations : int
-        Iterations allowed.
-    xp : module
-        numpy or CuPy.
-
-    Returns
-    -------
-    iterations : array of int, shape (b,)
-        Iterations done.
-    residual : array, shape (b,)
-        Largest complementarity residual reached, m; above its tolerance a solution did not converge.
+    Overlaps, m, and pressures, Pa, are (b, nx, ny). Kernel and stencil are from `padded.padded_spectrum`
+    (m/Pa; `my` is ``padded_length(ny)``) and `preconditioner.inverse_stencil` (Pa/m); no pressure of unit
+    norm displaces by more than `softest`, m/Pa. Returns for each the iterations and the largest
+    complementarity residual, m: where that is above its tolerance, the solution did not converge.
     """
     count = overlap.shape[0]
     iterations, reached = xp.zeros(count, dtype=xp.int64), xp.zeros(count)
-    residual = convolve(pressure, spectrum, my, xp) - overlap
+    residual = convolve_padded(pressure, spectrum, my, xp) - overlap
     worst = _complementarity(pressure, residual, hardness, xp)
     members = _Members(
         xp.arange(count), overlap, tolerance, pressure.copy(), residual, xp.zeros_like(residual),
@@ -167,7 +132,7 @@ def _iterate(
         step, work, clipped = _project(
             m, direction, xp.where(steepest, 1.0 / softest, m.length), hardness, xp
         )
-    response = convolve(step, spectrum, my, xp)
+    response = convolve_padded(step, spectrum, my, xp)
     curvature = _dot(step, response)
     moving = m.active & (work < 0.0) & (curvature > 0.0)
     share = xp.where(moving, -work / xp.where(curvature > 0.0, curvature, 1.0), 0.0)
@@ -243,9 +208,11 @@ def _true_residual(
     if not count:
         return residual
     if _capacity(count) >= len(wanted):
-        return xp.where(wanted[:, None, None], convolve(pressure, spectrum, my, xp) - overlap, residual)
+        return xp.where(
+            wanted[:, None, None], convolve_padded(pressure, spectrum, my, xp) - overlap, residual
+        )
     padded = xp.concatenate([chosen, xp.zeros(_capacity(count) - count, dtype=chosen.dtype)])
-    true = convolve(pressure[padded], spectrum, my, xp)[:count]
+    true = convolve_padded(pressure[padded], spectrum, my, xp)[:count]
     residual[chosen] = true - overlap[chosen]
     return residual
 

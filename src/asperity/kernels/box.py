@@ -11,104 +11,53 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.convolution import whole, workspace
+from asperity.kernels.convolution import whole_vectors, workspace
 from asperity.kernels.lanes import lanes
 from asperity.kernels.options import INNER, LOOP, compiled
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
 FAR = 1e30
-"""Separation in the idle columns, m."""
+"""Separation in the idle columns, m: no approach closes it, and single precision holds it."""
 
 
 class Box(NamedTuple):
-    """Fields of a solution on a box, each of nx rows of `pitch` cells.
+    """Fields of a solution on a box, each of nx rows of `pitch` cells."""
 
-    Attributes
-    ----------
-    nx, ny, pitch : int
-        Rows, columns, and columns with the idle ones.
-    overlap : ndarray
-        Overlap of the undeformed bodies, m.
-    pressure : ndarray
-        Pressure, Pa.
-    residual, previous : ndarray
-        K p − overlap, m, now and one iteration ago.
-    direction : ndarray
-        Search direction, Pa.
-    step, response : ndarray
-        Change of the pressure, Pa, and what it displaces, m.
-    z : ndarray
-        Preconditioned residual, Pa.
-    unit : ndarray
-        At a given load, about the pressure that an approach adds on the free set, Pa/m.
-    masked : ndarray
-        Residual on the free set, between REACH rows of zeros.
-    work : ndarray
-        Room for convolutions.
-    """
-
-    nx: int
-    ny: int
-    pitch: int
-    overlap: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    residual: NDArray[np.float64]
-    previous: NDArray[np.float64]
-    direction: NDArray[np.float64]
-    step: NDArray[np.float64]
-    response: NDArray[np.float64]
-    z: NDArray[np.float64]
+    nx: int  # rows
+    ny: int  # columns
+    pitch: int  # columns with the idle ones
+    overlap: NDArray[np.float64]  # of the undeformed bodies, m
+    pressure: NDArray[np.float64]  # Pa
+    residual: NDArray[np.float64]  # K p − overlap, m
+    previous: NDArray[np.float64]  # residual one iteration ago, m
+    direction: NDArray[np.float64]  # of search, Pa
+    step: NDArray[np.float64]  # change of the pressure, Pa
+    response: NDArray[np.float64]  # what the step displaces, m
+    z: NDArray[np.float64]  # preconditioned residual, Pa
+    # at a given load, about the pressure that an approach adds on the free set, Pa/m
     unit: NDArray[np.float64]
-    masked: NDArray[np.float64]
-    work: NDArray[np.float64]
+    masked: NDArray[np.float64]  # residual on the free set, between REACH rows of zeros
+    work: NDArray[np.float64]  # room for convolutions
 
 
 @compiled(**INNER)
 def _extent(nx: int, ny: int, lanes: int) -> tuple[int, int]:
     """Pitch of a box, and length of its fields: whole runs of four vectors."""
-    pitch = max(whole(ny, lanes), ny + REACH)
-    return pitch, whole(nx * pitch, 4 * lanes)
+    pitch = max(whole_vectors(ny, lanes), ny + REACH)
+    return pitch, whole_vectors(nx * pitch, 4 * lanes)
 
 
 @compiled(**LOOP)
 def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
-    """Room that a box needs.
-
-    Parameters
-    ----------
-    nx, ny : int
-        Cells.
-    mx, my : int
-        Cells that are convolved.
-    lanes : int
-        Numbers in a vector.
-
-    Returns
-    -------
-    int
-        Numbers.
-    """
+    """Room, in numbers, that a box of nx × ny cells needs of which mx × my are convolved."""
     pitch, size = _extent(nx, ny, lanes)
     return 10 * size + 2 * REACH * pitch + workspace(mx, my, lanes)
 
 
 @compiled(**LOOP)
 def empty_box(nx: int, ny: int, room: NDArray[np.float64]) -> Box:
-    """Make a box on which nothing overlaps.
-
-    Parameters
-    ----------
-    nx, ny : int
-        Cells.
-    room : ndarray
-        As many numbers as `box_room` says, of any value, or more: the fields will lie here.
-
-    Returns
-    -------
-    Box
-        With pressure zero.
-    """
+    """Make a box without overlap and pressure, whose fields lie in `room`, as long as `box_room` says."""
     pitch, size = _extent(nx, ny, lanes(room))
     masked, end = 9 * size, 10 * size + 2 * REACH * pitch
     box = Box(
@@ -128,17 +77,7 @@ def empty_box(nx: int, ny: int, room: NDArray[np.float64]) -> Box:
 
 @compiled(**INNER)
 def cut(outer: Box, row: int, column: int, b: Box) -> None:
-    """Copy overlap, pressure and residual of a part of a box.
-
-    Parameters
-    ----------
-    outer : Box
-        The whole.
-    row, column : int
-        Where the part begins.
-    b : Box
-        The part, empty.
-    """
+    """Copy overlap, pressure and residual of a part of a box, from a row and a column on, to an empty box."""
     for i in range(b.nx):
         here, there = i * b.pitch, (row + i) * outer.pitch + column
         for j in range(b.ny):
@@ -149,13 +88,7 @@ def cut(outer: Box, row: int, column: int, b: Box) -> None:
 
 @compiled(**INNER)
 def paste(b: Box, outer: Box, row: int, column: int) -> None:
-    """Copy the pressure of a part back.
-
-    Parameters
-    ----------
-    b, outer, row, column
-        As in `cut`.
-    """
+    """Copy the pressure of a part back, as in `cut`."""
     for i in range(b.nx):
         for j in range(b.ny):
             outer.pressure[(row + i) * outer.pitch + column + j] = b.pressure[i * b.pitch + j]

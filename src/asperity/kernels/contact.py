@@ -17,76 +17,39 @@ from asperity.kernels.overlap import overlap_box
 from asperity.kernels.projected_cg import Task, solve, survey, true_residual, unit_indentation
 
 MARGIN = 3
-"""Cells left around pressure and overlap of what a solution starts from."""
+"""Cells left around pressure and overlap of what a solution starts from; the stencil reaches two."""
 NO_CONTACT, CONVERGED, ITERATION_LIMIT, STALLED, UNPREPARED = range(5)
 """How a solution can end."""
 REACH = 1.3
-"""How far beyond the expected approach a solution at a given load may go."""
+"""How far beyond the expected approach a solution at a given load may go; more makes the box larger."""
 NOTHING = 1e-12
 """Share of the pressure that the overlap lets expect below which a start is taken for zero."""
 TRUSTED = 1e-10
-"""Tolerance down to which a residual in double precision need not be computed anew."""
+"""Tolerance down to which a residual in double precision need not be computed anew: less is rounding."""
 
 
 class Solution(NamedTuple):
-    """How a contact was solved.
+    """How a contact was solved."""
 
-    Attributes
-    ----------
-    status : int
-        One of the endings above; `UNPREPARED` if the convolution on `nx` × `ny` cells is missing.
-    iterations : int
-        Conjugate-gradient iterations.
-    residual : float
-        Largest complementarity residual relative to the largest overlap.
-    total : float
-        Sum of the pressure over the cells, Pa.
-    level : float
-        At a given load, by how much the approach is beyond the one that was given, m.
-    nx, ny : int
-        Box of the overlap, or the one that is not prepared.
-    """
-
-    status: int
-    iterations: int
-    residual: float
-    total: float
-    level: float
-    nx: int
+    status: int  # one of the endings above; `UNPREPARED` if the convolution on nx × ny cells is missing
+    iterations: int  # of conjugate gradients
+    residual: float  # largest complementarity residual relative to the largest overlap
+    total: float  # sum of the pressure over the cells, Pa
+    level: float  # at a given load, by how much the approach is beyond the one that was given, m
+    nx: int  # box of the overlap, or the one that is not prepared, cells
     ny: int
 
 
 class Room(NamedTuple):
-    """Room for a solution, for one thread.
+    """Room for a solution, for one thread."""
 
-    Attributes
-    ----------
-    lowest : ndarray, shape (ny,)
-        For the lowest gap of each column.
-    outer, inner : ndarray
-        For the boxes of overlap and contact.
-    """
-
-    lowest: NDArray[np.float64]
-    outer: NDArray[np.float64]
-    inner: NDArray[np.float64]
+    lowest: NDArray[np.float64]  # (ny,), for the lowest gap of each column
+    outer: NDArray[np.float64]  # for the box of the overlap
+    inner: NDArray[np.float64]  # for the box of the contact
 
 
 def room(known: Influence, nx: int, ny: int) -> Room:
-    """Make room for solutions on a grid.
-
-    Parameters
-    ----------
-    known : Influence
-        The influence.
-    nx, ny : int
-        Cells of the grid.
-
-    Returns
-    -------
-    Room
-        Of any value.
-    """
+    """Make room for solutions on a grid of nx × ny cells."""
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
     dtype = known.spectra.dtype
     size = box_room(nx, ny, mx, my, width(dtype))
@@ -106,36 +69,13 @@ def solve_contact(
     room: Room,
     pressure: NDArray[np.float64],
 ) -> Solution:
-    """Solve 0 ≤ p ≤ hardness ⟂ K p + gap − approach on a grid.
+    """Solve 0 ≤ p ≤ hardness ⟂ K p + gap − approach on a grid; no pressure acts outside of the overlap's box.
 
-    Parameters
-    ----------
-    known : Influence
-        K, with the convolutions prepared so far.
-    gap : ndarray, shape (nx, ny)
-        Separation of the undeformed bodies at zero approach, m.
-    approach : float
-        Approach, m, positive closing; at a given load, REACH times what is expected beyond first touch.
-    load : float
-        Sum of the pressure over the cells, Pa, less than the hardness over all that overlap; negative if the
-        approach is given.
-    start : ndarray, shape (nx, ny)
-        Pressure to start from, Pa, within the bounds; zero on all of the overlap if nothing is known.
-    hardness : float
-        Upper bound of the pressure, Pa (may be infinite).
-    rtol : float
-        Largest complementarity residual relative to the largest overlap.
-    max_iterations : int
-        Iterations allowed.
-    room : Room
-        For this grid.
-    pressure : ndarray, shape (nx, ny)
-        Receives the pressure, Pa, unless a convolution is missing.
-
-    Returns
-    -------
-    Solution
-        How it ended. No pressure acts outside of the box of the overlap, which is all that is solved on.
+    Gap, m, at zero approach, pressures, Pa, (nx, ny); approach in m, positive closing. `load` is the sum of
+    the pressure, Pa, less than the hardness over all that overlap; negative if the approach is given, which
+    else is REACH times what is expected beyond first touch. `start` is within the bounds, and zero on all of
+    the overlap if nothing is known. `rtol` is the largest complementarity residual relative to the largest
+    overlap. `pressure` receives the pressure, unless a convolution is missing.
     """
     largest, first, end, left, right = overlap_box(gap, approach, room.lowest)
     nx, ny = end - first, right - left
@@ -183,19 +123,7 @@ def solve_contact(
 
 @compiled(**LOOP, nogil=True)
 def displace(known: Influence, pressure: NDArray[np.float64], room: Room, out: NDArray[np.float64]) -> None:
-    """Displacement under a pressure, K p.
-
-    Parameters
-    ----------
-    known : Influence
-        K, with the convolution on the box prepared.
-    pressure : ndarray, shape (nx, ny)
-        Pressure on a box, Pa.
-    room : Room
-        For this box.
-    out : ndarray, shape (nx, ny)
-        Receives the displacement, m.
-    """
+    """Displacement under a pressure (nx, ny) on a box whose convolution is prepared: K p, m, into `out`."""
     nx, ny = pressure.shape
     b = empty_box(nx, ny, room.outer)
     for i in range(nx):
@@ -211,27 +139,10 @@ def displace(known: Influence, pressure: NDArray[np.float64], room: Room, out: N
 def indent(
     known: Influence, inside: NDArray[np.bool_], rtol: float, max_iterations: int, room: Room
 ) -> tuple[float, bool]:
-    """Displace a fixed set of cells by one, as in `projected_cg.unit_indentation`.
+    """Displace a fixed set of cells (nx, ny) by one, as in `projected_cg.unit_indentation`.
 
-    Parameters
-    ----------
-    known : Influence
-        K, with the convolution on the box prepared.
-    inside : ndarray of bool, shape (nx, ny)
-        The set on a box.
-    rtol : float
-        Largest residual, relative to one.
-    max_iterations : int
-        Iterations allowed.
-    room : Room
-        For this box.
-
-    Returns
-    -------
-    total : float
-        Sum of the pressure over the cells, Pa/m.
-    converged : bool
-        Whether the residual fell below `rtol`.
+    The convolution on the box is prepared. Returns the sum of the pressure over the cells, Pa/m, and whether
+    the residual, relative to one, fell below `rtol`.
     """
     nx, ny = inside.shape
     b = empty_box(nx, ny, room.inner)

@@ -19,18 +19,9 @@ def continue_pressure(
 ) -> None:
     """Continue the pressures of two contacts to a third, straight at every point of the surface.
 
-    Parameters
-    ----------
-    last, before : ndarray, shape (nx, ny)
-        Pressures of the last contact and of the one before, Pa.
-    stride : int
-        Rows that the window moved along the surface from one contact to the next.
-    share : float
-        How far to go on, in steps from the contact before to the last; at zero, `before` does not matter.
-    cap : float
-        Largest pressure, Pa.
-    start : ndarray, shape (nx, ny)
-        Receives the pressure, Pa.
+    Pressures (nx, ny), Pa. The window moves by `stride` rows from one contact to the next; `share` says how
+    far to go on, in steps from `before` to `last`: at zero `before` does not matter. No pressure exceeds
+    `cap`.
     """
     nx, ny = last.shape
     for i in range(nx - stride):
@@ -51,19 +42,7 @@ def correct_start(
     cap: float,
     start: NDArray[np.float64],
 ) -> None:
-    """Correct what is expected by how much it was wrong at the approach before.
-
-    Parameters
-    ----------
-    now, expected : ndarray, shape (nx, ny)
-        What is expected, and what was expected at the approach before, Pa.
-    found : ndarray, shape (nx, ny)
-        What was found there, Pa.
-    cap : float
-        Largest pressure, Pa.
-    start : ndarray, shape (nx, ny)
-        Receives the pressure, Pa.
-    """
+    """Correct the pressure expected now, Pa, by how much was wrong at the approach before."""
     for i in range(start.shape[0]):
         for j in range(start.shape[1]):
             start[i, j] = min(max(now[i, j] + (found[i, j] - expected[i, j]), 0.0), cap)
@@ -77,21 +56,9 @@ def misfits(
     before: NDArray[np.float64],
     share: float,
 ) -> tuple[float, float]:
-    """How far what was expected, and a straight line through two other contacts, are from what was found.
+    """Sums of squares, Pa², between a pressure found and what was expected, and a line through two others.
 
-    Parameters
-    ----------
-    found, expected : ndarray, shape (nx, ny)
-        Pressures, Pa.
-    last, before : ndarray, shape (nx, ny)
-        Pressures of the other contacts, Pa.
-    share : float
-        How far the line goes on, in steps from the contact before to the last.
-
-    Returns
-    -------
-    by_expectation, by_line : float
-        Sums of squares, Pa².
+    The line goes on from `last` by a share of the step from `before` to it.
     """
     by_expectation, by_line = 0.0, 0.0
     for i in range(found.shape[0]):

@@ -21,45 +21,22 @@ from asperity.kernels.options import INNER, LOOP, compiled
 
 
 class Convolution(NamedTuple):
-    """A kernel on boxes of up to (mx, my) cells, ready to be convolved with.
+    """A kernel on boxes of up to (mx, my) cells, ready to be convolved with."""
 
-    Attributes
-    ----------
-    radices_x, radices_y : ndarray of int
-        Of the lengths mx and my.
-    roots_x, roots_y : ndarray, shape (2 m,)
-        From `fourier.roots`.
-    turn_x, turn_y : ndarray, shape (2 m,)
-        From `quarter_turn`.
-    spectrum : ndarray, shape (whole(mx) my,)
-        From `spectrum`.
-    """
-
-    radices_x: NDArray[np.int64]
-    radices_y: NDArray[np.int64]
-    roots_x: NDArray[np.float64]
-    roots_y: NDArray[np.float64]
-    turn_x: NDArray[np.float64]
-    turn_y: NDArray[np.float64]
-    spectrum: NDArray[np.float64]
+    radices_x: NDArray[np.int64]  # of the length mx
+    radices_y: NDArray[np.int64]  # of the length my
+    roots_x: NDArray[np.float64]  # (2 mx,), from `fourier.roots`
+    roots_y: NDArray[np.float64]  # (2 my,), from `fourier.roots`
+    turn_x: NDArray[np.float64]  # (2 mx,), from `quarter_turn`
+    turn_y: NDArray[np.float64]  # (2 my,), from `quarter_turn`
+    spectrum: NDArray[np.float64]  # (whole_vectors(mx) my,), from `spectrum`
 
 
 def spectrum(table: NDArray[np.float64], mx: int, my: int, lanes: int) -> NDArray[np.float64]:
-    """Spectrum of an even kernel in the order in which it is multiplied with.
+    """Spectrum (whole_vectors(mx) my,) of an even kernel, in the order in which it is multiplied with.
 
-    Parameters
-    ----------
-    table : ndarray, shape (≥ mx, ≥ my)
-        Kernel at non-negative separations.
-    mx, my : int
-        Largest box, cells, from `fourier.smooth_length`.
-    lanes : int
-        Numbers in a vector.
-
-    Returns
-    -------
-    ndarray, shape (whole(mx) my,)
-        Spectrum at the frequencies (k + ¼)/m, divided by 2 mx my.
+    At the frequencies (k + ¼)/m, divided by 2 mx my. The kernel (≥ mx, ≥ my) is given at non-negative
+    separations; mx and my are from `fourier.smooth_length`.
     """
     quarter = quarter_spectrum(quarter_spectrum(table[:mx, :my], 1), 0) / (2.0 * mx * my)
     blocks = np.zeros((-(-mx // lanes) * lanes, my))
@@ -69,17 +46,9 @@ def spectrum(table: NDArray[np.float64], mx: int, my: int, lanes: int) -> NDArra
 
 @lru_cache
 def quarter_turn(m: int) -> NDArray[np.float64]:
-    """Factors that turn a record by a right angle from one end to the other.
+    """Factors exp(−iπj/2m) that turn a record by a right angle from one end to the other: (2 m,).
 
-    Parameters
-    ----------
-    m : int
-        Length.
-
-    Returns
-    -------
-    ndarray, shape (2 m,)
-        exp(−iπj/2m), real and imaginary parts in turn.
+    Real and imaginary parts in turn.
     """
     return np.ascontiguousarray(roots(4 * m)[: 2 * m])
 
@@ -87,17 +56,7 @@ def quarter_turn(m: int) -> NDArray[np.float64]:
 def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
     """Spectrum of an even kernel along an axis, at the frequencies (k + ¼)/m; it is real.
 
-    Parameters
-    ----------
-    table : ndarray, two-dimensional
-        Kernel at non-negative separations, m of them along the axis.
-    axis : int
-        0 or 1.
-
-    Returns
-    -------
-    ndarray
-        Spectrum, of the table's shape.
+    The kernel is given at its m non-negative separations.
     """
     turn = quarter_turn(table.shape[axis]).view(np.complex128)
     turned = table * (turn if axis else turn[:, None])
@@ -105,41 +64,15 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
 
 
 @compiled(**INNER)
-def whole(n: int, lanes: int) -> int:
-    """Smallest number of whole vectors, in cells, that hold n cells.
-
-    Parameters
-    ----------
-    n : int
-        Cells.
-    lanes : int
-        Numbers in a vector.
-
-    Returns
-    -------
-    int
-        A multiple of the lanes.
-    """
+def whole_vectors(n: int, lanes: int) -> int:
+    """Smallest number of whole vectors, in cells, that hold n cells."""
     return -(-n // lanes) * lanes
 
 
 @compiled(**INNER)
 def workspace(mx: int, my: int, lanes: int) -> int:
-    """Room that a convolution needs.
-
-    Parameters
-    ----------
-    mx, my : int
-        Cells of its largest box.
-    lanes : int
-        Numbers in a vector.
-
-    Returns
-    -------
-    int
-        Numbers.
-    """
-    x, y = whole(mx, lanes), whole(my, lanes)
+    """Room, in numbers, that a convolution needs whose largest box has mx × my cells."""
+    x, y = whole_vectors(mx, lanes), whole_vectors(my, lanes)
     return 2 * x * y + 6 * max(x, y) * lanes
 
 
@@ -213,24 +146,12 @@ def convolve(
 ) -> None:
     """Convolve a field on a box with an even kernel, with nothing outside the box.
 
-    Parameters
-    ----------
-    c : Convolution
-        The box has at most its cells.
-    field : ndarray, shape (nx pitch,)
-        Field on the box, row after row; zero in the columns from `ny` on.
-    nx, ny : int
-        Cells of the box.
-    pitch : int
-        Length of a row, not less than `whole(ny)`.
-    work : ndarray
-        As many numbers as `workspace` says, of any value.
-    out : ndarray, shape (nx pitch,)
-        Receives the convolution; columns from `ny` on have no meaning.
+    Field and result lie flat (nx pitch,), row after row, the field zero in the columns from `ny` on, where
+    the result has no meaning; a row is at least ``whole_vectors(ny)`` long, `work` as `workspace` says.
     """
     mx, n = len(c.turn_x) // 2, lanes(work)
-    row, blocks = whole(ny, n), -(-mx // n)
-    size = 2 * max(blocks * n, whole(len(c.turn_y) // 2, n)) * n
+    row, blocks = whole_vectors(ny, n), -(-mx // n)
+    size = 2 * max(blocks * n, whole_vectors(len(c.turn_y) // 2, n)) * n
     a, b, s = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
     rows, line = work[3 * size :], 2 * row * n
     for first in range(0, row, n):

@@ -17,13 +17,7 @@ STAMP = 16
 
 
 def folders() -> Iterator[Path]:
-    """Folders in which kernels may lie, in the order in which they are tried.
-
-    Yields
-    ------
-    Path
-        ``$ASPERITY_KERNELS``, or that in the cache; then one for temporary files.
-    """
+    """Folders to try for kernels: ``$ASPERITY_KERNELS`` or the cache, then the temporary files."""
     with suppress(OSError, ValueError):
         yield Path(os.environ.get(VARIABLE) or default_root() / "kernels").absolute()
     with suppress(OSError):
@@ -31,18 +25,7 @@ def folders() -> Iterator[Path]:
 
 
 def kept_files(folder: Path) -> tuple[list[Path], list[Path]]:
-    """List what lies in one of these folders, of all versions of the kernels.
-
-    Parameters
-    ----------
-    folder : Path
-        One of `folders`.
-
-    Returns
-    -------
-    kernels, left_overs : list of Path
-        Compiled kernels, and parts that interrupted writes left.
-    """
+    """Compiled kernels of all versions in one of `folders`, and parts that interrupted writes left."""
     kernels: list[Path] = []
     parts: list[Path] = []
     try:

@@ -18,17 +18,9 @@ from asperity.kernels.options import INNER, LOOP, compiled
 
 @lru_cache
 def smooth_length(n: int) -> int:
-    """Smallest length that transforms fast.
+    """Smallest length from n on that transforms fast.
 
-    Parameters
-    ----------
-    n : int
-        Number of rows.
-
-    Returns
-    -------
-    int
-        A multiple of eight ≥ n without prime factors above 5: whole vectors, and few lengths to prepare.
+    A multiple of eight without prime factors above 5: whole vectors, and few lengths to prepare.
     """
     length = max(8, -(-n // 8) * 8)
     while factors(length)[-1] > 5:
@@ -37,18 +29,7 @@ def smooth_length(n: int) -> int:
 
 
 def factors(n: int) -> list[int]:
-    """Split a length into radices, fours first; what is left of it comes last.
-
-    Parameters
-    ----------
-    n : int
-        Length.
-
-    Returns
-    -------
-    list of int
-        Radices, their product is `n`.
-    """
+    """Split a length into radices, fours first; what is left of it comes last."""
     radices = []
     for radix in (4, 5, 3, 2):
         while n % radix == 0:
@@ -59,18 +40,7 @@ def factors(n: int) -> list[int]:
 
 @lru_cache
 def roots(n: int) -> NDArray:
-    """Powers of the root of unity exp(−2πi/n).
-
-    Parameters
-    ----------
-    n : int
-        Length.
-
-    Returns
-    -------
-    ndarray, shape (2 n,)
-        Real and imaginary parts in turn.
-    """
+    """Powers of the root of unity exp(−2πi/n), real and imaginary parts in turn, (2 n,)."""
     return np.exp(-2j * np.pi * np.arange(n) / n).view(np.float64)
 
 
@@ -175,21 +145,9 @@ def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
 
 @compiled(**LOOP)
 def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) -> bool:
-    """Transform every column of a batch, forward and not normalised.
+    """Transform every column of a batch, forward and not normalised; return whether it is in `y`.
 
-    Parameters
-    ----------
-    x, y : ndarray, shape (2 n lanes,)
-        The batch, and room for another; both are overwritten.
-    radices : ndarray of int
-        From `factors`.
-    w : ndarray, shape (2 n,)
-        From `roots`.
-
-    Returns
-    -------
-    bool
-        Whether the result is in `y`; else it is in `x`.
+    If not, it is in `x`; both, (2 n lanes,), are overwritten. Radices are from `factors`, `w` from `roots`.
     """
     n, stride, swapped = len(w) // 2, np.int64(1), False  # a literal one would be compiled apart
     for radix in radices:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from asperity.kernels.convolution import Convolution, quarter_turn, spectrum, whole
+from asperity.kernels.convolution import Convolution, quarter_turn, spectrum, whole_vectors
 from asperity.kernels.fourier import factors, roots, smooth_length
 from asperity.kernels.lanes import lanes, width
 from asperity.kernels.options import LOOP, compiled
@@ -15,44 +15,23 @@ from asperity.kernels.options import LOOP, compiled
 UNIT = 8
 """Boxes are convolved in multiples of this length."""
 RADICES = 16
-"""Room for the radices of a length."""
+"""Room for the radices of a length: no length that fits into memory has as many."""
 
 
 class Influence(NamedTuple):
-    """Influence of pressure on displacement, with the convolutions prepared so far.
+    """Influence of pressure on displacement, with the convolutions prepared so far."""
 
-    Attributes
-    ----------
-    table : ndarray, shape (≥ nx, ≥ ny)
-        Displacement per pressure at non-negative separations, m/Pa.
-    softest : float
-        No pressure of unit norm displaces by more, m/Pa.
-    taps : ndarray, shape (6,)
-        Preconditioner, from `preconditioner.inverse_stencil`, Pa/m.
-    lengths : ndarray of int, shape (k,)
-        Length in which n cells are convolved, at ⌈n / UNIT⌉.
-    radices : ndarray of int, shape (RADICES k,)
-        Radices of the length UNIT i from RADICES i on, then zeros.
-    starts : ndarray of int, shape (k,)
-        Where the roots and turns of the length UNIT i begin.
-    roots, turns : ndarray
-        From `fourier.roots` and `convolution.quarter_turn`.
-    places : ndarray of int, shape (k, k)
-        Where the spectrum on UNIT i × UNIT j cells begins; −1 if it is not prepared.
-    spectra : ndarray
-        From `convolution.spectrum`, one after the other.
-    """
-
-    table: NDArray[np.float64]
-    softest: float
-    taps: NDArray[np.float64]
-    lengths: NDArray[np.int64]
-    radices: NDArray[np.int64]
-    starts: NDArray[np.int64]
-    roots: NDArray[np.float64]
-    turns: NDArray[np.float64]
+    table: NDArray[np.float64]  # (≥ nx, ≥ ny), displacement per pressure at non-negative separations, m/Pa
+    softest: float  # no pressure of unit norm displaces by more, m/Pa
+    taps: NDArray[np.float64]  # (6,), preconditioner, from `preconditioner.inverse_stencil`, Pa/m
+    lengths: NDArray[np.int64]  # (k,), length in which n cells are convolved, at ⌈n / UNIT⌉
+    radices: NDArray[np.int64]  # (RADICES k,), radices of the length UNIT i from RADICES i on, then zeros
+    starts: NDArray[np.int64]  # (k,), where the roots and turns of the length UNIT i begin
+    roots: NDArray[np.float64]  # from `fourier.roots`, length after length
+    turns: NDArray[np.float64]  # from `convolution.quarter_turn`, length after length
+    # (k, k), where the spectrum on UNIT i × UNIT j cells begins; −1 if it is not prepared
     places: NDArray[np.int64]
-    spectra: NDArray[np.float64]
+    spectra: NDArray[np.float64]  # from `convolution.spectrum`, one after the other
 
 
 def influence(
@@ -60,17 +39,8 @@ def influence(
 ) -> Influence:
     """Make the influence of a half-space, without any convolution prepared.
 
-    Parameters
-    ----------
-    table, taps : ndarray
-        As in `Influence`; the table's sides are from `fourier.smooth_length`.
-    dtype : data type
-        Precision of the solution: float64 or float32. All but the table has it.
-
-    Returns
-    -------
-    Influence
-        For boxes within the table.
+    Table and taps as in `Influence`, the table's sides from `fourier.smooth_length`. All but the table has
+    the precision of the solution: float64 or float32.
     """
     count = max(table.shape) // UNIT + 1
     lengths = np.array([smooth_length(UNIT * i) for i in range(count)])
@@ -93,20 +63,7 @@ def influence(
 
 
 def prepared(known: Influence, nx: int, ny: int) -> Influence:
-    """Add the convolution on a box.
-
-    Parameters
-    ----------
-    known : Influence
-        The influence.
-    nx, ny : int
-        Cells.
-
-    Returns
-    -------
-    Influence
-        With that convolution.
-    """
+    """Add the convolution on a box of nx × ny cells."""
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
     places = known.places.copy()
     places[mx // UNIT, my // UNIT] = len(known.spectra)
@@ -117,40 +74,14 @@ def prepared(known: Influence, nx: int, ny: int) -> Influence:
 
 @compiled(**LOOP)
 def is_prepared(known: Influence, nx: int, ny: int) -> bool:
-    """Whether the convolution on a box is there.
-
-    Parameters
-    ----------
-    known : Influence
-        The influence.
-    nx, ny : int
-        Cells.
-
-    Returns
-    -------
-    bool
-        Whether `convolution` may be called.
-    """
+    """Whether the convolution on a box of nx × ny cells is there."""
     mx, my = known.lengths[-(-nx // UNIT)], known.lengths[-(-ny // UNIT)]
     return known.places[mx // UNIT, my // UNIT] >= 0
 
 
 @compiled(**LOOP)
 def convolution(known: Influence, nx: int, ny: int) -> Convolution:
-    """Convolution on a box that is prepared.
-
-    Parameters
-    ----------
-    known : Influence
-        The influence.
-    nx, ny : int
-        Cells.
-
-    Returns
-    -------
-    Convolution
-        For `convolve`.
-    """
+    """Convolution on a box of nx × ny cells, which is prepared."""
     i, j = known.lengths[-(-nx // UNIT)] // UNIT, known.lengths[-(-ny // UNIT)] // UNIT
     x, y, place = known.starts[i], known.starts[j], known.places[i, j]
     end_x, end_y = RADICES * i, RADICES * j
@@ -165,5 +96,5 @@ def convolution(known: Influence, nx: int, ny: int) -> Convolution:
         known.roots[y : y + 2 * UNIT * j],
         known.turns[x : x + 2 * UNIT * i],
         known.turns[y : y + 2 * UNIT * j],
-        known.spectra[place : place + whole(UNIT * i, lanes(known.spectra)) * UNIT * j],
+        known.spectra[place : place + whole_vectors(UNIT * i, lanes(known.spectra)) * UNIT * j],
     )

@@ -44,16 +44,9 @@ SOURCES = _stamp()
 class Kept:
     """What numba asks for the machine code of a function, and hands it to, signature by signature.
 
-    Parameters
-    ----------
-    function : callable
-        The function in Python.
-    inlined : bool
-        Whether nothing is left of it where other kernels call it.
-
-    Notes
-    -----
-    Stands for `numba.core.caching.FunctionCache`, which trusts what it finds and fails where it cannot write.
+    Stands for `numba.core.caching.FunctionCache`, which trusts what it finds and fails where it cannot write;
+    numba has no public way to put another in its place, nor to write its results: hence the private names.
+    `inlined` says that nothing is left of the function where other kernels call it.
     """
 
     def __init__(self, function: Callable[..., Any], *, inlined: bool = False) -> None:
@@ -68,39 +61,17 @@ class Kept:
         return str(next(folders(), ""))
 
     def load_overload(self, signature: Any, context: Any) -> Any:
-        """Load the machine code of a signature.
-
-        Parameters
-        ----------
-        signature : numba signature
-            Of the function.
-        context : target context of numba
-            Which it is for.
-
-        Returns
-        -------
-        CompileResult or None
-            None if it has to be compiled.
-        """
+        """Load the machine code of a signature; None if it has to be compiled."""
         context.refresh()
         return _loaded(self.file_name(signature, context.codegen()), context)
 
     def save_overload(self, signature: Any, result: Any) -> None:
-        """Keep the machine code of a signature, in the first folder that takes it.
-
-        Parameters
-        ----------
-        signature : numba signature
-            Of the function.
-        result : CompileResult
-            The code.
-        """
-        if result.lifted or result.library.has_dynamic_globals:
+        """Keep the machine code of a signature, in the first folder that takes it."""
+        if result.lifted or result.library.has_dynamic_globals:  # holds objects or addresses of this process
             return
         name = self.file_name(signature, result.codegen)
-        called = [
-            kernel for kernel, library in _CALLED.items() if library in result.library._linking_libraries
-        ]
+        linked = result.library._linking_libraries
+        called = [kernel for kernel, library in _CALLED.items() if library in linked]
         payload = dumps((called, result._reduce()))
         if not self.inlined:
             _CALLED[name] = result.library
@@ -108,20 +79,7 @@ class Kept:
             _warn_unkept()
 
     def file_name(self, signature: Any, codegen: Any) -> str:
-        """Name of the file that holds the machine code of a signature.
-
-        Parameters
-        ----------
-        signature : numba signature
-            Of the function.
-        codegen : code generator of numba
-            Which knows the processor.
-
-        Returns
-        -------
-        str
-            The function's name, and a digest of all that the code depends on.
-        """
+        """Name of a signature's file: the function's name, and a digest of all that the code depends on."""
         known = repr((self.name, str(signature), codegen.magic_tuple())).encode()
         return f"{self.name}-{hashlib.sha256(known + self.source).hexdigest()[:24]}"
 

@@ -22,18 +22,7 @@ VECTOR_BYTES = 64
 
 
 def width(dtype: DTypeLike) -> int:
-    """Numbers in a vector.
-
-    Parameters
-    ----------
-    dtype : data type
-        Of the numbers: float64 or float32.
-
-    Returns
-    -------
-    int
-        Lanes.
-    """
+    """Numbers in a vector, of type float64 or float32."""
     return VECTOR_BYTES // np.dtype(dtype).itemsize
 
 

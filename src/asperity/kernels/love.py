@@ -25,23 +25,10 @@ def _edge_log(x: float, y: float, half: float) -> float:
 
 @compiled(cache=True)
 def cell_displacement(x: float, y: float, dx: float, dy: float) -> float:
-    """Surface displacement at (x, y), times π E*, from unit pressure on the cell dx × dy at the origin.
+    """Surface displacement at (x, y), times π E*, under unit pressure on the cell dx × dy at the origin.
 
-    Parameters
-    ----------
-    x, y : float
-        Point, m.
-    dx, dy : float
-        Cell size, m.
-
-    Returns
-    -------
-    float
-        π E* u / p, m. Divide by π E* (Pa) for the displacement per unit pressure.
-
-    Notes
-    -----
-    A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377; finite everywhere.
+    All in m; to be divided by π E*, Pa. A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377; finite
+    everywhere.
     """
     x, y = abs(x), abs(y)
     hx, hy = 0.5 * dx, 0.5 * dy
@@ -55,20 +42,7 @@ def cell_displacement(x: float, y: float, dx: float, dy: float) -> float:
 
 @compiled(cache=True)
 def influence_table(nx: int, ny: int, dx: float, dy: float) -> NDArray[np.float64]:
-    """Influence coefficients, times π E*, between cells i, j apart.
-
-    Parameters
-    ----------
-    nx, ny : int
-        Number of separations in x and y.
-    dx, dy : float
-        Cell size, m.
-
-    Returns
-    -------
-    ndarray, shape (nx, ny)
-        Entry (i, j) belongs to the separation (i dx, j dy), m.
-    """
+    """Influence coefficients (nx, ny), m, times π E*: entry (i, j) for the separation (i dx, j dy), m."""
     table = np.empty((nx, ny))
     for i in range(nx):
         for j in range(ny):

@@ -23,109 +23,54 @@ BEAM_WORK, BEAM_DAMPING, CONTACT_WORK, SLOPE_WORK, THROUGHPUT = range(5)
 
 
 class System(NamedTuple):
-    """What does not change while rolling.
+    """What does not change while rolling."""
 
-    Attributes
-    ----------
-    coefficients : ndarray (8, modes)
-        From `modal_coefficients`.
-    stiffness, damping : ndarray (modes,)
-        omega^2 and 2 zeta omega of mass-normalised modes.
-    sensors : ndarray (sensors, modes)
-        Mode shapes at the sensors, kg^-1/2.
-    mass, load : float
-        Of the ball, kg and N.
-    time_step, speed : float
-        s, m/s.
-    softening : float
-        Compliance in series with the contact, m/N, that keeps a step stable which is too long for it.
-    """
-
-    coefficients: NDArray
-    stiffness: NDArray
-    damping: NDArray
-    sensors: NDArray
-    mass: float
-    load: float
-    time_step: float
-    speed: float
+    coefficients: NDArray  # (8, modes), from `modal_coefficients`
+    stiffness: NDArray  # (modes,), ω² of mass-normalised modes
+    damping: NDArray  # (modes,), 2 ζ ω
+    sensors: NDArray  # (sensors, modes), mode shapes at the sensors, kg^(−1/2)
+    mass: float  # of the ball, kg
+    load: float  # of the ball, N
+    time_step: float  # s
+    speed: float  # m/s
+    # compliance in series with the contact, m/N, that keeps a step stable which is too long for it
     softening: float
 
 
-class Motion(NamedTuple):
-    """What changes from step to step; the arrays are written in place.
+class BeamMotion(NamedTuple):
+    """What changes from step to step; the arrays are written in place."""
 
-    Attributes
-    ----------
-    displacement, velocity : ndarray (modes,)
-        Modal coordinates.
-    acceleration : ndarray (modes,)
-        Of the modal coordinates.
-    ball : ndarray (2,)
-        Displacement, m, and velocity, m/s, of the ball.
-    force, approach : ndarray (2,)
-        Contact force, N, and approach as the law sees it, m, now and one step ago.
-    power : ndarray (5,)
-        Powers now, W, in the order of `ledger`.
-    ledger : ndarray (5,)
-        Time integrals: work on the beam, beam damping, work on the contact, work against the slope
-        of the beam, and throughput, J.
-    counts : ndarray (3,) of int
-        Steps done, steps not converged, evaluations of the law.
-    """
-
-    displacement: NDArray
-    velocity: NDArray
-    acceleration: NDArray
-    ball: NDArray
-    force: NDArray
-    approach: NDArray
-    power: NDArray
+    displacement: NDArray  # (modes,), modal coordinates
+    velocity: NDArray  # (modes,)
+    acceleration: NDArray  # (modes,)
+    ball: NDArray  # (2,), displacement, m, and velocity, m/s, of the ball
+    force: NDArray  # (2,), contact force, N, now and one step ago
+    approach: NDArray  # (2,), as the law sees it, m, now and one step ago
+    power: NDArray  # (5,), powers now, W, in the order of `ledger`
+    # (5,), time integrals, J: work on the beam, its damping, work on the contact, against the slope,
+    # throughput
     ledger: NDArray
-    counts: NDArray
+    counts: NDArray  # (3,), steps done, steps not converged, evaluations of the law
 
 
-class Record(NamedTuple):
-    """Time histories, written in place.
+class BeamRecord(NamedTuple):
+    """Time histories, written in place."""
 
-    Attributes
-    ----------
-    force, approach, ball, beam : ndarray (n,)
-        Contact force, N; approach, displacement of the ball and of the beam under it, m.
-    acceleration : ndarray (sensors, n)
-        Of the beam at the sensors, m/s^2.
-    """
-
-    force: NDArray
-    approach: NDArray
-    ball: NDArray
-    beam: NDArray
-    acceleration: NDArray
+    force: NDArray  # (n,), contact force, N
+    approach: NDArray  # (n,), m
+    ball: NDArray  # (n,), displacement, m
+    beam: NDArray  # (n,), displacement under the ball, m
+    acceleration: NDArray  # (sensors, n), of the beam, m/s²
 
 
 def modal_coefficients(natural: NDArray, damping_ratio: NDArray, time_step: float) -> NDArray:
-    """Exact step of ``q'' + 2 zeta omega q' + omega^2 q = p`` for a force p linear over the step.
+    """Exact step of ``q'' + 2 ζ ω q' + ω² q = p`` for a force p linear over the step.
 
-    Parameters
-    ----------
-    natural : ndarray (modes,)
-        omega, rad/s; zero for a free mode.
-    damping_ratio : ndarray (modes,)
-        zeta; one or more for overdamped modes.
-    time_step : float
-        s.
-
-    Returns
-    -------
-    ndarray (8, modes)
-        Factors of q, q', p at the start and p at the end, first those that give q at the end of the
-        step, then those that give q' there.
-
-    Notes
-    -----
-    The matrix exponential of the oscillator extended by its force, in time units of the step
-    (Van Loan, IEEE Trans. Autom. Control 23 (1978) 395-404): one form for all kinds of modes, without
-    division by omega.
+    ω in rad/s, zero for a free mode; ζ one or more for an overdamped one. Returns (8, modes): factors of q,
+    q', p at the start and p at the end, first those that give q at the end of the step, then those that give
+    q' there. They are the matrix exponential of the oscillator extended by its force, in time units of the
+    step (Van Loan, IEEE Trans. Autom. Control 23 (1978) 395-404): one form for all kinds of modes, without
+    division by ω.
     """
     phase = np.asarray(natural, dtype=float) * time_step
     generator = np.zeros((phase.size, 4, 4))
@@ -143,7 +88,8 @@ def modal_coefficients(natural: NDArray, damping_ratio: NDArray, time_step: floa
 def _exponential(matrices: NDArray) -> NDArray:
     """Exponentials of small matrices (k, n, n), all at once: Taylor series, scaled and squared."""
     largest = float(np.abs(matrices).sum(axis=2).max(initial=0.0))
-    squarings = max(0, int(np.ceil(np.log2(max(largest, 1e-300) / TAYLOR_RADIUS))))
+    largest = max(largest, 1e-300)  # no logarithm of zero
+    squarings = max(0, int(np.ceil(np.log2(largest / TAYLOR_RADIUS))))
     scaled, unit = matrices / 2.0**squarings, np.eye(matrices.shape[-1])
     result = unit + scaled / TAYLOR_TERMS
     for term in range(TAYLOR_TERMS - 1, 0, -1):
@@ -154,24 +100,11 @@ def _exponential(matrices: NDArray) -> NDArray:
 
 
 @compiled(**INNER, **REASSOCIATE)
-def free_step(system, motion, shape, next_shape):  # type: ignore[no-untyped-def]
+def free_beam_step(system, motion, shape, next_shape):  # type: ignore[no-untyped-def]
     """Where a step ends without the force at its end, and what that force does.
 
-    Parameters
-    ----------
-    system : System
-        Constants.
-    motion : Motion
-        State at the start.
-    shape, next_shape : ndarray (modes,)
-        Mode shapes under the contact at the start and the end.
-
-    Returns
-    -------
-    approach, rate : float
-        Approach, m, and its rate, m/s, at the end, for zero force there: see `backward`.
-    compliance, rate_compliance : float
-        How much they fall per force at the end, m/N and m/(s N).
+    Mode shapes (modes,) under the contact at start and end. Returns the approach, m, and its rate, m/s, for
+    zero force at the end (see `backward`), and how much they fall per force there, m/N and m/(s N).
     """
     h, force, a = system.time_step, motion.force[0], system.coefficients
     beam, compliance = 0.0, 0.0
@@ -188,19 +121,8 @@ def free_step(system, motion, shape, next_shape):  # type: ignore[no-untyped-def
 def backward(approach, compliance, before, time_step):  # type: ignore[no-untyped-def]
     """Add the rate of the approach by the backward difference of second order, which damps at any step.
 
-    Parameters
-    ----------
-    approach, compliance : float
-        Approach at the end of a step for zero force there, m, and how much it falls per force, m/N.
-    before : ndarray (2,)
-        Approach at the start, and one step earlier, m.
-    time_step : float
-        s.
-
-    Returns
-    -------
-    approach, rate, compliance, rate_compliance : float
-        As of `free_step`.
+    The approach at the end of the step is for zero force there, `before` that at the start and one step
+    earlier, m; the compliance is in m/N. Returns what `free_beam_step` does.
     """
     rate = (1.5 * approach - 2.0 * before[0] + 0.5 * before[1]) / time_step
     return approach, rate, compliance, 1.5 * compliance / time_step
@@ -210,19 +132,8 @@ def backward(approach, compliance, before, time_step):  # type: ignore[no-untype
 def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-untyped-def]
     """Newton step inside a bracket that it narrows; bisection where Newton fails or dawdles.
 
-    Parameters
-    ----------
-    low, high : float
-        Bracket of the root; infinite where still open.
-    approach, residual, slope : float
-        Trial value, and the rising function and its derivative there.
-    iteration : int
-        Number of this iteration, from zero.
-
-    Returns
-    -------
-    low, high, approach : float
-        Narrowed bracket and next trial value.
+    The bracket is infinite where still open; the residual rises. Returns the bracket and the next trial
+    value.
     """
     if residual < 0.0:
         low = max(low, approach)
@@ -231,6 +142,7 @@ def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-
     # without contact the residual's slope is one; a smaller one is a texture that outruns the approach
     trial = approach - residual / max(slope, 1.0)
     closed = low > -np.inf and high < np.inf
+    # eight steps are more than Newton needs; from there every other one halves the bracket, so that it ends
     if closed and (not (low < trial < high) or (iteration > 8 and iteration % 2 == 0)):
         trial = 0.5 * (low + high)
     return low, high, trial
@@ -239,34 +151,15 @@ def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-
 @compiled(**INNER)
 def tolerance(approach, compliance, force, load, relative):  # type: ignore[no-untyped-def]
     """Largest residual of the approach that counts as solved, m."""
+    # the last term is what rounding leaves of the approach
     return relative * compliance * (abs(force) + load) + 1e-15 * abs(approach)
 
 
 @compiled(**INNER)
-def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
-    """Contact force at the end of a step.
+def solve_step(law, step, free, load, guess):  # type: ignore[no-untyped-def]
+    """Contact force at the end of a step, N, evaluations of the law that it took, whether it converged.
 
-    Parameters
-    ----------
-    law : Prepared
-        The law on the path.
-    step : int
-        Index of the step's end on the path.
-    free : tuple of float
-        From `free_step`.
-    load : float
-        Scale of the force, N.
-    guess : float
-        Expected force, N.
-
-    Returns
-    -------
-    force : float
-        N.
-    evaluations : int
-        Number of evaluations of the law.
-    converged : bool
-        Whether the tolerance was met.
+    `free` is from `free_beam_step`, `load` the scale of the force and `guess` the force expected, N.
     """
     free_approach, rate, compliance, rate_compliance = free
     low, high, approach = -np.inf, np.inf, free_approach - compliance * guess
@@ -290,14 +183,7 @@ def solve_contact(law, step, free, load, guess):  # type: ignore[no-untyped-def]
 def observe(system, motion, record, step, shape, slope):  # type: ignore[no-untyped-def]
     """Write the records of a step and the powers of its energy ledger.
 
-    Parameters
-    ----------
-    system, motion, record
-        Constants, state at the step, histories.
-    step : int
-        Index of the step.
-    shape, slope : ndarray (modes,)
-        Mode shapes and slopes under the contact.
+    Mode shapes and slopes (modes,) under the contact.
     """
     force = motion.force[0]
     beam, beam_rate, beam_slope, dissipated = 0.0, 0.0, 0.0, 0.0
@@ -328,23 +214,12 @@ def observe(system, motion, record, step, shape, slope):  # type: ignore[no-unty
 
 
 @compiled(**INNER, **REASSOCIATE)
-def complete_step(system, motion, record, step, shape, next_shape, next_slope, force, evaluations, converged):  # type: ignore[no-untyped-def]
-    """Advance the state over a step, the force at its end known, and keep the books.
+def complete_beam_step(  # type: ignore[no-untyped-def]
+    system, motion, record, step, shape, next_shape, next_slope, force, evaluations, converged
+):
+    """Advance the state over a step, the force at its end, N, known, and keep the books.
 
-    Parameters
-    ----------
-    system, motion, record
-        Constants, state at the start, histories.
-    step : int
-        Index of the step's end.
-    shape, next_shape, next_slope : ndarray (modes,)
-        Mode shapes under the contact at the start and the end, and their slopes at the end.
-    force : float
-        Contact force at the end, N.
-    evaluations : int
-        Evaluations of the law that it took.
-    converged : bool
-        Whether it converged.
+    Mode shapes (modes,) under the contact at start and end, and slopes at the end.
     """
     h, mass, a, before = system.time_step, system.mass, system.coefficients, motion.force[0]
     q, v, ahead = motion.displacement, motion.velocity, motion.acceleration  # `observe` overwrites the last
@@ -375,34 +250,19 @@ def complete_step(system, motion, record, step, shape, next_shape, next_slope, f
 
 
 @compiled(**LOOP)
-def roll_steps(system, motion, record, law, shapes, slopes, offset, stop, largest):  # type: ignore[no-untyped-def]
-    """Roll a compiled law from the state's step to another.
+def roll_beam(system, motion, record, law, shapes, slopes, offset, stop, largest):  # type: ignore[no-untyped-def]
+    """Roll a compiled law from the state's step to `stop`; False from a force larger than `largest`, or NaN.
 
-    Parameters
-    ----------
-    system, motion, record
-        Constants, state, histories.
-    law : Prepared
-        The law on the whole path.
-    shapes, slopes : ndarray (k, modes)
-        Mode shapes and slopes under the contact, row 0 belonging to step `offset`.
-    offset, stop : int
-        First step of the shapes, and the step at which to stop.
-    largest : float
-        Largest force that makes sense, N.
-
-    Returns
-    -------
-    bool
-        False if the force is larger, or not a number; the state then stands at that step.
+    Then the state stands at that step. Row 0 of mode shapes and slopes (k, modes) belongs to the step
+    `offset`.
     """
     for step in range(motion.counts[0] + 1, stop + 1):
         row = step - offset
         shape, next_shape, next_slope = shapes[row - 1], shapes[row], slopes[row]
-        free = free_step(system, motion, shape, next_shape)
+        free = free_beam_step(system, motion, shape, next_shape)
         guess = 2.0 * motion.force[0] - motion.force[1]
-        force, evaluations, converged = solve_contact(law, step, free, system.load, guess)
-        complete_step(
+        force, evaluations, converged = solve_step(law, step, free, system.load, guess)
+        complete_beam_step(
             system, motion, record, step, shape, next_shape, next_slope, force, evaluations, converged
         )
         if not abs(force) <= largest:

@@ -7,27 +7,12 @@ from numpy.typing import NDArray
 
 
 def monotone_slopes(knots: NDArray, values: NDArray) -> NDArray:
-    """Slopes at the knots that keep a piecewise cubic monotone.
+    """Slopes at the knots (k,), k ≥ 2, that keep piecewise cubics through rows (..., k) monotone.
 
-    Inside: the weighted harmonic mean of the neighbouring secants. At both ends: the three-point
-    formula, held between half and twice the end secant, so that a continuation beyond the ends
-    goes on rising.
-
-    Parameters
-    ----------
-    knots : ndarray (k,)
-        Increasing abscissae, k >= 2.
-    values : ndarray (..., k)
-        Non-decreasing ordinates along the last axis.
-
-    Returns
-    -------
-    ndarray (..., k)
-        Slopes.
-
-    References
-    ----------
-    Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304, with the weights of Brodlie.
+    The rows do not fall. Inside: the weighted harmonic mean of the neighbouring secants (Fritsch and Butland,
+    SIAM J. Sci. Stat. Comput. 5 (1984) 300-304, with the weights of Brodlie). At both ends: the three-point
+    formula, held between half and twice the end secant, so that a continuation beyond the ends goes on
+    rising.
     """
     width = np.diff(knots)
     secant = np.diff(values, axis=-1) / width
@@ -47,25 +32,12 @@ def monotone_slopes(knots: NDArray, values: NDArray) -> NDArray:
 
 
 def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDArray:
-    """Replace the zeros before first touch by the straight continuation of what follows.
+    """Replace the zeros before first touch in rows (n, k) of g = F^(2/3) by the continuation of what follows.
 
-    With the root of the force, g = F^(2/3), contact starts on a straight line (exactly so for
-    Hertz). Where that line is flatter than the one to the last sample without contact, the latter
-    is taken; so every zero becomes a value of zero or less, and first touch lies where g crosses zero.
-
-    Parameters
-    ----------
-    knots : ndarray (k,)
-        Increasing approaches.
-    root : ndarray (n, k)
-        Rows of g, not negative and not falling.
-    least : float
-        A value below this share of the next one counts as zero.
-
-    Returns
-    -------
-    ndarray (n, k)
-        Rows in which the zeros of a row with contact are continued.
+    With this root of the force, contact starts on a straight line (exactly so for Hertz). Where that line is
+    flatter than the one to the last sample without contact, the latter is taken; so every zero becomes a
+    value of zero or less, and first touch lies where g crosses zero. A value below the share `least` of the
+    next one counts as zero.
     """
     rows = np.arange(len(root))
     following = np.concatenate([root[:, 1:], np.zeros((len(root), 1))], axis=1)
@@ -81,6 +53,7 @@ def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDA
     steepness = secant(first, after)
     outer = knots[np.minimum(after, last)] - knots[first]
     inner = knots[np.minimum(second, last)] - knots[np.minimum(after, last)]
+    # where there is no interval behind, the straight line is taken: only the division must not fail
     curved = _end_slope(outer, np.maximum(inner, 1e-300), steepness, secant(after, second))
     slope = np.maximum(np.where(second <= last, curved, steepness), secant(before, first))
     line = root[rows, first][:, None] + slope[:, None] * (knots - knots[first][:, None])
@@ -88,20 +61,10 @@ def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDA
 
 
 def zero_crossing(knots: NDArray, root: NDArray) -> NDArray:
-    """Where rows cross zero, along the straight line between the two knots beside it.
+    """Where non-decreasing rows (n, k) cross zero, along the straight line between the knots beside it.
 
-    Parameters
-    ----------
-    knots : ndarray (k,)
-        Increasing abscissae.
-    root : ndarray (n, k)
-        Non-decreasing rows.
-
-    Returns
-    -------
-    ndarray (n,)
-        Abscissae; rows that are positive throughout are continued downwards by their first slope, those
-        that are nowhere positive cross at the last knot.
+    Rows that are positive throughout are continued downwards by their first slope; those that are nowhere
+    positive cross at the last knot.
     """
     first = np.clip(np.argmax(root > 0.0, axis=1), 1, len(knots) - 1)
     rows = np.arange(len(root))
@@ -117,18 +80,7 @@ def _end_slope(outer: NDArray, inner: NDArray, secant: NDArray, inner_secant: ND
 
 
 def cubic_coefficients(knots: NDArray, values: NDArray, slopes: NDArray) -> NDArray:
-    """Coefficients of the piecewise cubic with given values and slopes at the knots.
-
-    Parameters
-    ----------
-    knots, values, slopes : ndarray (k,)
-        Abscissae, ordinates and slopes.
-
-    Returns
-    -------
-    ndarray (k - 1, 4)
-        Coefficients of (s - knot)^3, ^2, ^1, ^0 in each interval.
-    """
+    """Coefficients (k − 1, 4) of (s − knot)³, ², ¹, ⁰ of the cubics with values and slopes at k knots."""
     width = np.diff(knots)
     secant = np.diff(values) / width
     # what a straight line leaves; exactly zero when values and slopes lie on one

@@ -28,41 +28,19 @@ REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}
 
 
 def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Compile a kernel with numba, and keep it until the source of any kernel changes.
-
-    Parameters
-    ----------
-    **options
-        As of `numba.njit`; ``cache`` keeps it where `asperity.kernels.kept` says.
-
-    Returns
-    -------
-    callable
-        Decorator.
-    """
+    """Compile a kernel as `numba.njit` does; with ``cache`` it is kept until any kernel's source changes."""
     keep = options.pop("cache", False)
 
     def decorate(function: Callable[..., Any]) -> Any:
         kernel = njit(**options)(function)
         if keep:
             inlined = options.get("forceinline", False) or options.get("inline") == "always"
-            kernel._cache = Kept(function, inlined=inlined)
+            kernel._cache = Kept(function, inlined=inlined)  # what ``cache=True`` of numba would set
         return kernel
 
     return decorate
 
 
 def is_kept(kernel: Any) -> bool:
-    """Whether the machine code of a kernel is on disk, for any signature.
-
-    Parameters
-    ----------
-    kernel : callable
-        From `compiled`.
-
-    Returns
-    -------
-    bool
-        False also if it is not to be kept.
-    """
+    """Whether the machine code of a kernel is on disk, for any signature; False if it is not to be kept."""
     return isinstance(kernel._cache, Kept) and kernel._cache.is_kept()

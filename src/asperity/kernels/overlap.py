@@ -17,23 +17,11 @@ BALL = 4.0 / 3.0 / math.sqrt(math.pi / 2.0)
 def overlap_box(
     gap: NDArray[np.float64], approach: float, lowest: NDArray[np.float64]
 ) -> tuple[float, int, int, int, int]:
-    """Find where undeformed bodies overlap.
+    """Find where bodies with a gap (nx, ny), m, at zero approach overlap at an approach, m.
 
-    Parameters
-    ----------
-    gap : ndarray, shape (nx, ny)
-        Separation at zero approach, m.
-    approach : float
-        Approach, m.
-    lowest : ndarray, shape (ny,)
-        Receives the lowest gap of each column, m.
-
-    Returns
-    -------
-    largest : float
-        Largest overlap, m; not positive if there is none.
-    first_row, end_row, first_column, end_column : int
-        The smallest box that holds all overlapping cells; zeros if there are none.
+    Returns the largest overlap, m, not positive if there is none, and the first and end row and column of the
+    smallest box that holds all overlapping cells, else zeros. `lowest` (ny,) receives the lowest gap of each
+    column, m.
     """
     nx, ny = gap.shape
     for j in range(ny):
@@ -60,18 +48,7 @@ def overlap_box(
 
 @compiled(**LOOP)
 def box_of_positive(field: NDArray[np.float64]) -> tuple[int, int, int, int]:
-    """Find the smallest box that holds all positive values of a field.
-
-    Parameters
-    ----------
-    field : ndarray, shape (nx, ny)
-        Field.
-
-    Returns
-    -------
-    first_row, end_row, first_column, end_column : int
-        Zeros if no value is positive.
-    """
+    """First and end row and column of the smallest box with all positive values; zeros if there are none."""
     nx, ny = field.shape
     first, end, left, right = nx, 0, ny, 0
     for i in range(nx):
@@ -86,25 +63,10 @@ def box_of_positive(field: NDArray[np.float64]) -> tuple[int, int, int, int]:
 def foundation_approach(
     gap: NDArray[np.float64], load: float, modulus: float, cell_area: float, hardness: float
 ) -> float:
-    """Estimate the approach under a load, BALL E* √A × (mean overlap on A).
+    """Estimate the approach, m, under a load, N: BALL E* √A × (mean overlap on A).
 
-    Parameters
-    ----------
-    gap : ndarray, shape (nx, ny)
-        Separation at zero approach, m.
-    load : float
-        Load, N, less than the hardness over the grid.
-    modulus : float
-        Contact modulus E*, Pa.
-    cell_area : float
-        Area of a cell, m².
-    hardness : float
-        Largest pressure, Pa (may be infinite).
-
-    Returns
-    -------
-    float
-        Approach, m, at which the overlapping cells can carry the load.
+    The overlapping cells can carry the load there. Gap (nx, ny), m, at zero approach; modulus and hardness,
+    Pa; cell area, m². The load is less than the hardness over the grid.
     """
     count, added, lowest = _below(gap, np.inf)
     stiffness = BALL * modulus * np.sqrt(cell_area)
@@ -112,8 +74,9 @@ def foundation_approach(
     for _ in range(30):  # the mean over all cells first, then over fewer and fewer
         count, added, _lowest = _below(gap, approach)
         last, approach = approach, added / count + load / (stiffness * np.sqrt(count))
-        if abs(approach - last) <= 1e-3 * (approach - lowest):
+        if abs(approach - last) <= 1e-3 * (approach - lowest):  # an estimate is enough
             break
+    # where all cells are near the hardness, so many must overlap that they carry a little more than the load
     while count * cell_area * hardness <= 1.05 * load and count < gap.size:
         approach += 0.25 * (approach - lowest)
         count, added, _lowest = _below(gap, approach)

@@ -16,35 +16,14 @@ Array = Any
 
 
 def padded_length(n: int) -> int:
-    """Length at which a circular convolution of two records of `n` cells does not wrap.
-
-    Parameters
-    ----------
-    n : int
-        Number of cells.
-
-    Returns
-    -------
-    int
-        A length ≥ 2n − 1 without prime factors above 5.
-    """
+    """Length ≥ 2n − 1 without prime factors above 5: a circular convolution of n cells does not wrap."""
     return int(scipy.fft.next_fast_len(2 * n - 1, real=True))
 
 
 def padded_spectrum(table: NDArray[np.float64], nx: int, ny: int) -> NDArray[np.float64]:
-    """Spectrum of an even kernel on the padded grid of an (nx, ny) box; it is real.
+    """Real spectrum (mx, my // 2 + 1) of an even kernel on the padded grid of an (nx, ny) box.
 
-    Parameters
-    ----------
-    table : ndarray, shape (≥ nx, ≥ ny)
-        Kernel at non-negative separations.
-    nx, ny : int
-        Box size, cells.
-
-    Returns
-    -------
-    ndarray, shape (mx, my // 2 + 1)
-        Real spectrum, mx and my from `padded_length`.
+    The kernel (≥ nx, ≥ ny) is given at non-negative separations; mx and my are from `padded_length`.
     """
     mx, my = padded_length(nx), padded_length(ny)
     circulant = np.zeros((mx, my))
@@ -54,24 +33,10 @@ def padded_spectrum(table: NDArray[np.float64], nx: int, ny: int) -> NDArray[np.
     return np.ascontiguousarray(scipy.fft.rfft2(circulant).real)
 
 
-def convolve(field: Array, spectrum: Array, my: int, xp: Any) -> Array:
-    """Convolve fields on a box with an even kernel, with nothing outside the box.
+def convolve_padded(field: Array, spectrum: Array, my: int, xp: Any) -> Array:
+    """Convolve fields (b, nx, ny) on a box with an even kernel, with nothing outside the box.
 
-    Parameters
-    ----------
-    field : array, shape (b, nx, ny)
-        Fields on the box.
-    spectrum : array, shape (mx, my // 2 + 1)
-        From `padded_spectrum` for this box.
-    my : int
-        ``padded_length(ny)``.
-    xp : module
-        numpy or CuPy.
-
-    Returns
-    -------
-    array, shape (b, nx, ny)
-        Convolutions on the box.
+    The spectrum is from `padded_spectrum` for this box, `my` is ``padded_length(ny)``.
     """
     nx, ny = field.shape[1:]
     padded = (spectrum.shape[0], my)

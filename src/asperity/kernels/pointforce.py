@@ -15,48 +15,25 @@ TABLE = 2  # F = g(approach)^1.5, g interpolated at every position
 
 
 class Prepared(NamedTuple):
-    """A law laid out on the positions of a path, for the compiled kernels.
+    """A law laid out on the n positions of a path, for the compiled kernels."""
 
-    Attributes
-    ----------
-    form : int
-        `SHIFTED`, `SECANT` or `TABLE`.
-    planes : ndarray (n,)
-        At every position the plane from which approaches count here, m, positive away from contact.
-    states : ndarray (s,)
-        Approaches of the states, m.
-    values : ndarray (n, s)
-        At every position: the texture h over the plane, m, or for `TABLE` the root g of the force, N^(2/3).
-    slopes : ndarray (n, s)
-        For `TABLE` the slope of g, N^(2/3)/m; else an array without rows.
-    touches : ndarray (n,)
-        For `TABLE` the approach at first touch, m; else an array without rows.
-    knots, coefficients, exponent, bilateral
-        The force curve, as in `asperity.reduction.stiffness.ForceCurve`.
-    datum : float
-        Offset of the state r from the approach, m (`SECANT`).
-    damping : float
-        Contact damping, N s/m.
-    damped_in_flight : bool
-        Whether the damper also acts, and pulls, out of contact (Eq. 2.2).
-    upper : float
-        Largest argument that the data cover, m: of f, or the last state of a table.
-    """
-
-    form: int
+    form: int  # `SHIFTED`, `SECANT` or `TABLE`
+    # (n,), at every position the plane from which approaches count here, m, positive away from contact
     planes: NDArray
-    states: NDArray
+    states: NDArray  # (s,), approaches of the states, m
+    # (n, s), at every position: the texture h over the plane, m, or for `TABLE` the root g of the force,
+    # N^(2/3)
     values: NDArray
-    slopes: NDArray
-    touches: NDArray
-    knots: NDArray
+    slopes: NDArray  # (n, s), for `TABLE` the slope of g, N^(2/3)/m; else an array without rows
+    touches: NDArray  # (n,), for `TABLE` the approach at first touch, m; else an array without rows
+    knots: NDArray  # this and the next three: the force curve, `reduction.stiffness.ForceCurve`
     coefficients: NDArray
     exponent: float
     bilateral: bool
-    datum: float
-    damping: float
-    damped_in_flight: bool
-    upper: float
+    datum: float  # offset of the state r from the approach, m (`SECANT`)
+    damping: float  # contact damping, N s/m
+    damped_in_flight: bool  # whether the damper also acts, and pulls, out of contact (Eq. 2.2)
+    upper: float  # largest argument that the data cover, m: of f, or the last state of a table
 
 
 @compiled(**INNER)
@@ -122,13 +99,13 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
     low, value = states[i], values[step, i]
     if touch > low:
         low, value = touch, 0.0
-    elif approach < low:
+    elif approach < low:  # between a touch below all states and the first of them
         low, value = touch, 0.0
         i = -1
     width = states[i + 1] - low
     t = (approach - low) / width
     secant = (values[step, i + 1] - value) / width
-    if low == touch:  # convex from the touch on, as asperities join in
+    if low == touch:  # convex from the touch on, as asperities join in, but never flat
         start = min(max(2.0 * secant - slopes[step, i + 1], 0.25 * secant), 2.0 * secant) - secant
     else:
         start = slopes[step, i] - secant
@@ -140,22 +117,7 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
 
 @compiled(**INNER)
 def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
-    """Elastic force of a prepared law and its derivative with respect to the approach.
-
-    Parameters
-    ----------
-    law : Prepared
-        The law on the path.
-    step : int
-        Index of the position.
-    approach : float
-        Approach, m.
-
-    Returns
-    -------
-    force, slope : float
-        N, N/m.
-    """
+    """Elastic force of a law at a position, N, for an approach, m, and its derivative by that, N/m."""
     approach -= law.planes[step]
     if law.form == TABLE:
         g, slope = table_root(law.states, law.values, law.slopes, step, law.touches[step], approach)
@@ -176,29 +138,11 @@ def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
 
 @compiled(**INNER)
 def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # type: ignore[no-untyped-def]
-    """Contact force with damping, when the approach rate itself falls with the force.
+    """Contact force with a damper, N, and its derivative, N/m, when the rate itself falls with the force.
 
-    The rate at the end of a step is ``rate - rate_compliance * F``, so ``F = elastic + c *
-    (rate - rate_compliance * F)`` is solved for F. Out of contact the damper is idle and in
-    contact the sum never pulls, unless `in_flight`.
-
-    Parameters
-    ----------
-    elastic, slope : float
-        Elastic force, N, and its derivative, N/m.
-    rate : float
-        Approach rate at zero force, m/s.
-    rate_compliance : float
-        Loss of rate per force, m/(s N); zero when `rate` is the rate itself.
-    damping : float
-        c, N s/m.
-    in_flight : bool
-        Whether the damper acts always, and both ways.
-
-    Returns
-    -------
-    force, slope : float
-        N, N/m.
+    The rate at the end of a step is ``rate - rate_compliance * F`` (m/s and m/(s N); the latter is zero if
+    `rate` is the rate itself), so ``F = elastic + c * (rate - rate_compliance * F)`` is solved for F, c in N
+    s/m. Out of contact the damper is idle and in contact the sum never pulls, unless `in_flight`.
     """
     if damping == 0.0 or (elastic <= 0.0 and not in_flight):
         return elastic, slope
@@ -211,20 +155,7 @@ def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # 
 
 @compiled(cache=True)
 def evaluate_all(law, approach):  # type: ignore[no-untyped-def]
-    """Elastic force at every position of the path, for one approach each.
-
-    Parameters
-    ----------
-    law : Prepared
-        The law on the path of n positions.
-    approach : ndarray (n,)
-        Approaches, m.
-
-    Returns
-    -------
-    force, slope : ndarray (n,)
-        N, N/m.
-    """
+    """Elastic force, N, and its derivative, N/m, at all n positions of the path, for one approach each, m."""
     force, slope = np.empty(approach.size), np.empty(approach.size)
     for i in range(approach.size):
         force[i], slope[i] = evaluate(law, i, approach[i])
@@ -233,20 +164,7 @@ def evaluate_all(law, approach):  # type: ignore[no-untyped-def]
 
 @compiled(cache=True)
 def count_beyond(law, approach):  # type: ignore[no-untyped-def]
-    """Number of positions at which the law is continued beyond its data.
-
-    Parameters
-    ----------
-    law : Prepared
-        The law on the path of n positions.
-    approach : ndarray (n,)
-        Approaches, m.
-
-    Returns
-    -------
-    int
-        Count.
-    """
+    """Number of positions at which a law is continued beyond its data, for one approach each, m."""
     count = 0
     for i in range(approach.size):
         argument = approach[i] - law.planes[i]

@@ -11,18 +11,11 @@ from asperity.kernels.options import INNER, REASSOCIATE, compiled
 
 
 def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Fit a 13-point stencil whose symbol approximates the inverse of the kernel's.
+    """Fit a 13-point stencil whose symbol approximates the inverse of that of a kernel (≥ 32, ≥ 32).
 
-    Parameters
-    ----------
-    table : ndarray, shape (≥ 32, ≥ 32)
-        Kernel at non-negative separations.
-
-    Returns
-    -------
-    ndarray, shape (6,)
-        Taps at (0,0), (±1,0), (0,±1), (±1,±1), (±2,0), (0,±2), in units of the inverse kernel. The symbol
-        is positive, so the stencil restricted to any set of cells is positive definite.
+    The kernel is given at non-negative separations. Returns the taps at (0,0), (±1,0), (0,±1), (±1,±1),
+    (±2,0), (0,±2), in units of the inverse kernel. The symbol is positive, so the stencil restricted to any
+    set of cells is positive definite.
     """
     n = 32
     symbol = quarter_spectrum(quarter_spectrum(table[:n, :n], 1), 0)
@@ -34,6 +27,7 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
     basis = np.stack([tap * symbol for tap in taps], axis=-1).reshape(-1, len(taps))
     coefficients = np.linalg.lstsq(basis, np.ones(symbol.size), rcond=None)[0]
     lowest = float(np.min(np.stack(taps, axis=-1) @ coefficients))
+    # the fit may fall below zero, where steps would climb: it keeps a tenth of the least it stands for
     floor = 0.1 / float(symbol.max())
     coefficients[0] += max(0.0, floor - lowest)
     return np.asarray(coefficients)
@@ -43,21 +37,9 @@ def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
 def precondition(
     b: Box, taps: NDArray[np.float64], target: NDArray[np.float64]
 ) -> tuple[float, float, float]:
-    """Apply the stencil to what is masked, where that is not zero.
+    """Apply the stencil (Pa/m) to what is masked, m, where that is not zero, into `target`.
 
-    Parameters
-    ----------
-    b : Box
-        Holds what is masked, m, and the previous residual.
-    taps : ndarray, shape (6,)
-        From `inverse_stencil`, Pa/m.
-    target : ndarray
-        Receives the result.
-
-    Returns
-    -------
-    product, change, total : float
-        m·target, (m − previous)·target and the sum of the target.
+    Returns m·target, (m − previous)·target and the sum of the target.
     """
     row = b.pitch
     above, m, below = b.masked[row - 1 :], b.masked[2 * row - 2 :], b.masked[3 * row - 1 :]

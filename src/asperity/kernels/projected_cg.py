@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.at_load import balance, find_level, mark_free, project_at_load, rounding
+from asperity.kernels.at_load import balance_load, find_level, mark_free, project_at_load, rounding
 from asperity.kernels.box import REACH, Box
 from asperity.kernels.convolution import Convolution, convolve
 from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
@@ -36,30 +36,15 @@ CONJUGATE, PRECONDITIONED, STEEPEST = range(3)
 
 
 class Task(NamedTuple):
-    """What is asked of a solution.
+    """What is asked of a solution."""
 
-    Attributes
-    ----------
-    hardness : float
-        Upper bound of the pressure, Pa (may be infinite).
-    total : float
-        Sum of the pressure over the cells, Pa; negative at a given approach.
-    largest : float
-        Largest overlap of the undeformed bodies, m.
-    rtol : float
-        Largest complementarity residual relative to that overlap.
-    softest : float
-        No pressure of unit norm displaces by more, m/Pa: bounds the step of the projected gradient.
-    max_iterations : int
-        Iterations allowed.
-    """
-
-    hardness: float
-    total: float
-    largest: float
-    rtol: float
+    hardness: float  # upper bound of the pressure, Pa (may be infinite)
+    total: float  # sum of the pressure over the cells, Pa; negative at a given approach
+    largest: float  # largest overlap of the undeformed bodies, m
+    rtol: float  # largest complementarity residual relative to that overlap
+    # no pressure of unit norm displaces by more, m/Pa: bounds the step of the projected gradient
     softest: float
-    max_iterations: int
+    max_iterations: int  # iterations allowed
 
 
 @compiled(**INNER, **REASSOCIATE)
@@ -161,15 +146,7 @@ def _advance(b: Box, share: float, hardness: float, margin: float) -> None:
 
 @compiled(**ONCE)
 def true_residual(c: Convolution, b: Box) -> None:
-    """Compute the residual of the pressure.
-
-    Parameters
-    ----------
-    c : Convolution
-        With the kernel, m/Pa, for this box.
-    b : Box
-        Holds overlap and pressure, receives the residual.
-    """
+    """Compute the residual of the pressure, with the kernel (m/Pa) for this box."""
     convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
     for q in range(len(b.residual)):
         b.residual[q] = b.response[q] - b.overlap[q]
@@ -179,21 +156,9 @@ def true_residual(c: Convolution, b: Box) -> None:
 def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
     """Find how well a pressure with a known residual solves the task, and where something is left to solve.
 
-    Parameters
-    ----------
-    b : Box
-        Holds pressure and residual.
-    task : Task
-        The task.
-
-    Returns
-    -------
-    worst : float
-        Largest complementarity residual, m.
-    level : float
-        Approach beyond that of the overlap, m: zero unless the load is given.
-    first_row, end_row, first_column, end_column : int
-        The smallest box that holds all cells under pressure or in overlap; zeros if there are none.
+    Returns the largest complementarity residual, m; the approach beyond that of the overlap, m, zero unless
+    the load is given; and first and end row and column of the smallest box that holds all cells under
+    pressure or in overlap, zeros if there are none.
     """
     level = find_level(b, task.hardness) if task.total >= 0.0 else 0.0
     first, end, left, right = b.nx, 0, b.ny, 0
@@ -210,28 +175,10 @@ def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
 
 @compiled(**ONCE)
 def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: int) -> tuple[int, bool]:
-    """Solve the task on a box.
+    """Solve the task on a box, from a residual and a pressure that is within the bounds and carries the load.
 
-    Parameters
-    ----------
-    c : Convolution
-        With the kernel, m/Pa, for this box.
-    taps : ndarray, shape (6,)
-        From `inverse_stencil`, Pa/m.
-    b : Box
-        Holds overlap, residual and a start that is within the bounds and carries the load; receives pressure
-        and residual.
-    task : Task
-        The task.
-    done : int
-        Iterations done before.
-
-    Returns
-    -------
-    iterations : int
-        Iterations done in all.
-    moving : bool
-        Whether there is a step that lowers the energy: if not, rounding allows no more.
+    Kernel in m/Pa, taps of `inverse_stencil` in Pa/m. Returns the iterations in all, with those done before,
+    and whether there is a step that lowers the energy: if not, rounding allows no more.
     """
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
     margin = rounding(cap, task.total)
@@ -247,7 +194,7 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
         if at_load:
             mark_free(b, cap, level)
             units = precondition(b, taps, b.unit)[2]
-            rho, change = balance(b, added / units, level)
+            rho, change = balance_load(b, added / units, level)
         beta = max(0.0, change / before) if before > 0.0 else 0.0
         aim = CONJUGATE if beta > 0.0 else PRECONDITIONED
         if iteration > PATIENCE and iteration % OFTEN == 0:
@@ -286,25 +233,10 @@ def unit_indentation(
     rtol: float,
     max_iterations: int,
 ) -> bool:
-    """Find the pressure that displaces a fixed set of cells by one: K p = 1 on the set, p = 0 elsewhere.
+    """Find the pressure that displaces a set of cells (nx, ny) by one: K p = 1 on the set, p = 0 elsewhere.
 
-    Parameters
-    ----------
-    c, taps
-        As in `solve`.
-    b : Box
-        Empty. On return `pressure` is Pa per m of indentation; its integral is the tangent stiffness.
-    inside : ndarray of bool, shape (nx, ny)
-        The set.
-    rtol : float
-        Largest residual, relative to one.
-    max_iterations : int
-        Iterations allowed.
-
-    Returns
-    -------
-    bool
-        Whether the residual fell below `rtol`.
+    The box is empty. On return its `pressure` is Pa per m of indentation; the integral is the tangent
+    stiffness. Returns whether the residual, relative to one, fell below `rtol`.
     """
     rho = 0.0
     for q in range(len(b.overlap)):

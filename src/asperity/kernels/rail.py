@@ -12,95 +12,55 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.modal import backward, solve_contact
+from asperity.kernels.modal import backward, solve_step
 from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 
 
 class Vehicle(NamedTuple):
-    """Wheel and rail: what does not change while rolling.
+    """Wheel and rail: what does not change while rolling."""
 
-    Attributes
-    ----------
-    decay : ndarray (2 p,)
-        Poles of the rail, per step: real parts, then imaginary parts.
-    residue : ndarray (cells + 1, 2 p)
-        Residues at equal places over one sleeper bay, both ends included, m/N, in the same order.
-    direct : ndarray (cells + 1,)
-        Displacement at the end of a step for unit force at the end, m/N, at the same places.
-    scattered : ndarray (positions, taps)
-        The kernel itself where the rail is scattered, m/N; else without rows.
-    flexible_decay, flexible_before, flexible_now : ndarray (w,) of complex
-        Poles of the wheel per step, and factors of the forces at start and end of the step, m/N.
-    flexible_compliance : float
-        Twice the real part of the sum of the last, m/N.
-    mass, load, time_step : float
-        Of the wheel, kg and N; s.
-    softening : float
-        Compliance in series with the contact, m/N, that keeps a step stable which is too long for it.
-    first, stride : float
-        Position at step zero and distance rolled in a step, in sleeper bays.
-    """
-
-    decay: NDArray
+    decay: NDArray  # (2 p,), poles of the rail, per step: real parts, then imaginary parts
+    # (cells + 1, 2 p), residues at equal places over one sleeper bay, both ends included, m/N, in the same
+    # order
     residue: NDArray
+    # (cells + 1,), displacement at the end of a step for unit force at the end, m/N, at the same places
     direct: NDArray
+    # (positions, taps), the kernel itself where the rail is scattered, m/N; else without rows
     scattered: NDArray
-    flexible_decay: NDArray
-    flexible_before: NDArray
-    flexible_now: NDArray
-    flexible_compliance: float
-    mass: float
-    load: float
-    time_step: float
+    flexible_decay: NDArray  # (w,), poles of the wheel per step
+    flexible_before: NDArray  # (w,), factors of the force at the start of the step, m/N
+    flexible_now: NDArray  # (w,), factors of the force at its end, m/N
+    flexible_compliance: float  # twice the real part of the sum of the last, m/N
+    mass: float  # of the wheel, kg
+    load: float  # of the wheel, N
+    time_step: float  # s
+    # compliance in series with the contact, m/N, that keeps a step stable which is too long for it
     softening: float
-    first: float
-    stride: float
+    first: float  # position at step zero, in sleeper bays
+    stride: float  # distance rolled in a step, in sleeper bays
 
 
-class Motion(NamedTuple):
-    """What changes from step to step; the arrays are written in place.
+class RailMotion(NamedTuple):
+    """What changes from step to step; the arrays are written in place."""
 
-    Attributes
-    ----------
-    rail : ndarray (2 p,)
-        States of the poles: real parts, then imaginary parts, m.
-    ring : ndarray (taps,)
-        Displacement to come where the rail is scattered, m.
-    flexible : ndarray (w,) of complex
-        States of the wheel's poles, m.
-    wheel : ndarray (2,)
-        Rigid displacement, m, and velocity, m/s.
-    force, approach : ndarray (2,)
-        Contact force, N, and approach as the law sees it, m, now and one step ago.
-    free : ndarray (2,)
-        Displacements of rail and flexible wheel at the end of the step without its last force, m.
-    counts : ndarray (3,) of int
-        Steps done, steps not converged, evaluations of the law.
-    """
-
-    rail: NDArray
-    ring: NDArray
-    flexible: NDArray
-    wheel: NDArray
-    force: NDArray
-    approach: NDArray
+    rail: NDArray  # (2 p,), states of the poles: real parts, then imaginary parts, m
+    ring: NDArray  # (taps,), displacement to come where the rail is scattered, m
+    flexible: NDArray  # (w,), states of the wheel's poles, m
+    wheel: NDArray  # (2,), rigid displacement, m, and velocity, m/s
+    force: NDArray  # (2,), contact force, N, now and one step ago
+    approach: NDArray  # (2,), as the law sees it, m, now and one step ago
+    # (2,), displacements of rail and flexible wheel at the end of the step without its last force, m
     free: NDArray
-    counts: NDArray
+    counts: NDArray  # (3,), steps done, steps not converged, evaluations of the law
 
 
-class Record(NamedTuple):
-    """Time histories, written in place: ndarrays (n,) in N and m.
+class RailRecord(NamedTuple):
+    """Time histories (n,), written in place."""
 
-    Attributes
-    ----------
-    force, approach, wheel, rail : ndarray (n,)
-        Contact force, approach, displacement of the wheel and of the rail at the contact.
-    """
-
-    force: NDArray
-    approach: NDArray
-    wheel: NDArray
-    rail: NDArray
+    force: NDArray  # contact force, N
+    approach: NDArray  # m
+    wheel: NDArray  # displacement at the contact, m
+    rail: NDArray  # displacement at the contact, m
 
 
 @compiled(**INNER)
@@ -133,21 +93,9 @@ def cubic_weights(t):  # type: ignore[no-untyped-def]
 
 @compiled(**INNER, **REASSOCIATE)
 def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
-    """Advance the rail by one step under the force at its start.
+    """Advance the rail by one step under the force at its start, N; return its displacement, m.
 
-    Parameters
-    ----------
-    vehicle, motion
-        Constants and state.
-    step : int
-        Step at the start.
-    force : float
-        Force at the start, N.
-
-    Returns
-    -------
-    float
-        Displacement at the end without the force there, m.
+    That is the displacement at the end without the force there.
     """
     cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
     state, decay = motion.rail, vehicle.decay
@@ -167,10 +115,9 @@ def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
 
 @compiled(**INNER, **REASSOCIATE)
 def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
-    """Add to the ring what a force at a step will do, and read the displacement of the next step.
+    """Add to the ring what a force at a step, N, will do; the displacement of the next step, m.
 
-    Parameters and result as in `advance_poles`; the start positions of the kernel are interpolated by
-    a periodic cubic.
+    The start positions of the kernel are interpolated by a periodic cubic.
     """
     rows, taps = vehicle.scattered.shape
     cell, t = place(vehicle, step, rows)
@@ -197,21 +144,9 @@ def advance_rail(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
 
 @compiled(**LOOP)
 def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
-    """Let a constant force roll up to step zero; rail displacement there and one step before.
+    """Let a constant force, N, roll up to step zero.
 
-    Parameters
-    ----------
-    vehicle, motion
-        Constants, and the state at rest.
-    force : float
-        N.
-    steps : int
-        Number of steps.
-
-    Returns
-    -------
-    now, before : float
-        Rail displacement without the force at its own step, m, at step zero and one step earlier.
+    Returns the rail's displacement, m, at step zero and one step before, without the force at that step.
     """
     now, before = 0.0, 0.0
     for step in range(-steps, 0):
@@ -221,21 +156,8 @@ def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
 
 
 @compiled(**INNER)
-def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
-    """Advance all but the last force of the step that ends at `step`.
-
-    Parameters
-    ----------
-    vehicle, motion
-        Constants and state; the free displacements are written.
-    step : int
-        Index of the step's end.
-
-    Returns
-    -------
-    approach, rate, compliance, rate_compliance : float
-        As of `asperity.kernels.modal.free_step`.
-    """
+def free_rail_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
+    """Advance all but the last force of the step that ends at `step`; see `modal.free_beam_step`."""
     h, force = vehicle.time_step, motion.force[0]
     motion.free[0] = advance_rail(vehicle, motion, step - 1, force)
     flexible = 0.0
@@ -251,22 +173,8 @@ def free_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
 
 
 @compiled(**INNER)
-def complete_step(vehicle, motion, record, step, force, evaluations, converged):  # type: ignore[no-untyped-def]
-    """Apply the force at the end of a step, advance the state and write the records.
-
-    Parameters
-    ----------
-    vehicle, motion, record
-        Constants, state with its free step done, histories.
-    step : int
-        Index of the step's end.
-    force : float
-        Contact force at the end, N.
-    evaluations : int
-        Evaluations of the law that it took.
-    converged : bool
-        Whether it converged.
-    """
+def complete_rail_step(vehicle, motion, record, step, force, evaluations, converged):  # type: ignore[no-untyped-def]
+    """Apply the force at the end of a step, N, advance the state and write the records."""
     h, mass, before = vehicle.time_step, vehicle.mass, motion.force[0]
     motion.wheel[0] += h * motion.wheel[1]
     motion.wheel[0] += h * h / mass * (0.5 * vehicle.load - before / 3.0 - force / 6.0)
@@ -285,30 +193,16 @@ def complete_step(vehicle, motion, record, step, force, evaluations, converged):
 
 
 @compiled(**LOOP)
-def roll_steps(vehicle, motion, record, law, stop, largest):  # type: ignore[no-untyped-def]
-    """Roll a compiled law from the state's step to another.
+def roll_rail(vehicle, motion, record, law, stop, largest):  # type: ignore[no-untyped-def]
+    """Roll a compiled law from the state's step to `stop`; False from a force larger than `largest`, or NaN.
 
-    Parameters
-    ----------
-    vehicle, motion, record
-        Constants, state, histories.
-    law : Prepared
-        The law on the whole path.
-    stop : int
-        The step at which to stop.
-    largest : float
-        Largest force that makes sense, N.
-
-    Returns
-    -------
-    bool
-        False if the force is larger, or not a number; the state then stands at that step.
+    Then the state stands at that step.
     """
     for step in range(motion.counts[0] + 1, stop + 1):
-        free = free_step(vehicle, motion, step)
+        free = free_rail_step(vehicle, motion, step)
         guess = 2.0 * motion.force[0] - motion.force[1]
-        force, evaluations, converged = solve_contact(law, step, free, vehicle.load, guess)
-        complete_step(vehicle, motion, record, step, force, evaluations, converged)
+        force, evaluations, converged = solve_step(law, step, free, vehicle.load, guess)
+        complete_rail_step(vehicle, motion, record, step, force, evaluations, converged)
         if not abs(force) <= largest:
             return False
     return True
@@ -316,21 +210,11 @@ def roll_steps(vehicle, motion, record, law, stop, largest):  # type: ignore[no-
 
 @compiled(cache=True, **REASSOCIATE)
 def add_passing(displacement, forces, responses, places, begin):  # type: ignore[no-untyped-def]
-    """Add to the displacement of a fixed point what forces moving through one bay do.
+    """Add to the displacement of a fixed point, m, what forces moving through one bay do, N; (runs, n).
 
-    Parameters
-    ----------
-    displacement : ndarray (runs, n)
-        Displacement of the point, m; written.
-    forces : ndarray (runs, n)
-        Contact forces, N.
-    responses : ndarray (nodes + 3, taps)
-        Response of the point to hats of unit force at the nodes −1 … nodes + 1 of the bay, m/N; lag 0 is the
-        rising half.
-    places : ndarray (k,)
-        Places of the force in the bay, in nodes, 0 to nodes.
-    begin : int
-        Step of the first place.
+    The responses (nodes + 3, taps), m/N, are those of the point to hats of unit force at the nodes −1 … nodes
+    + 1 of the bay; lag 0 is the rising half. `places` (k,) counts in nodes from 0 on, the first at the step
+    `begin`.
     """
     runs, samples = forces.shape
     taps = responses.shape[1]

@@ -17,88 +17,41 @@ TRUNCATED = 0.01
 
 
 class Block(NamedTuple):
-    """Contacts to be solved, and what is known of them.
+    """Contacts to be solved, and what is known of them."""
 
-    Attributes
-    ----------
-    rows : ndarray, shape (rows, ny)
-        Heights under the block, m.
-    body : ndarray, shape (nx, ny)
-        Shape of the smooth body, m.
-    planes : ndarray, shape (positions,)
-        Height of the plane from which approaches count at each position, m.
-    approaches : ndarray, shape (k,)
-        Increasing approaches, m.
-    stride : int
-        Rows between positions.
-    load, hardness, rtol : float
-        As in `contact.solve_contact`; at a given load there is one approach, an upper estimate.
-    max_iterations : int
-        As there.
-    room : Room
-        From `contact.room`.
-    gap, start : ndarray, shape (nx, ny)
-        Room for the gap at a position, m, and for the pressure that a solution starts from, Pa.
-    expected : ndarray, shape (2, nx, ny)
-        What the positions before let expect at the last approaches, Pa: even ones first, odd ones second.
-    pressures : ndarray, shape (2, k, nx, ny)
-        Of the last two positions, Pa: even ones first, odd ones second.
-    solved : ndarray of int, shape (k,)
-        Positions in contact one after the other up to the last.
-    totals : ndarray, shape (k, positions)
-        Receives the sum of the pressure over the cells, Pa.
-    residuals : ndarray, shape (k, positions)
-        Receives the largest complementarity residual relative to the largest overlap.
-    levels : ndarray, shape (k, positions)
-        Receives by how much the approach is beyond that estimate, m; zero unless the load is given.
-    counts : ndarray of int, shape (4,)
-        Solutions, iterations, unconverged and truncated solutions so far.
-    """
-
-    rows: NDArray[np.float64]
-    body: NDArray[np.float64]
-    planes: NDArray[np.float64]
-    approaches: NDArray[np.float64]
-    stride: int
-    load: float
-    hardness: float
-    rtol: float
-    max_iterations: int
-    room: Room
-    gap: NDArray[np.float64]
-    start: NDArray[np.float64]
+    rows: NDArray[np.float64]  # (rows, ny), heights under the block, m
+    body: NDArray[np.float64]  # (nx, ny), shape of the smooth body, m
+    planes: NDArray[np.float64]  # (positions,), height of the plane from which approaches count, m
+    approaches: NDArray[np.float64]  # (k,), increasing, m
+    stride: int  # rows between positions
+    load: float  # as in `contact.solve_contact`; if given, there is one approach, an upper estimate
+    hardness: float  # Pa
+    rtol: float  # as in `contact.solve_contact`
+    max_iterations: int  # of a contact
+    room: Room  # from `contact.room`
+    gap: NDArray[np.float64]  # (nx, ny), room for the gap at a position, m
+    start: NDArray[np.float64]  # (nx, ny), room for the pressure that a solution starts from, Pa
+    # (2, nx, ny), what the positions before let expect at the last approaches, Pa: even first, odd second
     expected: NDArray[np.float64]
+    # (2, k, nx, ny), of the last two positions, Pa: even ones first, odd ones second
     pressures: NDArray[np.float64]
-    solved: NDArray[np.int64]
-    totals: NDArray[np.float64]
+    solved: NDArray[np.int64]  # (k,), positions in contact one after the other up to the last
+    totals: NDArray[np.float64]  # (k, positions), receives the sum of the pressure over the cells, Pa
+    # (k, positions), receives the largest complementarity residual relative to the largest overlap
     residuals: NDArray[np.float64]
+    # (k, positions), receives how far the approach is beyond that estimate, m; zero unless the load is given
     levels: NDArray[np.float64]
-    counts: NDArray[np.int64]
+    counts: NDArray[np.int64]  # (4,), solutions, iterations, unconverged and truncated solutions so far
 
 
 @compiled(**LOOP, nogil=True)
 def solve_positions(
     known: Influence, b: Block, position: int, level: int, end: int
 ) -> tuple[int, int, int, int]:
-    """Solve the contacts at some positions of a block.
+    """Solve the contacts of a block from a position and approach, by number, to the position `end`.
 
-    Parameters
-    ----------
-    known : Influence
-        With the convolutions prepared so far.
-    b : Block
-        The block; all contacts before the first are solved.
-    position, level : int
-        First contact, and its approach, by number.
-    end : int
-        Position at which to stop.
-
-    Returns
-    -------
-    position, level : int
-        The contact at which it stopped.
-    nx, ny : int
-        The box on which a convolution has to be prepared to go on; zeros at the end.
+    All contacts before are solved. Returns the contact at which it stopped, and the box nx × ny on which a
+    convolution has to be prepared to go on; zeros at the end.
     """
     for m in range(position, end):
         touch = _set_gap(b, m)
@@ -147,6 +100,7 @@ def _set_start(b: Block, m: int, i: int, touch: float) -> None:
     The approach before also tells by how much the positions alone mislead.
     """
     here, before, below = b.pressures[m % 2], b.pressures[(m + 1) % 2], 0
+    # two approaches make a line, a third tells how far off the line was
     while below < min(i, 3) and b.approaches[i - 1 - below] > touch:
         below += 1
     along = b.solved[i] > 0 and b.stride < b.start.shape[0]  # pressures move with the asperities

@@ -10,17 +10,11 @@ STRIDE = 128
 
 @compiled(**LOOP, fastmath={"contract"})
 def turn_on(wave, slope, turn, shapes, slopes):  # type: ignore[no-untyped-def]
-    """Sinusoidal parts of mode shapes, and their slopes.
+    """Sinusoidal parts of mode shapes, and their slopes, into (places, modes).
 
-    Parameters
-    ----------
-    wave, slope : ndarray (blocks, modes)
-        Exact values at the first place and at every `STRIDE` places from there.
-    turn : ndarray (3, modes)
-        1 - cos(k d), sin(k d)/k and k sin(k d) of the wavenumber k and the distance d of the places. The
-        difference from one, small where places are close, adds less rounding than the cosine.
-    shapes, slopes : ndarray (places, modes)
-        Written.
+    `wave` and `slope` (blocks, modes) are exact at the first place and at every `STRIDE` places from there.
+    `turn` (3, modes) is 1 − cos(k d), sin(k d)/k and k sin(k d) of the wavenumber k and the distance d of the
+    places: the difference from one, small where places are close, adds less rounding than the cosine.
     """
     modes = turn.shape[1]
     for i in range(shapes.shape[0]):
@@ -36,16 +30,10 @@ def turn_on(wave, slope, turn, shapes, slopes):  # type: ignore[no-untyped-def]
 
 @compiled(**LOOP, fastmath={"contract"})
 def add_near_fields(near, growth, shapes, slopes):  # type: ignore[no-untyped-def]
-    """Add to mode shapes and slopes the exponentials beside the ends.
+    """Add to mode shapes and slopes (places, modes) the exponentials beside the ends.
 
-    Parameters
-    ----------
-    near : ndarray (2, blocks, modes)
-        Exact values of the parts that rise and that fall along the places, as in `turn_on`; overwritten.
-    growth : ndarray (3, modes)
-        Factors of the two parts from place to place, and wavenumber.
-    shapes, slopes : ndarray (places, modes)
-        Added to.
+    `near` (2, blocks, modes) holds exact values of the parts that rise and that fall along the places, as in
+    `turn_on`, and is overwritten; `growth` (3, modes) their factors from place to place, and the wavenumber.
     """
     modes = growth.shape[1]
     for i in range(shapes.shape[0]):

@@ -156,7 +156,7 @@ def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: i
 def _solve_from_python(
     law: SteppedLaw, step: int, free: Free, load: float, guess: float, damping: float
 ) -> tuple[float, int, bool]:
-    """The iteration of `asperity.kernels.modal.solve_contact` for a law that Python evaluates."""
+    """The iteration of `asperity.kernels.modal.solve_step` for a law that Python evaluates."""
     free_approach, rate, compliance, rate_compliance = free
     low, high, approach = -np.inf, np.inf, free_approach - compliance * guess
     for iteration in range(STEPPED_ITERATIONS):

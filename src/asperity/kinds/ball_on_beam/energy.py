@@ -11,7 +11,7 @@ from asperity.kernels.modal import (
     CONTACT_WORK,
     SLOPE_WORK,
     THROUGHPUT,
-    Motion,
+    BeamMotion,
     System,
 )
 
@@ -74,14 +74,14 @@ class EnergyBalance:
         }
 
 
-def beam_energy(system: System, motion: Motion) -> float:
+def beam_energy(system: System, motion: BeamMotion) -> float:
     """Kinetic and bending energy of the beam.
 
     Parameters
     ----------
     system : System
         Constants.
-    motion : Motion
+    motion : BeamMotion
         State.
 
     Returns
@@ -93,7 +93,7 @@ def beam_energy(system: System, motion: Motion) -> float:
 
 
 def balance(
-    system: System, motion: Motion, *, ball_start: float, ball_end: float, beam_start: float
+    system: System, motion: BeamMotion, *, ball_start: float, ball_end: float, beam_start: float
 ) -> EnergyBalance:
     """Balance of a run that started with the ball at rest.
 

@@ -15,8 +15,8 @@ from asperity.errors import (
     Outcome,
 )
 from asperity.kernels.modal import (
-    Motion,
-    Record,
+    BeamMotion,
+    BeamRecord,
     System,
     observe,
 )
@@ -256,12 +256,12 @@ def _system(beam: Beam, ball: Ball, sensors: NDArray, speed: float, time_step: f
 
 def _at_rest(
     system: System, beam: Beam, start: float, approach: float, samples: int
-) -> tuple[Motion, Record]:
+) -> tuple[BeamMotion, BeamRecord]:
     """State and records with the load carried statically at the start of the path."""
     shape, slope = (row[0] for row in beam.shapes(start))
     displacement = shape * system.load / system.stiffness
     modes = displacement.size
-    motion = Motion(
+    motion = BeamMotion(
         displacement,
         np.zeros(modes),
         np.zeros(modes),
@@ -272,7 +272,7 @@ def _at_rest(
         np.zeros(5),
         np.zeros(3, dtype=np.int64),
     )
-    record = Record(
+    record = BeamRecord(
         np.zeros(samples),
         np.zeros(samples),
         np.zeros(samples),

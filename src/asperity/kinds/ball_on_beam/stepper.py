@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.modal import Motion, Record, System, complete_step, free_step, roll_steps
+from asperity.kernels.modal import (
+    BeamMotion,
+    BeamRecord,
+    System,
+    complete_beam_step,
+    free_beam_step,
+    roll_beam,
+)
 from asperity.kernels.pointforce import Prepared
 from asperity.rolling.stepping import Free
 from asperity.structures.beam import Beam
@@ -30,7 +37,12 @@ class BeamStepper:
     """
 
     def __init__(
-        self, system: System, motion: Motion, record: Record, beam: Beam, positions: NDArray[np.float64]
+        self,
+        system: System,
+        motion: BeamMotion,
+        record: BeamRecord,
+        beam: Beam,
+        positions: NDArray[np.float64],
     ) -> None:
         self.system, self.motion, self.record = system, motion, record
         self.beam, self.positions = beam, positions
@@ -51,7 +63,7 @@ class BeamStepper:
     def roll(self, law: Prepared, stop: int, largest: float) -> bool:
         """Advance to a step under a compiled law."""
         return bool(
-            roll_steps(
+            roll_beam(
                 self.system,
                 self.motion,
                 self.record,
@@ -67,14 +79,14 @@ class BeamStepper:
     def free(self, step: int) -> Free:
         """Where a step ends without the force at its end."""
         row = step - self._offset
-        result: Free = free_step(self.system, self.motion, self._shapes[row - 1], self._shapes[row])
+        result: Free = free_beam_step(self.system, self.motion, self._shapes[row - 1], self._shapes[row])
         return result
 
     def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:
         """Advance over the step whose end has this force."""
         row = step - self._offset
         shape, next_shape, next_slope = self._shapes[row - 1], self._shapes[row], self._slopes[row]
-        complete_step(
+        complete_beam_step(
             self.system, self.motion, self.record, step, shape, next_shape, next_slope,
             force, evaluations, converged,
         )  # fmt: skip

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.errors import CoarseSamplingWarning, InputError, Outcome
 from asperity.kernels.pointforce import Prepared
-from asperity.kernels.rail import Motion, Record, Vehicle, direct_at, preload
+from asperity.kernels.rail import RailMotion, RailRecord, Vehicle, direct_at, preload
 from asperity.kinds.wheel_on_rail.stepper import RailStepper
 from asperity.laws.base import Law
 from asperity.progress import Progress
@@ -228,13 +228,13 @@ def _at_rest(
     approach: float,
     softening: float,
     samples: int,
-) -> tuple[Vehicle, Motion, Record]:
+) -> tuple[Vehicle, RailMotion, RailRecord]:
     """Constants, state and records with the load rolling steadily on a smooth rail."""
     vehicle, closer = _vehicle(rail, wheel, origin, softening), approach + softening * wheel.load
     kernel = rail.kernel if isinstance(rail, RailPoles) else rail
     states, taps = len(vehicle.decay), vehicle.scattered.shape[1]
     flexible = -wheel.load * (-wheel.residues / wheel.poles)
-    motion = Motion(
+    motion = RailMotion(
         np.zeros(states),
         np.zeros(taps),
         np.asarray(flexible, dtype=complex),
@@ -248,7 +248,7 @@ def _at_rest(
     direct = float(direct_at(vehicle, 0))
     motion.wheel[0] = now + direct * wheel.load + closer - 2.0 * flexible.real.sum()
     motion.wheel[1] = (now - before) / vehicle.time_step
-    record = Record(*(np.zeros(samples) for _ in Record._fields))
+    record = RailRecord(*(np.zeros(samples) for _ in RailRecord._fields))
     record.force[0], record.approach[0] = wheel.load, closer
     record.rail[0] = now + direct * wheel.load
     record.wheel[0] = record.rail[0] + closer

@@ -6,7 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.pointforce import Prepared
-from asperity.kernels.rail import Motion, Record, Vehicle, complete_step, free_step, roll_steps
+from asperity.kernels.rail import (
+    RailMotion,
+    RailRecord,
+    Vehicle,
+    complete_rail_step,
+    free_rail_step,
+    roll_rail,
+)
 from asperity.rolling.stepping import Free
 
 CHUNK = 16384  # steps between reports of progress
@@ -24,7 +31,7 @@ class RailStepper:
     """
 
     def __init__(
-        self, vehicle: Vehicle, motion: Motion, record: Record, positions: NDArray[np.float64]
+        self, vehicle: Vehicle, motion: RailMotion, record: RailRecord, positions: NDArray[np.float64]
     ) -> None:
         self.vehicle, self.motion, self.record, self.positions = vehicle, motion, record, positions
         self.load, self.total = vehicle.load, len(positions) - 1
@@ -35,16 +42,16 @@ class RailStepper:
 
     def roll(self, law: Prepared, stop: int, largest: float) -> bool:
         """Advance to a step under a compiled law."""
-        return bool(roll_steps(self.vehicle, self.motion, self.record, law, stop, largest))
+        return bool(roll_rail(self.vehicle, self.motion, self.record, law, stop, largest))
 
     def free(self, step: int) -> Free:
         """Advance all but the last force of a step."""
-        result: Free = free_step(self.vehicle, self.motion, step)
+        result: Free = free_rail_step(self.vehicle, self.motion, step)
         return result
 
     def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:
         """Apply the force at the end of the step."""
-        complete_step(self.vehicle, self.motion, self.record, step, force, evaluations, converged)
+        complete_rail_step(self.vehicle, self.motion, self.record, step, force, evaluations, converged)
 
     def where(self, step: int) -> str:
         """Time and position of a step."""
