@@ -16,26 +16,10 @@ from asperity.surfaces.heightmap import HeightMap, Profile
 
 
 def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """One-sided profile spectrum, averaged over all lines along an axis.
+    """One-sided profile spectrum along an axis, averaged over all lines: wavenumber, cycles/m, and PSD, m³.
 
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Complete, levelled heights, m; the mean of the surface is removed, not that of each line.
-    axis : int, optional
-        0 along x (rolling direction), 1 along y.
-
-    Returns
-    -------
-    wavenumber : ndarray, shape (k,)
-        Cycles per metre.
-    psd : ndarray, shape (k,)
-        m³ per cycle/m; its integral is Sq², weighted by the squared Hann window.
-
-    Raises
-    ------
-    InputError
-        If points are missing or there is no such axis.
+    The heights are complete and levelled, m; the mean of the surface is removed, not that of each line. The
+    integral of the PSD is Sq², weighted by the squared Hann window.
     """
     if axis not in range(surface.heights.ndim):
         raise InputError("axis", axis, f"0 to {surface.heights.ndim - 1}")
@@ -60,29 +44,10 @@ def _complete(surface: HeightMap | Profile) -> NDArray[np.float64]:
 def psd_2d(
     surface: HeightMap, window: bool = True
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Two-sided areal spectrum.
+    """Two-sided areal spectrum C(qx, qy), m⁴, with the angular wavenumbers qx and qy, rad/m, rising.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Complete, levelled heights, m; the mean is removed.
-    window : bool, optional
-        Apply a Hann window in both directions; without it only a periodic surface is free of
-        leakage.
-
-    Returns
-    -------
-    qx : ndarray, shape (nx,)
-        Angular wavenumbers, rad/m, rising through zero.
-    qy : ndarray, shape (ny,)
-        The same in y.
-    psd : ndarray, shape (nx, ny)
-        C(qx, qy), m⁴; its double integral is Sq², weighted by the squared window.
-
-    Raises
-    ------
-    InputError
-        If points are missing.
+    The heights are complete and levelled, m; the mean is removed. The double integral is Sq², weighted by the
+    squared Hann window, without which only a periodic surface is free of leakage.
     """
     z = _complete(surface)
     if window:
@@ -98,27 +63,11 @@ def psd_2d(
 
 
 def psd_radial(surface: HeightMap, window: bool = True) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Areal spectrum averaged over directions.
+    """Areal spectrum C(q), m⁴, averaged over directions, after the angular wavenumber q, rad/m.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Complete, levelled heights, m.
-    window : bool, optional
-        See `psd_2d`.
-
-    Returns
-    -------
-    q : ndarray, shape (k,)
-        Angular wavenumber, rad/m, mean over each ring; rings are as wide as the coarser of the two
-        wavenumber steps and end at the largest wavenumber that both directions reach.
-    psd : ndarray, shape (k,)
-        C(q), m⁴; for an isotropic surface 2π ∫ C q dq = Sq².
-
-    Raises
-    ------
-    InputError
-        If points are missing.
+    The heights are complete and levelled, m. Wavenumbers are means over rings as wide as the coarser of the
+    two wavenumber steps, up to the largest that both directions reach. For an isotropic surface 2π ∫ C q dq =
+    Sq².
     """
     qx, qy, density = psd_2d(surface, window)
     q = np.hypot(qx[:, None], qy[None, :])
@@ -134,32 +83,11 @@ def psd_radial(surface: HeightMap, window: bool = True) -> tuple[NDArray[np.floa
 
 
 def texture_direction(surface: HeightMap) -> float:
-    """Direction in which a texture varies most, Std; the lay is at right angles to it.
+    """Direction in which a texture varies most, Std of ISO 25178-2:2021; the lay is at right angles to it.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Complete, levelled heights, m.
-
-    Returns
-    -------
-    float
-        Angle from x, rad, 0 to π, within about 2°; meaningless for an isotropic texture.
-
-    Raises
-    ------
-    InputError
-        If points are missing.
-
-    Notes
-    -----
-    The angular spectrum is the areal one summed over rings from three wavenumber steps, below
-    which directions cannot be told apart, to the largest wavenumber that both directions reach,
-    and smoothed over ±4°.
-
-    References
-    ----------
-    ISO 25178-2:2021 (Std).
+    An angle from x, rad, 0 to π, within about 2°; meaningless for an isotropic texture. The angular spectrum
+    is the areal one summed over rings from three wavenumber steps, below which directions cannot be told
+    apart, to the largest wavenumber that both directions reach, and smoothed over ±4°.
     """
     qx, qy, density = psd_2d(surface)
     q, angle = np.hypot(qx[:, None], qy[None, :]), np.arctan2(qy[None, :], qx[:, None]) % np.pi

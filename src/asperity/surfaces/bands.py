@@ -33,38 +33,13 @@ class _Lines:
 
 
 def from_bands(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayLike, seed: int) -> Profile:
-    """Line with given one-third-octave levels in wavelength.
+    """Line with given one-third-octave levels in wavelength, dB re 1 µm rms (ISO 3095:2013, EN 15610:2019).
 
-    Amplitudes are fixed and phases random, so every realisation has the levels asked for. The
-    density is constant inside a band; bands that are not given hold nothing.
-
-    Parameters
-    ----------
-    n : int
-        Points.
-    spacing : float
-        Spacing, m.
-    wavelengths : array_like, shape (b,)
-        Band centres, m, in any order; nominal values (0.63 m) or exact ones (10^(n/10) m).
-    levels_db : array_like, shape (b,)
-        Levels, dB re 1 µm rms.
-    seed : int
-        Seed of the random phases.
-
-    Returns
-    -------
-    Profile
-        Heights, m; the line closes on itself, as around a wheel.
-
-    Raises
-    ------
-    InputError
-        If the line is shorter than the longest band's edge, the spacing too coarse for the
-        shortest, or the wavelengths are no distinct one-third octaves.
-
-    References
-    ----------
-    Levels as in ISO 3095:2013 and EN 15610:2019 (reference 1 µm).
+    Amplitudes are fixed and phases random, so every realisation has the levels asked for. The density is
+    constant inside a band; bands that are not given hold nothing. Wavelengths are band centres, m, in any
+    order, nominal (0.63 m) or exact (10^(n/10) m). The line closes on itself, as around a wheel. An
+    `InputError` says where it is shorter than the edge of the longest band or its spacing too coarse for the
+    shortest.
     """
     lines = _fourier_lines(n, spacing, wavelengths, levels_db)
     phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, lines.energies.size)
@@ -83,51 +58,25 @@ def strip_from_bands(
     lateral: float = 1.0,
     seed: int,
 ) -> HeightMap:
-    """Strip whose lines along x have given one-third-octave levels in wavelength.
+    """Strip whose lines along x have given one-third-octave levels in wavelength, dB re 1 µm rms.
 
     The spectrum is S(kx, ky) = S1(kx) D(ky | kx): S1 is constant inside a band, as in `from_bands`, and
 
         D(ky | kx) = (1 + (ky/κ)²)^(-3/2) / 2κ,   κ = |kx| / lateral,   ∫ D dky = 1,
 
-    so the share of the waves of wavenumber kx that lines a distance y apart have in common (their
-    coherence) is κy K₁(κy), K₁ the modified Bessel function: 0.5 at κy = 1.26, that is at a fifth of a
-    wavelength for lateral = 1.
+    so the share of the waves of wavenumber kx that lines a distance y apart have in common (their coherence)
+    is κy K₁(κy), K₁ the modified Bessel function: 0.5 at κy = 1.26, that is at a fifth of a wavelength for
+    lateral = 1, the correlation length across over that along; ``inf`` makes all lines equal.
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Points (nx, ny).
-    spacing : tuple of float
-        Spacing (dx, dy), m.
-    wavelengths : array_like, shape (b,)
-        Band centres, m, in any order; nominal values (0.63 m) or exact ones (10^(n/10) m).
-    levels_db : array_like, shape (b,)
-        Levels, dB re 1 µm rms.
-    lateral : float, optional
-        Correlation length across over that along, above zero; ``inf`` makes all lines equal.
-    seed : int
-        Seed of the random numbers.
+    The strip closes on itself along x and does not across. The mean square over all its lines has the levels
+    asked for, as `asperity.spectra.band_levels` finds them from the periodogram of the whole length; one line
+    scatters about them. The lateral direction is sampled exactly, by the covariance of the lines at each
+    wavenumber.
 
-    Returns
-    -------
-    HeightMap
-        Gaussian heights, m. The strip closes on itself along x and does not across. The mean square
-        over all its lines has the levels asked for, as `asperity.spectra.band_levels` finds them from
-        the periodogram of the whole length; one line scatters about them.
-
-    Raises
-    ------
-    InputError
-        If the strip is shorter than the longest band's edge, the spacing too coarse for the
-        shortest, or the wavelengths are no distinct one-third octaves.
-
-    Notes
-    -----
-    An isotropic areal spectrum C ∝ q^(-p) has D = (1 + (ky/kx)²)^(-p/2) times a constant and a line
-    density S1 ∝ kx^(1-p). With lateral = 1 the strip is thus exactly isotropic where the line density
-    falls as ν^(-2) (1 dB from band to shorter band) and nearly so beside it: the limit of
-    ISO 3095:2013 falls as ν^(-3) above 100 mm and as ν^(-1.6) below 30 mm.
-    The lateral direction is sampled exactly, by the covariance of the lines at each wavenumber.
+    An isotropic areal spectrum C ∝ q^(-p) has D = (1 + (ky/kx)²)^(-p/2) times a constant and a line density
+    S1 ∝ kx^(1-p). With lateral = 1 the strip is thus exactly isotropic where the line density falls as ν^(-2)
+    (1 dB from band to shorter band) and nearly so beside it: the limit of ISO 3095:2013 falls as ν^(-3) above
+    100 mm and as ν^(-1.6) below 30 mm.
     """
     nx, ny = _checked_strip(shape, spacing, lateral)
     lines = _fourier_lines(nx, spacing[0], wavelengths, levels_db)

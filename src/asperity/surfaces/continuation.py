@@ -24,35 +24,12 @@ def extend(
     crossfade: int = 0,
     what: str = "record",
 ) -> NDArray[np.float64]:
-    """Heights along a path of any length from a record.
+    """Heights (rows,) or (rows, k), m, along a path of any length from a record (n,) or (n, k).
 
-    Parameters
-    ----------
-    heights : array_like, shape (n,) or (n, k)
-        Line or strip along x, complete, m.
-    rows : int
-        Points along x wanted.
-    how : {"refuse", "mirror", "repeat"}, optional
-        Refuse a record that is too short; run through it to and fro (no step, a kink where it turns); or
-        repeat it with period n, as the circumference of a wheel.
-    spacing : float
-        Spacing along x, m.
-    start : int, optional
-        Point of the record that comes first; negative when it is mirrored or repeated.
-    crossfade : int, optional
-        Points on either side of the join over which a repeated record is closed, see `close`.
-    what : str, optional
-        What the record is, for messages.
-
-    Returns
-    -------
-    ndarray, shape (rows,) or (rows, k)
-        Heights, m.
-
-    Raises
-    ------
-    InputError
-        If the record is too short and continuing it is refused, the choice is unknown or points are missing.
+    The record is complete. One that is too short is refused, mirrored, that is run through to and fro (no
+    step, a kink where it turns), or repeated with period n, as the circumference of a wheel; then it is
+    closed over the points `crossfade`, see `close`. `start` is the point that comes first, negative only if
+    it is mirrored or repeated. `what` names the record in messages.
     """
     values = np.asarray(heights, dtype=np.float64)
     n = len(values)
@@ -79,22 +56,8 @@ def extend(
 def close(heights: ArrayLike, points: int) -> NDArray[np.float64]:
     """Close a periodic record: spread the step between its end and its start over both sides of the join.
 
-    Parameters
-    ----------
-    heights : array_like, shape (n,) or (n, k)
-        One period along x, m.
-    points : int
-        Points on either side of the join that are changed; none if zero.
-
-    Returns
-    -------
-    ndarray, shape (n,) or (n, k)
-        Heights, m, of the same period. Half the step is taken from either side, fading with a raised cosine.
-
-    Raises
-    ------
-    InputError
-        If the two sides would overlap.
+    Heights (n,) or (n, k), m; half the step is taken from that many points on either side, fading with a
+    raised cosine.
     """
     values = np.array(heights, dtype=np.float64)
     if not 0 <= 2 * points <= len(values):

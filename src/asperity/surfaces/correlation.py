@@ -16,26 +16,10 @@ CORRELATION_THRESHOLD = 0.2
 
 
 def autocorrelation(surface: HeightMap) -> NDArray[np.float64]:
-    """Normalised autocorrelation at lags up to half the map.
+    """Normalised autocorrelation at lags up to half the map, zero lag in the middle.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Heights, m; the mean is removed, pairs with a missing point are left out.
-
-    Returns
-    -------
-    ndarray, shape (2 (nx//2) + 1, 2 (ny//2) + 1)
-        Mean product of heights at a lag over that at zero lag; zero lag in the middle.
-
-    Raises
-    ------
-    InputError
-        If the heights are all equal.
-
-    References
-    ----------
-    ISO 25178-2:2021 (autocorrelation function).
+    Of shape (2 (nx//2) + 1, 2 (ny//2) + 1). The mean is removed, pairs with a missing point are left out. ISO
+    25178-2:2021 (autocorrelation function).
     """
     valid = np.isfinite(surface.heights)
     z = np.where(valid, surface.heights - np.nanmean(surface.heights), 0.0)
@@ -50,21 +34,10 @@ def autocorrelation(surface: HeightMap) -> NDArray[np.float64]:
 def lag_sums(
     heights: NDArray[np.float64], valid: NDArray[np.bool_], reach: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Sums of products of heights at all lags up to half their width, and the numbers of pairs.
+    """Sums of products of heights, m², at all lags up to half their width, and the numbers of pairs.
 
-    Parameters
-    ----------
-    heights : ndarray, shape (nx, ny)
-        Heights about their mean, m; zero where they are not valid.
-    valid : ndarray of bool, shape (nx, ny)
-        Where there is a height.
-    reach : int
-        Largest lag along the first axis, points.
-
-    Returns
-    -------
-    products, pairs : ndarray, shape (2 reach + 1, 2 (ny//2) + 1)
-        m² and numbers; zero lag in the middle.
+    Heights (nx, ny) are about their mean, m, and zero where they are not valid; `reach` is the largest lag
+    along x, points. Both results are (2 reach + 1, 2 (ny//2) + 1), zero lag in the middle.
     """
     lags = (reach, heights.shape[1] // 2)
     size = [fft.next_fast_len(n + lag + 1, real=True) for n, lag in zip(heights.shape, lags, strict=True)]
@@ -78,34 +51,11 @@ def lag_sums(
 def autocorrelation_lengths(
     surface: HeightMap, threshold: float = CORRELATION_THRESHOLD
 ) -> tuple[float, float]:
-    """Shortest and longest lag at which the central lobe of the autocorrelation falls to a threshold.
+    """Shortest and longest lag, m, at which the central lobe of the autocorrelation falls to a threshold.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Levelled heights, m.
-    threshold : float, optional
-        Value of the normalised autocorrelation, 0 < threshold < 1.
-
-    Returns
-    -------
-    shortest, longest : float
-        Sal and Sal/Str, m, over directions one degree apart.
-
-    Raises
-    ------
-    InputError
-        If the threshold is out of range or the map is flat.
-
-    Warns
-    -----
-    ShortRecordWarning
-        If the lobe reaches half the map in some direction: the longest lag is then at least the
-        one returned, and Str at most the ratio.
-
-    References
-    ----------
-    ISO 25178-2:2021 (Sal, Str).
+    Sal and Sal/Str of ISO 25178-2:2021, over directions one degree apart, of levelled heights. If the lobe
+    reaches half the map in some direction, a `ShortRecordWarning` says so: the longest lag is then at least
+    the one returned.
     """
     if not 0.0 < threshold < 1.0:
         raise InputError("threshold", threshold, "between 0 and 1")
@@ -117,21 +67,10 @@ def lengths_of(
     spacing: tuple[float, float],
     threshold: float = CORRELATION_THRESHOLD,
 ) -> tuple[float, float]:
-    """Find the lags at which the central lobe of an autocorrelation falls to a threshold.
+    """Lags, m, at which the central lobe of an autocorrelation falls to a share of its value at zero lag.
 
-    Parameters
-    ----------
-    correlation : ndarray, shape (odd, odd)
-        Mean products of heights; zero lag in the middle.
-    spacing : tuple of float
-        (dx, dy), m.
-    threshold : float, optional
-        Share of the value at zero lag.
-
-    Returns
-    -------
-    shortest, longest : float
-        As `autocorrelation_lengths`, with its warning.
+    The correlation (odd, odd) holds mean products of heights, zero lag in the middle; lags and warning are as
+    those of `autocorrelation_lengths`.
     """
     lobe = correlation / correlation[tuple(n // 2 for n in correlation.shape)]
     step = np.asarray(spacing)

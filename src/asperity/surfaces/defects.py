@@ -28,41 +28,13 @@ def corrugation(
     bandwidth: float | None = None,
     seed: int = 0,
 ) -> Profile:
-    """Corrugation of a rail: a sine, or a band of waves about one wavelength.
+    """Corrugation of a rail, heights about zero, m: a sine, or a band of waves about one wavelength, m.
 
-    Parameters
-    ----------
-    n : int
-        Points.
-    spacing : float
-        Spacing, m.
-    wavelength : float
-        Wavelength of the sine, or geometric centre of the band, m.
-    amplitude, rms : float, optional
-        Exactly one of them, m: half the height between peak and trough, or the root mean square. The
-        amplitude of a band is √2 times its rms.
-    bandwidth : float, optional
-        Width of the band, octaves; a sine if left out. The density is constant in the band, phases are
-        random.
-    seed : int, optional
-        Seed of the random phases of a band.
-
-    Returns
-    -------
-    Profile
-        Heights about zero, m. A sine starts at zero rising; a band has the exact rms over the line, and
-        closes on itself.
-
-    Raises
-    ------
-    InputError
-        If not exactly one size is given, a size is negative, the spacing is too coarse or the line too short
-        for the band.
-
-    Notes
-    -----
-    No standard gives a spectrum of corrugation; an amplitude of 25 µm at the wavelength v/f_pp of the
-    pinned-pinned frequency is used in the literature.
+    Exactly one size is given, m: the amplitude, half the height between peak and trough, or the rms, by √2
+    smaller, also for a band. A band has a width in octaves, constant density, random phases and the exact rms
+    over the line, on which it closes; a sine starts at zero rising. No standard gives a spectrum of
+    corrugation; an amplitude of 25 µm at the wavelength v/f_pp of the pinned-pinned frequency is used in the
+    literature.
     """
     if (amplitude is None) == (rms is None):
         received = "both" if rms is not None else "neither"
@@ -94,25 +66,7 @@ def corrugation(
 
 
 def flat_length(depth: float, radius: float) -> float:
-    """Length of a fresh wheel flat.
-
-    Parameters
-    ----------
-    depth : float
-        Depth at its middle below the round wheel, m.
-    radius : float
-        Of the wheel, m.
-
-    Returns
-    -------
-    float
-        Chord l = √(8 R d), m, for d much smaller than R.
-
-    Raises
-    ------
-    InputError
-        If the depth is not between zero and a twentieth of the radius.
-    """
+    """Chord l = √(8 R d) of a fresh wheel flat, m, for depths d up to a twentieth of the radius R, m."""
     if not 0.0 < depth <= radius / 20.0:
         raise InputError(
             "depth of the wheel flat", f"{depth} m", f"above zero, up to {radius / 20.0:.4g} m (R/20)"
@@ -123,34 +77,11 @@ def flat_length(depth: float, radius: float) -> float:
 def flat_geometry(
     x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh", length: float | None = None
 ) -> NDArray[np.float64]:
-    """Height of a flatted wheel against the round one.
+    """Height of a flatted wheel against the round one, zero or negative, m, along its circumference, m.
 
-    Parameters
-    ----------
-    x : array_like
-        Distance along the circumference from the middle of the flat, m.
-    depth : float
-        Depth d at the middle, m.
-    radius : float
-        Of the wheel, m.
-    shape : {"fresh", "worn"}, optional
-        Fresh: a chord, -(d - x²/2R) for |x| <= l/2. Worn: rounded, -d/2 (1 + cos 2πx/l).
-    length : float, optional
-        Length l of a worn flat, m, at least that of the chord √(8 R d), which all others have.
-
-    Returns
-    -------
-    ndarray
-        Heights, m, zero or negative, shape of `x`.
-
-    Raises
-    ------
-    InputError
-        If the depth, the shape or the length is wrong.
-
-    References
-    ----------
-    S. G. Newton and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287-297 (chord and rounded flat).
+    `x` counts from the middle of the flat. Fresh: a chord, -(d - x²/2R) for |x| <= l/2. Worn: rounded, -d/2
+    (1 + cos 2πx/l), its length l, m, at least that of the chord √(8 R d), which all others have. S. G. Newton
+    and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287-297 (chord and rounded flat).
     """
     length = _length(depth, radius, shape, length)
     distance = np.asarray(x, dtype=np.float64)
@@ -181,36 +112,12 @@ def _flat_shape(
 def flat_trajectory(
     x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh", length: float | None = None
 ) -> NDArray[np.float64]:
-    """Height of the centre of a rigid flatted wheel that rolls on a rigid flat rail.
+    """Height of the centre of a rigid flatted wheel that rolls on a rigid flat rail, zero or negative, m.
 
-    Parameters
-    ----------
-    x : array_like
-        Position of the wheel's centre from where the middle of the flat is below it, m.
-    depth : float
-        Depth d at the middle, m.
-    radius : float
-        Of the wheel, m.
-    shape : {"fresh", "worn"}, optional
-        See `flat_geometry`. Over a fresh flat the wheel turns about the ends of the chord in turn:
-        -(l/2 - |x|)²/2R, with a kink of slope ±l/2R at the middle. For a worn flat z(s) the envelope
-        max over s of z(s) - (s - x)²/2R is tabulated.
-    length : float, optional
-        See `flat_geometry`.
-
-    Returns
-    -------
-    ndarray
-        Heights, m, zero or negative, shape of `x`.
-
-    Raises
-    ------
-    InputError
-        If the depth, the shape or the length is wrong.
-
-    References
-    ----------
-    T. X. Wu and D. J. Thompson, J. Sound Vib. 251 (2002) 115-139 (wheel flats).
+    `x` is the centre's position, m, from where the middle of the flat is below it; the rest as in
+    `flat_geometry`. Over a fresh flat the wheel turns about the ends of the chord in turn: -(l/2 - |x|)²/2R,
+    with a kink of slope ±l/2R at the middle. For a worn flat z(s) the envelope max over s of z(s) - (s -
+    x)²/2R is tabulated. T. X. Wu and D. J. Thompson, J. Sound Vib. 251 (2002) 115-139 (wheel flats).
     """
     length = _length(depth, radius, shape, length)
     distance = np.abs(np.asarray(x, dtype=np.float64))
@@ -224,31 +131,11 @@ def flat_trajectory(
 
 
 def dipped_joint(x: ArrayLike, depth: float, length: float) -> NDArray[np.float64]:
-    """Height of a rail with a dipped joint: two parabolas that meet in a kink.
+    """Height of a rail with a dipped joint, m: two parabolas that meet in a kink.
 
-    Parameters
-    ----------
-    x : array_like
-        Distance from the joint along the rail, m.
-    depth : float
-        Depth at the joint, m.
-    length : float
-        Length of the whole dip, m.
-
-    Returns
-    -------
-    ndarray
-        Heights -depth (1 - 2|x|/length)² for |x| <= length/2, else zero, m, shape of `x`. The rail turns by
-        8 depth/length at the joint and joins the straight rail without a kink.
-
-    Raises
-    ------
-    InputError
-        If depth or length is not positive, or the dip is not shallow.
-
-    References
-    ----------
-    T. X. Wu and D. J. Thompson, J. Sound Vib. 267 (2003) 485-496 (rail joints with quadratic dips).
+    -depth (1 - 2|x|/length)² for |x| <= length/2, else zero, x from the joint; all in m. The rail turns by 8
+    depth/length at the joint and joins the straight rail without a kink. T. X. Wu and D. J. Thompson, J.
+    Sound Vib. 267 (2003) 485-496 (rail joints with quadratic dips).
     """
     if not 0.0 < length < math.inf:
         raise InputError("length of the dipped joint", length, "a finite positive length, m")

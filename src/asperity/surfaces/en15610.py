@@ -38,40 +38,18 @@ SHORTEST_SEGMENT = 1.0
 
 @dataclass(frozen=True)
 class Processing:
-    """Every switch of `process`, and what it did.
+    """Every switch of `process`, and what it did."""
 
-    Attributes
-    ----------
-    trimmed : tuple of int
-        Missing points cut off at the start and at the end.
-    fill : bool
-        Whether gaps were to be filled.
-    filled : int
-        Points that were.
-    spikes : bool
-        Whether spikes were to be removed.
-    spikes_removed, spike_points : int
-        Spikes removed, and points changed by it.
-    curvature : bool
-        Whether a circle was rolled over the line.
-    radius : float
-        Of that circle, m.
-    lifted : float
-        Share of the points that the circle did not touch, 0 to 1.
-    largest_lift : float
-        Largest height of the circle above a point, m.
-    """
-
-    trimmed: tuple[int, int] = (0, 0)
-    fill: bool = False
-    filled: int = 0
-    spikes: bool = False
+    trimmed: tuple[int, int] = (0, 0)  # missing points cut off at the start and at the end
+    fill: bool = False  # whether gaps were to be filled
+    filled: int = 0  # points that were
+    spikes: bool = False  # whether spikes were to be removed
     spikes_removed: int = 0
-    spike_points: int = 0
-    curvature: bool = False
-    radius: float = ROLLED_RADIUS
-    lifted: float = 0.0
-    largest_lift: float = 0.0
+    spike_points: int = 0  # points changed by it
+    curvature: bool = False  # whether a circle was rolled over the line
+    radius: float = ROLLED_RADIUS  # of that circle, m
+    lifted: float = 0.0  # share of the points that the circle did not touch, 0 to 1
+    largest_lift: float = 0.0  # largest height of the circle above a point, m
 
     def __str__(self) -> str:
         """Return what was done, in one sentence."""
@@ -93,45 +71,12 @@ def process(
     curvature: bool = True,
     radius: float = ROLLED_RADIUS,
 ) -> tuple[Profile, Processing]:
-    """Process a measured line: trim, fill, remove spikes, roll a circle over it.
+    """Process a measured line, m: trim, fill, remove spikes, roll a circle over it; and tell what each did.
 
-    Parameters
-    ----------
-    profile : Profile
-        Measured heights, m; missing points at the ends are cut off.
-    fill_gaps : bool, optional
-        Fill missing points inside by straight lines; they are refused otherwise.
-    spikes : bool, optional
-        Apply `remove_spikes`.
-    curvature : bool, optional
-        Apply `roll_over`.
-    radius : float, optional
-        Of the circle, m.
-
-    Returns
-    -------
-    profile : Profile
-        Processed heights, m.
-    processing : Processing
-        Which steps were taken and what each did.
-
-    Raises
-    ------
-    InputError
-        If points are missing inside and are not to be filled.
-
-    Warns
-    -----
-    CoarseSamplingWarning
-        If the spacing exceeds 1 mm.
-    MissingPointsWarning
-        If more than 5 % are filled.
-
-    Notes
-    -----
-    Pits narrower than the patch that the circle bridges are no longer in the line: a contact filter or a
-    contact geometry applied after it counts that effect twice in part. Leave `curvature` out for laws that
-    solve the contact on the heights themselves.
+    Missing points at the ends are cut off, those inside filled by straight lines or refused. Warned of are a
+    spacing beyond 1 mm and more than 5 % filled points. Pits narrower than the patch that the circle bridges
+    are no longer in the line: a contact filter or a contact geometry applied after it counts that effect
+    twice in part. Leave `curvature` out for laws that solve the contact on the heights themselves.
     """
     if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
         message = (
@@ -162,20 +107,7 @@ def process(
 
 
 def trim(profile: Profile) -> tuple[Profile, tuple[int, int]]:
-    """Cut missing points off both ends.
-
-    Parameters
-    ----------
-    profile : Profile
-        Heights, m.
-
-    Returns
-    -------
-    profile : Profile
-        Heights from the first to the last point that has one, m.
-    trimmed : tuple of int
-        Points cut off at the start and at the end.
-    """
+    """Cut missing points off both ends; and tell how many there."""
     valid = np.flatnonzero(np.isfinite(profile.heights))
     first, last = int(valid[0]), int(valid[-1]) + 1
     cut = (first, len(profile.heights) - last)
@@ -183,30 +115,13 @@ def trim(profile: Profile) -> tuple[Profile, tuple[int, int]]:
 
 
 def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
-    """Remove narrow upward spikes, as dust and grains leave them.
+    """Remove narrow upward spikes, as dust and grains leave them; and tell how many, and of how many points.
 
     A spike holds a point with a second derivative below -10⁷ µm/m², ends at the nearest feet on either side
     (where a positive second derivative is largest) and is higher above the straight line between its feet
-    than w²/3 m, w their distance. It is replaced by that line.
-
-    Parameters
-    ----------
-    profile : Profile
-        Complete heights, m.
-
-    Returns
-    -------
-    profile : Profile
-        Heights without spikes, m.
-    spikes : int
-        How many were removed.
-    points : int
-        How many points that changed.
-
-    Notes
-    -----
-    EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of where
-    a spike ends. One pass; the ends of the record count as feet.
+    than w²/3 m, w their distance. It is replaced by that line. One pass; the ends of the record count as
+    feet. EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of
+    where a spike ends.
     """
     heights = np.array(_complete(profile))
     bend = np.diff(heights, 2)
@@ -225,30 +140,11 @@ def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
 
 
 def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
-    """Path of a circle's lowest point as it rolls over a line.
+    """Path of a circle's lowest point as it rolls over a complete line, m, nowhere below it.
 
-    Parameters
-    ----------
-    profile : Profile
-        Complete heights, m.
-    radius : float, optional
-        Of the circle, m.
-
-    Returns
-    -------
-    Profile
-        Heights, m, nowhere below the line: max over s of z(s) - R + √(R² - (s - x)²) at the points s of the
-        line. At the ends only the line itself carries.
-
-    Raises
-    ------
-    InputError
-        If points are missing or the radius is not positive.
-
-    Notes
-    -----
-    EN 15610:2009 (curvature processing). Contact is found at points of the line: the height between them is
-    off by at most spacing²/8R, 0.3 µm at 1 mm.
+    max over s of z(s) - R + √(R² - (s - x)²) at the points s of the line; at the ends only the line itself
+    carries. EN 15610:2009 (curvature processing). Contact is found at points of the line: the height between
+    them is off by at most spacing²/8R, 0.3 µm at 1 mm.
     """
     heights = _complete(profile)
     if not 0.0 < radius < math.inf:
@@ -271,29 +167,12 @@ def _complete(profile: Profile) -> NDArray[np.float64]:
 def roughness_spectrum(
     profiles: Profile | Sequence[Profile], *, segment: float = SHORTEST_SEGMENT
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """One-third-octave levels of measured lines, method A of the standard.
+    """One-third-octave levels, dB re 1 µm, of measured lines, method A of the standard, after wavelengths, m.
 
-    Parameters
-    ----------
-    profiles : Profile or sequence of Profile
-        One record or more with one spacing, complete, processed, m.
-    segment : float, optional
-        Length of the Hann-windowed segments with 50 % overlap, m; at least 1 m. The mean of the
-        record is removed.
-
-    Returns
-    -------
-    wavelength : ndarray, shape (b,)
-        Exact band centres, m, falling; the longest is at most a quarter of the shortest record, and its
-        band at least as wide as the step 1/segment.
-    level : ndarray, shape (b,)
-        dB re 1 µm of the mean power of all segments, weighted by the lengths of the records; lines that
-        straddle an edge are shared in proportion.
-
-    Raises
-    ------
-    InputError
-        If a record is shorter than the segment, the segment shorter than 1 m or the spacings differ.
+    Records are complete and processed, m; the mean of each is removed. Segments, m, at least 1 m long, are
+    Hann-windowed with 50 % overlap. The exact band centres fall; the longest is at most a quarter of the
+    shortest record, and its band at least as wide as the step 1/segment. Levels are of the mean power of all
+    segments, weighted by the lengths of the records; lines that straddle an edge are shared in proportion.
     """
     records = [profiles] if isinstance(profiles, Profile) else list(profiles)
     if not records or any(not math.isclose(r.spacing, records[0].spacing, rel_tol=1e-6) for r in records):

@@ -19,49 +19,17 @@ Surface = TypeVar("Surface", HeightMap, Profile)
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """Least-squares form of a surface.
+    """Least-squares form of a surface."""
 
-    Parameters
-    ----------
-    kind : str
-        ``"sphere"``, ``"cylinder"`` or ``"polynomial"``.
-    heights : ndarray, shape of the surface
-        Heights of the form, m.
-    radius : float
-        Radius of curvature, m, positive for a hill and negative for a hollow; NaN for a polynomial.
-    """
-
-    kind: str
-    heights: NDArray[np.float64]
-    radius: float
+    kind: str  # ``"sphere"``, ``"cylinder"`` or ``"polynomial"``
+    heights: NDArray[np.float64]  # of the form, m, with the shape of the surface
+    radius: float  # of curvature, m, positive for a hill and negative for a hollow; NaN for a polynomial
 
 
 def remove_form(
     surface: Surface, form: Literal["sphere", "cylinder", "polynomial"] = "sphere", *, degree: int = 2
 ) -> Surface:
-    """Remove the least-squares form; missing points stay missing.
-
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Heights, m.
-    form : {"sphere", "cylinder", "polynomial"}, optional
-        What to fit, see `fit_form`.
-    degree : int, optional
-        Total degree of the polynomial.
-
-    Returns
-    -------
-    HeightMap or Profile
-        What is left, m.
-
-    Raises
-    ------
-    InputError
-        If the form is unknown or does not suit the data.
-    ComputationError
-        If the fit does not converge.
-    """
+    """Remove the form that `fit_form` finds, m; missing points stay missing."""
     return replace(surface, heights=surface.heights - fit_form(surface, form, degree=degree).heights)
 
 
@@ -71,34 +39,12 @@ def fit_form(
     *,
     degree: int = 2,
 ) -> Form:
-    """Fit a form by least squares of the height differences.
+    """Fit a form by least squares of the height differences, m.
 
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Heights, m.
-    form : {"sphere", "cylinder", "polynomial"}, optional
-        A cylinder lies in any direction of the plane and may be tilted slightly along its axis;
-        for a profile, sphere and cylinder both mean a circle.
-    degree : int, optional
-        Total degree of the polynomial.
-
-    Returns
-    -------
-    Form
-        Heights of the form and its radius.
-
-    Raises
-    ------
-    InputError
-        If the form is unknown or the surface has no curvature to fit.
-    ComputationError
-        If the fit does not converge.
-
-    Notes
-    -----
-    The differences are taken along z, not along the normal: the same for a cap that is shallow
-    against its radius, as measured patches are.
+    A cylinder lies in any direction of the plane and may be tilted slightly along its axis; for a profile,
+    sphere and cylinder both mean a circle. `degree` is the total degree of the polynomial. The differences
+    are taken along z, not along the normal: the same for a cap that is shallow against its radius, as
+    measured patches are.
     """
     if form == "polynomial":
         return Form("polynomial", polynomial(surface, degree), float("nan"))
@@ -192,25 +138,7 @@ def _check_count(valid: NDArray[np.bool_], coefficients: int) -> None:
 
 
 def polynomial(surface: HeightMap | Profile, degree: int) -> NDArray[np.float64]:
-    """Least-squares polynomial of a total degree through the valid points.
-
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Heights, m.
-    degree : int
-        Total degree in x and y, 0 to 12.
-
-    Returns
-    -------
-    ndarray, shape of the surface
-        Heights of the polynomial at all points, m.
-
-    Raises
-    ------
-    InputError
-        If the degree is out of range or there are fewer valid points than coefficients.
-    """
+    """Heights, m, of the least-squares polynomial of a total degree, 0 to 12, through the valid points."""
     if not (isinstance(degree, int | np.integer) and 0 <= degree <= 12):
         raise InputError("degree", degree, "a whole number from 0 to 12")
     axes = [np.linspace(-1.0, 1.0, n) for n in surface.shape]

@@ -27,24 +27,13 @@ FEWEST_POINTS = 8
 
 @dataclass(frozen=True, eq=False)
 class Homogeneity:
-    """Outcome of the homogeneity test.
+    """Outcome of the homogeneity test."""
 
-    Parameters
-    ----------
-    tile_rms : ndarray, shape (kx, ky)
-        Root mean square height of each tile about the map's mean plane, m.
-    variation : float
-        Coefficient of variation of the tiles' mean squares.
-    expected : float
-        Median of the same over stationary surrogates.
-    p_value : float
-        Share of surrogates, this map included, that vary at least as much.
-    """
-
+    # (kx, ky), root mean square height of each tile about the map's mean plane, m
     tile_rms: NDArray[np.float64]
-    variation: float
-    expected: float
-    p_value: float
+    variation: float  # coefficient of variation of the tiles' mean squares
+    expected: float  # median of the same over stationary surrogates
+    p_value: float  # share of surrogates, this map included, that vary at least as much
 
     @property
     def homogeneous(self) -> bool:
@@ -57,39 +46,13 @@ def homogeneity(
 ) -> Homogeneity:
     """Test whether the mean square of tiles varies more than on a stationary surface.
 
-    The surrogates are pieces of a stationary surface with the spectrum and the height
-    distribution of the map (see `asperity.surfaces.synthesis.from_map`), levelled and tiled as
-    the map is.
+    The surrogates are pieces of a stationary surface with the spectrum and the height distribution of the map
+    (see `asperity.surfaces.synthesis.from_map`), levelled and tiled as the map is; there are at least 19, and
+    the smallest p-value is 1/(surrogates + 1). Rows and columns left over by the tiles are not used.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Complete heights, m.
-    tiles : tuple of int, optional
-        Tiles (kx, ky) to cut the map into; rows and columns left over at the end are not used.
-    surrogates : int, optional
-        Number of surrogates, at least 19; the smallest p-value is 1/(surrogates + 1).
-    seed : int, optional
-        Seed of the surrogates.
-
-    Returns
-    -------
-    Homogeneity
-        Tiles, their variation and how unusual it is.
-
-    Raises
-    ------
-    InputError
-        If points are missing, the tiles are not smaller than the map or the surrogates too few.
-
-    Notes
-    -----
-    One-sided rank test (Monte Carlo test), on at most 192 points along a side. Finds patches and trends of
-    roughness larger than a tile; a change of the spectrum at equal mean square goes unseen.
-
-    References
-    ----------
-    J. Theiler et al., Physica D 58 (1992) 77 (surrogate data).
+    One-sided rank test (Monte Carlo test), on at most 192 points along a side (J. Theiler et al., Physica D
+    58 (1992) 77: surrogate data). Finds patches and trends of roughness larger than a tile; a change of the
+    spectrum at equal mean square goes unseen.
     """
     nx, ny = surface.shape
     if not (
@@ -128,47 +91,17 @@ def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> NDArray[np
 
 @dataclass(frozen=True)
 class Anisotropy:
-    """Strength and direction of a texture.
+    """Strength and direction of a texture; the latter is meaningless for an isotropic one."""
 
-    Parameters
-    ----------
-    aspect_ratio : float
-        Str: shortest over longest correlation length; 1 is isotropic.
-    direction : float
-        Std: angle from x in which the texture varies most, rad, 0 to π; the lay is at right
-        angles to it. Meaningless for an isotropic texture.
-    """
-
-    aspect_ratio: float
+    aspect_ratio: float  # Str: shortest over longest correlation length; 1 is isotropic
+    # Std: angle from x in which the texture varies most, rad, 0 to π; the lay is at right angles
     direction: float
 
 
 def anisotropy(surface: HeightMap) -> Anisotropy:
-    """Texture aspect ratio and direction.
+    """Texture aspect ratio Str and direction Std, ISO 25178-2:2021, of complete, levelled heights.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Complete, levelled heights, m.
-
-    Returns
-    -------
-    Anisotropy
-        Str, and Std from `texture_direction`.
-
-    Raises
-    ------
-    InputError
-        If points are missing.
-
-    Warns
-    -----
-    ShortRecordWarning
-        If the autocorrelation does not fall to 0.2 inside the map.
-
-    References
-    ----------
-    ISO 25178-2:2021 (Str, Std).
+    Warns of a short record if the autocorrelation does not fall to 0.2 inside the map.
     """
     shortest, longest = autocorrelation_lengths(surface)
     return Anisotropy(shortest / longest, texture_direction(surface))
@@ -177,15 +110,7 @@ def anisotropy(surface: HeightMap) -> Anisotropy:
 def more_than_chance(p_values: Sequence[float]) -> bool:
     """Whether more maps fail the test than chance makes fail, at 5 % significance.
 
-    Parameters
-    ----------
-    p_values : sequence of float
-        Of the maps, from `homogeneity`.
-
-    Returns
-    -------
-    bool
-        One of one, two of two to seven, three of eight or more, and so on: the binomial tail.
+    One of one, two of two to seven, three of eight or more, and so on: the binomial tail.
     """
     count = sum(p <= SIGNIFICANCE for p in p_values)
     return bool(binom.sf(count - 1, len(p_values), SIGNIFICANCE) <= SIGNIFICANCE * (1 + 1e-9))

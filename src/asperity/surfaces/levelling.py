@@ -26,22 +26,7 @@ FILLED_SHARE_WARNED = 0.05
 def level(surface: Surface, degree: int = 1) -> Surface:
     """Remove the least-squares polynomial of a total degree; missing points stay missing.
 
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Heights, m.
-    degree : int, optional
-        0 removes the mean, 1 the mean plane or line, 2 a paraboloid.
-
-    Returns
-    -------
-    HeightMap or Profile
-        Heights with zero mean, m.
-
-    Raises
-    ------
-    InputError
-        If the degree is not 0, 1 or 2, or there are fewer points than coefficients.
+    0 removes the mean, 1 the mean plane or line, 2 a paraboloid.
     """
     if degree not in (0, 1, 2):
         raise InputError("degree", degree, "0 (mean), 1 (plane) or 2", "Use remove_form for more.")
@@ -49,43 +34,17 @@ def level(surface: Surface, degree: int = 1) -> Surface:
 
 
 def band_limit(surface: Surface, longest: float | None = None, shortest: float | None = None) -> Surface:
-    """Keep a band of wavelengths with zero-phase Gaussian filters.
+    """Keep a band of wavelengths, m, with zero-phase Gaussian filters; None leaves a side open.
 
-    Transmission is 50 % at each limit. `shortest` is the nesting index of the S-filter (low pass),
-    `longest` that of the L-filter (high pass, the heights less their low pass).
+    Transmission is 50 % at each limit. `shortest` is the nesting index of the S-filter (low pass), `longest`
+    that of the L-filter (high pass, the heights less their low pass): ISO 16610-21:2011 (profiles) and ISO
+    16610-61:2015 (areas), s(x) = exp(-π (x/αλ)²)/(αλ), α = √(ln 2/π), cut at one cut-off wavelength on either
+    side. Where `longest` exceeds the surface, a warning says that the high pass removes little more than the
+    mean.
 
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Heights, m. Missing points stay missing and carry no weight.
-    longest, shortest : float, optional
-        Cut-off wavelengths, m; None leaves that side open.
-
-    Returns
-    -------
-    HeightMap or Profile
-        Filtered heights, m.
-
-    Raises
-    ------
-    InputError
-        If a cut-off is shorter than two samples or they are not in order.
-
-    Warns
-    -----
-    ShortRecordWarning
-        If `longest` exceeds the surface: the high pass then removes little more than the mean.
-
-    Notes
-    -----
-    At edges and beside missing points the weights are normalised to those that fall on data (a
-    regression of degree zero): a constant passes unchanged, but within half a cut-off of an edge a
+    At edges and beside missing points, which stay missing, the weights are normalised to those that fall on
+    data (a regression of degree zero): a constant passes unchanged, but within half a cut-off of an edge a
     slope is bent. Level or remove the form first, or cut the margin off afterwards.
-
-    References
-    ----------
-    ISO 16610-21:2011 (profiles) and ISO 16610-61:2015 (areas): s(x) = exp(-π (x/αλ)²)/(αλ),
-    α = √(ln 2/π), cut at one cut-off wavelength on either side.
     """
     spacings = np.atleast_1d(np.asarray(surface.spacing))
     for name, cut_off in (("longest", longest), ("shortest", shortest)):
@@ -132,25 +91,9 @@ def _convolve(values: NDArray[np.float64], kernel: NDArray[np.float64], axis: in
 def fill(surface: Surface) -> Surface:
     """Fill missing points: the harmonic surface through their neighbours, or straight lines in a profile.
 
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Heights, m, with NaN where missing.
-
-    Returns
-    -------
-    HeightMap or Profile
-        Complete heights, m; `source` states the share that was filled.
-
-    Warns
-    -----
-    MissingPointsWarning
-        If more than 5 % are filled: filled points carry no roughness.
-
-    Notes
-    -----
-    Solves the five-point Laplace equation on the missing points, with no slope at the border: no
-    new peak or valley arises.
+    Solves the five-point Laplace equation on the missing points, with no slope at the border: no new peak or
+    valley arises. `source` states the share that was filled; more than 5 % are warned of, as filled points
+    carry no roughness.
     """
     missing = np.isnan(surface.heights)
     share = float(missing.mean())
@@ -201,28 +144,12 @@ def _slab(values: NDArray[Any], axis: int, part: slice) -> NDArray[Any]:
 
 
 def resample(surface: Surface, spacing: float | tuple[float, float]) -> Surface:
-    """Bring a complete surface to another spacing, without aliasing.
+    """Bring a complete surface to another spacing, m, without aliasing.
 
-    Wavelengths shorter than two new samples are removed by a sharp zero-phase low pass (cosine
-    series, which mirrors the surface at its edges); what is left is interpolated. A finer grid
-    gains points but no shorter wavelengths.
-
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Heights, m, without missing points; level it first, as a slope is broken at the edges.
-    spacing : float or tuple of float
-        New spacing, m; one number serves both directions.
-
-    Returns
-    -------
-    HeightMap or Profile
-        Points at the centres of the new cells that fit in the area, counted from its first edge.
-
-    Raises
-    ------
-    InputError
-        If points are missing, or the spacing is not positive or leaves fewer than two points.
+    Wavelengths shorter than two new samples are removed by a sharp zero-phase low pass (cosine series, which
+    mirrors the surface at its edges: level it first, as a slope is broken there); what is left is
+    interpolated. A finer grid gains points but no shorter wavelengths. The points are the centres of the new
+    cells that fit in the area, counted from its first edge.
     """
     if np.isnan(surface.heights).any():
         received = f"{surface.missing_share:.2%} missing points"

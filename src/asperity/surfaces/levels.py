@@ -31,29 +31,12 @@ def band_levels_of(
     shortest: float | None = None,
     longest: float | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """One-third-octave levels in wavelength; those of a surface are the mean power of its lines along x.
+    """One-third-octave levels, dB re 1 µm, with their wavelengths, m; of a map the mean power along x.
 
-    Parameters
-    ----------
-    surface : Profile or HeightMap
-        Complete heights, m; the mean of each line is removed.
-    segment : float, optional
-        Length of the Hann-windowed segments with 50 % overlap, m; the whole length by default.
-    shortest, longest : float, optional
-        Wavelengths that lie in the last and the first band, m. By default all bands that the segment
-        resolves and the spacing holds.
-
-    Returns
-    -------
-    wavelength : ndarray, shape (b,)
-        Exact band centres, m, falling.
-    level : ndarray, shape (b,)
-        dB re 1 µm; minus infinity for an empty band.
-
-    Raises
-    ------
-    InputError
-        If points are missing, or no band is covered.
+    Complete heights, m; the mean of each line is removed. Segments, m, are Hann-windowed with 50 % overlap,
+    the whole length by default. `shortest` and `longest` lie in the last and the first band; by default all
+    bands that the segment resolves and the spacing holds. The exact band centres fall; an empty band has a
+    level of minus infinity.
     """
     spacing = surface.spacing[0] if isinstance(surface, HeightMap) else surface.spacing
     points = None if segment is None else round(segment / spacing)
@@ -69,18 +52,8 @@ def band_levels_of(
 def check_levels(surfaces: Sequence[Profile | HeightMap], what: str = "heights") -> None:
     """Ask for the unit where levels are far from those of wheels and rails.
 
-    Parameters
-    ----------
-    surfaces : sequence of Profile or HeightMap
-        Complete heights, m, without form.
-    what : str, optional
-        What they are, for the message.
-
-    Raises
-    ------
-    InputError
-        If a band between 3.15 mm and 0.4 m that the record resolves lies beyond ±60 dB re 1 µm.
-        Empty bands, 120 dB below the highest, do not count.
+    That is beyond ±60 dB re 1 µm in a band between 3.15 mm and 0.4 m that the record resolves. Empty bands,
+    120 dB below the highest, do not count. The heights are complete and without form, m.
     """
     for surface in surfaces:
         wavelength, level = band_levels_of(surface)

@@ -28,24 +28,14 @@ LONGEST = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Likeness:
-    """What a synthesised surface shares with measured maps.
+    """What a synthesised surface shares with measured maps."""
 
-    Attributes
-    ----------
-    transform : callable
-        From a normal variable of unit variance to heights, m.
-    correlation : ndarray, shape (odd, odd)
-        Correlation coefficient of the normal field at all lags up to `LAGS` maps, zero lag first (wrapped).
-    spacing : tuple of float
-        (dx, dy), m.
-    source : str
-        Where the maps came from.
-    """
-
+    # from a normal variable of unit variance to heights, m
     transform: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    # (odd, odd), of the normal field at all lags up to `LAGS` maps, zero lag first (wrapped)
     correlation: NDArray[np.float64]
-    spacing: tuple[float, float]
-    source: str
+    spacing: tuple[float, float]  # (dx, dy), m
+    source: str  # where the maps came from
 
     @property
     def reach(self) -> int:
@@ -58,25 +48,9 @@ def likeness(
 ) -> Likeness:
     """Estimate the height distribution and the correlation of the surface that maps were cut from.
 
-    Parameters
-    ----------
-    maps : HeightMap or sequence of HeightMap
-        One or more maps of one texture with the same spacing, complete; each is levelled by its mean plane.
-    spacing : float or tuple of float, optional
-        Spacing wanted, m; that of the maps by default.
+    The maps are of one texture, with one spacing, and complete, with at least eight points along a side; each
+    is levelled by its mean plane. Another spacing, m, may be wanted.
 
-    Returns
-    -------
-    Likeness
-        The estimate.
-
-    Raises
-    ------
-    InputError
-        If maps have missing points, no roughness, different spacings or fewer than eight points along a side.
-
-    Notes
-    -----
     A window mixes each wavenumber with its neighbours, one step of the map away. In a spectrum that falls by
     10 dB a step, as that of long waves or of a bow, the neighbours win. So the window is put on the
     *curvature* of the maps, whose spectrum is nearly even and which knows no plane and no bow, and the

@@ -31,33 +31,15 @@ SLENDER = 20.0
 def are_lines(surface: HeightMap) -> bool:
     """Judge by its shape whether an array holds lines measured side by side rather than a map.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        As a file gave it, which knows no distance across of lines.
-
-    Returns
-    -------
-    bool
-        True for at most 32 lines, each with at least 20 times as many points.
+    At most 32 lines, each with at least 20 times as many points; such a file knows no distance across of
+    lines.
     """
     few, many = sorted(surface.shape)
     return few <= MOST_LINES and many >= SLENDER * few
 
 
 def lines_of(surface: HeightMap) -> tuple[Profile, ...]:
-    """Take an array as lines side by side, which lie along its longer side.
-
-    Parameters
-    ----------
-    surface : HeightMap
-        Heights, m.
-
-    Returns
-    -------
-    tuple of Profile
-        The lines, with missing points where the array has them.
-    """
+    """Take an array as lines side by side, which lie along its longer side."""
     along = int(np.argmax(surface.shape))
     heights = surface.heights if along == 1 else surface.heights.T
     return tuple(
@@ -68,56 +50,23 @@ def lines_of(surface: HeightMap) -> tuple[Profile, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Register:
-    """Parallel lines in register, and what brought them there.
+    """Parallel lines in register, and what brought them there."""
 
-    Attributes
-    ----------
-    lines : ndarray, shape (k, n)
-        Heights, m, cut to the shortest full line.
-    reversed : tuple of bool
-        Whether each line was turned round.
-    shifts : tuple of int
-        Points by which each line was moved on, around its length.
-    correlations : tuple of float
-        Correlation coefficient of each line with the one before it; 1 for the first.
-    replaced : tuple of int
-        Lines too short for a full turn, replaced by their neighbours, linearly in between.
-    """
-
-    lines: NDArray[np.float64]
-    reversed: tuple[bool, ...]
-    shifts: tuple[int, ...]
-    correlations: tuple[float, ...]
+    lines: NDArray[np.float64]  # (k, n), heights, m, cut to the shortest full line
+    reversed: tuple[bool, ...]  # whether each line was turned round
+    shifts: tuple[int, ...]  # points by which each line was moved on, around its length
+    correlations: tuple[float, ...]  # coefficient of each line with the one before it; 1 for the first
+    # lines too short for a full turn, replaced by their neighbours, linearly in between
     replaced: tuple[int, ...]
 
 
 def register(profiles: Sequence[Profile]) -> Register:
-    """Turn and shift the parallel lines of a wheel so that neighbours agree.
+    """Turn and shift the complete, parallel lines of a wheel so that neighbours agree.
 
     Lines are often measured to and fro, each starting anew. Every line but the first is tried in both
     directions, and at all shifts around the wheel, against the line before it; the highest correlation wins.
     Starts within 1 % of a turn are preferred, since long waves also agree elsewhere: one farther away must
-    raise the correlation by 0.2.
-
-    Parameters
-    ----------
-    profiles : sequence of Profile
-        Lines around one wheel, complete, side by side, with one spacing.
-
-    Returns
-    -------
-    Register
-        The lines and what was done to them.
-
-    Raises
-    ------
-    InputError
-        If there is none, points are missing or the spacings differ.
-
-    Warns
-    -----
-    ShortRecordWarning
-        If a line is shorter than 95 % of the longest.
+    raise the correlation by 0.2. A line shorter than 95 % of the longest is warned of.
     """
     longest = max((len(p.heights) for p in profiles), default=0)
     full = [k for k, p in enumerate(profiles) if len(p.heights) >= FULL_LINE * longest]
@@ -163,23 +112,7 @@ def _correlation(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
 
 
 def common_length(profiles: Sequence[Profile]) -> NDArray[np.float64]:
-    """Parallel lines cut to the length of the shortest.
-
-    Parameters
-    ----------
-    profiles : sequence of Profile
-        Lines, complete, with one spacing.
-
-    Returns
-    -------
-    ndarray, shape (k, n)
-        Heights, m.
-
-    Raises
-    ------
-    InputError
-        If there is none, points are missing or the spacings differ.
-    """
+    """Complete parallel lines with one spacing, cut to the length of the shortest: heights (k, n), m."""
     if not profiles:
         raise InputError("parallel lines", "none", "one or more lines")
     for profile in profiles:
@@ -196,36 +129,12 @@ def common_length(profiles: Sequence[Profile]) -> NDArray[np.float64]:
 def strip_from_lines(
     lines: ArrayLike, spacing: float, distance_across: float, shape_y: int, spacing_y: float
 ) -> NDArray[np.float64]:
-    """Strip through parallel lines.
+    """Strip (n, shape_y) through complete parallel lines (k, n), heights and distances in m.
 
-    Parameters
-    ----------
-    lines : array_like, shape (k, n)
-        Heights of the lines, complete, m.
-    spacing : float
-        Spacing along the lines, m.
-    distance_across : float
-        Distance of neighbouring lines, m.
-    shape_y : int
-        Points across wanted, centred on the lines.
-    spacing_y : float
-        Their spacing, m.
-
-    Returns
-    -------
-    ndarray, shape (n, shape_y)
-        Heights, m: across, one line is constant, two and three are joined by straight lines, four and more by
-        a cubic spline; beyond the outer lines their heights hold.
-
-    Raises
-    ------
-    InputError
-        If the lines are not complete or a spacing is not positive.
-
-    Notes
-    -----
-    Between lines that have little in common the interpolated texture is smoother than a measured one: its
-    mean square falls to about half, midway between uncorrelated lines.
+    The points across are centred on the lines. Across, one line is constant, two and three are joined by
+    straight lines, four and more by a cubic spline; beyond the outer lines their heights hold. Between lines
+    that have little in common the interpolated texture is smoother than a measured one: its mean square falls
+    to about half, midway between uncorrelated lines.
     """
     heights = np.asarray(lines, dtype=np.float64)
     if heights.ndim != 2 or heights.size == 0 or not np.isfinite(heights).all():

@@ -32,58 +32,22 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Statistic:
-    """One roughness parameter.
+    """One roughness parameter."""
 
-    Parameters
-    ----------
-    symbol : str
-        Symbol of the standard, as ``"Sq"``.
-    value : float
-        Value in `unit`; NaN if it cannot be determined.
-    unit : str
-        ``"m"``, ``"rad"``, or ``"1"`` for a ratio.
-    bandwidth : tuple of float
-        Shortest and longest wavelength of the data, m.
-    meaning : str
-        What it is, in words.
-    """
-
-    symbol: str
-    value: float
-    unit: str
-    bandwidth: tuple[float, float]
-    meaning: str
+    symbol: str  # of the standard, as ``"Sq"``
+    value: float  # in `unit`; NaN if it cannot be determined
+    unit: str  # ``"m"``, ``"rad"``, or ``"1"`` for a ratio
+    bandwidth: tuple[float, float]  # shortest and longest wavelength of the data, m
+    meaning: str  # what it is, in words
 
 
 def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:
-    """Areal roughness parameters Sq, Sa, Ssk, Sku, Sz, Sdq, Sdr, Sal, Str, Std.
+    """Areal roughness parameters Sq, Sa, Ssk, Sku, Sz, Sdq, Sdr, Sal, Str, Std, ISO 25178-2:2021.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Levelled heights, m; the mean is removed here, missing points are left out.
-    bandwidth : tuple of float, optional
-        Shortest and longest wavelength, m, if the data were filtered. Default: two samples to the
-        longest side.
-
-    Returns
-    -------
-    list of Statistic
-        In the order above.
-
-    Raises
-    ------
-    InputError
-        If the map has fewer than seven points along an axis or is flat.
-
-    Warns
-    -----
-    ShortRecordWarning
-        If the autocorrelation does not fall to 0.2 inside the map; see `autocorrelation_lengths`.
-
-    References
-    ----------
-    ISO 25178-2:2021. Slopes by the seven-point formula of ISO 4287:1997.
+    Levelled heights, m; the mean is removed here, missing points are left out. `bandwidth` is that of
+    filtered data, m; by default from two samples to the longest side. Slopes are by the seven-point formula
+    of ISO 4287:1997. If the autocorrelation does not fall to 0.2 inside the map, there is a warning, see
+    `autocorrelation_lengths`.
     """
     band = bandwidth or (2.0 * min(surface.spacing), max(surface.size))
     square = _square_slope(surface)
@@ -107,25 +71,12 @@ def areal_parameters(
     lengths: tuple[float, float],
     band: tuple[float, float],
 ) -> list[Statistic]:
-    """Name areal roughness parameters.
+    """Name areal roughness parameters, in the order of `areal_statistics`, but for Std.
 
-    Parameters
-    ----------
-    powers : ndarray, shape (4,)
-        Means of |z|, z², z³ and z⁴ about the mean, m to m⁴.
-    total : float
-        Highest peak to lowest valley, m.
-    slopes : tuple of float
-        Mean square slope, and the developed area beyond the plane's over it.
-    lengths : tuple of float
-        Shortest and longest lag at which the autocorrelation falls to 0.2, m.
-    band : tuple of float
-        Shortest and longest wavelength, m.
-
-    Returns
-    -------
-    list of Statistic
-        In the order of `areal_statistics`, but for Std.
+    `powers` are the means of |z|, z², z³ and z⁴ about the mean, m to m⁴; `total` is from the highest peak to
+    the lowest valley, m; `slopes` are the mean square slope, and the developed area beyond the plane's over
+    it; `lengths` those at which the autocorrelation falls to 0.2 and `band` the wavelengths, shortest and
+    longest, m.
     """
     shortest, longest = lengths
     return [
@@ -138,23 +89,7 @@ def areal_parameters(
 
 
 def rms_slope(surface: HeightMap) -> float:
-    """Rms slope Sdq of a surface.
-
-    Parameters
-    ----------
-    surface : HeightMap
-        Levelled heights, m; missing points are left out.
-
-    Returns
-    -------
-    float
-        Sdq.
-
-    Raises
-    ------
-    InputError
-        If the map has fewer than seven points along an axis.
-    """
+    """Rms slope Sdq of levelled heights, m; missing points are left out."""
     return float(np.sqrt(np.nanmean(_square_slope(surface))))
 
 
@@ -164,24 +99,9 @@ def _square_slope(surface: HeightMap) -> NDArray[np.float64]:
 
 
 def shortest_wave_for(surface: HeightMap, slope: float) -> float:
-    """Cut-off that leaves a surface with an rms slope when `asperity.surfaces.levelling.band_limit` has it.
+    """Cut-off, m, that leaves a surface with an rms slope when `levelling.band_limit` has it.
 
-    Parameters
-    ----------
-    surface : HeightMap
-        Complete, levelled heights, m.
-    slope : float
-        Rms slope that is wanted.
-
-    Returns
-    -------
-    float
-        Shortest wavelength, m, at most the surface's longest side; zero where it has no larger slope.
-
-    Raises
-    ------
-    InputError
-        If points are missing.
+    Complete, levelled heights, m. At most the surface's longest side; zero where it has no larger slope.
     """
     qx, qy, density = psd_2d(surface)
     square = qx[:, None] ** 2 + qy**2
@@ -199,30 +119,11 @@ def shortest_wave_for(surface: HeightMap, slope: float) -> float:
 
 
 def profile_statistics(profile: Profile, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:
-    """Profile roughness parameters Rq, Ra, Rsk, Rku, Rz, Rdq.
+    """Profile roughness parameters Rq, Ra, Rsk, Rku, Rz, Rdq, ISO 21920-2:2021.
 
-    Parameters
-    ----------
-    profile : Profile
-        Levelled heights, m; the mean is removed here, missing points are left out.
-    bandwidth : tuple of float, optional
-        Shortest and longest wavelength, m, if the data were filtered. Default: two samples to the
-        length.
-
-    Returns
-    -------
-    list of Statistic
-        In the order above, over the whole line as one evaluation length.
-
-    Raises
-    ------
-    InputError
-        If the line has fewer than seven points or is flat.
-
-    References
-    ----------
-    ISO 21920-2:2021; slopes by the seven-point formula of ISO 4287:1997. Rz is the total
-    height over the evaluation length.
+    Levelled heights, m; the mean is removed here, missing points are left out. `bandwidth` is that of
+    filtered data, m; by default from two samples to the length. The whole line is one evaluation length, over
+    which Rz is the total height. Slopes are by the seven-point formula of ISO 4287:1997.
     """
     band = bandwidth or (2.0 * profile.spacing, profile.size)
     rms_slope = float(np.sqrt(np.nanmean(slope(profile.heights, profile.spacing, 0) ** 2)))
@@ -233,26 +134,9 @@ def profile_statistics(profile: Profile, bandwidth: tuple[float, float] | None =
 
 
 def line_statistics(lines: Sequence[Profile]) -> list[tuple[Statistic, float, float]]:
-    """Roughness parameters of lines side by side: their means over the lines, and between what they lie.
+    """Roughness parameters of lines side by side, with the lowest and highest value of a single line.
 
-    Parameters
-    ----------
-    lines : sequence of Profile
-        Levelled heights, m.
-
-    Returns
-    -------
-    list of (Statistic, float, float)
-        As `profile_statistics`; lowest and highest value of a single line.
-
-    Raises
-    ------
-    InputError
-        If all lines are flat or too short.
-
-    References
-    ----------
-    ISO 21920-2:2021: parameters are means over the evaluation lengths.
+    As of `profile_statistics`: their means over the lines, as ISO 21920-2:2021 takes over evaluation lengths.
     """
     rough = [line for line in lines if np.nanmax(line.heights) > np.nanmin(line.heights)] or list(lines[:1])
     each = [profile_statistics(line) for line in rough]
@@ -287,26 +171,9 @@ def _named(
 
 
 def slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np.float64]:
-    """Seven-point derivative at the points that have three neighbours on either side, others NaN.
+    """Seven-point derivative along an axis at points with three neighbours on either side, others NaN.
 
-    Parameters
-    ----------
-    heights : ndarray
-        Heights, m.
-    spacing : float
-        Along the axis, m.
-    axis : int
-        Axis of the derivative.
-
-    Returns
-    -------
-    ndarray
-        Slope, of the shape of `heights`.
-
-    Raises
-    ------
-    InputError
-        If fewer than seven points, or no seven valid ones in a row, lie along the axis.
+    Heights and spacing in m.
     """
     z = np.moveaxis(heights, axis, 0)
     if z.shape[0] < 7:

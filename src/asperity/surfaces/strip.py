@@ -42,18 +42,10 @@ class Strip(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Heights in memory as a strip, without copying or checking them.
+    """Heights in memory as a strip, without copying or checking them."""
 
-    Attributes
-    ----------
-    heights : ndarray, shape (nx, ny)
-        Heights, m.
-    spacing : tuple of float
-        (dx, dy), m.
-    """
-
-    heights: NDArray[np.float64]
-    spacing: tuple[float, float] = (1.0, 1.0)
+    heights: NDArray[np.float64]  # (nx, ny), m
+    spacing: tuple[float, float] = (1.0, 1.0)  # (dx, dy), m
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -72,18 +64,10 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Raised:
-    """A strip with heights added that are the same all across.
+    """A strip with heights added that are the same all across."""
 
-    Attributes
-    ----------
-    strip : Strip
-        What lies below.
-    added : ndarray, shape (nx,)
-        Heights added to each row, m.
-    """
-
-    strip: Strip
-    added: NDArray[np.float64]
+    strip: Strip  # what lies below
+    added: NDArray[np.float64]  # (nx,), heights added to each row, m
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -109,31 +93,11 @@ class Raised:
 class LongStrip:
     """Gaussian strip of any length, generated in pieces that blend into each other.
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Points (nx, ny).
-    spacing : tuple of float
-        (dx, dy), m.
-    piece : callable
-        ``piece(rows, seed)`` returns a Gaussian field (rows, ny), stationary, with zero mean; fields of
-        different seeds are independent.
-    seed : int
-        Seed of the strip; piece k has a seed of its own made of it and k.
-    stride, blend : int
-        Rows from piece to piece, and rows over which a piece gives way to the next, at most `stride`.
-    transform : callable, optional
-        Translates the blended heights point by point.
-    source : str
-        Where the heights came from.
+    ``piece(rows, seed)`` returns a Gaussian field (rows, ny), stationary, with zero mean; fields of different
+    seeds, one made of the strip's seed and the piece's number, are independent. Pieces begin `stride` rows
+    apart, and give way to the next over `blend` rows, at most as many. `transform` translates the blended
+    heights, m, point by point.
 
-    Raises
-    ------
-    InputError
-        If the sizes do not fit.
-
-    Notes
-    -----
     In a blend the two pieces are weighted by cos θ and sin θ, θ rising from 0 to π/2: the sum of two
     independent Gaussian fields keeps variance, distribution and lateral correlation exactly, and the
     correlation at a lag τ along the path times cos(πτ/2 blend) at least. Any part of the strip can be had
@@ -167,18 +131,7 @@ class LongStrip:
         return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
 
     def rows(self, first: int, stop: int) -> NDArray[np.float64]:
-        """Heights of the rows first … stop − 1, m, shape (stop − first, ny).
-
-        Parameters
-        ----------
-        first, stop : int
-            Rows, 0 ≤ first ≤ stop ≤ nx.
-
-        Returns
-        -------
-        ndarray, shape (stop − first, ny)
-            Heights, m.
-        """
+        """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
         if not 0 <= first <= stop <= self.shape[0]:
             raise InputError("rows of the strip", f"{first} to {stop}", f"rows from 0 to {self.shape[0]}")
         parts = []

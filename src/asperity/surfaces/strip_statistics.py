@@ -26,56 +26,22 @@ MARGIN = 3
 
 @dataclass(frozen=True, eq=False)
 class StripSurvey:
-    """What a whole strip is like.
+    """What a whole strip is like."""
 
-    Attributes
-    ----------
-    statistics : list of Statistic
-        Areal roughness parameters, in the order of `areal_parameters`; none of a flat strip.
-    edges, density : ndarray, shape (81,) and (80,)
-        Heights about the mean, m, and the probability density between them, 1/m.
-    wavenumber, spectrum : ndarray, shape (f,)
-        Cycles per metre, and the one-sided PSD along the strip, mean over its lines, m³.
-    """
-
+    # areal roughness parameters, in the order of `areal_parameters`; none of a flat strip
     statistics: list[Statistic]
-    edges: NDArray[np.float64]
-    density: NDArray[np.float64]
-    wavenumber: NDArray[np.float64]
-    spectrum: NDArray[np.float64]
+    edges: NDArray[np.float64]  # (81,), heights about the mean, m
+    density: NDArray[np.float64]  # (80,), probability density between them, 1/m
+    wavenumber: NDArray[np.float64]  # (f,), cycles per metre
+    spectrum: NDArray[np.float64]  # (f,), one-sided PSD along the strip, mean over its lines, m³
 
 
 def survey(strip: Strip, segment: int, first: int = 0, stop: int | None = None) -> StripSurvey:
     """Survey all rows of a strip, reading it twice and never holding more than a piece.
 
-    Parameters
-    ----------
-    strip : Strip, shape (nx, ny)
-        Complete heights, m; their mean is removed here.
-    segment : int
-        Rows of a segment of the spectrum, at most those from `first` to `stop`.
-    first, stop : int, optional
-        The rows first … stop − 1; all of them by default.
-
-    Returns
-    -------
-    StripSurvey
-        Statistics, height distribution and spectrum.
-
-    Raises
-    ------
-    InputError
-        If the rows are too few for the segment or for slopes.
-
-    Warns
-    -----
-    ShortRecordWarning
-        If the autocorrelation does not fall to 0.2 within half a piece; see `autocorrelation_lengths`.
-
-    Notes
-    -----
-    Pairs of points in different pieces do not count towards the autocorrelation, and segments of the spectrum
-    end with their piece; all else is as if the strip were one map.
+    Complete heights, m; their mean is removed here. Segments of the spectrum have `segment` rows. Pairs of
+    points in different pieces do not count towards the autocorrelation, and segments of the spectrum end with
+    their piece; all else is as if the strip were one map. Warns as `autocorrelation_lengths` does.
     """
     bounds = _bounds(strip, first, strip.shape[0] if stop is None else stop, segment)
     total, low, high = 0.0, np.inf, -np.inf

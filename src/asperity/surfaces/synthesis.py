@@ -35,44 +35,17 @@ def self_affine(
     anisotropy: float = 1.0,
     seed: int,
 ) -> HeightMap:
-    """Gaussian self-affine surface with a roll-off and a cut-off.
+    """Gaussian self-affine surface with a roll-off and a cut-off (spectrum of B. N. J. Persson et al., 2005).
 
-    The power spectral density is C(q') = constant below 2π/longest and falls as
-    q'^(-2-2·hurst) up to the cut-off |q| = 2π/shortest, beyond which it is zero;
-    q'² = (qx √anisotropy)² + (qy/√anisotropy)².
+    The power spectral density is C(q') = constant below 2π/longest and falls as q'^(-2-2·hurst) up to the
+    cut-off |q| = 2π/shortest, beyond which it is zero; q'² = (qx √anisotropy)² + (qy/√anisotropy)²: the
+    anisotropy is the correlation length in x over that in y. J. Phys.: Condens. Matter 17 (2005) R1. Lengths
+    are in m; 0 < hurst <= 1, and the shortest wave has at least two samples.
 
-    Parameters
-    ----------
-    shape : tuple of int
-        Points (nx, ny).
-    spacing : tuple of float
-        Spacing (dx, dy), m.
-    rms : float
-        Root mean square of the *ensemble* about zero, m, exact on this grid. One realisation
-        scatters about it, the more the fewer longest wavelengths fit in; it is not rescaled, since
-        that would make short pieces rougher than the long surface they stand for.
-    hurst : float
-        Hurst exponent, 0 < hurst <= 1.
-    longest, shortest : float
-        Roll-off and cut-off wavelength, m, shortest < longest, shortest at least two samples.
-    anisotropy : float, optional
-        Correlation length in x over that in y; their geometric mean stays.
-    seed : int
-        Seed of the random numbers.
-
-    Returns
-    -------
-    HeightMap
-        Cut from a surface that is at least one roll-off wavelength larger, so not periodic.
-
-    Raises
-    ------
-    InputError
-        If a parameter is out of range.
-
-    References
-    ----------
-    B. N. J. Persson et al., J. Phys.: Condens. Matter 17 (2005) R1 (spectrum).
+    The rms is that of the *ensemble* about zero, m, exact on this grid. One realisation scatters about it,
+    the more the fewer longest wavelengths fit in; it is not rescaled, since that would make short pieces
+    rougher than the long surface they stand for. It is cut from a surface that is at least one roll-off
+    wavelength larger, so not periodic.
     """
     steps = (float(spacing[0]), float(spacing[1]))
     _check_shape(shape)
@@ -136,48 +109,23 @@ def from_map(
 ) -> HeightMap:
     """Surface of any size with the spectrum and the height distribution of measured maps.
 
-    The two-sided angular spectrum, with its anisotropy, is that of the surface that the levelled maps were
-    cut from, as `asperity.surfaces.likeness.likeness` estimates it; its variance is that of the pooled
-    heights. A Gaussian field with a pre-distorted correlation is translated to their distribution.
+    The maps are of one texture, with one spacing, and complete. The two-sided angular spectrum, with its
+    anisotropy, is that of the surface that the levelled maps were cut from, as
+    `asperity.surfaces.likeness.likeness` estimates it; its variance is that of the pooled heights. A Gaussian
+    field with a pre-distorted correlation is translated to their distribution: no height exceeds the measured
+    extremes. Another spacing, m, leaves wavelengths below two new samples out. No realisation is rescaled, so
+    Sq scatters as in pieces of one long surface.
 
-    Parameters
-    ----------
-    maps : HeightMap or sequence of HeightMap
-        One or more maps of one texture with the same spacing, complete; each is levelled by its
-        mean plane.
-    shape : tuple of int
-        Points (nx, ny) wanted.
-    seed : int
-        Seed of the random numbers.
-    spacing : float or tuple of float, optional
-        Spacing wanted, m; the maps are brought to it first (see `asperity.surfaces.levelling.resample`),
-        so that wavelengths below two new samples are left out. Default: that of the maps.
+    Wavelengths longer than the map are not known. The spectrum is held below one wave per map, and what lacks
+    of the variance, as the bow of a sheet, gets waves twice as long as the map. A bow that all maps have
+    becomes waves of random phase: pieces as long as the maps are flatter than these. The field is made on a
+    grid longer and wider than asked for by two maps, then cut: it is not periodic, and a narrow strip holds
+    waves much longer than its width. Where the distribution and the spectrum contradict each other (a
+    distribution that is not smooth needs short waves that a steep spectrum does not have), the distribution
+    wins.
 
-    Returns
-    -------
-    HeightMap
-        Heights about zero, m; no realisation is rescaled, so Sq scatters as in pieces of one
-        long surface. No height exceeds the measured extremes.
-
-    Raises
-    ------
-    InputError
-        If the maps have missing points or different spacings, or the shape is too small.
-
-    Notes
-    -----
-    - Wavelengths longer than the map are not known. The spectrum is held below one wave per map, and what
-      lacks of the variance, as the bow of a sheet, gets waves twice as long as the map. A bow that all maps
-      have becomes waves of random phase: pieces as long as the maps are flatter than these.
-    - The field is made on a grid longer and wider than asked for by two maps, then cut: it is not
-      periodic, and a narrow strip holds waves much longer than its width.
-    - Where the distribution and the spectrum contradict each other (a distribution that is not
-      smooth needs short waves that a steep spectrum does not have), the distribution wins.
-
-    References
-    ----------
-    C. R. Dietrich and G. N. Newsam, SIAM J. Sci. Comput. 18 (1997) 1088 (circulant embedding).
-    M. Grigoriu, Applied Non-Gaussian Processes (1995) (translation).
+    C. R. Dietrich and G. N. Newsam, SIAM J. Sci. Comput. 18 (1997) 1088 (circulant embedding). M. Grigoriu,
+    Applied Non-Gaussian Processes (1995) (translation).
     """
     _check_shape(shape)
     like = likeness(maps, spacing)
@@ -198,20 +146,7 @@ def long_self_affine(
 ) -> LongStrip:
     """Self-affine strip of any length, generated where it is read.
 
-    Parameters
-    ----------
-    shape, spacing, rms, hurst, longest, shortest, anisotropy, seed
-        As in `self_affine`.
-
-    Returns
-    -------
-    LongStrip
-        Pieces of `self_affine` surfaces, blended over two roll-off wavelengths.
-
-    Raises
-    ------
-    InputError
-        If a parameter is out of range.
+    Pieces of `self_affine` surfaces, whose parameters it has, blended over two roll-off wavelengths.
     """
     steps = (float(spacing[0]), float(spacing[1]))
     _check_shape(shape)
@@ -236,21 +171,8 @@ def long_strip_like(
 ) -> LongStrip:
     """Strip of any length in the likeness of measured maps, generated where it is read.
 
-    Parameters
-    ----------
-    maps, shape, seed, spacing
-        As in `from_map`.
-
-    Returns
-    -------
-    LongStrip
-        Gaussian pieces of the kind that `from_map` makes, blended over two lengths of the maps, then
-        translated to the height distribution, which is exact in the blends too.
-
-    Raises
-    ------
-    InputError
-        If the maps have missing points or different spacings, or the shape is too small.
+    Gaussian pieces of the kind that `from_map` makes, blended over two lengths of the maps, then translated
+    to the height distribution, which is exact in the blends too.
     """
     _check_shape(shape)
     like = likeness(maps, spacing)

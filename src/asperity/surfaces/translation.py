@@ -14,18 +14,10 @@ REACH = 6.0
 
 @dataclass(frozen=True, eq=False)
 class HeightTransform:
-    """Monotone map from a standard normal variable to heights, tabulated uniformly.
+    """Monotone map from a standard normal variable to heights, tabulated uniformly."""
 
-    Parameters
-    ----------
-    deviates : ndarray, shape (k,)
-        Standard normal deviates, rising.
-    heights : ndarray, shape (k,)
-        Heights, m, not falling; beyond the table the end values hold.
-    """
-
-    deviates: NDArray[np.float64]
-    heights: NDArray[np.float64]
+    deviates: NDArray[np.float64]  # (k,), standard normal, rising
+    heights: NDArray[np.float64]  # (k,), m, not falling; beyond the table the end values hold
 
     def __call__(self, normal: NDArray[np.float64]) -> NDArray[np.float64]:
         """Heights, m, of standard normal values of any shape."""
@@ -33,20 +25,9 @@ class HeightTransform:
 
 
 def height_transform(heights: NDArray[np.float64], points: int = 2401) -> HeightTransform:
-    """Transform that gives a normal variable the distribution of measured heights.
+    """Transform that gives a normal variable the distribution of measured heights, m, as a table.
 
-    Parameters
-    ----------
-    heights : ndarray
-        Measured heights of any shape, m; their quantiles are used as they are, so nothing higher
-        or lower than measured can arise.
-    points : int, optional
-        Size of the table.
-
-    Returns
-    -------
-    HeightTransform
-        The transform.
+    The quantiles are used as they are, so nothing higher or lower than measured can arise.
     """
     rising = np.sort(heights, axis=None)
     deviates = np.linspace(-REACH, REACH, points)
@@ -55,28 +36,10 @@ def height_transform(heights: NDArray[np.float64], points: int = 2401) -> Height
 
 
 def gaussian_correlation(transform: HeightTransform, correlation: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Correlation that a Gaussian field needs for its transform to have a given one.
+    """Correlation coefficient that a Gaussian field needs for its transform to have a given one, at most 1.
 
-    Parameters
-    ----------
-    transform : HeightTransform
-        Map from the normal variable to heights.
-    correlation : ndarray
-        Correlation coefficient of the heights, at most 1.
-
-    Returns
-    -------
-    ndarray
-        Correlation coefficient of the normal field, same shape. The relation is monotone because
-        the transform is.
-
-    Notes
-    -----
-    Mehler's expansion: with g = Σ c_k He_k/√k!, the correlation of g is Σ c_k² ρ^k/Σ c_k².
-
-    References
-    ----------
-    M. Grigoriu, Applied Non-Gaussian Processes (1995).
+    Mehler's expansion: with g = Σ c_k He_k/√k!, the correlation of g is Σ c_k² ρ^k/Σ c_k². The relation is
+    monotone because the transform is. M. Grigoriu, Applied Non-Gaussian Processes (1995).
     """
     u = transform.deviates
     weight = np.exp(-u * u / 2.0)

@@ -116,27 +116,9 @@ def read_surfaces(
     transpose: bool = False,
     fill: bool = False,
 ) -> list[HeightMap]:
-    """Read all samples of an ensemble of maps; a file with one map gives a list of one.
+    """Read all samples of an ensemble of maps, as `read_surface` does: a list, of one for a single map.
 
-    Parameters
-    ----------
-    path, array, height_unit, pixel, pixel_unit, decimal, transpose, fill
-        See `read_surface`. In a 3-D array the sample is the first axis, then x, then y.
-
-    Returns
-    -------
-    list of HeightMap
-        One per sample.
-
-    Raises
-    ------
-    InputError
-        As `read_surface`, and if the file holds a line.
-
-    Warns
-    -----
-    MissingPointsWarning
-        If points have no height.
+    In a 3-D array the sample is the first axis, then x, then y. A line is refused.
     """
     surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
     maps = [surface for surface in surfaces if isinstance(surface, HeightMap)]

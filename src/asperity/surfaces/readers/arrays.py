@@ -21,49 +21,18 @@ HEADER = 128
 
 
 def read_npy(path: Path, hints: Hints) -> list[Surface]:
-    """Read a ``.npy`` array.
+    """Read a ``.npy`` array of one axis as a line, of two as a map, x first, of three as maps, sample first.
 
-    Parameters
-    ----------
-    path : Path
-        A 1-D array is a line, a 2-D array a map with x as its first axis, a 3-D array an ensemble of maps
-        (sample first).
-    hints : Hints
-        `height_unit` and `pixel` are required.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One surface, or one per sample.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, holds Python objects, or unit or pixel size are not given.
+    The hints `height_unit` and `pixel` are required; Python objects are refused.
     """
     with hostile(path.name, "npy"):
         return _surfaces(_decoded(path.read_bytes(), path.name), hints, path.name)
 
 
 def read_npz(path: Path, hints: Hints) -> list[Surface]:
-    """Read one array of a ``.npz`` archive, see `read_npy`.
+    """Read the array of a ``.npz`` archive that the hints name, or the only one that is no scalar.
 
-    Parameters
-    ----------
-    path : Path
-        The archive.
-    hints : Hints
-        `array` names the array; it may be left out if there is only one that is no scalar.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One surface, or one per sample.
-
-    Raises
-    ------
-    InputError
-        As `read_npy`, and if the array is not named where there are several, or is not in the archive.
+    See `read_npy`.
     """
     with archive(path) as opened, hostile(path.name, "npz"):
         names = [name.removesuffix(".npy") for name in opened.namelist() if name.endswith(".npy")]
@@ -85,25 +54,7 @@ def _has_axes(opened: ZipFile, member: str) -> bool:
 
 
 def only_one(names: list[str], source: str) -> str:
-    """Return the only name, or raise an `InputError` that lists the choice.
-
-    Parameters
-    ----------
-    names : list of str
-        Arrays that could be meant.
-    source : str
-        Name of the file.
-
-    Returns
-    -------
-    str
-        The only one.
-
-    Raises
-    ------
-    InputError
-        If there are none or several.
-    """
+    """Return the only array's name that could be meant, or raise an `InputError` that lists the choice."""
     if len(names) == 1:
         return names[0]
     received = listed(names) or "none"

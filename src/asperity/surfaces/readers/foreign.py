@@ -15,20 +15,7 @@ from asperity.surfaces.readers.hints import Hints, Surface
 
 
 def read_apart(module: str, kind: str) -> Callable[[Path, Hints], list[Surface]]:
-    """Make a reader that reads in a process of its own.
-
-    Parameters
-    ----------
-    module : str
-        Name of the module beside this one whose `read` does it.
-    kind : str
-        Name of the format.
-
-    Returns
-    -------
-    callable
-        As that `read`.
-    """
+    """Make a reader of a format that calls the `read` of a module beside this one in a process of its own."""
 
     def read(path: Path, hints: Hints) -> list[Surface]:
         request = [module, str(path.absolute()), asdict(hints), spelling.current()]
@@ -45,15 +32,7 @@ def read_apart(module: str, kind: str) -> Callable[[Path, Hints], list[Surface]]
 
 
 def serve(module: str, path: str, hints: dict[str, Any], style: list[Any], answers: BinaryIO) -> None:
-    """Read a file, and send its surfaces.
-
-    Parameters
-    ----------
-    module, path, hints, style
-        What `read_apart` asks for.
-    answers : binary file
-        Receives them.
-    """
+    """Read a file as `read_apart` asks, and send its surfaces to the binary file `answers`."""
     reader = importlib.import_module(f"asperity.surfaces.readers.{module}")
     given = Hints(**hints)
     if given.spacing is not None:

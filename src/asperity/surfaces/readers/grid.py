@@ -16,24 +16,9 @@ _REMEDY = "Resample the heights at a uniform spacing first."
 
 
 def uniform_step(coordinates: NDArray[np.float64], source: str, name: str) -> float:
-    """Return the signed step of coordinates that must be uniform.
+    """Return the signed step of coordinates (n,) that must be uniform, within 0.05 steps of their places.
 
-    Parameters
-    ----------
-    coordinates : (n,) NDArray
-        Coordinates in any unit.
-    source, name : str
-        File and axis, for the message.
-
-    Returns
-    -------
-    float
-        (last - first) / (n - 1), negative for falling coordinates.
-
-    Raises
-    ------
-    InputError
-        If a point lies farther than 0.05 steps from its place, or there are fewer than two.
+    That is (last - first) / (n - 1), negative for falling coordinates; source and name are for the message.
     """
     n = len(coordinates)
     step = float(coordinates[-1] - coordinates[0]) / (n - 1) if n > 1 else 0.0
@@ -47,24 +32,8 @@ def uniform_step(coordinates: NDArray[np.float64], source: str, name: str) -> fl
 def line(x: NDArray[np.float64], z: NDArray[np.float64], source: str) -> tuple[NDArray[np.float64], float]:
     """Put points x, z, given in any order, on the uniform line that they lie on.
 
-    Parameters
-    ----------
-    x, z : (n,) NDArray
-        Coordinates and heights in one unit each.
-    source : str
-        Name of the file, for the message.
-
-    Returns
-    -------
-    heights : (m,) NDArray
-        Along rising x, NaN where the line has no point.
-    spacing : float
-        In the unit of x.
-
-    Raises
-    ------
-    InputError
-        If the points do not lie at uniform distances, stand twice, or fill less than half of the line.
+    Returns the heights along rising x, NaN where the line has no point, and the spacing, in the units given.
+    Refused are points that stand twice, or fill less than half of the line.
     """
     index, spacing = _indices(x, source, "x", np.diff(np.sort(x)))
     return _filled_in(index, z, (int(index.max()) + 1,), source), spacing
@@ -73,26 +42,10 @@ def line(x: NDArray[np.float64], z: NDArray[np.float64], source: str) -> tuple[N
 def rasterised(
     x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], source: str
 ) -> tuple[NDArray[np.float64], tuple[float, float]]:
-    """Sort a list of points x, y, z, given in any order, into the regular grid that they lie on.
+    """Sort points x, y, z, given in any order, into the regular grid that they lie on.
 
-    Parameters
-    ----------
-    x, y, z : (n,) NDArray
-        Coordinates and heights in one unit each.
-    source : str
-        Name of the file, for the message.
-
-    Returns
-    -------
-    heights : (nx, ny) NDArray
-        Along rising x and y, NaN where the grid has no point.
-    spacing : tuple of float
-        (dx, dy) in the unit of the coordinates.
-
-    Raises
-    ------
-    InputError
-        If the points do not lie on a regular grid, stand twice, or fill less than half of the grid.
+    Returns the heights (nx, ny) along rising x and y, NaN where the grid has no point, and (dx, dy), in the
+    units given. Refused are points that stand twice, or fill less than half of the grid.
     """
     (i, dx), (j, dy) = _indices(x, source, "x", _steps(x)), _indices(y, source, "y", _steps(y))
     shape = (int(i.max()) + 1, int(j.max()) + 1)

@@ -23,24 +23,7 @@ MAX_MEMBERS = 10_000
 
 
 def readable_file(path: str | Path) -> Path:
-    """Check that a path is a readable, non-empty file of acceptable size.
-
-    Parameters
-    ----------
-    path : str or Path
-        The file.
-
-    Returns
-    -------
-    Path
-        The same path.
-
-    Raises
-    ------
-    InputError
-        If there is no such file, it is a folder, a pipe or a device, cannot be read, is empty or is larger
-        than 4 GiB.
-    """
+    """Check that a path is a readable, non-empty file, no pipe and no device, of at most 4 GiB."""
     file = file_path("surface file", path, "the path of a file")
     allowed = "a file with heights"
     if received := no_file(file):
@@ -60,20 +43,7 @@ def readable_file(path: str | Path) -> Path:
 
 @contextmanager
 def hostile(source: str, kind: str) -> Iterator[None]:
-    """Turn whatever goes wrong while decoding a file into an `InputError`.
-
-    Parameters
-    ----------
-    source : str
-        Name of the file.
-    kind : str
-        Name of the format.
-
-    Raises
-    ------
-    InputError
-        In place of any other exception.
-    """
+    """Turn whatever goes wrong while decoding a file of some kind into an `InputError`."""
     try:
         yield
     except InputError:
@@ -87,26 +57,7 @@ def hostile(source: str, kind: str) -> Iterator[None]:
 def check_claim(source: str, shape: Sequence[int], item_bytes: float, available: int) -> int:
     """Compare the points that a header claims with the bytes that follow it, before anything is allocated.
 
-    Parameters
-    ----------
-    source : str
-        Name of the file.
-    shape : sequence of int
-        Claimed number of points along each axis.
-    item_bytes : float
-        Fewest bytes that one point takes.
-    available : int
-        Bytes at hand.
-
-    Returns
-    -------
-    int
-        Number of points.
-
-    Raises
-    ------
-    InputError
-        If an axis has no point, if there are more than 2**28 points, or more than the bytes can hold.
+    Returns their number: at least one along each axis, at most 2**28, and no more than the bytes can hold.
     """
     points = math.prod(shape)
     received = f"{' x '.join(str(n) for n in shape)} points in {available} bytes"
@@ -121,25 +72,7 @@ def check_claim(source: str, shape: Sequence[int], item_bytes: float, available:
 
 
 def number(source: str, name: str, text: str | None) -> float:
-    """Parse one finite number of a header.
-
-    Parameters
-    ----------
-    source, name : str
-        The file and the field, for the message.
-    text : str or None
-        What stands in the field.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InputError
-        If the field is missing or is not a finite number.
-    """
+    """Parse a field of a header that must be one finite number."""
     try:
         value = number_in(text if text is not None else "nan")
     except ValueError:
@@ -160,23 +93,10 @@ def count(source: str, name: str, text: str | None) -> int:
 
 @contextmanager
 def archive(path: Path) -> Iterator[zipfile.ZipFile]:
-    """Open a zip archive whose members have safe names and bounded sizes.
+    """Open a zip archive whose members have safe names and bounded sizes; nothing is unpacked yet.
 
-    Parameters
-    ----------
-    path : Path
-        The archive.
-
-    Yields
-    ------
-    zipfile.ZipFile
-        The opened archive; nothing has been unpacked.
-
-    Raises
-    ------
-    InputError
-        If it is damaged or encrypted, a name leaves the archive or stands twice, or it would unpack to more
-        than 4 GiB or to more than 200 times its size (zip bomb).
+    Refused are damaged and encrypted ones, names that leave the archive or stand twice, and what would unpack
+    to more than 4 GiB or to more than 200 times its size (zip bomb).
     """
     with hostile(path.name, "zip"), zipfile.ZipFile(path) as opened:
         members = opened.infolist()
@@ -209,29 +129,7 @@ def _check_names(source: str, members: list[zipfile.ZipInfo]) -> None:
 
 
 def member_bytes(opened: zipfile.ZipFile, name: str, source: str, limit: int = MAX_FILE_BYTES) -> bytes:
-    """Unpack one member of an archive, never more than `limit` bytes.
-
-    Parameters
-    ----------
-    opened : zipfile.ZipFile
-        From `archive`.
-    name : str
-        Name of the member.
-    source : str
-        Name of the file, for the message.
-    limit : int
-        Largest size in bytes.
-
-    Returns
-    -------
-    bytes
-        The content.
-
-    Raises
-    ------
-    InputError
-        If there is no such member or it is too large.
-    """
+    """Unpack one member of an archive, never more than `limit` bytes."""
     if name not in opened.namelist():
         present = f"one of: {listed(opened.namelist())}"
         raise InputError(source, f"no member {name[:80]!r}", present, "Export the file again.")
@@ -243,25 +141,7 @@ def member_bytes(opened: zipfile.ZipFile, name: str, source: str, limit: int = M
 
 
 def parse_xml(data: bytes, source: str) -> ElementTree.Element:
-    """Parse XML that declares no document type and no entity.
-
-    Parameters
-    ----------
-    data : bytes
-        The document, in UTF-8 or UTF-16.
-    source : str
-        Name of the file, for the message.
-
-    Returns
-    -------
-    xml.etree.ElementTree.Element
-        The root element.
-
-    Raises
-    ------
-    InputError
-        If the document has a DTD or entities, another encoding, or is not well formed.
-    """
+    """Parse XML, in UTF-8 or UTF-16, that declares no document type and no entity."""
     utf16 = data[:2] in (b"\xff\xfe", b"\xfe\xff")
     with hostile(source, "XML"):
         text = data.decode("utf-16" if utf16 else "utf-8-sig")

@@ -22,45 +22,20 @@ _LATERAL_WORDS = {"x", "y", "xy", "lateral", "length", "distance", "position", "
 
 @dataclass(frozen=True)
 class Header:
-    """What the header lines of a text file state, in m; None where they are silent.
+    """What the header lines of a text file state, in m; None where they are silent."""
 
-    Parameters
-    ----------
-    height_unit, x_unit, y_unit : float, optional
-        Length in m of one unit of the column.
-    spacing : tuple of float, optional
-        Distances (dx, dy) in m.
-    """
-
-    height_unit: float | None = None
-    x_unit: float | None = None
-    y_unit: float | None = None
-    spacing: tuple[float, float] | None = None
+    height_unit: float | None = None  # length in m of one unit of the column
+    x_unit: float | None = None  # likewise
+    y_unit: float | None = None  # likewise
+    spacing: tuple[float, float] | None = None  # (dx, dy), m
 
 
 def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> Header:
     """Find units and pixel sizes in the lines above the numbers.
 
-    Parameters
-    ----------
-    lines : list of str
-        The header lines. Understood are column titles with units (``x [mm]; z (µm)``, ``Height (nm)``), lines
-        such as ``# unit: um``, ``height unit = nm``, ``lateral unit: mm`` (a bare ``unit`` is that of the
-        heights), and ``# pixel: 1.5 um``, ``dx = 1 mm``.
-    delimiter : str or None
-        What separates the columns; None for white space.
-    columns : int
-        Number of columns of the numbers.
-
-    Returns
-    -------
-    Header
-        What was found.
-
-    Raises
-    ------
-    InputError
-        If a stated unit is no length.
+    Understood are column titles with units (``x [mm]; z (µm)``, ``Height (nm)``), lines such as ``# unit:
+    um``, ``height unit = nm``, ``lateral unit: mm`` (a bare ``unit`` is that of the heights), and ``# pixel:
+    1.5 um``, ``dx = 1 mm``. The delimiter of the columns is None for white space.
     """
     cleaned = [line.strip().lstrip("#%/!").strip() for line in lines]
     single = [" ".join(line.split()) for line in cleaned]

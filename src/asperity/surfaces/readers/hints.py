@@ -23,27 +23,13 @@ Length = str | float
 
 @dataclass(frozen=True)
 class Hints:
-    """Checked hints in SI; None where nothing was said.
+    """Checked hints in SI; None where nothing was said."""
 
-    Parameters
-    ----------
-    array : str, optional
-        Name of the array, variable or channel to read.
-    height_factor : float, optional
-        Length in m of one unit of the heights.
-    spacing : tuple of float, optional
-        Distances (dx, dy) of the points in m.
-    lateral_factor : float, optional
-        Length in m of one unit of the coordinates.
-    decimal : str, optional
-        Decimal mark of a text file.
-    """
-
-    array: str | None = None
-    height_factor: float | None = None
-    spacing: tuple[float, float] | None = None
-    lateral_factor: float | None = None
-    decimal: str | None = None
+    array: str | None = None  # name of the array, variable or channel to read
+    height_factor: float | None = None  # length in m of one unit of the heights
+    spacing: tuple[float, float] | None = None  # (dx, dy), m
+    lateral_factor: float | None = None  # length in m of one unit of the coordinates
+    decimal: str | None = None  # mark of a text file
 
     def heights_in(self, source: str, stated: float | None = None) -> float:
         """Return the factor of the heights: the hint, else what the file states, else an `InputError`."""
@@ -79,30 +65,9 @@ def checked_hints(
     pixel_unit: Length | None = None,
     decimal: str | None = None,
 ) -> Hints:
-    """Convert hints as a user writes them.
+    """Convert hints as a user writes them, see `read_surface`, to SI.
 
-    Parameters
-    ----------
-    array : str, optional
-        Name of the array, variable or channel.
-    height_unit : str or float, optional
-        Unit of the heights, or its length in m.
-    pixel : str, float or pair of these, optional
-        Distance of neighbouring points, as ``"1.5 um"``; a bare number is in `pixel_unit`, else in m.
-    pixel_unit : str or float, optional
-        Unit of coordinates and bare pixel sizes, or its length in m.
-    decimal : str, optional
-        ``"."`` or ``","``.
-
-    Returns
-    -------
-    Hints
-        The same in SI.
-
-    Raises
-    ------
-    InputError
-        If a unit is unknown, or a length is not positive and finite.
+    A unit may be given as its length in m; a bare pixel size is in `pixel_unit`, else in m.
     """
     if decimal is not None and decimal not in (".", ","):
         raise InputError("decimal", shown(decimal), '"." or ","', "Give one of these.")
@@ -133,26 +98,10 @@ def _positive(name: str, value: object) -> float:
 
 
 def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) -> list[Surface]:
-    """Wrap a bare array: one axis is a line, two are a map (x first), three an ensemble of maps.
+    """Wrap a bare array of heights, m: one axis is a line, two are a map, x first, three are maps.
 
-    Parameters
-    ----------
-    array : NDArray
-        Heights in m. A 2-D array with a single row or column is a line.
-    spacing : tuple of float
-        Distances (dx, dy) in m; a line along x has dx, one along y dy.
-    source : str
-        Where they came from.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One surface, or one per sample of an ensemble.
-
-    Raises
-    ------
-    InputError
-        If the array has no or more than three axes, or its heights are not valid.
+    A 2-D array with a single row or column is a line, too: of the spacing (dx, dy), m, one along x takes dx,
+    one along y dy.
     """
     if array.ndim == 3 and len(array):
         return [HeightMap(sample, spacing, f"{source}[{i}]") for i, sample in enumerate(array)]
@@ -168,27 +117,7 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
 
 
 def scaled(array: NDArray[Any], unit: float, source: str) -> NDArray[np.float64]:
-    """Return real numbers times a unit as float64.
-
-    Parameters
-    ----------
-    array : NDArray
-        Integers or floats.
-    unit : float
-        Length in m of one unit.
-    source : str
-        Name for the message.
-
-    Returns
-    -------
-    NDArray
-        In m.
-
-    Raises
-    ------
-    InputError
-        If the array does not hold real numbers.
-    """
+    """Return real numbers times the length of their unit, m, as float64."""
     if array.dtype.kind not in "fiu":
         raise InputError(
             source,

@@ -17,25 +17,10 @@ from asperity.units import factor
 
 
 def read(path: Path, hints: Hints) -> list[Surface]:
-    """Read one channel of an instrument's file.
+    """Read the channel of an instrument's file that the hints name, or the reader's default one.
 
-    Parameters
-    ----------
-    path : Path
-        The file. SurfaceTopography gives maps with the file's x as the first axis, which is kept.
-    hints : Hints
-        `array` names the channel (the reader's default one if left out); the other hints stand for a unit or
-        a size that the file does not state.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One surface.
-
-    Raises
-    ------
-    InputError
-        If SurfaceTopography is not installed, does not know the format, or the channel is not uniform.
+    The other hints stand for a unit or a size that the file does not state. SurfaceTopography gives maps with
+    the file's x as the first axis, which is kept.
     """
     opener = _opener(path)
     with hostile(path.name, "known instrument"), warnings.catch_warnings():

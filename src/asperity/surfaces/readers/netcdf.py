@@ -21,28 +21,12 @@ MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never 
 
 
 def read(path: Path, hints: Hints) -> list[Surface]:
-    """Read one variable of a netCDF-4 file.
+    """Read the variable of a netCDF-4 file that the hints name (``group/variable`` in a group).
 
-    Parameters
-    ----------
-    path : Path
-        The file. The variable's dimension called ``x`` becomes the first axis of the map, whatever their
-        order in the file; without that name, dimensions are taken as (x, y), or (sample, x, y). Spacing is
-        taken from coordinate variables, units from the ``units`` attributes; falling coordinates are
-        reversed.
-    hints : Hints
-        `array` names the variable (``group/variable`` in a group); without it, ``heights`` or the only
-        variable with dimensions that is no coordinate. The other hints stand for what is not stated.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One surface, or one per sample.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, the variable is not found, or unit or spacing are unknown.
+    Without a name it is ``heights`` or the only variable with dimensions that is no coordinate. The dimension
+    called ``x`` becomes the first axis of the map, whatever their order in the file; without that name,
+    dimensions are taken as (x, y), or (sample, x, y). Spacing is taken from coordinate variables, units from
+    the ``units`` attributes; falling coordinates are reversed. The other hints stand for what is not stated.
     """
     import h5netcdf
 

@@ -26,25 +26,10 @@ _FIELDS = (  # noqa: SIM905
 
 
 def read(path: Path, hints: Hints) -> list[Surface]:
-    """Read an SDF file.
+    """Read an SDF file; there are no hints to it.
 
-    Parameters
-    ----------
-    path : Path
-        The file. Its profiles run along x, so x is the first axis of the map and profiles follow one another
-        along y. Lengths are in m by the standard.
-    hints : Hints
-        Must be empty.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One map, or one profile if the file holds a single one.
-
-    Raises
-    ------
-    InputError
-        If the header is incomplete or wrong, data are compressed, or the file is truncated.
+    Its profiles run along x, so x is the first axis of the map and profiles follow one another along y; a
+    single one is a profile. Lengths are in m by the standard. Compressed data are refused.
     """
     hints.refuse(path.name, "SDF")
     data = path.read_bytes()

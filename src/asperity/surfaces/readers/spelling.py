@@ -33,17 +33,7 @@ def on_command_line(name: str, value: Value) -> str:
 def in_case(section: str, keys: Mapping[str, str]) -> Spelling:
     """Write a hint as a key of a case: ``height_unit = "um" in [surface]``.
 
-    Parameters
-    ----------
-    section : str
-        The section.
-    keys : mapping of str to str
-        Keys that it has, by the hints that they are; others cannot be said there.
-
-    Returns
-    -------
-    callable
-        As `in_python`.
+    `keys` are those that the section has, by the hints that they are; others cannot be said there.
     """
 
     return InCase(section, dict(keys))
@@ -70,10 +60,7 @@ _spelling: ContextVar[Spelling] = ContextVar("spelling", default=in_python)
 def spelled(spelling: Spelling) -> Iterator[None]:
     """Write hints in another way while the body of the ``with`` statement reads files.
 
-    Parameters
-    ----------
-    spelling : callable
-        As `in_python`, `on_command_line` or what `in_case` makes.
+    That way is `in_python`, `on_command_line` or what `in_case` makes.
     """
     token = _spelling.set(spelling)
     try:
@@ -98,39 +85,14 @@ def spelling_of(description: list[Any]) -> Spelling:
 
 
 def advice(name: str, value: Value, lead: str, otherwise: str) -> str:
-    """Advise to give a hint, as it is written where the user stands.
+    """Advise to give a hint with a value, or an example of one, as it is written where the user stands.
 
-    Parameters
-    ----------
-    name : str
-        The hint, as `read_surface` calls it.
-    value : str, int or bool
-        An example, or the value that is meant.
-    lead : str
-        Words before it.
-    otherwise : str
-        A sentence for a place where the hint cannot be given.
-
-    Returns
-    -------
-    str
-        A sentence.
+    `lead` comes before it; `otherwise` is the sentence for a place where the hint cannot be given.
     """
     written = _spelling.get()(name, value)
     return otherwise if written is None else f"{lead} {written}."
 
 
 def spell(name: str, value: Value = None) -> str:
-    """Write a hint with a value as it is written where the user stands; its bare name where it has no place.
-
-    Parameters
-    ----------
-    name, value
-        As in `advice`.
-
-    Returns
-    -------
-    str
-        As ``height_unit="um"``.
-    """
+    """Write a hint with a value as it is written where the user stands; its bare name if it has no place."""
     return _spelling.get()(name, value) or name

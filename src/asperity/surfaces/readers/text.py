@@ -27,18 +27,10 @@ _NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]|nan|bad|null|none|na|n/a)*", re.IGNOR
 
 @dataclass(frozen=True)
 class Dialect:
-    """How numbers are written.
+    """How numbers are written."""
 
-    Parameters
-    ----------
-    delimiter : str or None
-        What separates the columns; None for white space.
-    decimal_comma : bool
-        Whether the comma is the decimal mark.
-    """
-
-    delimiter: str | None
-    decimal_comma: bool
+    delimiter: str | None  # of the columns; None for white space
+    decimal_comma: bool  # whether the comma is the decimal mark
 
     def fields(self, text: str) -> list[str]:
         """Return the stripped fields of one line."""
@@ -50,27 +42,10 @@ class Dialect:
 def read(path: Path, hints: Hints) -> list[Surface]:
     """Read heights from text: tab, semicolon, comma or white space between columns, point or comma decimals.
 
-    Parameters
-    ----------
-    path : Path
-        The file. One column is a line z; two are x, z at uniform x; three are x, y, z on a regular grid;
-        more are a matrix of heights whose rows follow one another along x, so the first axis of the map is
-        the line number. Missing heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the
-        numbers and lines that start with ``#``, ``%`` or ``//`` are header, see
-        `asperity.surfaces.readers.headers`.
-    hints : Hints
-        What the header does not state; a hint is stronger than the header.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One surface.
-
-    Raises
-    ------
-    InputError
-        If a line is not numeric or of another length, the decimal mark is ambiguous, or a unit or pixel size
-        is neither stated nor given.
+    One column is a line z; two are x, z at uniform x; three are x, y, z on a regular grid; more are a matrix
+    of heights whose rows follow one another along x, so the first axis of the map is the line number. Missing
+    heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that start with
+    ``#``, ``%`` or ``//`` are header, see `asperity.surfaces.readers.headers`; a hint is stronger than it.
     """
     with hostile(path.name, "text"):
         lines = _decoded(path.read_bytes(), path.name).splitlines()

@@ -42,27 +42,11 @@ class Axis:
 
 
 def read(path: Path, hints: Hints) -> list[Surface]:
-    """Read an X3P file.
+    """Read an X3P file; there are no hints to it. One surface, or one per layer (SizeZ) of the matrix.
 
-    Parameters
-    ----------
-    path : Path
-        The file. Its x (CX, the fastest axis of the stored matrix) becomes the first axis of the map, its y
-        (CY) the second. Lengths are in m by the standard. Points that the validity mask excludes, or whose
-        height is not finite, are missing.
-    hints : Hints
-        Must be empty.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-        One map or profile, or one per layer (SizeZ) of the matrix.
-
-    Raises
-    ------
-    InputError
-        If the archive, its XML or its checksums are wrong, the data are truncated, or the points do not lie
-        on a uniform grid.
+    Its x (CX, the fastest axis of the stored matrix) becomes the first axis of the map, its y (CY) the
+    second. Lengths are in m by the standard. Points that the validity mask excludes, or whose height is not
+    finite, are missing.
     """
     hints.refuse(path.name, "X3P")
     with archive(path) as opened, hostile(path.name, "X3P"):
