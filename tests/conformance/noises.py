@@ -1,0 +1,133 @@
+"""Checks of railway tables and of sound power."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import mpmath as mp
+import numpy as np
+from ledger import Check
+
+from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
+from asperity.kinds.wheel_on_rail.sound_power import SoundPower, rolling_sound_power
+from asperity.reference import cnossos
+from asperity.reference.rail_roughness import iso_3095_limit
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+TABLES = Path(__file__).parent / "data" / "railway_tables.json"
+
+
+def tables():
+    """Tables of Directive (EU) 2015/996, in a second transcription."""
+    data = json.loads(TABLES.read_text())
+    source = "Directive (EU) 2015/996 as amended by 2021/1226, second transcription"
+    wavelengths = np.array(data["wavelength_mm"]) * 1e-3
+
+    def furthest(spectrum, printed):
+        order = np.argsort(-spectrum[0])
+        assert np.allclose(np.sort(wavelengths)[::-1], spectrum[0][order], rtol=0.03)
+        return float(np.abs(spectrum[1][order] - np.array(printed)[np.argsort(-wavelengths)]).max())
+
+    for name, printed in data["contact_filter_A3_dB"].items():
+        load, diameter = name.replace("kN", " kN").replace("mm", " mm").split("_")
+        found = furthest(cnossos.contact_filter(f"{load}, {diameter}"), printed)
+        yield Check(
+            f"contact filter A3, {load}, {diameter}: largest difference in 35 bands",
+            source,
+            0.0,
+            found,
+            1e-9,
+            "dB",
+            absolute=True,
+        )
+    for key, name in (("E_EN_ISO_3095_2013", "iso3095"), ("M_average_network", "cnossos-average")):
+        found = furthest(cnossos.rail_roughness(name), data["rail_roughness_dB"][key])
+        yield Check(
+            f"rail roughness, {name}: largest difference in 35 bands",
+            source,
+            0.0,
+            found,
+            1e-9,
+            "dB",
+            absolute=True,
+        )
+
+
+def iso_limit():
+    printed = "17.1 15.0 13.0 11.0 9.0 7.0 4.9 2.9 0.9 -1.1 -3.2 -5.0 -5.6 -6.2 -6.8 -7.4 -8.0 -8.6 -9.2"
+    printed += " -9.8 -10.4 -11.0"
+    levels = np.array([float(word) for word in printed.split()])
+    lengths, found = iso_3095_limit()
+    order = np.argsort(-lengths)
+    difference = float(np.abs(found[order] - levels).max())
+    yield Check(
+        "ISO 3095:2013 rail roughness, 40 to 0.315 cm: largest difference in 22 bands",
+        "ISO 3095:2013, limit",
+        0.0,
+        difference,
+        1e-9,
+        "dB",
+        absolute=True,
+    )
+
+
+def power():
+    """1 kHz at 10^1.7 m/s is the band of 50 mm: everything can be read off the tables by hand."""
+    rail, disc = cnossos.rail_roughness("iso3095"), cnossos.wheel_roughness("disc")
+    track, wheel = cnossos.track_transfer("medium"), cnossos.wheel_transfer("920 mm")
+    a3 = cnossos.contact_filter("50 kN, 920 mm")
+    power = rolling_sound_power(10**1.7, rail, disc, track, wheel, contact_filter=a3, axles=4)
+    at = int(np.argmin(np.abs(power.band - 1000.0)))
+    excitation = (
+        10 * mp.log10(mp.mpf(10) ** mp.mpf("-0.11") + mp.mpf(10) ** mp.mpf("-0.16"))
+        - mp.mpf("1.1")
+        + 10 * mp.log10(4)
+    )
+    source = "by hand from the printed tables: −1.1 ⊕ −1.6 − 1.1 dB, four axles"
+    yield Check(
+        "CNOSSOS, 1 kHz at 50.1 m/s: sound power of the track",
+        f"{source}, 104.4 dB",
+        float(excitation + mp.mpf("104.4")),
+        float(power.levels[0, at]),
+        1e-6,
+        "dB",
+        absolute=True,
+    )
+    yield Check(
+        "CNOSSOS, 1 kHz at 50.1 m/s: sound power of the wheel",
+        f"{source}, 94.9 dB",
+        float(excitation + mp.mpf("94.9")),
+        float(power.levels[1, at]),
+        1e-6,
+        "dB",
+        absolute=True,
+    )
+    one = SoundPower(np.array([10**2.4]), np.array([[90.0], [90.0], [90.0]]))
+    yield Check(
+        "A-weighted power of 90 dB at 250 Hz",
+        "IEC 61672-1, Table 3, −8.6 dB",
+        81.4,
+        float(one.a_weighted[2]),
+        0.0501,
+        "dB",
+        absolute=True,
+    )
+
+
+def linear_force():
+    """Force on a wheel, a contact spring and a rail in series: −h/(α_W + α_C + α_R)."""
+    track, wheel, stiffness = Track.named("nordborg"), Wheel.rigid(600.0, 65e3), 1.25e9
+    for frequency in (60.0, 630.0, 2500.0):
+        omega = 2 * np.pi * frequency
+        rail = complex(np.squeeze(track.receptance(frequency, 0.3, 0.3)))
+        expected = 1 / (-1 / (600.0 * omega**2) + 1 / stiffness + rail)
+        found = complex(np.squeeze(force_transfer(np.array([frequency]), wheel, track, stiffness, [0.3])))
+        what = f"linear contact at mid-span, {frequency:g} Hz: force over roughness"
+        yield Check(
+            what, "Remington; receptances in series", abs(expected) / 1e9, abs(found) / 1e9, 1e-9, "GN/m"
+        )
+
+
+CHECKS = (tables, iso_limit, power, linear_force)

@@ -1,0 +1,148 @@
+"""Checks of the track: closed forms, and a superposition of supports in full precision."""
+
+from __future__ import annotations
+
+import mpmath as mp
+import numpy as np
+from ledger import Check
+
+from asperity.structures.decay_rate import decay_rate_of_responses
+from asperity.structures.moving_kernel import moving_kernel
+from asperity.structures.track import Track
+
+NORDBORG = {
+    "bending_stiffness": 4.725e6, "mass_per_length": 60.0, "rail_loss_factor": 0.04, "pad_stiffness": 300e6,
+    "pad_loss_factor": 0.15, "sleeper_mass": 150.0, "ballast_stiffness": 150e6, "ballast_loss_factor": 0.4,
+    "sleeper_spacing": 0.6,
+}  # fmt: skip
+
+
+def superposed(frequency, x, x0, supports=240):
+    """Receptance of an Euler rail on finitely many supports, forces of the supports solved by numpy."""
+    p = NORDBORG
+    w = 2 * np.pi * frequency
+    b = p["bending_stiffness"] * (1 + 1j * p["rail_loss_factor"])
+    k = (w**2 * p["mass_per_length"] / b) ** 0.25
+    k = k if k.imag < 0 else -k.conjugate() if k.real < 0 else k
+
+    def free(distance):
+        d = np.abs(distance)
+        return -1j / (4 * b * k**3) * (np.exp(-1j * k * d) - 1j * np.exp(-k * d))
+
+    pad = p["pad_stiffness"] * (1 + 1j * p["pad_loss_factor"])
+    ballast = p["ballast_stiffness"] * (1 + 1j * p["ballast_loss_factor"])
+    below = ballast - p["sleeper_mass"] * w**2
+    support = pad * below / (pad + below)
+    places = p["sleeper_spacing"] * np.arange(-supports, supports + 1)
+    matrix = np.eye(len(places)) + support * free(places[:, None] - places[None, :])
+    moved = np.linalg.solve(matrix, free(places - x0))
+    return free(x - x0) - support * (free(x - places) @ moved)
+
+
+def receptances():
+    track = Track(**NORDBORG)
+    source = "481 superposed supports of an Euler rail, solved densely; tolerance: the finite row"
+    for frequency in (80.0, 500.0, 1100.0, 2500.0):
+        for x, x0, where in (
+            (0.0, 0.0, "over a sleeper"),
+            (0.3, 0.3, "at mid-span"),
+            (0.9, 0.2, "0.7 m away"),
+        ):
+            expected, found = (
+                superposed(frequency, x, x0),
+                complex(np.squeeze(track.receptance(frequency, x, x0))),
+            )
+            what = f"receptance {where}, {frequency:g} Hz"
+            yield Check(f"{what}: magnitude", source, abs(expected) * 1e9, abs(found) * 1e9, 1e-8, "nm/N")
+
+
+def characteristic_frequencies():
+    bending, mass, length = mp.mpf(210e9) * mp.mpf("3.037e-5"), mp.mpf("60.2"), mp.mpf("0.6")
+    pinned = mp.pi / (2 * length**2) * mp.sqrt(bending / mass)
+    track = Track(**(NORDBORG | {"bending_stiffness": float(bending), "mass_per_length": 60.2}))
+    yield Check(
+        "UIC60, 0.6 m, Euler: pinned–pinned frequency",
+        "(π/2L²)√(B/m')",
+        float(pinned),
+        track.pinned_pinned_frequency,
+        1e-9,
+        "Hz",
+    )
+    resonance = mp.sqrt((300e6 + 150e6) / mp.mpf(150)) / (2 * mp.pi)
+    track = Track(**NORDBORG)
+    yield Check(
+        "sleeper on pad and ballast: anti-resonance",
+        "√((k_p + k_b)/m_s)/2π",
+        float(resonance),
+        track.antiresonance_frequency,
+        1e-9,
+        "Hz",
+    )
+
+
+def winkler():
+    """Sleepers close together without mass: a foundation of stiffness s."""
+    spacing, s, bending, mass = 0.02, 90e6, 4.725e6, 60.0
+    pad = 2 * s * spacing
+    track = Track(
+        bending_stiffness=bending, mass_per_length=mass, pad_stiffness=pad, pad_damping=20.0 * spacing,
+        sleeper_mass=1e-9, ballast_stiffness=pad, ballast_damping=20.0 * spacing, sleeper_spacing=spacing,
+    )  # fmt: skip
+    beta = (mp.mpf(s) / (4 * mp.mpf(bending))) ** mp.mpf("0.25")
+    found = abs(complex(np.squeeze(track.receptance(0.01, 0.0, 0.0))))
+    source = "Winkler, β/2s; tolerance: sleepers 20 mm apart"
+    yield Check(
+        "rail on a foundation: static compliance",
+        source,
+        float(beta / (2 * s)) * 1e9,
+        found * 1e9,
+        1e-3,
+        "nm/N",
+    )
+    critical = (4 * mp.mpf(s) * bending / mp.mpf(mass) ** 2) ** mp.mpf("0.25")
+    yield Check(
+        "rail on a foundation: critical speed",
+        "(4sB/m'²)^¼; tolerance: sleepers 20 mm apart",
+        float(critical),
+        track.critical_speed,
+        1e-3,
+        "m/s",
+    )
+
+
+SOFT = {
+    "bending_stiffness": 4.725e6, "mass_per_length": 60.0, "pad_stiffness": 20e6, "pad_damping": 2e3,
+    "sleeper_mass": 150.0, "ballast_stiffness": 20e6, "ballast_damping": 40e3, "sleeper_spacing": 0.6,
+}  # fmt: skip
+"""A lossless rail on soft, viscous supports."""
+
+
+def short_times():
+    """Straight after an impulse the rail answers as a free beam."""
+    track = Track(**SOFT)
+    step = 2e-6
+    kernel = moving_kernel(track, 25.0, step, positions=2, duration=4e-3)
+    bending, mass = track.bending_stiffness, track.mass_per_length
+    # hat of force about zero: ∫ √(|t − τ|) over the half after the force, Euler's √t law
+    n = 12
+    law = mp.quad(lambda s: (1 - abs(s)) * mp.sqrt((n - s) * step / (2 * mp.pi)), [-1, 0, 1]) * step
+    law = float(law * mp.mpf(bending) ** mp.mpf("-0.25") * mp.mpf(mass) ** mp.mpf("-0.75"))
+    source = "free beam, √(t/2π) B^−¼ m'^−¾ under a hat of force; tolerance: the supports"
+    yield Check(
+        "moving kernel after 24 µs", source, law * 1e12, float(kernel.weights[0, n]) * 1e12, 0.03, "pm/N"
+    )
+
+
+def decay_by_the_standard():
+    distances = 0.6 * np.array(
+        [*np.arange(0, 2.51, 0.25), 3, 3.5, 4, 5, 6, 7, 8, 10, 12, 16, 20, 24, 30, 36, 42, 48, 54, 66]
+    )  # fmt: skip
+    gamma = 0.35  # 1/m
+    found = float(np.squeeze(decay_rate_of_responses(distances, np.exp(-gamma * distances)[:, None])))
+    source = "20 γ lg e; tolerance: the sum of EN 15461 for an integral"
+    yield Check(
+        "EN 15461: decay of e^(−0.35 x/m)", source, 20 * 0.35 * float(mp.log10(mp.e)), found, 0.05, "dB/m"
+    )
+
+
+CHECKS = (receptances, characteristic_frequencies, winkler, short_times, decay_by_the_standard)
