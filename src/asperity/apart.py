@@ -28,31 +28,12 @@ _START = (
 
 
 def apart(function: str, arguments: list[Any], source: str, size: int, kind: str) -> bytes:
-    """Call a function in a process of its own.
+    """Call a function in a process of its own, and return its answer.
 
-    Parameters
-    ----------
-    function : str
-        Module and name, as ``"asperity.results:check"``. It receives the arguments, and a binary file to
-        which it writes its answer.
-    arguments : list
-        What JSON can hold.
-    source : str
-        Name of the file that it opens, for messages.
-    size : int
-        Its size in bytes.
-    kind : str
-        What the file should be, as ``"netCDF-4"``.
-
-    Returns
-    -------
-    bytes
-        The answer.
-
-    Raises
-    ------
-    InputError
-        What the function raised; or that it took more time or memory than it may, or that its process ended.
+    The function, as ``"asperity.results:check"``, receives the arguments, which JSON can hold, and a binary
+    file to which it writes. `source`, `size` and `kind` are name, bytes and format, as ``"netCDF-4"``, of the
+    file that it opens, for messages. An `InputError` is what the function raised; or says that it took more
+    time or memory than it may, or that its process ended.
     """
     seconds = SECONDS + size / BYTES_PER_SECOND
     command = [sys.executable, "-c", _START, json.dumps(sys.path)]
@@ -122,17 +103,7 @@ def _limit(memory: int, seconds: int) -> None:
 
 
 def send(answers: BinaryIO, description: object, arrays: list[Any]) -> None:
-    """Write a description and arrays of numbers to an answer.
-
-    Parameters
-    ----------
-    answers : binary file
-        As a function called by `apart` receives it.
-    description : object
-        What JSON can hold.
-    arrays : list of ndarray
-        Arrays of float64.
-    """
+    """Write a description, what JSON can hold, and arrays of float64 as the answer of such a function."""
     import numpy as np
 
     shapes = [list(array.shape) for array in arrays]
@@ -142,18 +113,7 @@ def send(answers: BinaryIO, description: object, arrays: list[Any]) -> None:
 
 
 def received(answers: bytes) -> tuple[Any, list[Any]]:
-    """Read what `send` wrote.
-
-    Parameters
-    ----------
-    answers : bytes
-        The answer of `apart`.
-
-    Returns
-    -------
-    description : object
-    arrays : list of ndarray
-    """
+    """Read the description and the arrays that `send` wrote."""
     import numpy as np
 
     start = answers.index(b"\n") + 1

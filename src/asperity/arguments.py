@@ -48,30 +48,10 @@ def real(
     at_most: float = math.inf,
     remedy: str = "",
 ) -> float:
-    """Take one finite real number.
+    """Take one finite real number of Python or numpy; truth values are none.
 
-    Parameters
-    ----------
-    what : str
-        What the argument is, for the message.
-    value : object
-        What was received: a number of Python or numpy.
-    allowed : str
-        What may stand there, for the message.
-    above, at_least, at_most : float, optional
-        Limits.
-    remedy : str, optional
-        What to do; text gets the advice to leave units and quotes away.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    InputError
-        If it is no finite real number, or beyond the limits. Truth values are no numbers.
+    `what` and `allowed` are for the message, with `remedy`, what to do: text gets the advice to leave units
+    and quotes away. An `InputError` says what is no such number, or beyond the limits.
     """
     number = _number(value)
     if not (math.isfinite(number) and number > above and at_least <= number <= at_most):
@@ -82,25 +62,7 @@ def real(
 
 
 def whole(what: str, value: object, allowed: str, *, at_least: int, at_most: float = math.inf) -> int:
-    """Take one whole number.
-
-    Parameters
-    ----------
-    what, value, allowed
-        As in `real`.
-    at_least, at_most : int
-        Limits.
-
-    Returns
-    -------
-    int
-        The number; one such as 8.0 counts as whole.
-
-    Raises
-    ------
-    InputError
-        If it is no whole number, or beyond the limits.
-    """
+    """Take one whole number within limits, as `real` does; one such as 8.0 counts as whole."""
     number = _number(value)
     if not (math.isfinite(number) and number == int(number) and at_least <= number <= at_most):
         raise InputError(what, shown(value), allowed)
@@ -108,23 +70,7 @@ def whole(what: str, value: object, allowed: str, *, at_least: int, at_most: flo
 
 
 def two(what: str, value: object, allowed: str) -> tuple[Any, Any]:
-    """Take two things, whatever they are.
-
-    Parameters
-    ----------
-    what, value, allowed
-        As in `real`; a list, a tuple or an array.
-
-    Returns
-    -------
-    tuple
-        The two.
-
-    Raises
-    ------
-    InputError
-        If they are not two.
-    """
+    """Take two things, whatever they are, from a list, a tuple or an array."""
     several = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim == 1)
     if not several or len(value) != 2:  # type: ignore[arg-type]
         raise InputError(what, shown(value), allowed)
@@ -132,23 +78,7 @@ def two(what: str, value: object, allowed: str) -> tuple[Any, Any]:
 
 
 def two_lengths(what: str, value: object) -> tuple[float, float]:
-    """Take two lengths; a single one stands for both.
-
-    Parameters
-    ----------
-    what, value
-        As in `real`.
-
-    Returns
-    -------
-    tuple of float
-        (dx, dy), m.
-
-    Raises
-    ------
-    InputError
-        If they are not one or two finite numbers above zero.
-    """
+    """Take two lengths (dx, dy), m, finite and above zero; a single one stands for both."""
     allowed = "two positive lengths (dx, dy) in m, or one for both"
     if isinstance(value, str) or math.isfinite(_number(value)):
         value = (value, value)
@@ -157,23 +87,7 @@ def two_lengths(what: str, value: object) -> tuple[float, float]:
 
 
 def real_array(what: str, values: object, allowed: str) -> NDArray[np.float64]:
-    """Take an array of real numbers; points that are masked become NaN.
-
-    Parameters
-    ----------
-    what, values, allowed
-        As in `real`; anything that numpy makes an array of.
-
-    Returns
-    -------
-    ndarray
-        Contiguous, float64.
-
-    Raises
-    ------
-    InputError
-        If it holds no real numbers.
-    """
+    """Take a contiguous array of real numbers from all that numpy makes one of; masked points become NaN."""
     if isinstance(values, np.ma.MaskedArray):
         values = np.ma.filled(values.astype(np.float64), np.nan)
     try:
@@ -187,23 +101,7 @@ def real_array(what: str, values: object, allowed: str) -> NDArray[np.float64]:
 
 
 def file_path(what: str, value: object, allowed: str) -> Path:
-    """Take a path.
-
-    Parameters
-    ----------
-    what, value, allowed
-        As in `real`; text or a path object.
-
-    Returns
-    -------
-    Path
-        The path, whether or not anything is there.
-
-    Raises
-    ------
-    InputError
-        If it is no path.
-    """
+    """Take a path, from text or a path object, whether or not anything is there."""
     if not isinstance(value, str | os.PathLike) or not str(value).strip():
         raise InputError(what, shown(value), allowed)
     return Path(value)
@@ -212,15 +110,7 @@ def file_path(what: str, value: object, allowed: str) -> Path:
 def no_file(path: Path) -> str:
     """Say why a path names no file that can be read; pipes and devices may never end.
 
-    Parameters
-    ----------
-    path : Path
-        The path.
-
-    Returns
-    -------
-    str
-        What was found there instead, for a message; empty if it is a regular file with contents.
+    What was found there instead, for a message; empty if it is a regular file with contents.
     """
     try:
         status = path.stat()

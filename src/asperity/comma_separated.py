@@ -16,19 +16,10 @@ _FORMULA = ("=", "+", "-", "@")
 
 
 def csv_text(heading: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Write out a table.
+    """Write out a table of numbers and words under titles of its columns.
 
-    Parameters
-    ----------
-    heading : sequence of str
-        Titles of the columns.
-    rows : iterable of sequence
-        Numbers and words. A missing number (NaN) is an empty field; a word that a spreadsheet would take for
-        a formula begins with an apostrophe.
-
-    Returns
-    -------
-    str
+    A missing number (NaN) is an empty field; a word that a spreadsheet would take for a formula begins with
+    an apostrophe.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

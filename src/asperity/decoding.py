@@ -13,30 +13,10 @@ _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 def read_text(path: Path, source: str, allowed: str, *, largest: int, remedy: str = "") -> str:
-    """Read a text file that a person has written.
+    """Read a text file that a person has written, without a mark of its encoding.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    source : str
-        Its name, for messages.
-    allowed : str
-        What may stand there, for messages.
-    largest : int
-        Bytes that it may have.
-    remedy : str
-        What to do if there is no such file.
-
-    Returns
-    -------
-    str
-        The text, without a mark of its encoding.
-
-    Raises
-    ------
-    InputError
-        If it is no regular file with contents, cannot be read, is too large or no text.
+    Of at most `largest` bytes. `source` is its name and `allowed` what may stand there, for messages;
+    `remedy` is what to do if there is no such file.
     """
     if received := no_file(path):
         raise InputError(source, received, allowed, remedy)
@@ -51,26 +31,10 @@ def read_text(path: Path, source: str, allowed: str, *, largest: int, remedy: st
 
 
 def decoded(content: bytes, source: str, allowed: str) -> str:
-    """Decode the content of a text file.
+    """Decode the content of a text file, UTF-8 or marked UTF-16, without the mark.
 
-    Parameters
-    ----------
-    content : bytes
-        What the file holds.
-    source : str
-        Its name, for messages.
-    allowed : str
-        What may stand there, for messages.
-
-    Returns
-    -------
-    str
-        The text, without a mark of its encoding.
-
-    Raises
-    ------
-    InputError
-        If it is neither UTF-8 nor marked UTF-16; says which encoding it probably is.
+    Of another encoding an `InputError` says which it probably is; `source` and `allowed` are for that
+    message.
     """
     remedy = "Save the file as UTF-8."
     try:
@@ -90,22 +54,10 @@ def decoded(content: bytes, source: str, allowed: str) -> str:
 
 
 def number_in(text: str | bytes) -> float:
-    """Number that a text holds, as people and instruments write it.
+    """Number that a text holds, as people and instruments write it: ``"1.5e-3"``, ``"inf"`` or ``"nan"``.
 
-    Parameters
-    ----------
-    text : str or bytes
-        As ``"1.5e-3"``, ``"inf"`` or ``"nan"``, with or without white space around.
-
-    Returns
-    -------
-    float
-        The number.
-
-    Raises
-    ------
-    ValueError
-        If it is none; ``"1_0"``, which is ten to Python, is none either.
+    With or without white space around. ``"1_0"``, which is ten to Python, is a `ValueError` as any other
+    text.
     """
     if (b"_" if isinstance(text, bytes) else "_") in text:  # type: ignore[operator]
         raise ValueError(f"no number: {text!r}")

@@ -33,26 +33,11 @@ _swept: set[Path] = set()
 def atomic_write(
     path: str | os.PathLike[str], write: Callable[[BinaryIO], object], *, sealed: bool = False
 ) -> Path:
-    """Write a file completely or not at all.
+    """Write a file completely or not at all; its folder is made if it is missing.
 
-    Parameters
-    ----------
-    path : path
-        The file to write; its folder is made if it is missing. An existing file is replaced in one step.
-    write : callable
-        Receives a binary file open for reading and writing, and fills it.
-    sealed : bool
-        Whether to end the file with a digest of all before it: see `is_sealed`.
-
-    Returns
-    -------
-    Path
-        The file written.
-
-    Raises
-    ------
-    ComputationError
-        If the folder cannot be made or the file not be written.
+    `write` receives a binary file open for reading and writing, and fills it. An existing file is replaced in
+    one step. A sealed file ends with a digest of all before it: see `is_sealed`. What cannot be written is a
+    `ComputationError`.
     """
     path = Path(path)
     try:
@@ -62,23 +47,7 @@ def atomic_write(
 
 
 def replace(path: Path, write: Callable[[BinaryIO], object], *, sealed: bool = False) -> Path:
-    """Write a file as `atomic_write` does, for those who go on without it.
-
-    Parameters
-    ----------
-    path, write, sealed
-        As in `atomic_write`.
-
-    Returns
-    -------
-    Path
-        The file written.
-
-    Raises
-    ------
-    OSError
-        If the folder cannot be made or the file not be written.
-    """
+    """Write a file as `atomic_write` does, for those who go on without it: failures are OSErrors."""
     path.parent.mkdir(parents=True, exist_ok=True)
     _sweep_once(path.parent)
     temporary = None
@@ -102,45 +71,14 @@ def replace(path: Path, write: Callable[[BinaryIO], object], *, sealed: bool = F
 
 
 def write_bytes(path: str | os.PathLike[str], contents: bytes | memoryview, *, sealed: bool = False) -> Path:
-    """Write what is in memory to a file, completely or not at all.
-
-    Parameters
-    ----------
-    path, sealed
-        As in `atomic_write`.
-    contents : bytes
-        All of the file.
-
-    Returns
-    -------
-    Path
-        The file written.
-
-    Raises
-    ------
-    ComputationError
-        If the folder cannot be made, the disk has less free space, or the file cannot be written.
-    """
+    """Write what is in memory to a file, as `atomic_write` does, where the disk has space for it."""
     with suppress(OSError):
         require_space(Path(path), len(contents))
     return atomic_write(path, lambda file: file.write(contents), sealed=sealed)
 
 
 def require_space(path: Path, size: float) -> None:
-    """Refuse to begin what the disk cannot hold.
-
-    Parameters
-    ----------
-    path : Path
-        What is to be written, or its folder; neither need exist.
-    size : float
-        Bytes it will have, about.
-
-    Raises
-    ------
-    ComputationError
-        If the disk has less free space.
-    """
+    """Refuse to begin what the disk cannot hold: about so many bytes, at a path that need not exist."""
     free = free_space(path)
     if size > free:
         raise _too_large(path, size, free)
@@ -204,22 +142,10 @@ def _seal_of(file: BinaryIO, size: int) -> bytes:
 
 
 def is_sealed(file: BinaryIO) -> bool | None:
-    """Whether a file is, to the last bit, what `atomic_write` has sealed.
+    """Whether a file is, to the last bit, what `atomic_write` has sealed; None if it has no seal.
 
-    Parameters
-    ----------
-    file : binary file
-        Open for reading; stands at its start afterwards.
-
-    Returns
-    -------
-    bool or None
-        None if it has no seal.
-
-    Notes
-    -----
-    The seal stands behind the end that archives (zip) and HDF5 files know of; their readers pass over it.
-    It shows damage, not malice: anybody can make one.
+    The seal stands behind the end that archives (zip) and HDF5 files know of; their readers pass over it. It
+    shows damage, not malice: anybody can make one. The file stands at its start afterwards.
     """
     size = file.seek(0, os.SEEK_END) - _SEAL_SIZE
     if size < 0:
@@ -251,17 +177,7 @@ def is_part(path: Path) -> bool:
 
 
 def left_overs(folder: Path) -> list[Path]:
-    """Files that an interrupted write left in a folder, and that nobody writes any more.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Returns
-    -------
-    list of Path
-    """
+    """Files that an interrupted write left in a folder, and that nobody writes any more."""
     try:
         parts = [path for path in folder.iterdir() if is_part(path)]
     except OSError:
@@ -282,18 +198,7 @@ def _is_held(part: Path) -> bool:
 
 
 def sweep(folder: Path) -> int:
-    """Remove the left-overs of a folder.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Returns
-    -------
-    int
-        How many were removed.
-    """
+    """Remove the left-overs of a folder; return how many there were."""
     count = 0
     for part in left_overs(folder):
         with suppress(OSError):
@@ -313,20 +218,6 @@ def _sweep_once(folder: Path) -> None:
 def alone_in(folder: Path) -> Iterator[None]:
     """Keep other runs out of a folder, which is made if it is missing.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Raises
-    ------
-    InputError
-        If another run writes into it.
-    ComputationError
-        If it cannot be made.
-
-    Notes
-    -----
     The folder itself is locked, so that nothing can be left in it; on Windows nothing is.
     """
     try:
@@ -362,21 +253,10 @@ def _lock(descriptor: int, folder: Path) -> None:
 
 
 def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:
-    """Refuse a folder into which nothing can be written, before there is anything to write.
+    """Refuse a folder into which nothing can be written, before there is anything to write; it is not made.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder; it is not made.
-    what : str
-        What it is for, for the message.
-    remedy : str
-        What to do.
-
-    Raises
-    ------
-    InputError
-        If it, or the first folder above it that exists, is a file or takes no new file.
+    The message says `what` it is for, and what to do. Where it is missing, the first folder above it that
+    exists must take a new file.
     """
     try:
         existing = _existing(folder)

@@ -18,8 +18,6 @@ _received: list[int] = []
 def interruptible() -> Iterator[None]:
     """Let every such signal raise KeyboardInterrupt while the body of the ``with`` statement runs.
 
-    Notes
-    -----
     A signal that is ignored stays so, as with nohup, or in the background of a shell. Python calls handlers
     in the main thread; in another one nothing changes.
     """

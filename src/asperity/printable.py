@@ -9,20 +9,10 @@ _UNSEEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
 
 
 def printable(text: str, *, lines: bool = False) -> str:
-    r"""Spell out the characters of a text that would act instead of being seen.
+    r"""Spell out the characters of a text by others that would act instead of being seen.
 
-    Parameters
-    ----------
-    text : str
-        Any text: names and values that others have given.
-    lines : bool
-        Whether line ends and tabs may stay.
-
-    Returns
-    -------
-    str
-        With ``\x1b`` for an escape, ``\u202e`` for a change of direction, ``\xff`` for a byte of a file name
-        that is no UTF-8.
+    ``\x1b`` for an escape, ``\u202e`` for a change of direction, ``\xff`` for a byte of a file name that is
+    no UTF-8. `lines` says whether line ends and tabs may stay.
     """
     if text.isprintable():
         return text

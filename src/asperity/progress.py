@@ -83,18 +83,7 @@ class _PlainProgress:
 
 
 def duration(seconds: float) -> str:
-    """Write a time span for people: ``"8 s"``, ``"4 min"``, ``"2.5 h"``.
-
-    Parameters
-    ----------
-    seconds : float
-        The time span in s.
-
-    Returns
-    -------
-    str
-        The time span in the unit that suits it.
-    """
+    """Write a time span, s, for people, in the unit that suits it: ``"8 s"``, ``"4 min"``, ``"2.5 h"``."""
     if seconds < 90:
         return f"{seconds:.0f} s"
     if seconds < 5400:

@@ -24,38 +24,16 @@ LEAST_PRODUCT = 10.0
 def psd(
     signal: ArrayLike, spacing: float, *, segment: int | None = None, overlap: float = 0.5
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """One-sided power spectral density by Welch's method with a Hann window.
+    """One-sided power spectral density (..., f) by Welch's method with a Hann window, after its frequencies.
 
-    The mean over the whole record is removed. The sum of the PSD times the frequency step is the
-    variance of the signal, weighted by the squared windows.
+    The signal (..., n) has any unit U; `spacing` is the step between samples along its last axis, s or m, so
+    that frequencies, from zero to half the sampling frequency, are in Hz or cycles per metre and the density
+    is in U² per Hz or per cycle per metre. The mean over the whole record is removed. The sum of the PSD
+    times the frequency step is the variance of the signal, weighted by the squared windows.
 
-    Parameters
-    ----------
-    signal : array_like, shape (..., n)
-        Uniformly sampled signal in any unit U; the last axis is time or distance.
-    spacing : float
-        Step between samples, s or m.
-    segment : int, optional
-        Samples per segment; the whole record in one segment by default. Shorter segments give a
-        smoother estimate and a coarser frequency step, 1/(segment · spacing).
-    overlap : float, optional
-        Shared part of neighbouring segments, 0 <= overlap < 1.
-
-    Returns
-    -------
-    frequency : ndarray, shape (f,)
-        Hz, or cycles per metre, from zero to half the sampling frequency.
-    psd : ndarray, shape (..., f)
-        U² per Hz, or U² per cycle per metre.
-
-    Raises
-    ------
-    InputError
-        If the signal is shorter than two samples or not finite, or a parameter is out of range.
-
-    References
-    ----------
-    P. D. Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
+    By default the whole record is one segment. Segments of fewer samples, which share the part `overlap`, 0
+    <= overlap < 1, give a smoother estimate and a coarser frequency step, 1/(segment · spacing). P. D. Welch,
+    IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
     """
     values = np.asarray(signal, dtype=np.float64)
     _check_signal(values, spacing)
@@ -80,27 +58,11 @@ def psd(
 def averaging_time(
     samples: int, spacing: float, *, segment: int | None = None, overlap: float = 0.5
 ) -> float:
-    """Time that `psd` averages over: shorter than the record, since windows weigh its parts unequally.
+    """Time, s or m, that `psd` averages over: less than the record, since windows weigh its parts unequally.
 
-    Parameters
-    ----------
-    samples : int
-        Length of the record.
-    spacing : float
-        Step between samples, s or m.
-    segment, overlap
-        As in `psd`.
-
-    Returns
-    -------
-    float
-        s or m: (Σu)²/Σu² steps, where u is the sum of the squared windows of all segments. With it the
-        standard deviation of the mean square of noise in a band is 1/sqrt(B T), as long as the band is
-        some lines wide.
-
-    References
-    ----------
-    J. S. Bendat and A. G. Piersol, Random Data, 4th ed. (2010), ch. 8 (errors of mean squares).
+    (Σu)²/Σu² steps, where u is the sum of the squared windows of all segments. With it the standard deviation
+    of the mean square of noise in a band is 1/sqrt(B T), as long as the band is some lines wide: J. S. Bendat
+    and A. G. Piersol, Random Data, 4th ed. (2010), ch. 8 (errors of mean squares).
     """
     length = samples if segment is None else int(segment)
     shared = int(overlap * length)
@@ -112,19 +74,9 @@ def averaging_time(
 
 
 def band_product(centres: ArrayLike, time: float) -> NDArray[np.float64]:
-    """Bandwidth times averaging time B T of one-third octaves.
+    """Bandwidth times averaging time B T of one-third octaves (b,), Hz and s, or cycles per metre and m.
 
-    Parameters
-    ----------
-    centres : array_like, shape (b,)
-        Band centres, Hz or cycles per metre.
-    time : float
-        From `averaging_time`, s or m.
-
-    Returns
-    -------
-    ndarray, shape (b,)
-        B T. Levels of bands below `LEAST_PRODUCT` say little.
+    Levels of bands below `LEAST_PRODUCT` say little.
     """
     return np.asarray(centres, dtype=np.float64) * (HALF_BAND - 1.0 / HALF_BAND) * time
 
@@ -139,18 +91,7 @@ def _check_signal(values: NDArray[np.float64], spacing: float) -> None:
 
 
 def nominal(centre: float) -> float:
-    """Nominal value of a one-third octave's centre.
-
-    Parameters
-    ----------
-    centre : float
-        Exact centre, of a power of 10^(1/10).
-
-    Returns
-    -------
-    float
-        As 3150 for 3162.28 (IEC 61260-1:2014, annex E).
-    """
+    """Nominal value of a one-third octave's exact centre: 3150 for 3162.28 (IEC 61260-1:2014, annex E)."""
     tenths = round(10.0 * np.log10(centre))
     mantissa = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)[tenths % 10]
     return float(f"{mantissa}e{tenths // 10}")
@@ -175,24 +116,8 @@ def third_octave_bands(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Exact one-third octaves of base 10, from the band that holds `f_low` to that of `f_high`.
 
-    Parameters
-    ----------
-    f_low, f_high : float
-        Frequencies, Hz (or cycles per metre), 0 < f_low <= f_high.
-
-    Returns
-    -------
-    centres, edges_low, edges_high : ndarray, shape (b,)
-        Centres 1000 · 10^(n/10) and edges, a factor 10^(1/20) below and above, Hz, rising.
-
-    Raises
-    ------
-    InputError
-        If the frequencies are not positive and rising.
-
-    References
-    ----------
-    IEC 61260-1:2014 (base-ten system, b = 3).
+    Centres 1000 · 10^(n/10) and edges, a factor 10^(1/20) below and above, (b,), Hz (or cycles per metre),
+    rising. IEC 61260-1:2014 (base-ten system, b = 3).
     """
     if not 0.0 < f_low <= f_high < np.inf:
         raise InputError("band limits", f"{f_low} to {f_high}", "0 < f_low <= f_high, finite")
@@ -204,22 +129,9 @@ def third_octave_bands(
 def wavelength_bands(
     shortest: float, longest: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """One-third octaves of base 10 in wavelength, from the longest to the shortest.
+    """One-third octaves of base 10 in wavelength, from that of the longest to that of the shortest.
 
-    Parameters
-    ----------
-    shortest, longest : float
-        Wavelengths, m, 0 < shortest <= longest; the bands that hold them are the last and the first.
-
-    Returns
-    -------
-    wavelengths, edges_short, edges_long : ndarray, shape (b,)
-        Centres 10^(n/10) m and edges, m, falling, so that their wavenumbers rise.
-
-    Raises
-    ------
-    InputError
-        If the wavelengths are not positive and rising.
+    Centres 10^(n/10) m and their short and long edges, (b,), m, falling, so that their wavenumbers rise.
     """
     if not 0.0 < shortest <= longest < np.inf:
         raise InputError("wavelengths", f"{shortest} to {longest}", "0 < shortest <= longest, finite")
@@ -230,29 +142,11 @@ def wavelength_bands(
 def band_energies(
     frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, edges_high: ArrayLike
 ) -> NDArray[np.float64]:
-    """Mean square in bands; a line that straddles an edge is shared in proportion.
+    """Mean square (..., b), U², in bands; a line that straddles an edge is shared in proportion.
 
-    Each line stands for the frequencies half a step around it, so neighbouring bands add up to
-    the energy of their union.
-
-    Parameters
-    ----------
-    frequency : array_like, shape (f,)
-        Uniform frequencies, Hz or cycles per metre, rising.
-    psd : array_like, shape (..., f)
-        One-sided density, U² per Hz.
-    edges_low, edges_high : array_like, shape (b,)
-        Band edges, Hz.
-
-    Returns
-    -------
-    ndarray, shape (..., b)
-        Mean square, U². Parts of a band outside the frequencies hold nothing.
-
-    Raises
-    ------
-    InputError
-        If the frequencies are not uniform or the shapes disagree.
+    Each line of the density (..., f), U² per Hz, stands for the frequencies half a step around it, so
+    neighbouring bands add up to the energy of their union. Frequencies and edges are in Hz or cycles per
+    metre, the former uniform and rising; parts of a band outside of them hold nothing.
     """
     lines, density = np.asarray(frequency, dtype=np.float64), np.asarray(psd, dtype=np.float64)
     step = _frequency_step(lines, density)
@@ -291,34 +185,13 @@ def band_levels(
     low: float | None = None,
     high: float | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """One-third-octave band levels of a PSD.
+    """One-third-octave band levels of a PSD: centres (b,), Hz, and levels (..., b), dB.
 
-    For a texture, `frequency` is in cycles per metre and the wavelengths of the bands are
-    ``1 / centres``.
-
-    Parameters
-    ----------
-    frequency : array_like, shape (f,)
-        Uniform frequencies, Hz or cycles per metre, rising.
-    psd : array_like, shape (..., f)
-        One-sided density, U² per Hz.
-    reference : float, optional
-        Reference value, U (1e-6 for dB re 1 µm and dB re 1 µm/s²).
-    low, high : float, optional
-        Frequencies that lie in the first and the last band, Hz. By default all bands that the
-        frequencies cover and that are at least one frequency step wide.
-
-    Returns
-    -------
-    centres : ndarray, shape (b,)
-        Band centres, Hz.
-    levels : ndarray, shape (..., b)
-        10 lg(mean square / reference²), dB; minus infinity for an empty band.
-
-    Raises
-    ------
-    InputError
-        If the frequencies are not uniform, no band is covered or the reference is not positive.
+    10 lg(mean square / reference²), minus infinity for an empty band, of a density (..., f), U² per Hz, at
+    uniform, rising frequencies; `reference` is in U (1e-6 for dB re 1 µm and dB re 1 µm/s²). `low` and `high`
+    lie in the first and the last band; by default all bands that the frequencies cover and that are at least
+    one frequency step wide. For a texture, frequencies are in cycles per metre and the wavelengths of the
+    bands are ``1 / centres``.
     """
     lines = np.asarray(frequency, dtype=np.float64)
     step = _frequency_step(lines, np.asarray(psd, dtype=np.float64))
@@ -344,46 +217,16 @@ def _covered_centres(lines: NDArray[np.float64], step: float) -> tuple[float, fl
 
 
 def energy_sum(levels: ArrayLike, axis: int = -1) -> NDArray[np.float64]:
-    """Level of the sum of the energies of levels.
-
-    Parameters
-    ----------
-    levels : array_like
-        Levels, dB, all with the same reference.
-    axis : int, optional
-        Axis to sum over.
-
-    Returns
-    -------
-    ndarray
-        10 lg Σ 10^(L/10), dB.
-    """
+    """Level of the sum of the energies of levels with one reference, dB: 10 lg Σ 10^(L/10)."""
     with np.errstate(divide="ignore"):
         return 10.0 * np.log10(np.sum(10.0 ** (np.asarray(levels, dtype=np.float64) / 10.0), axis=axis))
 
 
 def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
-    """A-weighting of sound pressure levels.
+    """A-weighting of sound pressure levels at frequencies >= 0, Hz: dB to add to an unweighted level.
 
-    Parameters
-    ----------
-    frequency : array_like
-        Frequencies, Hz, >= 0.
-
-    Returns
-    -------
-    ndarray
-        dB to add to an unweighted level; 0 dB at 1 kHz within 0.001 dB, minus infinity at 0 Hz.
-
-    Raises
-    ------
-    InputError
-        If a frequency is negative.
-
-    References
-    ----------
-    IEC 61672-1:2013, analytical A-weighting, with the rounded constants 20.60, 107.7, 737.9 and
-    12194 Hz and -2.000 dB.
+    0 dB at 1 kHz within 0.001 dB, minus infinity at 0 Hz. IEC 61672-1:2013, analytical A-weighting, with the
+    rounded constants 20.60, 107.7, 737.9 and 12194 Hz and -2.000 dB.
     """
     f = np.asarray(frequency, dtype=np.float64)
     if (f < 0.0).any():

@@ -27,20 +27,10 @@ MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
 
 
 def content_key(name: str, *parts: object) -> str:
-    """Name of a result by what it was computed from.
+    """Name of a result by what it was computed from: `name` and a SHA-256.
 
-    Parameters
-    ----------
-    name : str
-        What is computed, as ``"scan"``.
-    *parts : array, number, str, bool, None, or lists and dicts of these
-        Everything that the result depends on.
-
-    Returns
-    -------
-    str
-        `name` and a SHA-256 over dtypes, shapes and bytes of the arrays, the JSON of the rest and the
-        version of the format.
+    Over dtypes, shapes and bytes of the arrays among the parts, the JSON of the rest (numbers, text, truth
+    values, None, lists and dicts of these) and the version of the format.
     """
     digest = hashlib.sha256(f"asperity {FORMAT} {name}".encode())
     for part in parts:
@@ -82,16 +72,10 @@ class Cache(Protocol):
 class Store:
     """Folder of results, each in one file named by what it was computed from.
 
-    Parameters
-    ----------
-    root : Path, optional
-        The folder; by default ``$ASPERITY_CACHE``, else ``asperity`` in the user's cache folder.
-
-    Notes
-    -----
-    Files are ``.npz`` without pickled objects, written atomically and sealed with a digest. A file that is
-    damaged, or was not written by a `Store`, counts as missing. Any number of processes may read and write
-    the same folder. Where it cannot be written, results are held in memory, with one warning.
+    By default the folder is ``$ASPERITY_CACHE``, else ``asperity`` in the user's cache folder. Files are
+    ``.npz`` without pickled objects, written atomically and sealed with a digest. A file that is damaged, or
+    was not written by a `Store`, counts as missing. Any number of processes may read and write the same
+    folder. Where it cannot be written, results are held in memory, with one warning.
     """
 
     root: Path = field(default_factory=lambda: default_root())
@@ -109,18 +93,7 @@ class Store:
         return self.root / f"{key}.npz"
 
     def get(self, key: str) -> dict[str, NDArray[Any]] | None:
-        """Look up a result.
-
-        Parameters
-        ----------
-        key : str
-            From `content_key`.
-
-        Returns
-        -------
-        dict of arrays or None
-            What `put` stored under `key`; None if there is nothing, or nothing that can be trusted.
-        """
+        """Look up the arrays that `put` stored; None if there is nothing, or nothing that can be trusted."""
         path = self.path(key)
         if key in self._held:
             return dict(self._held[key])
@@ -141,24 +114,10 @@ class Store:
         return found
 
     def put(self, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-        """Keep a result.
+        """Keep arrays of plain dtypes under a key from `content_key`.
 
-        Parameters
-        ----------
-        key : str
-            From `content_key`.
-        arrays : mapping of str to array
-            The result; plain dtypes only.
-
-        Raises
-        ------
-        ComputationError
-            If the file cannot be written, and memory already holds much that could not.
-
-        Warns
-        -----
-        RuntimeWarning
-            If the file cannot be written: the result is held in memory, for this store alone.
+        If the file cannot be written, a warning says that they are held in memory, for this store alone; a
+        `ComputationError` that memory already holds much that could not be written.
         """
         contents = {"__key__": np.array(key), **{name: np.asarray(value) for name, value in arrays.items()}}
         if any(value.dtype.hasobject for value in contents.values()):
@@ -212,18 +171,10 @@ class Store:
 
 
 def default_root() -> Path:
-    """Folder of the cache.
+    """Folder of the cache: ``$ASPERITY_CACHE``, else ``asperity`` in the user's cache folder.
 
-    Returns
-    -------
-    Path
-        ``$ASPERITY_CACHE``, else ``asperity`` in the user's cache folder; where the user has no home, one of
-        the user's own among the temporary files.
-
-    Raises
-    ------
-    InputError
-        If that one belongs to somebody else.
+    Where the user has no home, one of the user's own among the temporary files; it must not belong to
+    another.
     """
     if chosen := os.environ.get("ASPERITY_CACHE"):
         return Path(chosen)
@@ -244,13 +195,7 @@ def default_root() -> Path:
 
 
 def temporary_folder() -> Path:
-    """Folder of this user's own among the temporary files.
-
-    Returns
-    -------
-    Path
-        It need not exist.
-    """
+    """Folder of this user's own among the temporary files; it need not exist."""
     return Path(tempfile.gettempdir()).absolute() / f"asperity-{_user()}"
 
 
@@ -261,15 +206,7 @@ def _user() -> int:
 def is_private(folder: Path) -> bool:
     """Whether nobody but the user, and the administrator, can write to a folder.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-
-    Returns
-    -------
-    bool
-        False also if there is no such folder. On Windows every folder counts as private.
+    False also if there is no such folder. On Windows every folder counts as private.
     """
     try:
         status = folder.stat()

@@ -17,16 +17,9 @@ _NOBODY_LISTENS = (errno.EPIPE, errno.EIO, errno.EBADF)
 
 
 def say(text: str, *, err: bool = False, lines: bool = False) -> None:
-    """Print text.
+    """Print text on a line of its own, on standard output or error.
 
-    Parameters
-    ----------
-    text : str
-        What to print, on a line of its own; what would control the terminal is spelled out.
-    err : bool
-        Whether to print on standard error.
-    lines : bool
-        Whether line ends and tabs in it are meant.
+    What would control the terminal is spelled out; `lines` says whether line ends and tabs in it are meant.
     """
     write(sys.stderr if err else sys.stdout, text, lines=lines)
 
@@ -46,20 +39,9 @@ def say_table(
     width: int,
     bold: Collection[int] = (),
 ) -> None:
-    """Print a table.
+    """Print a table of rows of text, with headings or without, some rows (by number, from 0) in bold.
 
-    Parameters
-    ----------
-    title : str
-        What stands above it.
-    headings : sequence of str
-        Of its columns; none for a table without them.
-    rows : iterable of sequence of str
-        Its cells.
-    width : int
-        Characters of a line where standard output is no terminal.
-    bold : collection of int
-        Numbers of the rows that stand out, from 0.
+    `width` is the characters of a line where standard output is no terminal.
     """
     from rich.console import Console
     from rich.table import Table
@@ -79,15 +61,9 @@ def say_table(
 def standard_streams(errors: str) -> Iterator[None]:
     """Make standard output and error fit to be written to, whoever reads them, while a command runs.
 
-    Parameters
-    ----------
-    errors : str
-        The handler of characters that an encoding lacks.
-
-    Notes
-    -----
-    Where a stream is closed, no file that is opened later may take its number: what libraries print would go
-    into that file. Where a reader has ended, as ``head`` does, the command goes on unheard.
+    `errors` handles characters that an encoding lacks. Where a stream is closed, no file that is opened later
+    may take its number: what libraries print would go into that file. Where a reader has ended, as ``head``
+    does, the command goes on unheard.
     """
     _open_closed()
     before = sys.stdout, sys.stderr

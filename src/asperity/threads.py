@@ -19,13 +19,7 @@ def processors() -> int:
 
 
 def thread_count() -> int:
-    """Return the number of threads for one computation: ``$ASPERITY_THREADS``, else one per processor.
-
-    Raises
-    ------
-    InputError
-        If ``$ASPERITY_THREADS`` is no whole number greater than 0.
-    """
+    """Return the number of threads for one computation: ``$ASPERITY_THREADS``, else one per processor."""
     chosen = os.environ.get(THREADS)
     if not chosen:
         return processors()

@@ -33,24 +33,9 @@ def _registry() -> Any:
 
 @lru_cache(maxsize=256)
 def factor(unit: str, dimension: str) -> float:
-    """SI value of one `unit`.
+    """SI value of one unit, as ``"um"``, ``"µm"``, ``"N s/m"``, compatible with an SI unit, as ``"m"``.
 
-    Parameters
-    ----------
-    unit : str
-        A unit, as ``"um"``, ``"µm"``, ``"N s/m"``.
-    dimension : str
-        The SI unit it must be compatible with, as ``"m"``; ``"dB"`` allows ``"dB"`` alone.
-
-    Returns
-    -------
-    float
-        How many `dimension` one `unit` is.
-
-    Raises
-    ------
-    InputError
-        If the unit is unknown or of another dimension.
+    As dimension ``"dB"`` allows ``"dB"`` alone.
     """
     unit = unit.strip()
     if unit == dimension:
@@ -80,24 +65,9 @@ def factor(unit: str, dimension: str) -> float:
 
 
 def quantity(text: str, dimension: str) -> float:
-    """SI value of a quantity written with its unit.
+    """SI value of a quantity written with its unit, as ``"25 mm"``; ``"inf"`` needs no unit.
 
-    Parameters
-    ----------
-    text : str
-        A number and a unit, as ``"25 mm"``; ``"inf"`` needs no unit.
-    dimension : str
-        The SI unit it must be compatible with; ``""`` for a pure number, ``"dB"`` for a level.
-
-    Returns
-    -------
-    float
-        The value in `dimension`.
-
-    Raises
-    ------
-    InputError
-        If the text is not a finite (or infinite, written ``inf``) number with a compatible unit.
+    The unit is compatible with the SI unit `dimension`: ``""`` for a pure number, ``"dB"`` for a level.
     """
     received = repr(text if len(text) <= _LONGEST else text[:_LONGEST] + "…")
     allowed = f"a number and a unit, as '1 {dimension}'" if dimension else "a number"

@@ -133,38 +133,14 @@ WHEEL_TRANSFER: dict[str, tuple[float, ...]] = {
 
 
 def wavelengths() -> NDArray[np.float64]:
-    """Nominal wavelengths of the tables.
-
-    Returns
-    -------
-    ndarray, shape (35,)
-        Band centres, m, falling from 2 m to 0.8 mm.
-    """
+    """Nominal wavelengths of the tables (35,), m, falling from 2 m to 0.8 mm."""
     return np.array(WAVELENGTHS_MM) * 1e-3
 
 
 def rail_roughness(name: str) -> Spectrum:
-    """Rail roughness in one-third octaves of wavelength.
+    """Rail roughness in one-third octaves: nominal wavelengths (35,), m, and levels, dB re 1 µm.
 
-    Parameters
-    ----------
-    name : str
-        "iso3095" (or "EN ISO 3095:2013", well maintained) or "cnossos-average" (or "average-network").
-
-    Returns
-    -------
-    wavelength : ndarray, shape (35,)
-        Nominal band centres, m.
-    level : ndarray, shape (35,)
-        dB re 1 µm.
-
-    Raises
-    ------
-    InputError
-        If there is no such table.
-
-    Notes
-    -----
+    Of "iso3095" (or "EN ISO 3095:2013", well maintained) or "cnossos-average" (or "average-network").
     Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-1b. Of the 35 bands EN ISO 3095:2013 itself
     gives the 22 from 400 mm to 3.15 mm, see `asperity.reference.rail_roughness`.
     """
@@ -173,80 +149,28 @@ def rail_roughness(name: str) -> Spectrum:
 
 
 def wheel_roughness(name: str) -> Spectrum:
-    """Wheel roughness in one-third octaves of wavelength.
+    """Wheel roughness in one-third octaves: nominal wavelengths (32,), m, 1 m to 0.8 mm, levels, dB re 1 µm.
 
-    Parameters
-    ----------
-    name : str
-        Brake: "cast-iron", "composite" (K block) or "disc".
-
-    Returns
-    -------
-    wavelength : ndarray, shape (32,)
-        Nominal band centres, m, 1 m to 0.8 mm. The directive gives nothing outside of them.
-    level : ndarray, shape (32,)
-        dB re 1 µm.
-
-    Raises
-    ------
-    InputError
-        If there is no such table.
-
-    Notes
-    -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-1a.
+    By the brake: "cast-iron", "composite" (K block) or "disc". Directive (EU) 2015/996 as amended by (EU)
+    2021/1226, table G-1a, which gives nothing outside of these bands.
     """
     return np.array(WHEEL_WAVELENGTHS_MM) * 1e-3, _table("wheel roughness", WHEEL_ROUGHNESS, name)
 
 
 def contact_filter(name: str) -> Spectrum:
-    """Contact filter A3 in one-third octaves of wavelength.
+    """Contact filter A3 in one-third octaves: nominal wavelengths (35,), m, and dB to add to roughness.
 
-    Parameters
-    ----------
-    name : str
-        Wheel load and diameter: "50 kN, 360 mm", "50 kN, 680 mm", "50 kN, 920 mm", "25 kN, 920 mm" or
-        "100 kN, 920 mm".
-
-    Returns
-    -------
-    wavelength : ndarray, shape (35,)
-        Nominal band centres, m.
-    level : ndarray, shape (35,)
-        dB to add to the roughness level.
-
-    Raises
-    ------
-    InputError
-        If there is no such table.
-
-    Notes
-    -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-2.
+    By wheel load and diameter: "50 kN, 360 mm", "50 kN, 680 mm", "50 kN, 920 mm", "25 kN, 920 mm" or "100 kN,
+    920 mm". Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-2.
     """
     named = {_filter_name(*key): values for key, values in CONTACT_FILTERS.items()}
     return wavelengths(), _table("contact filter", named, name)
 
 
 def nearest_contact_filter(load: float, diameter: float) -> str:
-    """Name of the contact filter whose load and wheel diameter are nearest.
+    """Name of the contact filter whose load, N, and wheel diameter, m, are nearest.
 
-    Parameters
-    ----------
-    load : float
-        Static wheel load, N.
-    diameter : float
-        Wheel diameter, m.
-
-    Returns
-    -------
-    str
-        A name for `contact_filter`: the smallest distance in ln(load), ln(diameter).
-
-    Raises
-    ------
-    InputError
-        If a value is not positive and finite.
+    The smallest distance in ln(load), ln(diameter).
     """
     for what, value in (("wheel load (N)", load), ("wheel diameter (m)", diameter)):
         if not 0.0 < value < math.inf:
@@ -259,55 +183,21 @@ def nearest_contact_filter(load: float, diameter: float) -> str:
 
 
 def track_transfer(name: str) -> Spectrum:
-    """Transfer from the total effective roughness to the sound power of the track.
+    """Transfer from the total effective roughness to the sound power of the track, (24,).
 
-    Parameters
-    ----------
-    name : str
-        Rail pad of a track on mono-block sleepers: "soft", "medium" or "hard".
-
-    Returns
-    -------
-    frequency : ndarray, shape (24,)
-        Nominal band centres, 50 Hz to 10 kHz.
-    level : ndarray, shape (24,)
-        Sound power level per axle less roughness level, dB re 1 pW and 1 µm.
-
-    Raises
-    ------
-    InputError
-        If there is no such table.
-
-    Notes
-    -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-3a.
+    Nominal band centres, 50 Hz to 10 kHz, and sound power level per axle less roughness level, dB re 1 pW and
+    1 µm, by the rail pad of a track on mono-block sleepers: "soft", "medium" or "hard". Directive (EU)
+    2015/996 as amended by (EU) 2021/1226, table G-3a.
     """
     return np.array(TRANSFER_FREQUENCIES), _table("track transfer", TRACK_TRANSFER, name)
 
 
 def wheel_transfer(name: str) -> Spectrum:
-    """Transfer from the total effective roughness to the sound power of the wheels.
+    """Transfer from the total effective roughness to the sound power of the wheels, (24,).
 
-    Parameters
-    ----------
-    name : str
-        Wheel diameter: "1200 mm", "920 mm", "840 mm" or "680 mm".
-
-    Returns
-    -------
-    frequency : ndarray, shape (24,)
-        Nominal band centres, 50 Hz to 10 kHz.
-    level : ndarray, shape (24,)
-        Sound power level per axle less roughness level, dB re 1 pW and 1 µm.
-
-    Raises
-    ------
-    InputError
-        If there is no such table.
-
-    Notes
-    -----
-    Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-3b.
+    Nominal band centres, 50 Hz to 10 kHz, and sound power level per axle less roughness level, dB re 1 pW and
+    1 µm, by the wheel diameter: "1200 mm", "920 mm", "840 mm" or "680 mm". Directive (EU) 2015/996 as amended
+    by (EU) 2021/1226, table G-3b.
     """
     return np.array(TRANSFER_FREQUENCIES), _table("wheel transfer", WHEEL_TRANSFER, name)
 

@@ -11,21 +11,10 @@ _LAST_BAND = 5000.0
 
 
 def iso_3095_decay_rate(frequency: ArrayLike) -> NDArray[np.float64]:
-    """Lower limit of the vertical decay rate of a reference track.
+    """Lower limit of the vertical decay rate of a reference track, dB/m, at frequencies (f,), Hz.
 
-    Parameters
-    ----------
-    frequency : array_like, shape (f,)
-        Hz.
-
-    Returns
-    -------
-    ndarray, shape (f,)
-        dB/m: that of the one-third octave which holds the frequency; NaN below 250 Hz and above 5 kHz.
-
-    Notes
-    -----
-    ISO 3095:2013; the edition of 2025 has not been compared.
+    That of the one-third octave which holds the frequency; NaN below 250 Hz and above 5 kHz. ISO 3095:2013;
+    the edition of 2025 has not been compared.
     """
     at = np.asarray(frequency, dtype=np.float64)
     limit = np.full(at.shape, np.nan)

@@ -16,17 +16,8 @@ ISO_3095_LEVEL_DB = (
 
 
 def iso_3095_limit() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Upper limit of the rail roughness of a reference track.
+    """Upper limit of the rail roughness of a reference track: nominal wavelengths (22,), m, and dB re 1 µm.
 
-    Returns
-    -------
-    wavelength : ndarray, shape (22,)
-        Nominal band centres, m.
-    level : ndarray, shape (22,)
-        dB re 1 µm.
-
-    Notes
-    -----
     ISO 3095:2013; the edition of 2025 has not been compared.
     """
     return np.array(ISO_3095_WAVELENGTH_CM) * 1e-2, np.array(ISO_3095_LEVEL_DB)

@@ -71,23 +71,7 @@ TRACKS: dict[str, Parameters] = {
 
 
 def named_track(name: str) -> Parameters:
-    """Parameters of a named track.
-
-    Parameters
-    ----------
-    name : str
-        A key of `TRACKS`.
-
-    Returns
-    -------
-    dict
-        Parameter of `asperity.structures.track.Track` to (value in SI, source).
-
-    Raises
-    ------
-    InputError
-        If the name is unknown.
-    """
+    """Parameters of a named track of `TRACKS`, those of `Track`, each with (value in SI, source)."""
     if not isinstance(name, str) or name not in TRACKS:
         close = difflib.get_close_matches(str(name), TRACKS, n=1)
         remedy = f"Did you mean {close[0]!r}?" if close else ""

@@ -238,9 +238,9 @@ class Beam:
     def _centred_parts(self, at: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
         """Bending modes of free and clamped beams, even or odd about the middle.
 
-        cos(kx)/cos(kL/2) -+ cosh(kx)/cosh(kL/2) and the same with sines, written with decaying
-        exponentials only; the mean square over the length is one. Sinusoid, its slope, and the
-        exponentials that rise and fall with x.
+        cos(kx)/cos(kL/2) -+ cosh(kx)/cosh(kL/2) and the same with sines, written with decaying exponentials
+        only; the mean square over the length is one. Sinusoid, its slope, and the exponentials that rise and
+        fall with x.
         """
         k = self._bending_roots / self.length
         even = np.arange(len(k)) % 2 == 0

@@ -46,20 +46,8 @@ Linearised = Callable[[NDArray], tuple[NDArray, NDArray]]
 
 
 def causal_track(track: Track) -> Track:
-    """Put stiffnesses that relax in the place of loss factors.
+    """Put stiffnesses that relax in the place of loss factors; a track that is causal already stays as it is.
 
-    Parameters
-    ----------
-    track : Track
-        Any.
-
-    Returns
-    -------
-    Track
-        The same with `relaxations`; a track that is causal already as it is.
-
-    Notes
-    -----
     Least squares of the level of the mean square of 1/(α_W + α_C + α_R) over half a bay and each band, for
     three rigid wheels on a linear contact, in the strengths of the Maxwell elements of pads and ballast. None
     of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps it in all
@@ -70,18 +58,10 @@ def causal_track(track: Track) -> Track:
 
 
 def least_static(factor: float) -> float:
-    """Least stiffness at rest that pads and ballast may have.
+    """Least stiffness at rest, relative to the nominal one, of pads and ballast with a loss factor η.
 
-    Parameters
-    ----------
-    factor : float
-        Loss factor η.
-
-    Returns
-    -------
-    float
-        Relative to the nominal stiffness: 1/(1 + 2η), for by 2η a loss factor stiffens that is kept over π
-        nepers, from 5 Hz to 115 Hz; at least `LEAST_STATIC`.
+    1/(1 + 2η), for by 2η a loss factor stiffens that is kept over π nepers, from 5 Hz to 115 Hz; at least
+    `LEAST_STATIC`.
     """
     return max(1.0 / (1.0 + 2.0 * factor), LEAST_STATIC)
 
@@ -101,13 +81,7 @@ def _rail(factor: float) -> Relaxation:
 
 
 class _Fit:
-    """Errors of the contact force in bands, as a function of the Maxwell elements of pads and ballast.
-
-    Parameters
-    ----------
-    track : Track
-        With constant loss factors.
-    """
+    """Errors of the contact force in bands, as a function of the Maxwell elements of pads and ballast."""
 
     def __init__(self, track: Track) -> None:
         self.track = track

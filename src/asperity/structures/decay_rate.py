@@ -16,24 +16,9 @@ EN_15461_BAYS = (
 
 
 def decay_rate(track: Track, frequency: ArrayLike) -> NDArray:
-    """Decay rate of the wave that reaches farthest, from its change over one bay.
+    """Decay rate, dB/m, of the wave that reaches farthest, from its change over one bay; frequencies in Hz.
 
-    Parameters
-    ----------
-    track : Track
-        Any.
-    frequency : array_like
-        Hz, positive.
-
-    Returns
-    -------
-    ndarray
-        -20 lg|lambda|/L of the larger multiplier, dB/m, of the shape of `frequency`.
-
-    Raises
-    ------
-    InputError
-        If a frequency is not positive.
+    -20 lg|lambda|/L of the larger multiplier.
     """
     frequency = _positive(frequency)
     largest = np.abs(track.waves(2.0 * np.pi * frequency.ravel()).multipliers).max(axis=0)
@@ -41,29 +26,10 @@ def decay_rate(track: Track, frequency: ArrayLike) -> NDArray:
 
 
 def decay_rate_en15461(track: Track, frequency: ArrayLike) -> NDArray:
-    """Decay rate as a measurement by EN 15461 finds it, force at mid-span.
+    """Decay rate, dB/m, as a measurement by EN 15461 finds it, force at mid-span; frequencies in Hz.
 
-    Parameters
-    ----------
-    track : Track
-        Any.
-    frequency : array_like
-        Hz, positive.
-
-    Returns
-    -------
-    ndarray
-        dB/m, of the shape of `frequency`.
-
-    Raises
-    ------
-    InputError
-        If a frequency is not positive.
-
-    Notes
-    -----
-    It differs from `decay_rate` as measurements do: the near field at the force raises it, up to twofold
-    for an Euler-Bernoulli rail, and 66 bays bound it from below.
+    It differs from `decay_rate` as measurements do: the near field at the force raises it, up to twofold for
+    an Euler-Bernoulli rail, and 66 bays bound it from below.
     """
     frequency = _positive(frequency)
     waves = track.waves(2.0 * np.pi * frequency.ravel())
@@ -74,29 +40,11 @@ def decay_rate_en15461(track: Track, frequency: ArrayLike) -> NDArray:
 
 
 def decay_rate_of_responses(distances: ArrayLike, responses: ArrayLike) -> NDArray:
-    """Decay rate of responses at some distances from the force, EN 15461.
+    """Decay rate, dB/m, of responses (n, ...) at distances (n,) from the force, m, EN 15461.
 
-    Parameters
-    ----------
-    distances : array_like (n,)
-        Distances from the force, ascending from zero, m.
-    responses : array_like (n, ...)
-        Magnitudes of the response there; any unit.
-
-    Returns
-    -------
-    ndarray (...)
-        4.343/sum(|A_n|^2/|A_0|^2 Delta x_n), dB/m.
-
-    Raises
-    ------
-    InputError
-        If the distances do not ascend from zero.
-
-    Notes
-    -----
-    EN 15461:2008. Delta x_n reaches half way to the neighbours; the first interval starts at the
-    force, the last is symmetric about its point.
+    4.343/sum(|A_n|^2/|A_0|^2 Delta x_n), with magnitudes in any unit and distances that ascend from zero. EN
+    15461:2008: Delta x_n reaches half way to the neighbours; the first interval starts at the force, the last
+    is symmetric about its point.
     """
     distances = np.asarray(distances, dtype=float)
     if distances.ndim != 1 or len(distances) < 2 or distances[0] != 0.0 or np.any(np.diff(distances) <= 0.0):

@@ -13,30 +13,15 @@ def free_rail_waves(
     shear_stiffness: complex | NDArray | None = None,
     rotary_inertia: float | None = None,
 ) -> tuple[NDArray, NDArray]:
-    """Receptance of a free infinite rail as a sum of two waves.
+    """Receptance of a free infinite rail as a sum of two waves, G_0(x) = sum_i A_i exp(-i k_i |x|).
 
-    Parameters
-    ----------
-    omega : ndarray (f,) of complex
-        Angular frequency, rad/s, with positive real part or in the lower half-plane.
-    bending_stiffness : complex or ndarray (f,)
-        E I with its losses, N m^2.
-    mass_per_length : float
-        m', kg/m.
-    shear_stiffness : complex or ndarray (f,), optional
-        S = G A kappa with its losses, N; with `rotary_inertia` a Timoshenko rail.
-    rotary_inertia : float, optional
-        rho I, kg m.
+    Wavenumbers k_i, rad/m, Im k_i <= 0, and amplitudes A_i, m/N, both (2, f), at angular frequencies (f,),
+    rad/s, with positive real part or in the lower half-plane. Bending stiffness E I, N m^2, and shear
+    stiffness S = G A kappa, N, with their losses; mass m', kg/m; rotary inertia rho I, kg m. The latter with
+    the shear stiffness makes it a Timoshenko rail.
 
-    Returns
-    -------
-    wavenumbers, amplitudes : ndarray (2, f) of complex
-        k_i, rad/m, Im k_i <= 0, and A_i, m/N, of G_0(x) = sum_i A_i exp(-i k_i |x|).
-
-    Notes
-    -----
-    Residues of the wavenumber spectrum (1 + (EI k^2 - rho I omega^2)/S)/(EI (k^2 - k_1^2)(k^2 - k_2^2))
-    at the roots of EI k^4 - omega^2 (rho I + m' EI/S) k^2 - m' omega^2 (1 - rho I omega^2/S) = 0.
+    Residues of the wavenumber spectrum (1 + (EI k^2 - rho I omega^2)/S)/(EI (k^2 - k_1^2)(k^2 - k_2^2)) at
+    the roots of EI k^4 - omega^2 (rho I + m' EI/S) k^2 - m' omega^2 (1 - rho I omega^2/S) = 0.
     """
     bending, mass = bending_stiffness, mass_per_length
     if shear_stiffness is None or rotary_inertia is None:
@@ -62,19 +47,10 @@ def pinned_frequency(
     shear_stiffness: float | None = None,
     rotary_inertia: float | None = None,
 ) -> float:
-    """Lowest natural frequency of a rail that is simply supported at equal distances.
+    """Lowest natural frequency, Hz, of a rail that is simply supported at equal distances, m.
 
-    Parameters
-    ----------
-    length : float
-        Distance of the supports, m.
-    bending_stiffness, mass_per_length, shear_stiffness, rotary_inertia : float
-        As in `free_rail_waves`, without loss factor.
-
-    Returns
-    -------
-    float
-        Hz: the frequency at which k = pi/length solves the dispersion relation.
+    The frequency at which k = pi/length solves the dispersion relation; the rail as in `free_rail_waves`,
+    without loss factor.
     """
     k, bending, mass = np.pi / length, bending_stiffness, mass_per_length
     if shear_stiffness is None or rotary_inertia is None:

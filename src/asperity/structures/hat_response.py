@@ -18,25 +18,10 @@ SHIFT = 8.0
 class HatResponse:
     """From receptances to responses in time, on one grid of frequencies.
 
-    Parameters
-    ----------
-    track : Track
-        The track; it must be causal.
-    time_step : float
-        s.
-    taps : int
-        Number of lags; the period of the transform is twice that.
-    zones : int
-        Multiples of half the sampling frequency up to which receptances are folded.
-
-    Attributes
-    ----------
-    omega : ndarray (f,)
-        Angular frequencies ω − iσ at which receptances are wanted, rad/s.
-    hat : ndarray (f,)
-        Transform of the hat over the time step, sin²(ωΔt/2)/(ωΔt/2)².
-    waves : PeriodicWaves
-        Waves of the track at `omega`.
+    The track must be causal. There are `taps` lags, of one time step, s; the period of the transform is twice
+    that. Receptances are folded up to `zones` multiples of half the sampling frequency. They are wanted at
+    `omega` (f,), angular frequencies ω − iσ, rad/s, at which `waves` are those of the track and `hat` is the
+    transform of the hat over the time step, sin²(ωΔt/2)/(ωΔt/2)².
     """
 
     def __init__(self, track: Track, time_step: float, taps: int, zones: int) -> None:

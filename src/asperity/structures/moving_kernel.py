@@ -30,25 +30,16 @@ DIED_AWAY = 1e-3
 class MovingKernel:
     """Response of the rail at the moving contact to one hat of force.
 
-    Parameters
-    ----------
-    track : Track
-        The track, with relaxations where it has loss factors.
-    speed : float
-        Of the contact, m/s.
-    time_step : float
-        s.
-    weights : ndarray (positions, taps)
-        Row s, column k: displacement at x_s + k v Δt, k steps after a force that rises to 1 N and falls
-        again, linearly, within a step each, at x_s = s L/positions; m/N. Column 0 stands for the rising
-        half alone. A force that is linear over each step displaces the rail by the sum of its values
-        times these weights.
+    Row s, column k of the weights: displacement at x_s + k v Δt, k steps after a force that rises to 1 N and
+    falls again, linearly, within a step each, at x_s = s L/positions; m/N. Column 0 stands for the rising
+    half alone. A force that is linear over each step displaces the rail by the sum of its values times these
+    weights.
     """
 
-    track: Track
-    speed: float
-    time_step: float
-    weights: NDArray[np.float64]
+    track: Track  # with relaxations where it has loss factors
+    speed: float  # of the contact, m/s
+    time_step: float  # s
+    weights: NDArray[np.float64]  # (positions, taps), m/N
 
     @property
     def spacing(self) -> float:
@@ -71,45 +62,16 @@ def moving_kernel(
     cache: Cache | None = None,
     progress: Progress | None = None,
 ) -> MovingKernel:
-    """Compute the moving kernel of a track for a contact at constant speed.
+    """Compute the moving kernel of a track for a contact at constant speed, m/s, zero for one at rest.
 
-    Parameters
-    ----------
-    track : Track
-        The track; it must dissipate. Where it has constant loss factors, the kernel is that of its
-        `causal_track`.
-    speed : float
-        m/s, below the critical speed; zero for a contact at rest.
-    time_step : float
-        s.
-    duration : float, optional
-        Length of the kernel, s; by default until it has died away.
-    positions : int
-        Start positions in one bay, equally spaced; between them kernels are interpolated.
-    cache : Cache, optional
-        Keeps kernels by their content.
-    progress : callable, optional
-        Called with start positions done, in all, and a message.
+    The track must dissipate; where it has constant loss factors, the kernel is that of its `causal_track`.
+    The speed is below the critical one. The kernel lasts for `duration`, s, by default until it has died
+    away, at most 0.6 s, with a warning. Start positions in one bay are equally spaced; between them kernels
+    are interpolated.
 
-    Returns
-    -------
-    MovingKernel
-
-    Raises
-    ------
-    InputError
-        If the speed is critical, the track undamped, or the time step not positive.
-
-    Warns
-    -----
-    CoarseSamplingWarning
-        If the kernel has not died away at 0.6 s.
-
-    Notes
-    -----
     Inverse Fourier transform of the exact receptance G(x_s + vτ | x_s) times that of the hat,
-    sin²(ωΔt/2)/(ωΔt/2)², along ω − iσ and folded at half the sampling frequency; between the nodes of a
-    bay the response is interpolated by a cubic.
+    sin²(ωΔt/2)/(ωΔt/2)², along ω − iσ and folded at half the sampling frequency; between the nodes of a bay
+    the response is interpolated by a cubic.
     """
     if not isinstance(track, Track):
         raise InputError("track", shown(track), "a Track, as Track.named('x2000')")

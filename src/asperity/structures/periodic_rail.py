@@ -16,63 +16,26 @@ _LARGEST_EXPONENT = 200.0  # products of three exponentials stay inside the rang
 class PeriodicWaves:
     """The two Floquet waves of a periodically supported rail at each frequency.
 
-    With 0 <= x0 <= L and x = p L + xi >= x0, the displacement at x per force at x0 is
-    G(x|x0) = sum_j coefficients_j multipliers_j**p outgoing(xi)_j incoming(x0)_j.
+    With 0 <= x0 <= L and x = p L + xi >= x0, the displacement at x per force at x0 is G(x|x0) = sum_j
+    coefficients_j multipliers_j**p outgoing(xi)_j incoming(x0)_j.
 
-    Parameters
-    ----------
-    multipliers : ndarray (2, f) of complex
-        lambda_j, the change of wave j over one bay, |lambda_j| < 1.
-    coefficients : ndarray (2, f) of complex
-        C_j, N/m times the square of a scale that the shapes carry (see Notes).
-    wavenumbers : ndarray (2, f) of complex
-        k_i of the free rail, rad/m, Im k_i <= 0.
-    weights : ndarray (2, 2, f) of complex
-        Share of the free wave i in wave j, axes (i, j, f).
-    spacing : float
-        Distance of the supports L, m.
-
-    Notes
-    -----
-    The shapes are those of the Floquet sum phi_lambda(x) = sum_n lambda^n G_0(x - n L), multiplied by
-    (cos k_1 L - c)(cos k_2 L - c), c = (lambda + 1/lambda)/2, and the coefficients divided by its
-    square. So written, nothing becomes infinite where the supports exert no force.
+    The shapes are those of the Floquet sum phi_lambda(x) = sum_n lambda^n G_0(x - n L), multiplied by (cos
+    k_1 L - c)(cos k_2 L - c), c = (lambda + 1/lambda)/2, and the coefficients divided by its square. So
+    written, nothing becomes infinite where the supports exert no force.
     """
 
-    multipliers: NDArray
-    coefficients: NDArray
-    wavenumbers: NDArray
-    weights: NDArray
-    spacing: float
+    multipliers: NDArray  # (2, f), lambda_j, the change of wave j over one bay, |lambda_j| < 1
+    coefficients: NDArray  # (2, f), c_j, N/m times the square of the scale that the shapes carry
+    wavenumbers: NDArray  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
+    weights: NDArray  # (2, 2, f), share of the free wave i in wave j, axes (i, j, f)
+    spacing: float  # distance of the supports L, m
 
     def outgoing(self, x: float) -> NDArray:
-        """Shapes of the waves that decay towards growing x.
-
-        Parameters
-        ----------
-        x : float
-            Position in the bay, 0 <= x <= L, m.
-
-        Returns
-        -------
-        ndarray (2, f) of complex
-            phi_lambda(x), scaled.
-        """
+        """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= L, m: phi_lambda(x), scaled."""
         return self._shapes(x, self.multipliers)
 
     def incoming(self, x: float) -> NDArray:
-        """Shapes of the waves that grow towards growing x.
-
-        Parameters
-        ----------
-        x : float
-            Position in the bay, 0 <= x <= L, m.
-
-        Returns
-        -------
-        ndarray (2, f) of complex
-            phi_{1/lambda}(x), scaled.
-        """
+        """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= L: phi_{1/lambda}(x), scaled."""
         return self._shapes(x, 1.0 / self.multipliers)
 
     def _shapes(self, x: float, multipliers: NDArray) -> NDArray:
@@ -80,18 +43,7 @@ class PeriodicWaves:
         return np.sum(self.weights * (far[:, None] + multipliers * near[:, None]), axis=0)
 
     def receptance(self, x: float, x0: float) -> NDArray:
-        """Displacement at `x` per force at `x0`.
-
-        Parameters
-        ----------
-        x, x0 : float
-            Positions from any support, m.
-
-        Returns
-        -------
-        ndarray (f,) of complex
-            m/N.
-        """
+        """Displacement at `x` per force at `x0`, (f,), m/N; positions from any support, m."""
         first, last = min(x, x0), max(x, x0)
         first_bay = np.floor(first / self.spacing)
         start = first - first_bay * self.spacing
@@ -104,31 +56,15 @@ class PeriodicWaves:
 def periodic_waves(
     wavenumbers: NDArray, amplitudes: NDArray, support: NDArray, spacing: float
 ) -> PeriodicWaves:
-    """Floquet waves from the receptance of the free rail.
+    """Floquet waves from the receptance of the free rail, G_0(x) = sum_i A_i exp(-i k_i |x|).
 
-    Parameters
-    ----------
-    wavenumbers, amplitudes : ndarray (2, f) of complex
-        k_i (rad/m) and A_i (m/N) of the free rail, G_0(x) = sum_i A_i exp(-i k_i |x|).
-    support : ndarray (f,) of complex
-        Dynamic stiffness K of one support, N/m.
-    spacing : float
-        Distance of the supports L, m.
+    Wavenumbers k_i, rad/m, and amplitudes A_i, m/N, are (2, f), the dynamic stiffness K of a support, N/m,
+    (f,); the supports are L apart, m. An `InputError` says if a free wave decays by more than exp(-200) in
+    one bay.
 
-    Returns
-    -------
-    PeriodicWaves
-
-    Raises
-    ------
-    InputError
-        If a free wave decays by more than exp(-200) in one bay.
-
-    Notes
-    -----
-    1 + K phi_lambda(0) = 0 is the quadratic c^2 - B c + D = 0 with a_i = i K A_i sin k_i L,
-    C_i = cos k_i L, B = C_1 + C_2 + a_1 + a_2, D = C_1 C_2 + a_1 C_2 + a_2 C_1; the superposition of
-    the supports is the sum of the residues at its roots.
+    1 + K phi_lambda(0) = 0 is the quadratic c^2 - B c + D = 0 with a_i = i K A_i sin k_i L, C_i = cos k_i L,
+    B = C_1 + C_2 + a_1 + a_2, D = C_1 C_2 + a_1 C_2 + a_2 C_1; the superposition of the supports is the sum
+    of the residues at its roots.
     """
     phase = wavenumbers * spacing
     if np.abs(phase.imag).max(initial=0.0) > _LARGEST_EXPONENT:
@@ -163,30 +99,11 @@ def static_receptance(
     spacing: float,
     x: float,
 ) -> float:
-    """Static deflection at a unit force, the limit of the Floquet sum at zero frequency.
+    """Static deflection per unit force, m/N, the limit of the Floquet sum at zero frequency.
 
-    Parameters
-    ----------
-    bending_stiffness : float
-        E I, N m^2.
-    shear_stiffness : float or None
-        G A kappa, N; None for no shear.
-    support_stiffness : float
-        Static stiffness of one support, N/m.
-    spacing : float
-        Distance of the supports L, m.
-    x : float
-        Position of the force in the bay, 0 <= x <= L, m.
-
-    Returns
-    -------
-    float
-        m/N.
-
-    Notes
-    -----
-    With y = 1 - c, G_0 = |x|^3/12EI - |x|/2S gives phi(0) = L^3/(4EI y^2) + b/y,
-    b = L/(2S) - L^3/(12EI), and the multipliers from y^2 + K b y + K L^3/(4EI) = 0.
+    E I, N m^2; S = G A kappa, N, None for no shear; K of one support, N/m; position x of the force in the
+    bay, 0 <= x <= L, m. With y = 1 - c, G_0 = |x|^3/12EI - |x|/2S gives phi(0) = L^3/(4EI y^2) + b/y, b =
+    L/(2S) - L^3/(12EI), and the multipliers from y^2 + K b y + K L^3/(4EI) = 0.
     """
     bending, shear = 1.0 / bending_stiffness, 0.0 if shear_stiffness is None else 1.0 / shear_stiffness
     cubic = 0.25 * bending * spacing**3

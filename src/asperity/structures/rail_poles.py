@@ -28,27 +28,15 @@ TOLERANCE = 5e-3
 class RailPoles:
     """A moving kernel as a sum of decaying oscillations.
 
-    For lags k >= 1 the weights of a start position x are Re Σ_p c_p(x) z_p^(k−1), so that the displacement
-    of the next step follows from states q_p ← z_p q_p + c_p(x) F.
-
-    Parameters
-    ----------
-    kernel : MovingKernel
-        What was fitted.
-    poles : ndarray (p,) of complex
-        z_p per time step, |z_p| < 1.
-    residues : ndarray (positions, p) of complex
-        c_p at the start positions of the kernel, m/N.
-    fit_error : float
-        Root mean square error of the weights of lags >= 1 over all start positions, relative to theirs.
-    static_error : float
-        Largest error of the sum of the weights, relative: of the deflection under a constant force.
+    For lags k >= 1 the weights of a start position x are Re Σ_p c_p(x) z_p^(k−1), so that the displacement of
+    the next step follows from states q_p ← z_p q_p + c_p(x) F.
     """
 
-    kernel: MovingKernel
-    poles: NDArray[np.complex128]
-    residues: NDArray[np.complex128]
-    fit_error: float
+    kernel: MovingKernel  # what was fitted
+    poles: NDArray[np.complex128]  # (p,), z_p per time step, |z_p| < 1
+    residues: NDArray[np.complex128]  # (positions, p), c_p at the start positions, m/N
+    fit_error: float  # rms error of the weights of lags >= 1 over all start positions, relative to theirs
+    # largest relative error of the deflection under a constant force, the sum of the weights
     static_error: float
 
     @property
@@ -70,34 +58,11 @@ class RailPoles:
 
 
 def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = None) -> RailPoles:
-    """Fit a moving kernel by common poles with residues for every start position.
+    """Fit a moving kernel by common poles, both of each conjugate pair counted, and residues for every start.
 
-    Parameters
-    ----------
-    kernel : MovingKernel
-        The kernel.
-    count : int
-        Poles, both of each conjugate pair counted.
-    cache : Cache, optional
-        Keeps fits by their content.
-
-    Returns
-    -------
-    RailPoles
-        The fit and its error.
-
-    Raises
-    ------
-    InputError
-        If `count` is odd or not between 4 and a tenth of the number of lags.
-    ComputationError
-        If the fit breaks down.
-
-    Notes
-    -----
-    Poles by vector fitting of the transform on the unit circle, with weights between absolute and relative
-    error; residues by least squares in time, of the weights, of their running sums (the response to a force
-    that stays) and of the static sum together.
+    Their number is even, from 4 to a tenth of that of the lags. Poles by vector fitting of the transform on
+    the unit circle, with weights between absolute and relative error; residues by least squares in time, of
+    the weights, of their running sums (the response to a force that stays) and of the static sum together.
     """
     taps = kernel.weights.shape[1]
     if count % 2 or not 4 <= count <= most_poles(taps):
@@ -170,17 +135,9 @@ def _residues(weights: NDArray[np.float64], poles: NDArray) -> NDArray[np.comple
 
 
 def over_the_bay(values: NDArray) -> NDArray:
-    """Values at the start positions of a kernel, tabulated finely over a bay.
+    """Values (positions, ...) at the start positions of a kernel, tabulated over a bay: (CELLS + 1, ...).
 
-    Parameters
-    ----------
-    values : ndarray (positions, ...)
-        Periodic over the bay.
-
-    Returns
-    -------
-    ndarray (CELLS + 1, ...)
-        At equal places, both ends of the bay included, by a periodic cubic spline.
+    At equal places, both ends of the bay included, by a periodic cubic spline.
     """
     closed = np.concatenate([values, values[:1]])
     spline = CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic")

@@ -17,20 +17,13 @@ Domain = Literal["half-plane", "disc"]
 class RationalFit:
     """Responses as sums over common stable poles.
 
-    Parameters
-    ----------
-    poles : ndarray (p,) of complex
-        Poles with Im >= 0. Those with Im > 0 stand for themselves and their conjugates.
-    residues : ndarray (m, p) of complex
-        Of each response; real where the pole is real. The response is the sum of r/(s − p) over real
-        poles, and of r/(s − p) + r*/(s − p*) over the others.
-    error : float
-        Root mean square of the weighted error, relative to that of the weighted responses.
+    A response is the sum of r/(s − p) over real poles, and of r/(s − p) + r*/(s − p*) over the others.
     """
 
+    # (p,), im >= 0; those with Im > 0 stand for themselves and their conjugates
     poles: NDArray[np.complex128]
-    residues: NDArray[np.complex128]
-    error: float
+    residues: NDArray[np.complex128]  # (m, p), of each response; real where the pole is real
+    error: float  # root mean square of the weighted error, relative to that of the weighted responses
 
 
 def vector_fit(
@@ -44,35 +37,11 @@ def vector_fit(
 ) -> RationalFit:
     """Fit responses by rational functions with common poles and no polynomial part.
 
-    Parameters
-    ----------
-    points : array_like (n,) of complex
-        Where the responses are known: s = iω for ``"half-plane"``, z = e^{iωΔt} for ``"disc"``.
-    responses : array_like (m, n) or (n,) of complex
-        Responses; those of real signals, so that conjugate points have conjugate responses.
-    poles : array_like (p,) of complex
-        Start poles with Im >= 0.
-    weights : array_like (n,), optional
-        Weights of the points; one by default.
-    iterations : int
-        Relocations of the poles; the best set met is kept.
-    domain : {"half-plane", "disc"}
-        Where stable poles lie: Re s < 0, or |z| < 1. Others are mirrored into it.
+    Responses (m, n) or (n,) are known at points (n,): s = iω for ``"half-plane"``, z = e^{iωΔt} for
+    ``"disc"``; they are those of real signals, so that conjugate points have conjugate responses. Start poles
+    (p,) have Im >= 0. Stable poles lie where Re s < 0, or |z| < 1; others are mirrored there. The poles are
+    relocated `iterations` times; the best set met is kept.
 
-    Returns
-    -------
-    RationalFit
-        Poles, residues and error.
-
-    Raises
-    ------
-    InputError
-        If there are fewer points than unknowns, or something is not finite.
-    ComputationError
-        If the iteration breaks down.
-
-    Notes
-    -----
     B. Gustavsen and A. Semlyen, IEEE Trans. Power Delivery 14 (1999) 1052; relaxed: B. Gustavsen, ibid. 21
     (2006) 1587; one QR factorisation per response: D. Deschrijver et al., IEEE Microw. Wireless Compon. Lett.
     18 (2008) 383. Responses are first compressed to the few that span them.
@@ -104,19 +73,9 @@ def vector_fit(
 
 
 def partial_fractions(points: NDArray, poles: NDArray) -> NDArray[np.complex128]:
-    """Real-coefficient basis of partial fractions.
+    """Real-coefficient basis (n, p + q) of partial fractions at points s (n,), poles (p,) with Im >= 0.
 
-    Parameters
-    ----------
-    points : ndarray (n,) of complex
-        Points s.
-    poles : ndarray (p,) of complex
-        Poles with Im >= 0.
-
-    Returns
-    -------
-    ndarray (n, p + q)
-        For each pole 1/(s − p), or for Im > 0 the two columns 1/(s − p) ± 1/(s − p*), the second times i.
+    For each pole 1/(s − p), or for Im > 0 the two columns 1/(s − p) ± 1/(s − p*), the second times i.
     """
     columns = []
     for pole in poles:
@@ -204,20 +163,7 @@ def _residues(
 
 
 def paired(coefficients: NDArray, poles: NDArray) -> NDArray[np.complex128]:
-    """Complex residues from the coefficients of `partial_fractions`.
-
-    Parameters
-    ----------
-    coefficients : ndarray (p + q, m)
-        Real coefficients.
-    poles : ndarray (p,) of complex
-        Poles with Im >= 0.
-
-    Returns
-    -------
-    ndarray (m, p) of complex
-        Residues.
-    """
+    """Complex residues (m, p) from the real coefficients (p + q, m) of `partial_fractions`."""
     result, i = np.zeros((coefficients.shape[1], poles.size), dtype=complex), 0
     for j, pole in enumerate(poles):
         if pole.imag == 0.0:

@@ -152,17 +152,10 @@ class Track:
         )
 
     def support_stiffness(self, omega: ArrayLike) -> NDArray:
-        """Dynamic stiffness of one support under the rail.
+        """Dynamic stiffness of one support under the rail, N/m, at angular frequencies, rad/s.
 
-        Parameters
-        ----------
-        omega : array_like of complex
-            Angular frequency, rad/s, with positive real part or, if causal, in the lower half-plane.
-
-        Returns
-        -------
-        ndarray of complex
-            K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2), N/m.
+        K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2); omega has a positive real part or, if causal,
+        is in the lower half-plane.
         """
         omega = np.asarray(omega, dtype=complex)
         pad, ballast = self.layer_stiffnesses(omega)
@@ -189,18 +182,7 @@ class Track:
         return pad + rate * (self.pad_damping or 0.0), ballast + rate * (self.ballast_damping or 0.0)
 
     def free_waves(self, omega: ArrayLike) -> tuple[NDArray, NDArray]:
-        """Waves of the rail without supports.
-
-        Parameters
-        ----------
-        omega : array_like (f,) of complex
-            Angular frequency, rad/s.
-
-        Returns
-        -------
-        wavenumbers, amplitudes : ndarray (2, f) of complex
-            k_i, rad/m, and A_i, m/N, of the receptance G_0(x) = sum_i A_i exp(-i k_i |x|).
-        """
+        """Waves of the rail without supports at angular frequencies (f,), rad/s; see `free_rail_waves`."""
         omega, relaxed = np.asarray(omega, dtype=complex), self.relaxations or Relaxations()
         loss = _loss(self.rail_loss_factor, relaxed.rail, omega)
         return free_rail_waves(
@@ -212,25 +194,10 @@ class Track:
         )
 
     def waves(self, omega: ArrayLike) -> PeriodicWaves:
-        """The two waves of the supported rail.
+        """The two waves of the supported rail at angular frequencies (f,), rad/s, as in `support_stiffness`.
 
-        Parameters
-        ----------
-        omega : array_like (f,) of complex
-            Angular frequency, rad/s, with positive real part or, if causal, in the lower half-plane.
-
-        Returns
-        -------
-        PeriodicWaves
-
-        Raises
-        ------
-        InputError
-            If the frequency is so high that a wave decays by more than exp(-200) in one bay.
-
-        Notes
-        -----
-        Without any damping the outgoing wave is that of a damping which vanishes.
+        Without any damping the outgoing wave is that of a damping which vanishes. An `InputError` says if the
+        frequency is so high that a wave decays by more than exp(-200) in one bay.
         """
         omega = np.atleast_1d(np.asarray(omega, dtype=complex))
         if not self.is_damped:
@@ -339,18 +306,7 @@ class Track:
         return float((4.0 * self.foundation_stiffness * self.bending_stiffness / mass**2) ** 0.25)
 
     def refuse_speed(self, speed: float) -> None:
-        """Refuse a speed at which the response of this track has no bound.
-
-        Parameters
-        ----------
-        speed : float
-            m/s.
-
-        Raises
-        ------
-        InputError
-            If the speed is negative or not below the critical speed.
-        """
+        """Refuse a speed, m/s, at which the response of this track has no bound: negative or critical."""
         if not 0.0 <= speed < self.critical_speed:
             raise InputError(
                 "speed (m/s)",

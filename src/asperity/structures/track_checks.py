@@ -12,19 +12,7 @@ if TYPE_CHECKING:
 
 
 def check_track(track: Track) -> None:
-    """Refuse parameters that no track has.
-
-    Parameters
-    ----------
-    track : Track
-        With any values.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, one element has both viscous damping and a loss factor, or only one
-        of shear stiffness and rotary inertia is given.
-    """
+    """Refuse parameters that no track has; see `asperity.structures.track.Track`."""
     for what, value, needed in (
         ("bending stiffness of the rail (N m^2)", track.bending_stiffness, True),
         ("mass per length of the rail (kg/m)", track.mass_per_length, True),

@@ -26,23 +26,13 @@ RESIDUAL_DAMPING = 0.01
 def fit_modes(frequency: NDArray, receptance: NDArray, rigid: NDArray) -> Modes:
     """Modes with positive modal masses that add to the rigid motion of a wheel.
 
-    Poles come from vector fitting, modal masses from non-negative least squares: the sum takes energy
-    at every frequency, also outside of the band. Relative errors count the same at all points. Modes
-    that contribute nothing are left out.
+    Frequency (n,), Hz, above zero and rising; receptances (n,) of the whole wheel, not zero, and of its rigid
+    motion, m/N. Returns frequencies, Hz, damping ratios and modal masses, kg, in order of frequency; none of
+    a rigid wheel.
 
-    Parameters
-    ----------
-    frequency : ndarray (n,)
-        Hz, above zero and rising.
-    receptance : ndarray (n,) of complex
-        Of the whole wheel, not zero, m/N.
-    rigid : ndarray (n,) of complex
-        Of its rigid motion, m/N.
-
-    Returns
-    -------
-    frequencies, damping_ratios, modal_masses : ndarray (p,)
-        Hz, 1, kg; in order of frequency. None of a rigid wheel.
+    Poles come from vector fitting, modal masses from non-negative least squares: the sum takes energy at
+    every frequency, also outside of the band. Relative errors count the same at all points. Modes that
+    contribute nothing are left out.
     """
     flexible, weights = receptance - rigid, 1.0 / np.abs(receptance)
     best: Modes = (np.zeros(0), np.zeros(0), np.zeros(0))
