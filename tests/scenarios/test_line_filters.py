@@ -14,7 +14,9 @@ from asperity.kinds.report import parts_of
 from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
 from asperity.laws import Printed, Shifted
 from asperity.reduction.fir import response
+from asperity.reduction.scan import first_touch
 from asperity.running import prepare, run
+from asperity.scenarios.reducing import patch_planes
 
 BALL = """
 kind = "ball-on-beam"
@@ -164,6 +166,17 @@ class TestWhatIsStored:
         np.testing.assert_allclose(applied[row], smooth["filter"].values[row], atol=0.02)
 
 
+def test_filters_are_within_0_3_db_of_those_of_exact_contacts(chain):
+    """Short waves are small parts of a force: scanned as loosely as a force, filters would be off by 2 dB."""
+    exact = parse_case(ball().text.replace("[numerics]", "[numerics]\nforce_accuracy = 1e-6"))
+    found, wanted = (
+        reduced.reduction.filters["tangent"].contact_filter for reduced in (chain, computed(exact))
+    )
+    counted = (20 * np.log10(wanted.raw) > -30.0) & wanted.excited
+    assert counted.sum() > 50
+    assert np.abs(20 * np.log10(found.raw / wanted.raw))[counted].max() < 0.3
+
+
 class TestUniformTexture:
     def test_wheel_on_a_rail_that_is_the_same_all_across_hears_sin_q_over_q(self):
         """Raw, fitted and applied filter of a whole case, near the working load."""
@@ -305,6 +318,16 @@ class TestDatum:
         contact = 'sample_length = "1.4 mm"\ndatum = "path"'
         reduction = computed(self.measured(tmp_path, contact)).reduction
         assert reduction.ensemble.datum == reduction.datums["path"] > reduction.datums["samples"]
+
+    def test_of_samples_and_path_it_is_the_first_touch_of_the_path(self, chain):
+        """No point of the path is touched below the state zero, though the strips would be touched later."""
+        body, path = chain.shape.body, chain.textures.path
+        windows = np.lib.stride_tricks.sliding_window_view(path.rows(0, path.shape[0]), body.shape)[:, 0]
+        touches = np.array([(body - window).min() for window in windows])
+        touches += patch_planes(path, chain.shape)[body.shape[0] // 2 :][: len(touches)]
+        assert -touches.min() == pytest.approx(chain.reduction.datums["path"], rel=1e-9)
+        strips = [first_touch(strip.heights, body).min() for strip in chain.textures.strips]
+        assert touches.min() < min(strips)
 
     def test_force_vanishes_at_the_state_zero_for_every_sample(self, chain):
         reduction = chain.reduction

@@ -1,0 +1,64 @@
+"""The script that compares two runs to the last bit finds every difference, and nothing but differences."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from asperity.results import save, variable
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+from compare_runs import compare, main
+
+
+def written(path, force=(1.0, 2.0, np.nan), name="contact_force", dim="time", note="of one law", **attrs):
+    rolling = xr.Dataset({name: variable(dim, np.array(force), "N", "Contact force", note=note)}, attrs=attrs)
+    path.parent.mkdir(exist_ok=True)
+    return save(xr.DataTree.from_dict({"/": xr.Dataset(attrs={"case": "text"}), "/rolling": rolling}), path)
+
+
+@pytest.fixture
+def first(tmp_path):
+    return written(tmp_path / "a" / "run.nc", verdict="stays")
+
+
+def test_a_run_is_the_same_as_itself(first, tmp_path):
+    other = written(tmp_path / "b" / "run.nc", verdict="stays")
+    assert compare(first, other, {}) == ([], [])
+    assert main([str(first), str(other)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (
+            {"force": (1.0, np.nextafter(2.0, 3.0), np.nan)},
+            "rolling/contact_force: 1 of 3 differ, by up to 4.44e-16",
+        ),
+        ({"force": (1.0, 2.0, 3.0)}, "rolling/contact_force: 1 of 3 differ"),
+        ({"force": (1.0, 2.0)}, "rolling/contact_force: shape (3,), now (2,)"),
+        ({"dim": "step"}, "rolling/contact_force: dimensions ('time',), now ('step',)"),
+        ({"note": "of all laws"}, "rolling/contact_force/note: 'of one law', now 'of all laws'"),
+        ({"verdict": "leaves"}, "rolling/@verdict: 'stays', now 'leaves'"),
+        ({"name": "force"}, "rolling/contact_force: missing"),
+    ],
+)
+def test_every_difference_is_told(first, tmp_path, capsys, change, told):
+    other = written(tmp_path / "b" / "run.nc", **{"verdict": "stays", **change})
+    assert main([str(first), str(other)]) == 1
+    assert capsys.readouterr().out.startswith(told)
+
+
+def test_names_that_changed_on_purpose_are_no_differences(first, tmp_path):
+    other = written(tmp_path / "b" / "run.nc", name="force", dim="step", verdict="stays")
+    assert compare(first, other, {"contact_force": "force", "time": "step"}) == ([], [])
+    found, added = compare(first, other, {"rolling/contact_force": "rolling/force"})
+    assert [str(d) for d in found] == ["rolling/contact_force: dimensions ('time',), now ('step',)"]
+    assert added == []
+
+
+def test_what_is_new_is_told_and_no_difference(first, tmp_path):
+    other = written(tmp_path / "b" / "run.nc", verdict="stays", seed=1)
+    assert compare(first, other, {}) == ([], ["rolling/@seed"])
