@@ -19,25 +19,12 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
 def punch_weights(spacing: tuple[float, float], semi_axes: tuple[float, float]) -> NDArray[np.float64]:
-    """Share of the flat-punch pressure on each cell of a grid under an elliptic patch.
+    """Share (odd, odd) of the flat-punch pressure on each cell of a grid under an elliptic patch.
 
-    Parameters
-    ----------
-    spacing : tuple of float
-        (dx, dy), m.
-    semi_axes : tuple of float
-        (a_x, a_y) of the patch, m.
-
-    Returns
-    -------
-    ndarray, shape (odd, odd)
-        Weights that sum to one, the patch centred on the middle cell.
-
-    Notes
-    -----
+    (dx, dy) and the semi-axes (a_x, a_y) in m, the patch centred on the middle cell; the weights sum to one.
     w(ξ, η) = 1/(2π a_x a_y √(1 − ξ²/a_x² − η²/a_y²)), integrated over x in closed form and over y by Gauss's
-    rule after y = a_y sin θ. By reciprocity this is the weight with which small heights enter the force
-    of a Hertzian contact at constant approach; its transform is sin q/q, q² = (k_x a_x)² + (k_y a_y)².
+    rule after y = a_y sin θ. By reciprocity this is the weight with which small heights enter the force of a
+    Hertzian contact at constant approach; its transform is sin q/q, q² = (k_x a_x)² + (k_y a_y)².
     """
     dx, dy = spacing
     a, b = semi_axes
@@ -60,30 +47,12 @@ def areal_texture(
     semi_axes: ArrayLike,
     start: float = 0.0,
 ) -> StateTexture:
-    """Average a strip of texture under the flat-punch weight of the patch of each state.
+    """Average a strip of texture under the flat-punch weight of the patch of each state: h̃_a, m.
 
-    Parameters
-    ----------
-    heights : ndarray, shape (n, ny), or Strip
-        Strip of the path, m, peaks positive; the contact runs along its middle, so ny is odd.
-    spacing : tuple of float
-        (dx, dy), m.
-    approaches : array_like, shape (k,)
-        Approaches of the states, m.
-    semi_axes : array_like, shape (k, 2)
-        Semi-axes (a_x, a_y) of the nominal patch in each state, m.
-    start : float
-        Position of the first row, m.
-
-    Returns
-    -------
-    StateTexture
-        h̃_a, m, positive away from the contact. Its ends, one semi-axis long, see zeros beyond the strip.
-
-    Raises
-    ------
-    InputError
-        If the strip is narrower than the widest patch, or its width is even.
+    Heights (n, ny), m, peaks positive; the contact runs along the middle of the strip, so ny is odd, and the
+    strip at least as wide as the widest patch. Approaches (k,), m, and semi-axes (k, 2) (a_x, a_y) of the
+    nominal patch of each state, m; `start` is the position of the first row, m. The result is positive away
+    from the contact; its ends, one semi-axis long, see zeros beyond the strip.
     """
     axes = np.atleast_2d(np.asarray(semi_axes, dtype=np.float64))
     strip = Rows(heights) if isinstance(heights, np.ndarray) else heights

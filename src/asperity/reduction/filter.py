@@ -32,88 +32,45 @@ CUT_OFF, CUT_OFF_SLOPE = 1e-2, 4
 
 @dataclass(frozen=True, eq=False)
 class FilterSpectra:
-    """What one scanned strip says about the contact filter: spectra added up in bands.
+    """What one scanned strip says about the contact filter: spectra added up in bands."""
 
-    Attributes
-    ----------
-    wavenumber : ndarray, shape (k,)
-        Cycles/m, mean of each band.
-    bins : ndarray, shape (k,)
-        Lines of the spectra in each band.
-    force : ndarray, shape (s, k)
-        Power of the scanned force in each state, N².
-    lines : ndarray, shape (s, k)
-        Power of the line textures under the patch of each state, mean over the lines, m².
-    mean_line : ndarray, shape (s, k)
-        Power of their mean, m².
-    cross : ndarray, shape (s, k)
-        Cross spectrum of the force with their mean, N m; complex.
-    """
-
-    wavenumber: NDArray[np.float64]
-    bins: NDArray[np.intp]
-    force: NDArray[np.float64]
+    wavenumber: NDArray[np.float64]  # (k,), cycles/m, mean of each band
+    bins: NDArray[np.intp]  # (k,), lines of the spectra in each band
+    force: NDArray[np.float64]  # (s, k), power of the scanned force in each state, N²
+    # (s, k), power of the line textures under the patch of each state, mean over the lines, m²
     lines: NDArray[np.float64]
-    mean_line: NDArray[np.float64]
-    cross: NDArray[np.complex128]
+    mean_line: NDArray[np.float64]  # (s, k), power of their mean, m²
+    cross: NDArray[np.complex128]  # (s, k), cross spectrum of the force with their mean, N m
 
 
 @dataclass(frozen=True, eq=False)
 class ContactFilter:
-    """Contact filters of an ensemble of strips.
+    """Contact filters of an ensemble of strips, for s states and k wavenumbers."""
 
-    Attributes
-    ----------
-    approaches : ndarray, shape (s,)
-        Approaches of the states, m.
-    wavenumber : ndarray, shape (k,)
-        Cycles/m.
-    excited : ndarray of bool, shape (k,)
-        Where the texture has the power to say something; beside it the filter is held.
-    raw : ndarray, shape (s, k)
-        |Ĥ| of Eq. 2.6 over all strips: root of the ratio of their powers. No sign.
-    magnitude, spread : ndarray, shape (s, k)
-        The fit to it, and the standard deviation of the strips' own fits.
-    signed, coherence : ndarray, shape (s, k)
-        Force regressed on the mean line under the patch, over k_t, and the share of the force's power that
-        this explains. Each strip and line of the spectra counts by its power, and so by its coherence.
-    asymptotic_stiffness, tangent_stiffness : ndarray, shape (s,)
-        k_0 that makes force and texture agree at low wavenumbers, mean over the strips, and k_t, N/m.
-    long_wave_share : ndarray, shape (s,)
-        Share of the lines' power at the low wavenumbers from which k_0 is taken.
-    normalise : str
-        ``"low-wavenumber"`` (printed: both spectra share their long-wave asymptote) or ``"tangent"``
-        (k_0 = k_t: keeps what a patch wider than the lateral correlation averages away).
-    """
-
-    approaches: NDArray[np.float64]
-    wavenumber: NDArray[np.float64]
+    approaches: NDArray[np.float64]  # (s,), of the states, m
+    wavenumber: NDArray[np.float64]  # (k,), cycles/m
+    # (k,), where the texture has the power to say something; beside it the filter is held
     excited: NDArray[np.bool_]
-    raw: NDArray[np.float64]
-    magnitude: NDArray[np.float64]
-    spread: NDArray[np.float64]
+    raw: NDArray[np.float64]  # (s, k), |Ĥ| of Eq. 2.6, root of the ratio of the powers of all strips; no sign
+    magnitude: NDArray[np.float64]  # (s, k), the fit to it
+    spread: NDArray[np.float64]  # (s, k), standard deviation of the strips' own fits
+    # (s, k), force regressed on the mean line under the patch, over k_t; by power of strips and lines
     signed: NDArray[np.float64]
-    coherence: NDArray[np.float64]
+    coherence: NDArray[np.float64]  # (s, k), share of the force's power that this explains
+    # (s,), k_0: force and texture agree at low wavenumbers; mean over strips, N/m
     asymptotic_stiffness: NDArray[np.float64]
-    tangent_stiffness: NDArray[np.float64]
+    tangent_stiffness: NDArray[np.float64]  # (s,), k_t, N/m
+    # (s,), share of the lines' power at the low wavenumbers from which k_0 is taken
     long_wave_share: NDArray[np.float64]
+    # "low-wavenumber", as printed: both spectra share their long-wave asymptote; or "tangent", k_0 = k_t:
+    # keeps what a patch wider than the lateral correlation averages away
     normalise: Normalise
 
 
 def punch_filter(wavenumber: ArrayLike, semi_axis: ArrayLike) -> NDArray[np.float64]:
-    """Closed form of the filter for small roughness that is uniform across the rolling direction.
+    """Closed form of the filter for small roughness that is uniform across: sin q/q, negative beyond q = π.
 
-    Parameters
-    ----------
-    wavenumber : array_like
-        Cycles/m.
-    semi_axis : array_like
-        Semi-axis of the contact in the rolling direction, m; broadcast against `wavenumber`.
-
-    Returns
-    -------
-    ndarray
-        sin q/q with q = 2π wavenumber × semi-axis; negative beyond q = π.
+    q = 2π wavenumber × semi-axis in the rolling direction, in cycles/m and m, broadcast.
     """
     return np.sinc(2.0 * np.asarray(wavenumber) * np.asarray(semi_axis))
 
@@ -126,29 +83,14 @@ def filter_spectra(
 ) -> FilterSpectra:
     """Take the spectra of a scanned force and of the line textures that it follows (Eqs. 2.4, 2.5).
 
-    Parameters
-    ----------
-    forces : ndarray, shape (s, m)
-        F_c(x_m, r_i) at constant approach, N.
-    lines : ndarray, shape (l, m · stride)
-        Heights of the line textures from the first position on, m, peaks positive; an odd number of lines,
-        the middle one that of the contact. They may be finer than the scan by a whole number, so that waves
-        too short for its positions do not appear as longer ones.
-    spacing : float
-        Distance of the points of the lines, m.
-    half_widths : array_like of int, shape (s,), optional
-        Lines on either side of the middle that the nominal patch of each state covers; all by default.
+    Forces F_c(x_m, r_i) (s, m), N, at constant approach. Lines (l, m · stride), m, peaks positive, from the
+    first position on, their points a spacing apart, m; an odd number, the middle one that of the contact.
+    They may be finer than the scan by a whole number, so that waves too short for its positions do not appear
+    as longer ones. The nominal patch of each state covers `half_widths` (s,) lines on either side of the
+    middle, all by default.
 
-    Returns
-    -------
-    FilterSpectra
-        Means are removed before the Hann window, and *power*, not amplitude, is averaged over the lines.
-        Bands are a twelfth of an octave wide, or a bin where that is wider.
-
-    Raises
-    ------
-    InputError
-        If forces and lines do not fit, are too short, or the texture is flat.
+    Means are removed before the Hann window, and *power*, not amplitude, is averaged over the lines. Bands
+    are a twelfth of an octave wide, or a bin where that is wider.
     """
     f, z = np.atleast_2d(forces), np.atleast_2d(lines)
     states, m = f.shape
@@ -194,27 +136,12 @@ def estimate_filter(
 ) -> ContactFilter:
     """Compare scanned forces with a point force that follows line textures (Eq. 2.6), and fit the ratio.
 
-    Parameters
-    ----------
-    strips : sequence of FilterSpectra
-        One a strip, on common wavenumbers.
-    approaches : array_like, shape (s,)
-        Approaches of the states, m.
-    tangent_stiffness : array_like, shape (s,)
-        k_t of each state, N/m.
-    normalise : {"low-wavenumber", "tangent"}
-        Whether k_0 makes both spectra of each strip agree at low wavenumbers, as printed, or is k_t.
-    asymptote : array_like, shape (s,), optional
-        Wavenumber below which spectra agree under the former, cycles/m; at least the three lowest bands.
-    degree : int, optional
-        Degree of the polynomial, in dB over wavenumber, that is fitted to the ratio of each strip by least
-        squares, as printed; the fits are averaged. By default the powers of all strips are averaged over a
-        sixth of an octave: a polynomial of low degree cannot hold the knee of the filter.
-
-    Returns
-    -------
-    ContactFilter
-        The fit lies between `FLOOR` and one.
+    Strips have common wavenumbers; approaches, m, and k_t, N/m, are (s,). k_0 makes both spectra of each
+    strip agree at low wavenumbers, below the asymptote (s,), cycles/m, and at least in the three lowest
+    bands, as printed; or is k_t. A `degree` is that of the polynomial, in dB over wavenumber, that is fitted
+    to the ratio of each strip by least squares, as printed; the fits are averaged. By default the powers of
+    all strips are averaged over a sixth of an octave: a polynomial of low degree cannot hold the knee of the
+    filter. The fit lies between `FLOOR` and one.
     """
     k, lines = strips[0].wavenumber, np.array([s.lines for s in strips])
     forces = np.array([s.force for s in strips])
@@ -318,19 +245,10 @@ def closed_form(
     semi_axes: NDArray[np.float64],
     stiffness: NDArray[np.float64],
 ) -> ContactFilter:
-    """Filter of bodies without texture: that of small roughness, uniform across.
+    """Filter of bodies without texture, sin q/q: that of small roughness, uniform across; no raw estimate.
 
-    Parameters
-    ----------
-    approaches, semi_axes, stiffness : ndarray, shape (s,)
-        Approaches of the states, m, semi-axes in the rolling direction, m, and tangent stiffnesses, N/m.
-    wavenumber : ndarray, shape (k,)
-        Cycles/m.
-
-    Returns
-    -------
-    ContactFilter
-        sin q/q; no raw estimate.
+    Approaches, m, semi-axes in the rolling direction, m, and tangent stiffnesses, N/m, are (s,); wavenumbers
+    (k,), cycles/m.
     """
     signed = punch_filter(wavenumber[None, :], semi_axes[:, None])
     none, every = np.full_like(signed, math.nan), np.ones_like(signed)

@@ -26,21 +26,11 @@ _FINE = 3
 
 @dataclass(frozen=True, eq=False)
 class LineFilter:
-    """A contact filter and the taps that apply it.
+    """A contact filter and the taps that apply it."""
 
-    Attributes
-    ----------
-    contact_filter : ContactFilter
-        What was estimated.
-    taps : ndarray, shape (s, J + 1)
-        b_j of each state, symmetric.
-    spacing : float
-        Sampling of the line texture, m.
-    """
-
-    contact_filter: ContactFilter
-    taps: NDArray[np.float64]
-    spacing: float
+    contact_filter: ContactFilter  # what was estimated
+    taps: NDArray[np.float64]  # (s, J + 1), b_j of each state, symmetric
+    spacing: float  # sampling of the line texture, m
 
     @property
     def applied(self) -> NDArray[np.float64]:
@@ -58,58 +48,23 @@ class LineFilter:
 
 
 def response(taps: NDArray[np.float64], spacing: float, wavenumber: ArrayLike) -> NDArray[np.float64]:
-    """Response of symmetric taps about their middle one, real and signed.
+    """Response (s, k) of symmetric taps (s, odd) about their middle one, real and signed.
 
-    Parameters
-    ----------
-    taps : ndarray, shape (s, odd)
-        Filters.
-    spacing : float
-        Distance of the points, m.
-    wavenumber : array_like, shape (k,)
-        Cycles/m.
-
-    Returns
-    -------
-    ndarray, shape (s, k)
-        One where a wave passes unchanged.
+    Spacing in m, wavenumbers (k,) in cycles/m; one where a wave passes unchanged.
     """
     lags = np.arange(taps.shape[1]) - taps.shape[1] // 2
     return np.asarray(taps @ np.cos(2.0 * math.pi * spacing * lags[:, None] * np.asarray(wavenumber)))
 
 
 def tap_count(spacing: float, largest_semi_axis: float) -> int:
-    """Least even J with J dx ≥ 4 a_max.
-
-    Parameters
-    ----------
-    spacing : float
-        Sampling of the line texture, m.
-    largest_semi_axis : float
-        Largest semi-axis of the contact in the rolling direction, m.
-
-    Returns
-    -------
-    int
-        J; the filter has J + 1 taps.
-    """
+    """Least even J with J dx ≥ 4 a_max, dx and semi-axis in m; the filter has J + 1 taps."""
     return 2 * math.ceil(2.0 * largest_semi_axis / spacing)
 
 
 def punch_taps(semi_axes: ArrayLike, spacing: float) -> NDArray[np.float64]:
-    """Taps of the closed-form filter sin q/q: the mean over the length of the patch.
+    """Taps (s, odd) of the closed-form filter sin q/q: the mean over the length of each patch.
 
-    Parameters
-    ----------
-    semi_axes : array_like, shape (s,)
-        Semi-axes of the patch in the rolling direction, m.
-    spacing : float
-        Sampling of the line texture, m.
-
-    Returns
-    -------
-    ndarray, shape (s, odd)
-        Share of each point under each patch; they sum to one.
+    Semi-axes (s,) of the patch in the rolling direction and spacing, m; the taps sum to one.
     """
     a = np.atleast_1d(np.asarray(semi_axes, dtype=np.float64))[:, None]
     half = max(0, math.ceil(float(a.max()) / spacing - 0.5))
@@ -125,30 +80,12 @@ def design_fir(
     least: int = 2,
     most: int = LARGEST_ORDER,
 ) -> LineFilter:
-    """Design linear-phase FIR filters with the fitted magnitudes.
+    """Design linear-phase FIR filters with the fitted magnitudes, for a line of a spacing, m.
 
-    Parameters
-    ----------
-    contact_filter : ContactFilter
-        Estimated filter.
-    spacing : float
-        Sampling of the line texture, m.
-    order : int, optional
-        J, even: a design by window, as the thesis' (Matlab's fir2). By default J is chosen, and the taps are
-        those of the least relative error.
-    least, most : int, optional
-        Orders between which to choose.
-
-    Returns
-    -------
-    LineFilter
-        Under the printed normalisation the taps of each state sum to one. A chosen order is the first tried
-        that meets the fit within 0.3 dB down to −30 dB; where none does, the largest: see `LineFilter.miss`.
-
-    Raises
-    ------
-    InputError
-        If the order is odd or less than 2.
+    With an even order J given, by window, as the thesis' (Matlab's fir2). By default J is chosen between two
+    orders, and the taps are those of the least relative error: the first tried that meets the fit within 0.3
+    dB down to −30 dB; where none does, the largest: see `LineFilter.miss`. Under the printed normalisation
+    the taps of each state sum to one.
     """
     if order is not None:
         if order < 2 or order % 2:
@@ -219,26 +156,11 @@ def filtered_texture(
     approaches: ArrayLike,
     start: float = 0.0,
 ) -> StateTexture:
-    """Filter the line texture of a path for every state (Eq. 2.7).
+    """Filter the line texture (m,) of a path, m, peaks positive, for every state (Eq. 2.7).
 
-    Parameters
-    ----------
-    heights : ndarray, shape (m,)
-        Line texture, m, peaks positive.
-    spacing : float
-        Distance of the points, m.
-    taps : ndarray, shape (s, J + 1)
-        As of a `LineFilter`.
-    approaches : array_like, shape (s,)
-        Approaches of the states, m.
-    start : float
-        Position of the first point, m.
-
-    Returns
-    -------
-    StateTexture
-        h̃(m, r_i) = Σ_j b_j(r_i) h(m − J/2 + j) with h = −z, m, positive away from the contact. The first
-        and last J/2 points see a texture mirrored at the ends.
+    h̃(m, r_i) = Σ_j b_j(r_i) h(m − J/2 + j) with h = −z, m, positive away from the contact, taps (s, J + 1)
+    and approaches (s,), m; `start` is the position of the first point, m. The first and last J/2 points see a
+    texture mirrored at the ends.
     """
     half = taps.shape[1] // 2
     padded = np.pad(-np.asarray(heights, dtype=np.float64), half, mode="reflect")

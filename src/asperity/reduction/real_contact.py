@@ -13,15 +13,8 @@ PROPORTION = 2.0
 def isolated_share(pressure: NDArray[np.float64]) -> float:
     """Share of the force on cells that touch alone: asperities that the grid does not resolve.
 
-    Parameters
-    ----------
-    pressure : ndarray, shape (nx, ny)
-        Contact pressure, Pa.
-
-    Returns
-    -------
-    float
-        0 to 1; 0 without contact. Cells count as alone where none of their four neighbours is in contact.
+    Of a pressure (nx, ny), Pa; 0 without contact. Cells count as alone where none of their four neighbours is
+    in contact.
     """
     total = float(pressure.sum())
     touching = np.pad(pressure > 0.0, 1)
@@ -30,31 +23,15 @@ def isolated_share(pressure: NDArray[np.float64]) -> float:
 
 
 def expected_area_ratio(slope: float, peak_pressure: float, modulus: float) -> float:
-    """Real contact area over that of smooth bodies, expected without solving a contact.
+    """Real contact area over that of smooth bodies, 0 to 1, expected without solving a contact.
 
-    Parameters
-    ----------
-    slope : float
-        S_dq, rms slope of the rough surface.
-    peak_pressure : float
-        Largest pressure of the smooth contact (Hertz), Pa.
-    modulus : float
-        Contact modulus E*, Pa.
+    Rms slope S_dq of the rough surface; largest pressure of the smooth contact (Hertz) and E*, Pa. Within
+    0.04 of boundary elements for self-affine textures with waves of less than four contact radii, of any
+    Hurst exponent and any ratio from 0.2 on.
 
-    Returns
-    -------
-    float
-        0 to 1; within 0.04 of boundary elements for self-affine textures with waves of less than four contact
-        radii, of any Hurst exponent and any ratio from 0.2 on.
-
-    Notes
-    -----
     Persson's share of contact under a pressure p, erf(√π κ p/(2 E* S_dq)), with the κ of boundary elements,
-    averaged over Hertz's pressure.
-
-    References
-    ----------
-    B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840; S. Hyun et al., Phys. Rev. E 70 (2004) 026117 (κ).
+    averaged over Hertz's pressure: B. N. J. Persson, J. Chem. Phys. 115 (2001) 3840; S. Hyun et al., Phys.
+    Rev. E 70 (2004) 026117 (κ).
     """
     if slope <= 0.0:
         return 1.0

@@ -15,56 +15,25 @@ from asperity.kernels.monotone import continued_to_touch, cubic_coefficients, mo
 class ForceCurve:
     """Contact force as a monotone, once differentiable function of the approach.
 
-    The curve is a monotone piecewise cubic of ``g = F**(1/exponent)``: with the exponent 3/2 a
-    Hertzian contact is a straight line in g, so the interpolation is exact for it and the
-    square-root start of the stiffness needs no polynomial. Below the first knot the force is zero
-    (unless `bilateral`); above the last one g goes on with its end slope.
-
-    Parameters
-    ----------
-    knots : ndarray (k,)
-        Approaches, m, increasing.
-    coefficients : ndarray (k - 1, 4)
-        Cubic coefficients of g in each interval, highest power first, in (approach - knot).
-    exponent : float
-        Exponent of g in the force.
-    upper : float
-        Largest approach that the data cover, m; beyond it the curve is a continuation.
-    bilateral : bool
-        Whether the curve goes on below the first knot, into tension, instead of being zero there.
+    The curve is a monotone piecewise cubic of ``g = F**(1/exponent)``: with the exponent 3/2 a Hertzian
+    contact is a straight line in g, so the interpolation is exact for it and the square-root start of the
+    stiffness needs no polynomial. Below the first knot the force is zero (unless `bilateral`, into tension);
+    above the last one g goes on with its end slope.
     """
 
-    knots: NDArray
-    coefficients: NDArray
-    exponent: float = 1.5
-    upper: float = np.inf
+    knots: NDArray  # (k,), approaches, m, increasing
+    coefficients: NDArray  # (k − 1, 4), of g in each interval, highest power first, in (approach − knot)
+    exponent: float = 1.5  # of g in the force
+    upper: float = np.inf  # largest approach that the data cover, m; beyond it the curve is a continuation
     bilateral: bool = False
 
     @classmethod
     def from_samples(cls, approach: ArrayLike, force: ArrayLike, exponent: float = 1.5) -> ForceCurve:
-        """Curve through computed pairs of approach and force.
+        """Curve through computed pairs of approach, m, increasing, and force, N.
 
-        First touch lies where g, continued straight below its first positive sample, vanishes, but
-        not below the last sample with zero force.
-
-        Parameters
-        ----------
-        approach : array_like (n,)
-            Approaches, m, increasing.
-        force : array_like (n,)
-            Forces, N, not negative, and increasing once positive; at least two positive.
-        exponent : float
-            Exponent of the start of the force, 3/2 for contact of solids.
-
-        Returns
-        -------
-        ForceCurve
-            The curve; it passes through the samples.
-
-        Raises
-        ------
-        InputError
-            If the samples do not rise as stated.
+        Forces are not negative, increase once positive, and at least two are. The exponent is that of the
+        start of the force, 3/2 for contact of solids. First touch lies where g, continued straight below its
+        first positive sample, vanishes, but not below the last sample with zero force.
         """
         s, f = np.asarray(approach, dtype=float), np.asarray(force, dtype=float)
         _check_samples(s, f)
@@ -77,40 +46,14 @@ class ForceCurve:
 
     @classmethod
     def hertz(cls, stiffness: float) -> ForceCurve:
-        """Hertzian point contact, F = K s^1.5, exact at every approach.
-
-        Parameters
-        ----------
-        stiffness : float
-            Hertz constant K, N/m^1.5 (4/3 E* sqrt(R) for a ball).
-
-        Returns
-        -------
-        ForceCurve
-            The curve.
-        """
+        """Hertzian point contact, F = K s^1.5, exact everywhere; K in N/m^1.5, 4/3 E* sqrt(R) for a ball."""
         _check_positive("Hertz constant (N/m^1.5)", stiffness)
         slope = float(np.cbrt(stiffness)) ** 2
         return cls(np.array([0.0, 1.0]), np.array([[0.0, 0.0, slope, 0.0]]))
 
     @classmethod
     def linear(cls, force: float, stiffness: float, approach: float = 0.0) -> ForceCurve:
-        """Linear spring through a working point, acting in tension too.
-
-        Parameters
-        ----------
-        force : float
-            Force at the working point, N.
-        stiffness : float
-            Stiffness, N/m.
-        approach : float
-            Approach at the working point, m.
-
-        Returns
-        -------
-        ForceCurve
-            F = force + stiffness * (s - approach), bilateral.
-        """
+        """Linear spring through a working point, N, N/m and m, acting in tension too."""
         _check_positive("contact stiffness (N/m)", stiffness)
         knots = np.array([approach, approach + 1.0])
         return cls(knots, np.array([[0.0, 0.0, stiffness, force]]), 1.0, bilateral=True)
@@ -121,72 +64,27 @@ class ForceCurve:
         return -np.inf if self.bilateral else float(self.knots[0])
 
     def force(self, approach: ArrayLike) -> NDArray:
-        """Contact force.
-
-        Parameters
-        ----------
-        approach : array_like
-            Approaches, m.
-
-        Returns
-        -------
-        ndarray
-            Force, N, of the same shape.
-        """
+        """Contact force, N, at approaches, m."""
         g, _ = self._root(np.asarray(approach, dtype=float))
         return g if self.exponent == 1.0 else g**self.exponent
 
     def stiffness(self, approach: ArrayLike) -> NDArray:
-        """Tangent stiffness dF/ds.
-
-        Parameters
-        ----------
-        approach : array_like
-            Approaches, m.
-
-        Returns
-        -------
-        ndarray
-            Stiffness, N/m, of the same shape.
-        """
+        """Tangent stiffness dF/ds, N/m, at approaches, m."""
         g, slope = self._root(np.asarray(approach, dtype=float))
         return slope if self.exponent == 1.0 else self.exponent * g ** (self.exponent - 1.0) * slope
 
     def secant(self, approach: ArrayLike, datum: float) -> NDArray:
-        """Secant stiffness k_c(r) = F/r on the state r = approach + datum (thesis Eq. 2.3).
+        """Secant stiffness k_c(r) = F/r, N/m, on the state r = approach + datum (thesis Eq. 2.3).
 
-        Parameters
-        ----------
-        approach : array_like
-            Approaches, m.
-        datum : float
-            Offset of the state, m; at least minus the first touch, so that r > 0 in contact.
-
-        Returns
-        -------
-        ndarray
-            Stiffness, N/m; zero where r <= 0.
+        Zero where r <= 0. The datum, m, is at least minus the first touch, so that r > 0 in contact.
         """
         state = np.asarray(approach, dtype=float) + datum
         return np.where(state > 0.0, self.force(approach) / np.where(state > 0.0, state, 1.0), 0.0)
 
     def inverse(self, force: ArrayLike) -> NDArray:
-        """Approach at which the curve has a given force.
+        """Approach, m, at which the curve has a force, N; the first touch for zero force.
 
-        Parameters
-        ----------
-        force : array_like
-            Forces, N; not negative unless the curve is bilateral.
-
-        Returns
-        -------
-        ndarray
-            Approaches, m; the first touch for zero force.
-
-        Raises
-        ------
-        InputError
-            If a force is negative on a curve without tension.
+        A force is not negative unless the curve is bilateral.
         """
         f = np.asarray(force, dtype=float)
         if not self.bilateral and np.any(f < 0.0):

@@ -21,33 +21,14 @@ PIECE = 8192
 
 @dataclass(frozen=True, eq=False)
 class ForceTable:
-    """Contact force at positions of the path and states of the contact.
+    """Contact force at positions of the path and states of the contact, at least two."""
 
-    Parameters
-    ----------
-    forces : ndarray (s, m), or StoredForces
-        Force at state i and position m, N, not negative, and not falling with the approach by more than the
-        accuracy of scanned forces.
-    approaches : ndarray (s,)
-        Approaches of the states, m, increasing; at least two.
-    start : float
-        Position of the first point on the path, m.
-    spacing : float
-        Distance of the points, m.
-    touches : ndarray (m,), optional
-        Approach at which contact begins at each position, m; by default it is
-        estimated from the forces.
-
-    Raises
-    ------
-    InputError
-        If shapes, spacing or values do not fit.
-    """
-
+    # (s, m), at state i and position m, N, not negative; not falling with the approach but by accuracy
     forces: NDArray | StoredForces
-    approaches: NDArray
-    start: float
-    spacing: float
+    approaches: NDArray  # (s,), of the states, m, increasing
+    start: float  # position of the first point on the path, m
+    spacing: float  # distance of the points, m
+    # (m,), approach at which contact begins, m; by default it is estimated from the forces
     touches: NDArray | None = None
 
     def __post_init__(self) -> None:
@@ -65,23 +46,7 @@ class ForceTable:
         object.__setattr__(self, "approaches", approaches)
 
     def at(self, positions: ArrayLike) -> NDArray:
-        """Forces at given positions, by cubic splines along the path.
-
-        Parameters
-        ----------
-        positions : array_like (n,)
-            Positions on the path, m.
-
-        Returns
-        -------
-        ndarray (n, s)
-            Force of every state, N; not negative, not falling with the approach.
-
-        Raises
-        ------
-        InputError
-            If a position lies outside the table.
-        """
+        """Forces (n, s), N, at positions (n,), m, by cubic splines: not negative, not falling with states."""
         count = self.forces.shape[1]
         index = grid_index("force table", count, self.start, self.spacing, positions)
         result = np.empty((index.size, len(self.approaches)))
@@ -95,18 +60,7 @@ class ForceTable:
         return np.maximum.accumulate(np.maximum(result, 0.0, out=result), axis=1)
 
     def touch_at(self, positions: ArrayLike) -> NDArray | None:
-        """Approach at first touch at given positions, interpolated linearly.
-
-        Parameters
-        ----------
-        positions : array_like (n,)
-            Positions on the path, m.
-
-        Returns
-        -------
-        ndarray (n,) or None
-            Approaches, m; None where they are not known.
-        """
+        """Approach at first touch at positions (n,), m, interpolated linearly; None where it is not known."""
         if self.touches is None:
             return None
         at = self.start + self.spacing * np.arange(self.forces.shape[1])

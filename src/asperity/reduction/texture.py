@@ -15,28 +15,14 @@ from asperity.kernels.along import splines_along
 class StateTexture:
     """Filtered line textures along the path, one for each state (thesis Eq. 2.7).
 
-    Parameters
-    ----------
-    heights : ndarray (s, m)
-        Texture at state i and position m, m, positive *away* from the contact (h = -z).
-    approaches : ndarray (s,)
-        Approaches of the states, m, increasing; between them the texture is interpolated
-        linearly, outside them the nearest is used.
-    start : float
-        Position of the first point on the path, m.
-    spacing : float
-        Distance of the points, m.
-
-    Raises
-    ------
-    InputError
-        If shapes, spacing or values do not fit.
+    Between the approaches of the states the texture is interpolated linearly, outside them the nearest is
+    used.
     """
 
-    heights: NDArray
-    approaches: NDArray
-    start: float
-    spacing: float
+    heights: NDArray  # (s, m), at state i and position m, m, positive *away* from the contact (h = −z)
+    approaches: NDArray  # (s,), of the states, m, increasing
+    start: float  # position of the first point on the path, m
+    spacing: float  # distance of the points, m
 
     def __post_init__(self) -> None:
         heights = np.atleast_2d(np.asarray(self.heights, dtype=float))
@@ -47,37 +33,11 @@ class StateTexture:
 
     @classmethod
     def unfiltered(cls, heights: ArrayLike, spacing: float, start: float = 0.0) -> StateTexture:
-        """One line texture for all states.
-
-        Parameters
-        ----------
-        heights : array_like (m,)
-            Texture, m, positive away from the contact.
-        spacing : float
-            Distance of the points, m.
-        start : float
-            Position of the first point, m.
-
-        Returns
-        -------
-        StateTexture
-            The texture with a single state.
-        """
+        """One line texture (m,) for all states, m, positive away from the contact, from a position on, m."""
         return cls(np.atleast_2d(np.asarray(heights, dtype=float)), np.zeros(1), start, spacing)
 
     def held_at(self, approach: float) -> StateTexture:
-        """One line texture for all states: that of a given one.
-
-        Parameters
-        ----------
-        approach : float
-            Approach of the state, m.
-
-        Returns
-        -------
-        StateTexture
-            The texture with a single state.
-        """
+        """One line texture for all states: that at an approach, m."""
         states = self.approaches
         above = int(np.clip(np.searchsorted(states, approach), 1, max(len(states) - 1, 1)))
         lower, upper = above - 1, min(above, len(states) - 1)
@@ -87,44 +47,14 @@ class StateTexture:
         return StateTexture.unfiltered(heights, self.spacing, self.start)
 
     def at(self, positions: ArrayLike) -> NDArray:
-        """Texture at given positions, by cubic splines along the path.
-
-        Parameters
-        ----------
-        positions : array_like (n,)
-            Positions on the path, m.
-
-        Returns
-        -------
-        ndarray (n, s)
-            Texture of every state, m.
-
-        Raises
-        ------
-        InputError
-            If a position lies outside the texture.
-        """
+        """Texture (n, s), m, of every state at positions (n,) on the path, m, by cubic splines along it."""
         return along_path("state texture", self.heights, self.start, self.spacing, positions)
 
 
 def check_states(what: str, values: NDArray, approaches: NDArray, spacing: float) -> None:
-    """Refuse state functions along a path whose shapes or values do not fit.
+    """Refuse values (s, m) at approaches (s,) and positions along a path whose shapes or values do not fit.
 
-    Parameters
-    ----------
-    what : str
-        What they are, for the message.
-    values : ndarray (s, m)
-        Value at each state and position.
-    approaches : ndarray (s,)
-        Approaches of the states, m.
-    spacing : float
-        Distance of the positions, m.
-
-    Raises
-    ------
-    InputError
-        If they do not fit.
+    Approaches and spacing in m; `what` they are is for the message.
     """
     if values.ndim != 2 or values.shape[0] != len(approaches) or values.shape[1] < 4:
         received = f"{values.shape} values for {len(approaches)} states"
@@ -138,56 +68,18 @@ def check_states(what: str, values: NDArray, approaches: NDArray, spacing: float
 
 
 def along_path(what: str, values: NDArray, start: float, spacing: float, positions: ArrayLike) -> NDArray:
-    """Natural cubic splines of rows along a path.
+    """Natural cubic splines (n, s) of rows (s, m) along a path, at positions (n,), m.
 
-    Parameters
-    ----------
-    what : str
-        What is interpolated, for the message.
-    values : ndarray (s, m)
-        Rows sampled at ``start + spacing * arange(m)``.
-    start, spacing : float
-        Sampling of the rows, m.
-    positions : array_like (n,)
-        Where to interpolate, m.
-
-    Returns
-    -------
-    ndarray (n, s)
-        Interpolated values.
-
-    Raises
-    ------
-    InputError
-        If a position lies outside the rows.
+    The rows are sampled at ``start + spacing * arange(m)``; `what` they are is for the message.
     """
     index = grid_index(what, values.shape[1], start, spacing, positions)
     return np.asarray(splines_along(np.ascontiguousarray(values, dtype=float), index))
 
 
 def grid_index(what: str, points: int, start: float, spacing: float, positions: ArrayLike) -> NDArray:
-    """Places on the grid of a state function along a path.
+    """Places, from 0 to points − 1, of positions on the path, m, on the grid of a state function.
 
-    Parameters
-    ----------
-    what : str
-        What is known there, for the message.
-    points : int
-        Number of points.
-    start, spacing : float
-        Sampling, m.
-    positions : array_like (n,)
-        Positions on the path, m.
-
-    Returns
-    -------
-    ndarray (n,)
-        Places in units of the grid, 0 to points − 1.
-
-    Raises
-    ------
-    InputError
-        If a position lies outside.
+    Its points begin at `start` and are a spacing apart, m; `what` is known there is for the message.
     """
     index = (np.atleast_1d(np.asarray(positions, dtype=float)) - start) / spacing
     last = points - 1

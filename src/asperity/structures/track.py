@@ -163,18 +163,7 @@ class Track:
         return pad * below / (pad + below)
 
     def layer_stiffnesses(self, omega: ArrayLike) -> tuple[NDArray, NDArray]:
-        """Dynamic stiffness of a pad, and of the ballast under a sleeper.
-
-        Parameters
-        ----------
-        omega : array_like of complex
-            As in `support_stiffness`.
-
-        Returns
-        -------
-        pad, ballast : ndarray of complex
-            N/m.
-        """
+        """Dynamic stiffness of a pad, and of ballast under a sleeper, N/m, as in `support_stiffness`."""
         omega, relaxed = np.asarray(omega, dtype=complex), self.relaxations or Relaxations()
         pad = self.pad_stiffness * _loss(self.pad_loss_factor, relaxed.pad, omega)
         ballast = self.ballast_stiffness * _loss(self.ballast_loss_factor, relaxed.ballast, omega)
