@@ -30,7 +30,7 @@ from asperity.reduction.fir import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
-from asperity.reference.rail_roughness import iso_3095_limit
+from asperity.reference import cnossos
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailPoles, rail_poles
 from asperity.structures.track import Track
@@ -78,7 +78,7 @@ def laws(duration: float) -> dict[str, Law]:
     hertz = HertzContact(210e9 / (2 * (1 - 0.3**2)), 0.46, 0.30)
     approach = hertz.approach(LOAD)
     states = approach * np.linspace(0.1, 3.0, STATES)
-    wavelengths, levels = iso_3095_limit()
+    wavelengths, levels = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
     points = int((duration * SPEED + 2.0) / SPACING)
     heights = from_bands(points, SPACING, wavelengths, levels, 1).heights
     plain = StateTexture.unfiltered(-heights, SPACING, -1.0)

@@ -137,7 +137,7 @@ def test_settings_of_a_scan(change, message):
 
 @pytest.mark.parametrize("value", [None, 1, [], object(), True, ""], ids=repr)
 def test_what_is_no_path_is_refused(value):
-    for door in (read_surface, asperity.load, asperity.run):
+    for door in (read_surface, asperity.open_result, asperity.run):
         with pytest.raises(InputError, match=r"received .*; allowed: the path of "):
             door(value)
     for definition, sweep in ((value, {"seed": [1]}), (value, None)):

@@ -18,7 +18,7 @@ from asperity.cli import main
 from asperity.errors import CoarseSamplingWarning, ComputationError, InputError
 from asperity.kinds.cases import load_case, parse_case
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
-from asperity.results import GROUPS, load
+from asperity.results import GROUPS, read_result
 from asperity.store import Store
 from asperity.studies.definition import load_study
 
@@ -48,13 +48,13 @@ def computed(monkeypatch):
         groups["/"] = xr.Dataset(attrs={**attrs, "warnings": json.dumps([warning])})
         return xr.DataTree.from_dict(groups)
 
-    def write_report(tree, directory):
-        (Path(directory) / "report.html").write_text("<html>")
+    def report(tree, directory):
+        page = Path(directory) / "report.html"
+        page.write_text("<html>")
+        return page
 
     monkeypatch.setattr(importlib.import_module("asperity.running"), "run", run, raising=False)
-    monkeypatch.setattr(
-        importlib.import_module("asperity.kinds.report"), "write_report", write_report, raising=False
-    )
+    monkeypatch.setattr(importlib.import_module("asperity.kinds.report"), "report", report, raising=False)
     return cases
 
 
@@ -76,7 +76,7 @@ def call(*arguments, code=0):
 
 def test_run_writes_results_and_report(computed):
     outcome = call("run", "case.toml", "-o", "out")
-    assert load("out").attrs["case"] == CASE
+    assert read_result("out").attrs["case"] == CASE
     assert Path("out/report.html").exists()
     assert "The ball stays in contact." in outcome.stdout
     assert str(Path("out/report.html").resolve()) in outcome.stdout
@@ -114,10 +114,10 @@ def test_another_case_is_never_overwritten(computed):
     outcome = call("run", "other.toml", "-o", "out", code=2)
     assert "out: received the run of another case" in outcome.stderr
     assert "--overwrite" in outcome.stderr
-    assert load("out").attrs["case"] == CASE
+    assert read_result("out").attrs["case"] == CASE
     assert len(computed) == 1
     call("run", "other.toml", "-o", "out", "--overwrite")
-    assert "hurst" in load("out").attrs["case"]
+    assert "hurst" in read_result("out").attrs["case"]
 
 
 @pytest.mark.parametrize(
@@ -700,7 +700,7 @@ def test_a_line_of_a_ball_case_is_read_with_its_hints():
     keys = 'line = "lines.npz"\nline_array = "b"\nline_unit = "nm"\nline_spacing = "8 um"'
     Path("case.toml").write_text('laws = ["hertz"]\n' + CASE.replace('rms = "0.5 um"', keys))
     call("run", "case.toml", "-o", "out", "--no-report")
-    line = load("out")["surface/line"]
+    line = read_result("out")["surface/line"]
     assert float(line.std()) == pytest.approx(1e-9, rel=0.1)
 
 

@@ -21,7 +21,7 @@ from asperity.files import alone_in, refuse_unwritable, write_bytes
 from asperity.kinds import KINDS
 from asperity.kinds.cases import as_case, load_case, parse_case
 from asperity.kinds.wheel_on_rail.tables import LEVELS, read_levels, read_table
-from asperity.results import GROUPS, load, save
+from asperity.results import GROUPS, read_result, save
 from asperity.store import Store
 from asperity.studies.definition import load_study, study_of
 from asperity.surfaces.heightmap import HeightMap
@@ -261,7 +261,7 @@ def test_studies_beyond_all_measure_are_refused(tmp_path, text, message):
 
 
 @pytest.mark.parametrize(
-    "read", [load_case, load_study, read_surface, load, lambda path: read_table(path, LEVELS)]
+    "read", [load_case, load_study, read_surface, read_result, lambda path: read_table(path, LEVELS)]
 )
 class TestPaths:
     """Whatever is no regular file is named, and never opened."""
@@ -365,7 +365,7 @@ def test_a_result_may_name_files_that_are_no_utf8(tmp_path):
     groups = {f"/{name}": xr.Dataset() for name in GROUPS}
     groups["/"] = xr.Dataset(attrs={"asperity_version": "1", "case": 'file = "\udcff.npy"'})
     tree = xr.DataTree.from_dict(groups)
-    assert load(save(tree, tmp_path / "run.nc")).attrs["case"] == 'file = "\\udcff.npy"'
+    assert read_result(save(tree, tmp_path / "run.nc")).attrs["case"] == 'file = "\\udcff.npy"'
     assert tree.attrs["case"] == 'file = "\udcff.npy"'
 
 

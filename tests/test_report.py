@@ -13,7 +13,7 @@ from matplotlib.text import Text
 
 from asperity.errors import ComputationError
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
-from asperity.kinds.report import page, parts_of, write_report
+from asperity.kinds.report import page, parts_of, report
 from asperity.reporting import lines_picture, surface_picture
 from asperity.reporting.csv_files import csv_text
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
@@ -28,7 +28,7 @@ from asperity.reporting.style import (
 )
 from asperity.reporting.tables import reference_table, validity_table
 from asperity.reporting.time_figures import TIME, piece
-from asperity.results import load, save
+from asperity.results import read_result, save
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import DATUM, LAWS, LOAD, report_tree
 
@@ -42,7 +42,7 @@ def tree():
 
 @pytest.fixture(scope="module")
 def folder(tree, tmp_path_factory):
-    return write_report(tree, tmp_path_factory.mktemp("run") / "new").parent
+    return report(tree, tmp_path_factory.mktemp("run") / "new").parent
 
 
 @pytest.fixture(scope="module")
@@ -200,7 +200,7 @@ def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
         surface=["sample_heights", "psd_sample", "psd_path"], contact=["filter", "printed_filter", "pressure"]
     )
     del tree["rolling"], tree["spectra"]
-    text = write_report(tree, tmp_path).read_text(encoding="utf-8")
+    text = report(tree, tmp_path).read_text(encoding="utf-8")
     drawn = {"texture_path", "contact_force"}
     assert {path.stem for path in tmp_path.glob("*.csv")} == drawn
     assert {name for name in Reader(text).all("id") if name in {part.name for part in PARTS}} == drawn
@@ -373,7 +373,7 @@ def test_short_piece_holds_the_longest_loss_of_contact():
 def test_page_that_cannot_be_written_is_a_computation_error(tmp_path):
     (tmp_path / "occupied").write_text("a file")
     with pytest.raises(ComputationError, match="could not be written"):
-        write_report(contact_only(), tmp_path / "occupied")
+        report(contact_only(), tmp_path / "occupied")
 
 
 def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
@@ -382,7 +382,7 @@ def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
         for name, values in node.to_dataset(inherit=False).variables.items():
             known = {"units": "1", "long_name": str(name), "missing": "as drawn"}
             node[name].attrs.update(known | values.attrs)
-    loaded = load(save(tree, tmp_path / "run.nc"))
+    loaded = read_result(save(tree, tmp_path / "run.nc"))
     assert parts_of(loaded) == list(PARTS)
     for part in PARTS:
         assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
@@ -649,7 +649,7 @@ def test_bands_that_say_little_are_marked_in_the_table_and_not_summed_up():
 
 def test_bands_that_say_little_are_marked_in_the_csv_file(tmp_path):
     tree, little = uncertain(0.4)
-    write_report(tree, tmp_path)
+    report(tree, tmp_path)
     table = read_csv(tmp_path / "force_bands.csv")
     assert np.array_equal(table["B T of 10 or more [1]"] == 0.0, little)
     assert np.array_equal(table["B T [1]"], tree["spectra/band_time_product"].values)

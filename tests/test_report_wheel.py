@@ -9,7 +9,7 @@ import pytest
 from matplotlib.text import Text
 
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
-from asperity.kinds.report import chapters_of, page, parts_of, write_report
+from asperity.kinds.report import chapters_of, page, parts_of, report
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
 from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
 from asperity.kinds.wheel_on_rail.figures.marks import sleeper_spacing, speed
@@ -17,7 +17,7 @@ from asperity.kinds.wheel_on_rail.figures.motion import point_labels
 from asperity.reporting import style
 from asperity.reporting.csv_files import csv_text
 from asperity.reporting.tables import sound_power_table
-from asperity.results import load, save
+from asperity.results import read_result, save
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import report_tree
 from report_wheel_tree import LAWS, PINNED, SLEEPERS, SPEED, wheel_tree
@@ -33,7 +33,7 @@ def tree():
 
 @pytest.fixture(scope="module")
 def folder(tree, tmp_path_factory):
-    return write_report(tree, tmp_path_factory.mktemp("wheel")).parent
+    return report(tree, tmp_path_factory.mktemp("wheel")).parent
 
 
 @pytest.fixture(scope="module")
@@ -205,7 +205,7 @@ def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
         for name, values in node.to_dataset(inherit=False).variables.items():
             known = {"units": "1", "long_name": str(name), "missing": "as drawn"}
             node[name].attrs.update(known | values.attrs)
-    loaded = load(save(tree, tmp_path / "run.nc"))
+    loaded = read_result(save(tree, tmp_path / "run.nc"))
     assert parts_of(loaded) == list(PARTS.values())
     for part in PARTS.values():
         assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))

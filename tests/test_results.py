@@ -6,7 +6,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import InputError
-from asperity.results import GROUPS, case_text, checked, load, save, variable
+from asperity.results import GROUPS, case_text, checked, read_result, save, variable
 
 
 def small_tree():
@@ -27,17 +27,17 @@ def small_tree():
 def test_a_result_comes_back_as_it_was(tmp_path):
     tree = small_tree()
     path = save(tree, tmp_path / "run.nc")
-    xr.testing.assert_identical(load(path), tree)
+    xr.testing.assert_identical(read_result(path), tree)
 
 
 def test_a_folder_stands_for_its_run(tmp_path):
     save(small_tree(), tmp_path / "run.nc")
-    xr.testing.assert_identical(asperity.load(tmp_path), small_tree())
+    xr.testing.assert_identical(asperity.open_result(tmp_path), small_tree())
 
 
 def test_the_file_is_closed_after_loading(tmp_path):
     path = save(small_tree(), tmp_path / "run.nc")
-    tree = load(path)
+    tree = read_result(path)
     path.unlink()
     save(small_tree(), path)
     assert tree["rolling/contact_force"].values[1, 4] == 9.0
@@ -58,39 +58,39 @@ def test_a_result_that_fails_to_be_written_leaves_the_old_one(tmp_path):
     broken.attrs["case"] = object()
     with pytest.raises(TypeError):
         save(broken, path)
-    xr.testing.assert_identical(load(path), small_tree())
+    xr.testing.assert_identical(read_result(path), small_tree())
     assert [entry.name for entry in tmp_path.iterdir()] == ["run.nc"]
 
 
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"absent\.nc: received no such file"):
-        load(tmp_path / "absent.nc")
+        read_result(tmp_path / "absent.nc")
 
 
 def test_a_text_file_is_refused(tmp_path):
     (tmp_path / "run.nc").write_text("time, force")
     with pytest.raises(InputError, match="not netCDF-4"):
-        load(tmp_path / "run.nc")
+        read_result(tmp_path / "run.nc")
 
 
 def test_a_truncated_file_is_refused(tmp_path):
     path = save(small_tree(), tmp_path / "run.nc")
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     with pytest.raises(InputError, match="a damaged file"):
-        load(path)
+        read_result(path)
 
 
 def test_a_netcdf_file_of_another_kind_is_refused(tmp_path):
     xr.Dataset({"force": ("time", [1.0])}).to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
     with pytest.raises(InputError, match="of another kind"):
-        load(tmp_path / "run.nc")
+        read_result(tmp_path / "run.nc")
 
 
 def test_a_file_too_large_is_refused(tmp_path, monkeypatch):
     path = save(small_tree(), tmp_path / "run.nc")
     monkeypatch.setattr("asperity.results.LARGEST_FILE", 10)
     with pytest.raises(InputError, match="GiB"):
-        load(path)
+        read_result(path)
 
 
 def test_the_case_is_read_alone(tmp_path):

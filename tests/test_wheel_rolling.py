@@ -9,8 +9,9 @@ from asperity.kinds.wheel_on_rail.passing import passed_points
 from asperity.kinds.wheel_on_rail.roll import roll
 from asperity.laws import Hertz, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.reference.rail_roughness import iso_3095_limit
+from asperity.reference import cnossos
 from asperity.spectra import band_levels, psd
+from asperity.store import Checkpoint, Store
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
@@ -46,7 +47,7 @@ def poles(kernel):
 
 
 def roughness(level, duration, seed=5, speed=SPEED):
-    wavelengths, levels = iso_3095_limit()
+    wavelengths, levels = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
     line = from_bands(round(speed * duration / 1e-3), 1e-3, wavelengths, levels + level, seed).heights
     return StateTexture.unfiltered(-line, 1e-3, -0.4 * speed)
 
@@ -200,21 +201,12 @@ class TestPassedPoints:
 
 
 class TestCheckpoint:
-    def test_an_interrupted_run_goes_on_bit_by_bit(self, poles, monkeypatch):
-        class Kept:
-            arrays = None
-
-            def load(self):
-                return self.arrays
-
-            def save(self, arrays):
-                self.arrays = {k: v.copy() for k, v in arrays.items()}
-
+    def test_an_interrupted_run_goes_on_bit_by_bit(self, poles, monkeypatch, tmp_path):
         texture = roughness(0.0, 1.0)
         law = Hertz(HERTZ, texture)
         settings = {"start": 0.0, "duration": 0.1, "settling": 0.1}
         whole = roll(poles, WHEEL, law, **settings)
-        kept = Kept()
+        kept = Checkpoint(Store(tmp_path), "run")
         monkeypatch.setattr("asperity.kinds.wheel_on_rail.stepper.CHUNK", 700)
 
         def stop(done, total, message):
@@ -223,7 +215,7 @@ class TestCheckpoint:
 
         with pytest.raises(KeyboardInterrupt):
             roll(poles, WHEEL, law, **settings, checkpoint=kept, progress=stop)
-        assert kept.arrays["motion.counts"][0] == 1400
+        assert kept.load()["motion.counts"][0] == 1400
         resumed = roll(poles, WHEEL, law, **settings, checkpoint=kept)
         np.testing.assert_array_equal(resumed.contact_force, whole.contact_force)
         with pytest.raises(InputError, match="checkpoint"):

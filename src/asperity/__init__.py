@@ -8,39 +8,47 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOME = {
+    "Ball": "structures.ball",
+    "Beam": "structures.beam",
     "Contact": "contact.halfspace",
     "HalfSpace": "contact.halfspace",
     "HeightMap": "surfaces.heightmap",
+    "Hertz": "contact.hertz",
+    "Material": "reference.materials",
     "Profile": "surfaces.heightmap",
     "Track": "structures.track",
+    "Wheel": "structures.wheel",
+    "laws": "laws",
+    "material": "reference.materials",
+    "open_result": "running",
     "read_surface": "surfaces.readers",
-    "scan": "reduction.scan",
+    "report": "kinds.report",
     "run": "running",
-    "load": "results",
+    "save": "results",
+    "scan": "reduction.scan",
     "study": "studies.running",
 }
+"""Module of each public name; the cases of each kind come beside them."""
 
-__all__ = [
-    "Contact",
-    "HalfSpace",
-    "HeightMap",
-    "Profile",
-    "Track",
-    "__version__",
-    "load",
-    "read_surface",
-    "run",
-    "scan",
-    "study",
-]
+
+def _cases() -> dict[str, str]:
+    """Classes of cases: "ball-on-beam" is BallOnBeam in the module ``case`` of its kind."""
+    kinds = importlib.import_module("asperity.kinds").KINDS
+    return {name.title().replace("-", ""): f"{kind.folder}.case" for name, kind in kinds.items()}
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name on first use, so that ``import asperity`` stays fast."""
-    if name not in _HOME:
+    if name == "__all__":
+        return ["__version__", *_HOME, *_cases()]
+    home = (
+        f"asperity.{_HOME[name]}" if name in _HOME else None if name.startswith("_") else _cases().get(name)
+    )
+    if home is None:
         raise AttributeError(f"module 'asperity' has no attribute {name!r}")
-    return getattr(importlib.import_module(f"asperity.{_HOME[name]}"), name)
+    module = importlib.import_module(home)
+    return module if home == f"asperity.{name}" else getattr(module, name)
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted(["__version__", *_HOME, *_cases()])

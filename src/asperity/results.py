@@ -137,7 +137,7 @@ def _storable(tree: xarray.DataTree) -> xarray.DataTree:
     return tree
 
 
-def load(path: str | os.PathLike[str]) -> xarray.DataTree:
+def read_result(path: str | os.PathLike[str]) -> xarray.DataTree:
     """Read a result that a run has written.
 
     Parameters

@@ -64,6 +64,29 @@ def run(
     return result
 
 
+def open_result(path: str | os.PathLike[str]) -> xarray.DataTree:
+    """Open the result of a run again.
+
+    Parameters
+    ----------
+    path : path
+        A ``run.nc``, or the folder that holds one.
+
+    Returns
+    -------
+    xarray.DataTree
+        The result, in memory; the file is closed.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, too large or not a result of this program.
+    """
+    from asperity.results import read_result
+
+    return read_result(path)
+
+
 def prepare(case: Case) -> Prepared:
     """Prepare a case of any kind, see `asperity.scenarios.preparing.prepare`."""
     from asperity.kinds.cases import kind_of

@@ -170,6 +170,22 @@ class Store:
         return len(files)
 
 
+@dataclass(frozen=True)
+class Checkpoint:
+    """State of an interrupted run under its name in a cache, so that the same run goes on where it was."""
+
+    cache: Cache
+    key: str
+
+    def load(self) -> dict[str, NDArray[Any]] | None:
+        """Return what was saved last, or None."""
+        return self.cache.get(self.key)
+
+    def save(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Replace what was saved."""
+        self.cache.put(self.key, arrays)
+
+
 def default_root() -> Path:
     """Folder of the cache: ``$ASPERITY_CACHE``, else ``asperity`` in the user's cache folder.
 

@@ -21,6 +21,8 @@ _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit hav
 
 # What nearly every case is written in: its values need no unit library, which takes 0.3 s to be ready.
 _PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m", "N m^2")
+LEAST_NUMBER, MOST_NUMBER = 1e-3, 1e5
+"""A quantity keeps its unit while its number lies between these."""
 _PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
 
 
@@ -87,3 +89,43 @@ def quantity(text: str, dimension: str) -> float:
     if math.isinf(value) and not infinite:
         raise InputError("quantity", received, allowed, "The number is too large; 'inf' stands for infinity.")
     return value
+
+
+def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -> str:
+    """Write a quantity with its unit, as `quantity` reads it.
+
+    Parameters
+    ----------
+    value : float
+        In SI.
+    dimension : str
+        The SI unit of the value.
+    unit : str
+        The unit that is preferred; another prefix is taken where its number would be far from one.
+    exactly : bool
+        Whether the text has to be read as the very same number; it has six digits otherwise.
+
+    Returns
+    -------
+    str
+        As ``"25 mm"``; infinity is ``"inf"``.
+    """
+    if math.isinf(value):
+        return "inf" if value > 0 else "-inf"
+    unit = _suited(value, dimension, unit)
+    sign = "+" if dimension == "dB" else ""
+    for digits, each in ((6, unit), (12, unit), (15, unit), (17, unit), (17, dimension)):
+        text = f"{value / factor(each, dimension):{sign}.{digits}g} {each}"
+        if not exactly or quantity(text, dimension) == value:
+            return text
+    raise AssertionError(f"{value!r} {dimension} cannot be written")  # 17 digits are every bit
+
+
+def _suited(value: float, dimension: str, unit: str) -> str:
+    """The unit, or the same with a prefix that brings the number near one."""
+    size = abs(value / factor(unit, dimension))
+    if size == 0.0 or LEAST_NUMBER <= size < MOST_NUMBER or dimension not in _PREFIXED:
+        return unit
+    prefixes = {"": 1.0, **{name: scale for name, scale in _PREFIXES.items() if name != "µ"}}
+    below = [name for name, scale in prefixes.items() if scale <= abs(value)]
+    return max(below, key=prefixes.__getitem__, default="n") + dimension

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from asperity.results import load
+from asperity.results import read_result
 
 LONG = os.environ.get("ASPERITY_FAULTS") == "long"
 """Whether to take the time that a thorough search needs: ``ASPERITY_FAULTS=long pytest tests/faults``."""
@@ -71,7 +71,7 @@ def left(folder):
 
 def numbers(folder):
     """All arrays of a run, and its attributes but for time and clock."""
-    tree = load(folder)
+    tree = read_result(folder)
     arrays = {
         f"{node.path}/{name}": values.values
         for node in tree.subtree

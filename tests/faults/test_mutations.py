@@ -13,7 +13,7 @@ from program import LONG
 
 from asperity.errors import AsperityError, PhysicsWarning
 from asperity.kinds.cases import parse_case
-from asperity.results import load, save, variable
+from asperity.results import read_result, save, variable
 from asperity.surfaces.readers import netcdf, read_surface
 from asperity.surfaces.readers.hints import checked_hints
 
@@ -180,6 +180,6 @@ def test_no_damage_of_a_result_goes_unseen(tmp_path):
         if place >= len(whole) - 80 or place < 8:  # the seal's own words, or the signature
             continue
         with pytest.raises(AsperityError, match="a damaged file: its digest does not fit its contents"):
-            load(file)
+            read_result(file)
     file.write_bytes(whole)
-    assert load(file)["rolling/contact_force"].size == 2000
+    assert read_result(file)["rolling/contact_force"].size == 2000

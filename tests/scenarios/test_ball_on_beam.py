@@ -136,7 +136,7 @@ class TestResult:
         from asperity.results import save
 
         path = save(tree, tmp_path / "run.nc")
-        again = asperity.load(path)
+        again = asperity.open_result(path)
         xarray.testing.assert_identical(again["rolling"].to_dataset(), tree["rolling"].to_dataset())
         assert again.attrs["verdict"] == tree.attrs["verdict"]
 
@@ -282,7 +282,7 @@ class TestTextures:
     def test_spectrum_of_a_rail_as_the_path(self):
         surface = 'spectrum = "iso3095"\nlevel = "-10 dB"'
         found = run(case(surface, laws=["hertz", "linear", "linear-filtered"]))
-        assert "ISO 3095:2013 limit -10 dB" in found["surface"].attrs["source"]
+        assert "path of iso3095, -10 dB" in found["surface"].attrs["source"]
         assert "filter" in found["contact"]
 
 

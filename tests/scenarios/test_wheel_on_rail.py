@@ -121,7 +121,7 @@ class TestResult:
     def test_file_round_trip(self, tree, tmp_path):
         from asperity.results import save
 
-        again = asperity.load(save(tree, tmp_path / "run.nc"))
+        again = asperity.open_result(save(tree, tmp_path / "run.nc"))
         xarray.testing.assert_identical(again["spectra"].to_dataset(), tree["spectra"].to_dataset())
 
     def test_mean_force_is_the_load(self, tree):

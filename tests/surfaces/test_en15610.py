@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import CoarseSamplingWarning, InputError, MissingPointsWarning
 from asperity.reference import cnossos
-from asperity.reference.rail_roughness import iso_3095_limit
 from asperity.surfaces.en15610 import process, remove_spikes, roll_over, roughness_spectrum, trim
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import check_levels
@@ -98,7 +97,7 @@ def test_larger_circles_rise_higher():
 
 
 def test_levels_by_method_a():
-    wavelengths, levels = iso_3095_limit()
+    wavelengths, levels = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
     records = [from_bands(n, 0.5 * MM, wavelengths, levels, seed=n) for n in (30000, 60000)]
     found_at, found = roughness_spectrum(records)
     assert found_at[0] < 0.25

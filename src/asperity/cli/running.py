@@ -40,7 +40,7 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
 
 def _run_alone(case: Case, directory: Path, *, report: bool) -> None:
     """Compute a case and write its results, while no other run does into this folder."""
-    from asperity.kinds.report import remove_report, write_report
+    from asperity.kinds import report as reports
     from asperity.results import save
     from asperity.running import prepare, run
     from asperity.store import Store
@@ -54,13 +54,13 @@ def _run_alone(case: Case, directory: Path, *, report: bool) -> None:
         grade = warning.get("grade", "warning").capitalize()
         say(f"{grade}: {warning['message']}{times}", err=True)
     written = save(tree, directory / "run.nc")
-    remove_report(directory)
+    reports.remove_report(directory)
     if verdict := tree.attrs.get("verdict"):
         say(verdict)
     say(f"Results: {written.resolve()}")
     if report:
-        write_report(tree, directory)
-        say(f"Report:  {(directory / 'report.html').resolve()}")
+        page = reports.report(tree, directory)
+        say(f"Report:  {page.resolve()}")
     store = Store()
     if size := store.size():
         kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"

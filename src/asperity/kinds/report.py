@@ -8,6 +8,8 @@ from pathlib import Path
 
 from xarray import DataTree
 
+from asperity.arguments import file_path, shown
+from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.kinds import KINDS
 from asperity.reporting import page as pages
@@ -38,15 +40,16 @@ def page(tree: DataTree) -> str:
     return pages.page(tree, chapters_of(tree))
 
 
-def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
+def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     """Write the report of a run: one page, and one CSV file per figure.
 
     Parameters
     ----------
-    tree : xarray.DataTree
+    result : xarray.DataTree
         The result of a run. Whatever it lacks is left out of the report.
-    directory : path
-        Folder that receives ``report.html`` and the CSV files; made if missing.
+    path : path
+        Folder that receives ``report.html`` and the CSV files, or the page itself, ``….html``, beside which
+        the CSV files are written. Folders are made where they are missing.
 
     Returns
     -------
@@ -55,14 +58,20 @@ def write_report(tree: DataTree, directory: str | os.PathLike[str]) -> Path:
 
     Raises
     ------
+    InputError
+        If `result` is none, or `path` is no path.
     ComputationError
         If a file cannot be written.
     """
-    directory = Path(directory)
-    text = page(tree)
-    for part in parts_of(tree):
-        write_csv(part.columns(tree), directory / f"{part.name}.csv")
-    return write_bytes(directory / "report.html", text.encode("utf-8", errors="backslashreplace"))
+    if not isinstance(result, DataTree):
+        raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
+    target = file_path("report", path, "the path of a folder, or of a page that ends in .html")
+    if target.suffix.lower() != ".html":
+        target /= "report.html"
+    text = page(result)
+    for part in parts_of(result):
+        write_csv(part.columns(result), target.parent / f"{part.name}.csv")
+    return write_bytes(target, text.encode("utf-8", errors="backslashreplace"))
 
 
 def remove_report(directory: str | os.PathLike[str]) -> None:

@@ -142,7 +142,7 @@ def rail_roughness(name: str) -> Spectrum:
 
     Of "iso3095" (or "EN ISO 3095:2013", well maintained) or "cnossos-average" (or "average-network").
     Directive (EU) 2015/996 as amended by (EU) 2021/1226, table G-1b. Of the 35 bands EN ISO 3095:2013 itself
-    gives the 22 from 400 mm to 3.15 mm, see `asperity.reference.rail_roughness`.
+    gives the 22 from 400 mm to 3.15 mm.
     """
     aliases = {"EN ISO 3095:2013": "iso3095", "average-network": "cnossos-average"}
     return wavelengths(), _table("rail roughness", RAIL_ROUGHNESS, aliases.get(name, name))

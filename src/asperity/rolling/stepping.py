@@ -13,6 +13,7 @@ from asperity.kernels.modal import refine, tolerance
 from asperity.kernels.pointforce import Prepared, with_damping
 from asperity.laws.base import SteppedLaw
 from asperity.progress import Progress
+from asperity.store import Checkpoint
 
 STEPPED_BLOCK = 8  # steps between looks at the clock when the law is evaluated from Python
 SAVE_EVERY = 10.0  # s
@@ -20,18 +21,6 @@ STEPPED_TOLERANCE = 1e-6  # of the force plus the load; a law stepped from Pytho
 STEPPED_ITERATIONS = 40
 
 Free = tuple[float, float, float, float]
-
-
-class Checkpoint(Protocol):
-    """Where an interrupted run is kept."""
-
-    def load(self) -> dict[str, NDArray] | None:
-        """What was saved last, or None."""
-        ...
-
-    def save(self, arrays: dict[str, NDArray]) -> None:
-        """Replace what was saved."""
-        ...
 
 
 class Stepper(Protocol):

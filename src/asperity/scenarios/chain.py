@@ -95,21 +95,6 @@ class Chain(Generic[R]):
         return np.stack([getattr(run, name) for run in self.runs.values()])
 
 
-class Checkpoint:
-    """State of an interrupted run in the store, so that the same case goes on where it was."""
-
-    def __init__(self, store: Store, key: str) -> None:
-        self.store, self.key = store, key
-
-    def load(self) -> dict[str, NDArray] | None:
-        """What was saved last, or None."""
-        return self.store.get(self.key)
-
-    def save(self, state: dict[str, NDArray]) -> None:
-        """Keep a state."""
-        self.store.put(self.key, state)
-
-
 class Stopwatch:
     """Wall time of consecutive parts of the work."""
 

@@ -11,9 +11,9 @@ from asperity.kinds.ball_on_beam.compiling import compile_kernels
 from asperity.kinds.ball_on_beam.roll import Rolling, roll
 from asperity.laws import Law
 from asperity.progress import Progress
-from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
+from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.textures import Textures
-from asperity.store import Store, content_key
+from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 

@@ -36,7 +36,8 @@ from asperity.rolling.stability import (
     modes_and_ball,
     softening,
 )
-from asperity.rolling.stepping import Checkpoint, restore, run
+from asperity.rolling.stepping import restore, run
+from asperity.store import Checkpoint
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 

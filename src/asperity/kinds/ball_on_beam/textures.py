@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from asperity.errors import InputError
 from asperity.kinds.ball_on_beam.case import BallOnBeam
-from asperity.reference.rail_roughness import iso_3095_limit
+from asperity.reference.cnossos import rail_roughness
 from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.reading import read_lines
@@ -25,6 +25,7 @@ from asperity.scenarios.textures import (
     synthesised,
     synthesised_path,
 )
+from asperity.spectra import HALF_BAND
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.strip import Strip
@@ -110,11 +111,14 @@ def _line(case: BallOnBeam, rows: int, least: int, lead: int, seed: int) -> tupl
     """Line of the path: `lead` points for the run-in, then `rows`, at least `least`, for the record."""
     spacing = case.contact.spacing
     if case.surface.spectrum is not None:
-        wavelengths, levels = iso_3095_limit()
+        name = str(case.surface.spectrum)
+        table, every = rail_roughness(name)
+        fits = table / HALF_BAND > 2.06 * spacing  # as on a rail: bands that the grid can hold
+        wavelengths, levels = table[fits], every[fits]
         # a line that closes on itself: longer than the path and than the longest band
         points = max(rows + lead, math.ceil(1.2 * wavelengths.max() / spacing))
         profile = from_bands(points, spacing, wavelengths, levels + case.surface.level, seed)
-        return profile.heights[: rows + lead], f"path of ISO 3095:2013 limit {case.surface.level:+g} dB"
+        return profile.heights[: rows + lead], f"path of {name}, {case.surface.level:+g} dB"
     assert case.surface.line is not None
     measured = read_lines(case.surface, "surface")
     if not isinstance(measured, Profile):

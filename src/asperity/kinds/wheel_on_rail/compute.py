@@ -17,9 +17,9 @@ from asperity.kinds.wheel_on_rail.passing import passed_points
 from asperity.kinds.wheel_on_rail.roll import WheelRolling, roll
 from asperity.laws import Law
 from asperity.progress import Progress
-from asperity.scenarios.chain import Chain, Checkpoint, Stopwatch, reduce_and_roll
+from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.textures import Textures
-from asperity.store import Store, content_key
+from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailPoles, most_poles, rail_poles
 from asperity.structures.track import Track

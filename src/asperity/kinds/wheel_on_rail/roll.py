@@ -24,7 +24,8 @@ from asperity.rolling.stability import (
     softening,
     wheel_step,
 )
-from asperity.rolling.stepping import Checkpoint, restore, run
+from asperity.rolling.stepping import restore, run
+from asperity.store import Checkpoint
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailPoles, over_the_bay
 from asperity.structures.wheel import Wheel
