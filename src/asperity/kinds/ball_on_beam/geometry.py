@@ -10,18 +10,7 @@ from asperity.scenarios.geometry import Geometry, geometry, parabola
 
 
 def geometry_of(case: BallOnBeam) -> Geometry:
-    """Lay out the ball of a case on the contact grid, under its load.
-
-    Parameters
-    ----------
-    case : BallOnBeam
-        The case.
-
-    Returns
-    -------
-    Geometry
-        Shape of the ball.
-    """
+    """Lay out the ball of a case on the contact grid, under its load."""
     modulus = contact_modulus(case.ball.material, case.beam.material)
     return ball_geometry(case, ball_of(case).static_load, modulus)
 
