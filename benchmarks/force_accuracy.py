@@ -26,11 +26,12 @@ from unittest.mock import patch
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.contact import Hertz
-from asperity.reduction.accuracy import FILTER_SHARE, FORCE_ACCURACY, SINGLE_ENOUGH, rtol_for
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.accuracy import FILTER_SHARE, FORCE_ACCURACY, SINGLE_ENOUGH, rtol_for
+from asperity.contact.scan import ScanJob, ScannedForces, scan_forces
 from asperity.reduction.filter import estimate_filter, filter_spectra
-from asperity.reduction.scan import ScannedForces, scan_forces
 from asperity.spectra import band_levels, psd
+from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS, RADIUS, LOAD = 115e9, 25e-3, 10.0
@@ -65,12 +66,10 @@ class Problem:
 
     def scanned(self, rtol: float, single: bool = False) -> ScannedForces[NDArray]:
         """Scan on one thread."""
-        grid = (self.spacing, self.spacing)
-        with patch("asperity.reduction.accuracy.SINGLE_PAYS", 0.0 if single else np.inf):
-            return scan_forces(
-                self.heights, grid, self.body, MODULUS, self.approaches, self.hardness,
-                rtol=rtol, workers=1, device="cpu",
-            )  # fmt: skip
+        half_space = HalfSpace(self.body.shape, self.spacing, MODULUS, self.hardness)
+        job = ScanJob(half_space, Rows(self.heights), self.body, self.approaches, rtol=rtol, device=None)
+        with patch("asperity.contact.accuracy.SINGLE_PAYS", 0.0 if single else np.inf):
+            return scan_forces(job, workers=1)
 
 
 def problem(rms: float, hardness: float | None, cells: int, seed: int, positions: int) -> Problem:
@@ -135,9 +134,9 @@ def main() -> None:
                 times[i, r] = time.process_time() - began
                 if r == 0:
                     worst[i] = np.maximum(worst[i], errors(p, scanned.forces, tight[j].forces))
-                    iterations[i] += scanned.iterations
+                    iterations[i] += scanned.counts.iterations
         seconds[:, j] = times.min(axis=1)
-    solved = sum(t.solved for t in tight)
+    solved = sum(t.counts.solved for t in tight)
     reference = seconds[ASKED.index((1e-6, False))].sum()
     print(f"{solved} contact solutions, {len(problems)} surfaces, {options.positions} positions\n")
     columns = ["rtol", "precision", "largest error of a force", "to rtol", "of a band, dB", "of a filter, dB"]

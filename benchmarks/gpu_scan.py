@@ -24,10 +24,10 @@ import numpy as np
 import asperity
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.device import Device, gpu, processor
+from asperity.contact.scan import BLOCK, ScanJob, scan_forces
 from asperity.errors import InputError
 from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum
-from asperity.reduction.batched_scan import solve_rows
-from asperity.reduction.scan import BLOCK, TRUNCATED, scan_forces
+from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS = 115e9  # Pa, steel on steel
@@ -46,9 +46,11 @@ class Problem:
     approaches: np.ndarray
     stride: int
 
-    def rows(self, positions: int) -> np.ndarray:
-        """Surface under the first positions."""
-        return self.heights[: (positions - 1) * self.stride + len(self.body)]
+    def job(self, positions: int, rtol: float, device: Device | None) -> ScanJob:
+        """Scan of the first positions."""
+        half_space = HalfSpace(self.body.shape, self.spacing, MODULUS)
+        rows = Rows(self.heights[: (positions - 1) * self.stride + len(self.body)])
+        return ScanJob(half_space, rows, self.body, self.approaches, self.stride, rtol, device=device)
 
 
 def problem(cells: int, options: argparse.Namespace) -> Problem:
@@ -73,23 +75,16 @@ def problem(cells: int, options: argparse.Namespace) -> Problem:
     return Problem(np.asarray(heights), body, (spacing, spacing), share * approach, stride)
 
 
-def on_device(p: Problem, positions: int, rtol: float, device: Device) -> tuple[np.ndarray, np.ndarray]:
-    """Scan in one block on the device; forces and iterations."""
-    half_space = HalfSpace(p.body.shape, p.spacing, MODULUS)
-    planes = np.zeros(positions)
-    found = solve_rows(
-        half_space, p.rows(positions), p.body, p.approaches, planes, p.stride, rtol, device, TRUNCATED
-    )
-    assert not found[2].any(), "solutions that did not converge"
-    return found[0], found[1]
+def on_device(p: Problem, positions: int, rtol: float, device: Device) -> tuple[np.ndarray, float]:
+    """Scan on the device; forces, and iterations of a solution."""
+    found = scan_forces(p.job(positions, rtol, device))
+    assert not found.counts.unconverged, "solutions that did not converge"
+    return found.forces, found.counts.iterations / found.forces.size
 
 
 def on_cores(p: Problem, positions: int, rtol: float, workers: int) -> np.ndarray:
     """Scan as the reduction does; forces."""
-    return scan_forces(
-        p.rows(positions), p.spacing, p.body, MODULUS, p.approaches,
-        stride=p.stride, rtol=rtol, workers=workers,
-    ).forces  # fmt: skip
+    return scan_forces(p.job(positions, rtol, None), workers=workers).forces
 
 
 def best(task: Callable[[], object], rounds: int) -> float:
@@ -145,9 +140,9 @@ def report(cells: int, options: argparse.Namespace, device: Device) -> None:
     for name, each in seconds.items():
         print(f"| {name} | {1 / each:.0f} | {1e3 * each:.4f} | {each / first:.2f} |")
     transform = transform_time(cells, min(sizes["device"], 1024), options.rounds, device)
-    mean = float(iterations.mean())
     print(
-        f"\n{mean:.1f} iterations per solution, {1e6 * first / mean:.2f} us each; the transforms of one ",
+        f"\n{iterations:.1f} iterations per solution, {1e6 * first / iterations:.2f} us each; "
+        "the transforms of one ",
         end="",
     )
     print(f"convolution on half the window take {1e6 * transform:.2f} us.")

@@ -22,6 +22,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -34,10 +35,12 @@ def scanned(positions: int, approaches: int, workers: int, stored: bool) -> dict
     import hashlib
     import resource
 
-    from asperity.contact import Hertz
-    from asperity.reduction.accuracy import FORCE_ACCURACY, rtol_for
-    from asperity.reduction.scan import scan_forces, scan_into
+    from asperity.contact import HalfSpace, Hertz
+    from asperity.contact.accuracy import FORCE_ACCURACY, rtol_for
+    from asperity.contact.scan import ScanJob, scan_forces
+    from asperity.reduction.stored import scan_into
     from asperity.store import Store
+    from asperity.surfaces.strip import Rows
     from asperity.surfaces.synthesis import long_self_affine
 
     approach = Hertz(MODULUS, RADIUS, RADIUS).approach(LOAD)
@@ -46,19 +49,20 @@ def scanned(positions: int, approaches: int, workers: int, stored: bool) -> dict
     waves = {"rms": 0.2 * approach, "hurst": 0.8, "longest": 0.4e-3, "shortest": 40e-6}
     grid, states = (SPACING, SPACING), approach * np.linspace(0.2, 1.5, approaches)
     strip = long_self_affine((positions + CELLS - 1, CELLS), grid, **waves, seed=1)
-    problem = (grid, body, MODULUS, states)
-    scan_forces(strip.rows(0, CELLS), *problem, device="cpu")  # compiles, or reads what is compiled
-    keywords = {"rtol": rtol_for(FORCE_ACCURACY), "workers": workers, "device": "cpu"}
+    half_space = HalfSpace(body.shape, SPACING, MODULUS)
+    job = ScanJob(half_space, strip, body, states, rtol=rtol_for(FORCE_ACCURACY), device=None)
+    scan_forces(replace(job, surface=Rows(strip.rows(0, CELLS))))  # compiles, or reads what is compiled
     digest = hashlib.sha256()
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter()
         if stored:
-            result = scan_into(Store(Path(folder)), strip, *problem, **keywords)
+            result = scan_into(Store(Path(folder)), job, workers=workers)
             seconds, size = time.perf_counter() - began, Store(Path(folder)).size()
             for first in range(0, positions, 4096):
                 digest.update(result.forces.columns(first, first + 4096).tobytes())
         else:
-            held = scan_forces(strip.rows(0, strip.shape[0]), *problem, **keywords)
+            whole = replace(job, surface=Rows(strip.rows(0, strip.shape[0])))
+            held = scan_forces(whole, workers=workers)
             seconds, size = time.perf_counter() - began, 0
             for first in range(0, positions, 4096):
                 digest.update(np.ascontiguousarray(held.forces[:, first : first + 4096]).tobytes())

@@ -32,7 +32,8 @@ import numpy as np
 
 import asperity
 from asperity.contact import HalfSpace, Hertz
-from asperity.reduction.scan import scan_forces
+from asperity.contact.scan import ScanJob, scan_forces
+from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS = 115e9  # Pa, steel on steel
@@ -125,18 +126,17 @@ def scanned(p: dict[str, np.ndarray]) -> Run:
     """Scan as the reduction does: warm-started, one thread."""
     loading = not p["offsets"].any()
     began = time.process_time()
-    result = scan_forces(
-        p["heights"],
-        (float(p["spacing"]),) * 2,
+    job = ScanJob(
+        HalfSpace(p["body"].shape, float(p["spacing"]), MODULUS),
+        Rows(p["heights"]),
         p["body"],
-        MODULUS,
         p["approaches"] if loading else p["approaches"][:1],
         stride=int(p["offsets"][1]) or 1,
         rtol=float(p["rtol"]),
-        workers=1,
     )
+    result = scan_forces(job, workers=1)
     seconds, unknown = time.process_time() - began, np.full(len(p["forces"]), np.nan)
-    return seconds, result.forces.ravel(), unknown, np.arange(len(unknown)) < result.unconverged
+    return seconds, result.forces.ravel(), unknown, np.arange(len(unknown)) < result.counts.unconverged
 
 
 def cold(p: dict[str, np.ndarray]) -> Run:

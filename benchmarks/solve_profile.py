@@ -26,13 +26,14 @@ import numpy as np
 from numba import njit
 from scan_step import MODULUS, problem
 
-from asperity.contact import halfspace
+from asperity.contact import HalfSpace, halfspace
+from asperity.contact.scan import ScanJob, scan_forces
 from asperity.kernels import contact, scanning
 from asperity.kernels import projected_cg as cg
 from asperity.kernels.box import Box
 from asperity.kernels.convolution import Convolution, convolve
 from asperity.kernels.lanes import width
-from asperity.reduction.scan import scan_forces
+from asperity.surfaces.strip import Rows
 
 ROUNDS = 5
 
@@ -56,15 +57,14 @@ def options(**changed: Any) -> argparse.Namespace:
 def scan_time(cells: int, positions: int = 64, approaches: int = 1, rounds: int = ROUNDS) -> float:
     """CPU time of a scan, s."""
     p = problem(cells, options(positions=positions))
-    at = float(p["approaches"][0]) * np.linspace(1.0, 0.3, approaches)[::-1]
+    job = scan_job(p, float(p["approaches"][0]) * np.linspace(1.0, 0.3, approaches)[::-1])
+    return least(lambda: scan_forces(job, workers=1), rounds)
 
-    def scan() -> None:
-        scan_forces(
-            p["heights"], (float(p["spacing"]),) * 2, p["body"], MODULUS, at,
-            stride=int(p["offsets"][1]), rtol=1e-8, workers=1,
-        )  # fmt: skip
 
-    return least(scan, rounds)
+def scan_job(p: dict[str, np.ndarray], approaches: np.ndarray) -> ScanJob:
+    """Scan of a problem in double precision; what a solution has prepared, the next one finds."""
+    half_space = HalfSpace(p["body"].shape, float(p["spacing"]), MODULUS)
+    return ScanJob(half_space, Rows(p["heights"]), p["body"], approaches, int(p["offsets"][1]), 1e-8)
 
 
 @njit(_nrt=False)
@@ -119,10 +119,7 @@ def profile(cells: int) -> None:
         patch.object(scanning, "solve_contact", contact.solve_contact.py_func),
         patch.object(halfspace, "solve_positions", scanning.solve_positions.py_func),
     ):
-        scan_forces(
-            p["heights"], (float(p["spacing"]),) * 2, p["body"], MODULUS, p["approaches"][:1],
-            stride=int(p["offsets"][1]), rtol=1e-8, workers=1,
-        )  # fmt: skip
+        scan_forces(scan_job(p, p["approaches"][:1]), workers=1)
     iterations = timed.iterations
     print(
         f"| {cells}² | {1e3 * total / 64:.3f} | {iterations / timed.solutions:.1f} "

@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from path_scaling import CELLS, LOAD, MODULUS, RADIUS, SPACING
@@ -22,9 +22,10 @@ def serve(positions: int, approaches: int) -> None:
     """Scan with as many workers as each line of standard input says; write how long it took."""
     import time
 
-    from asperity.contact import Hertz
-    from asperity.reduction.accuracy import FORCE_ACCURACY, rtol_for
-    from asperity.reduction.scan import scan_forces
+    from asperity.contact import HalfSpace, Hertz
+    from asperity.contact.accuracy import FORCE_ACCURACY, rtol_for
+    from asperity.contact.scan import ScanJob, scan_forces
+    from asperity.surfaces.strip import Rows
     from asperity.surfaces.synthesis import long_self_affine
 
     approach = Hertz(MODULUS, RADIUS, RADIUS).approach(LOAD)
@@ -35,13 +36,14 @@ def serve(positions: int, approaches: int) -> None:
     rows = long_self_affine((positions + CELLS - 1, CELLS), grid, **waves, seed=1).rows(
         0, positions + CELLS - 1
     )
-    keywords: dict[str, Any] = {"rtol": rtol_for(FORCE_ACCURACY), "device": "cpu"}
-    scan_forces(rows[: 4 * CELLS], grid, body, MODULUS, states, workers=1, **keywords)
+    half_space = HalfSpace(body.shape, SPACING, MODULUS)
+    job = ScanJob(half_space, Rows(rows), body, states, rtol=rtol_for(FORCE_ACCURACY), device=None)
+    scan_forces(replace(job, surface=Rows(rows[: 4 * CELLS])), workers=1)
     print("ready", flush=True)
     reference = None
     for line in sys.stdin:
         began = time.perf_counter()
-        forces = scan_forces(rows, grid, body, MODULUS, states, workers=int(line), **keywords).forces
+        forces = scan_forces(job, workers=int(line)).forces
         print(time.perf_counter() - began, flush=True)
         reference = forces if reference is None else reference
         assert np.array_equal(forces, reference), "the digits depend on the number of workers"

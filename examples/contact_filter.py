@@ -30,10 +30,9 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-import asperity
-from asperity.contact import Hertz
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.scan import first_touch
 from asperity.reduction.filter import ContactFilter, estimate_filter, filter_spectra, punch_filter
-from asperity.reduction.scan import first_touch
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reference.materials import contact_modulus, material
 from asperity.reporting.style import sequence, styled, wavenumber_axis
@@ -65,9 +64,10 @@ def filters(longest: float, strips: int = 3, rows: int = 720) -> Filters:
     semi_axis = np.array([BALL.semi_axes(approach)[0] for approach in approaches])
     long_waves = 0.5 / (2 * np.pi * semi_axis)  # k a < 1/2, where sin q/q is one but for 4 %
     under = (semi_axis / SPACING).astype(int)  # lines on either side of the middle
+    half_space = HalfSpace(body.shape, SPACING, BALL.modulus)
     spectra, means = [], []
     for z in textures:
-        forces = asperity.scan(z, grid, body, BALL.modulus, approaches, stride=STRIDE, rtol=1e-5).values
+        forces = half_space.scan(z, body, approaches, STRIDE, rtol=1e-5).values
         lines = z[CELLS // 2 :][: forces.shape[1] * STRIDE].T
         spectra.append(filter_spectra(forces, lines, SPACING, under))
         means.append(forces.mean(axis=1))

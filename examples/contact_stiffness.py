@@ -30,10 +30,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from asperity.contact import Hertz
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.scan import first_touch
 from asperity.reduction.areal import punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
-from asperity.reduction.scan import first_touch
 from asperity.reference.materials import contact_modulus, material
 from asperity.reporting.style import styled
 from asperity.surfaces.synthesis import self_affine
@@ -61,7 +61,8 @@ def press_on_samples(count: int = 12, maps: int = 4) -> StiffnessEnsemble:
     patch = punch_weights(SPACING, BALL.semi_axes(BALL.approach(WORKING_LOAD)))
     samples = patches(rough, body.shape, count, patch)
     datum = -min(float(first_touch(sample, body).min()) for sample in samples)
-    return stiffness_ensemble(samples, SPACING, body, BALL.modulus, STATES - datum, datum)
+    half_space = HalfSpace(body.shape, SPACING, BALL.modulus)
+    return stiffness_ensemble(samples, half_space, body, STATES - datum, datum)
 
 
 def hertz_stiffness(s: np.ndarray) -> np.ndarray:

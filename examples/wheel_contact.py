@@ -34,8 +34,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-import asperity
-from asperity.contact import Hertz
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.scan import first_touch
 from asperity.reduction.areal import punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
 from asperity.reduction.filter import (
@@ -45,7 +45,6 @@ from asperity.reduction.filter import (
     filter_spectra,
     punch_filter,
 )
-from asperity.reduction.scan import first_touch
 from asperity.reference.materials import contact_modulus, material
 from asperity.reporting.style import sequence, styled, wavenumber_axis
 from asperity.surfaces.synthesis import self_affine
@@ -61,6 +60,7 @@ ROUGH, SMOOTH = "#0067a5", "#c8500a"
 
 X = (np.arange(CELLS) - CELLS // 2) * SPACING
 BODY = X[:, None] ** 2 / (2 * WHEEL.radius_x) + X[None, :] ** 2 / (2 * WHEEL.radius_y)
+HALF_SPACE = HalfSpace(BODY.shape, SPACING, WHEEL.modulus)
 
 
 class Filters(NamedTuple):
@@ -84,13 +84,12 @@ def stiffness(strips: list[np.ndarray]) -> StiffnessEnsemble:
     samples = patches(strips, BODY.shape, 12, weights)
     datum = -min(float(first_touch(z, BODY).min()) for z in [*samples, *strips])
     states = np.concatenate([RISE, np.arange(25e-6, 116e-6, 5e-6)])
-    return stiffness_ensemble(samples, (SPACING, SPACING), BODY, WHEEL.modulus, states - datum, datum)
+    return stiffness_ensemble(samples, HALF_SPACE, BODY, states - datum, datum)
 
 
 def scanned(z: np.ndarray, approaches: np.ndarray) -> np.ndarray:
     """Forces at constant approach along a strip, N, shape (states, positions)."""
-    grid = (SPACING, SPACING)
-    return asperity.scan(z, grid, BODY, WHEEL.modulus, approaches, stride=STRIDE, rtol=1e-5).values
+    return HALF_SPACE.scan(z, BODY, approaches, STRIDE, rtol=1e-5).values
 
 
 def spectra(z: np.ndarray, forces: np.ndarray, across: np.ndarray) -> FilterSpectra:

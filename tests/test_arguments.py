@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import asperity
-from asperity import HalfSpace, HeightMap, Profile, Track, read_surface, scan, study
+from asperity import HalfSpace, HeightMap, Profile, Track, read_surface, study
 from asperity.arguments import real, real_array, shown, two_lengths, whole
 from asperity.errors import InputError
 from asperity.structures.moving_kernel import moving_kernel
@@ -25,8 +25,8 @@ NO_NUMBERS = ["1 um", b"x", [], {}, object(), 1 + 2j, np.array(["x"]), len, floa
 
 
 def scanned(**changes):
-    arguments = {"heights": MAP.heights, "spacing": MICROMETRE, "body": BALL, "modulus": 1e11}
-    return scan(**(arguments | {"approaches": [1e-8]} | changes))
+    arguments = {"surface": MAP.heights, "body": BALL, "approaches": [1e-8]}
+    return HALF_SPACE.scan(**(arguments | changes))
 
 
 DOORS = {
@@ -37,11 +37,9 @@ DOORS = {
     "load": lambda v: HALF_SPACE.solve(BALL, load=v),
     "approach": lambda v: HALF_SPACE.solve(BALL, approach=v),
     "rtol of a contact": lambda v: HALF_SPACE.solve(BALL, load=1e-3, rtol=v),
-    "spacing of the scan": lambda v: scanned(spacing=v),
-    "contact modulus of a scan": lambda v: scanned(modulus=v),
-    "hardness of a scan": lambda v: scanned(hardness=v),
     "stride of the scan": lambda v: scanned(stride=v),
-    "rtol": lambda v: scanned(rtol=v),
+    "rtol of a scan": lambda v: scanned(rtol=v),
+    "force_accuracy": lambda v: scanned(force_accuracy=v),
     "workers": lambda v: scanned(workers=v),
     "spacing of the height map": lambda v: HeightMap(MAP.heights, v),
     "spacing of the profile": lambda v: Profile(MAP.heights[0], v),
@@ -57,7 +55,14 @@ DOORS = {
     "time step": lambda v: moving_kernel(TRACK, 20.0, v),
     "workers of a study": lambda v: study({"kind": "ball-on-beam"}, {"seed": [1]}, workers=v),
 }
-NEEDED = ("half-space shape", "half-space spacing", "contact modulus", "stride", "rtol", "pad stiffness")
+NEEDED = (
+    "half-space shape",
+    "half-space spacing",
+    "contact modulus",
+    "stride",
+    "rtol of a contact",
+    "pad stiffness",
+)
 
 
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
@@ -79,7 +84,7 @@ ARRAYS = {
     "gap": lambda v: HALF_SPACE.solve(v, load=1e-3),
     "start pressure": lambda v: HALF_SPACE.solve(BALL, load=1e-3, start=v),
     "pressure": lambda v: HALF_SPACE.displacement(v),
-    "heights of the scan": lambda v: scanned(heights=v),
+    "surface of the scan": lambda v: scanned(surface=v),
     "body of the scan": lambda v: scanned(body=v),
     "approaches of the scan": lambda v: scanned(approaches=v),
     "heights": lambda v: HeightMap(v, 1e-6),
@@ -97,7 +102,6 @@ def test_what_is_no_array_of_numbers_is_refused_by_name(door, value):
 def test_one_number_stands_for_both_spacings():
     assert HalfSpace((8, 8), 1e-6, 1e11).spacing == MICROMETRE
     assert HalfSpace((8, 8), np.float32(1.0), xr.DataArray(2.0)).modulus == 2.0
-    assert scanned(spacing=1e-6).equals(scanned())
 
 
 def test_text_is_told_to_leave_unit_and_quotes():
@@ -105,20 +109,21 @@ def test_text_is_told_to_leave_unit_and_quotes():
         HalfSpace((8, 8), 1e-6, "115 GPa")
 
 
-def test_a_height_map_is_scanned_on_its_own_spacing():
-    expected = scanned()
-    assert scan(MAP, None, BALL, 1e11, [1e-8]).equals(expected)
-    assert scan(MAP, MICROMETRE, BALL, 1e11, 1e-8).equals(expected)
-    with pytest.raises(InputError, match=r"spacing of the scan: received 2e-06 beside a height map"):
-        scan(MAP, 2e-6, BALL, 1e11, [1e-8])
+def test_a_height_map_is_scanned_on_the_spacing_of_the_half_space():
+    assert scanned(surface=MAP).equals(scanned())
+    assert scanned(surface=MAP, approaches=1e-8).equals(scanned())
+    with pytest.raises(
+        InputError, match=r"surface of the scan: .* 2e-06 × 1e-06 m apart; .*Resample the map"
+    ):
+        scanned(surface=HeightMap(MAP.heights, (2e-6, 1e-6)))
     with pytest.raises(InputError, match="received a line of heights; allowed: a map of heights"):
-        scan(MAP.line(), 1e-6, BALL, 1e11, [1e-8])
+        scanned(surface=MAP.line())
     holed = MAP.heights.copy()
     holed[3, 4] = np.nan
     with pytest.raises(InputError, match=r"1 of 160 points without a height.*Fill missing points"):
-        scan(HeightMap(holed, MICROMETRE), None, BALL, 1e11, [1e-8])
+        scanned(surface=HeightMap(holed, MICROMETRE))
     with pytest.raises(InputError, match="1 of 160 points without a height"):
-        scanned(heights=np.ma.masked_invalid(holed))
+        scanned(surface=np.ma.masked_invalid(holed))
 
 
 @pytest.mark.parametrize(

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from asperity.contact import HalfSpace, Hertz
+from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError, TruncatedContactWarning
 from asperity.laws import Areal, Direct, Printed, Shifted, Table, force
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import filtered_texture
-from asperity.reduction.scan import scan_forces
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
+from asperity.surfaces.strip import Rows
 
 DX, N, RADIUS, MODULUS, LOAD = 5e-6, 31, 10e-3, 115e9, 2.0
 HERTZ = Hertz(MODULUS, RADIUS, RADIUS)
@@ -125,7 +126,8 @@ class TestSlowBump:
 
     def test_table(self):
         approaches = np.linspace(-0.1e-6, 0.5e-6, 13)
-        scanned = scan_forces(self.strip(), (DX, DX), body(), MODULUS, approaches, stride=15)
+        half_space = HalfSpace(body().shape, DX, MODULUS)
+        scanned = scan_forces(ScanJob(half_space, Rows(self.strip()), body(), approaches, stride=15))
         law = Table(ForceTable(scanned.forces, approaches, N // 2 * DX, 15 * DX))
         assert self.rise(law) == pytest.approx(self.HEIGHT, rel=0.01)
 

@@ -25,7 +25,6 @@ _HOME = {
     "report": "kinds.report",
     "run": "running",
     "save": "results",
-    "scan": "reduction.scan",
     "study": "studies.running",
 }
 """Module of each public name; the cases of each kind come beside them."""

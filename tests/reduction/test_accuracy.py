@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from asperity.contact import Hertz
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.accuracy import FORCE_ACCURACY, rtol_for
+from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError
-from asperity.reduction.accuracy import FORCE_ACCURACY, rtol_for
-from asperity.reduction.scan import scan_forces
+from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS, RADIUS, N = 115e9, 25e-3, 49
@@ -27,8 +28,9 @@ def test_forces_are_as_accurate_as_asked_for(accuracy, rms, hardness):
     waves = {"hurst": 0.8, "longest": 1.4 * radius, "shortest": 2 * dx}
     heights = self_affine((N + 11, N), (dx, dx), rms=rms * approach, **waves, seed=1).heights
     approaches = approach * np.array([-rms, 0.1, 0.3, 1.0, 3.0])
+    half_space = HalfSpace((N, N), dx, MODULUS, hardness)
     found, tight = (
-        scan_forces(heights, (dx, dx), body, MODULUS, approaches, hardness, rtol=rtol).forces
+        scan_forces(ScanJob(half_space, Rows(heights), body, approaches, rtol=rtol)).forces
         for rtol in (rtol_for(accuracy), 1e-4 * rtol_for(accuracy))
     )
     touching = tight > 0.0
@@ -39,5 +41,5 @@ def test_forces_are_as_accurate_as_asked_for(accuracy, rms, hardness):
 
 @pytest.mark.parametrize("accuracy", [0.0, -1e-3, 0.2, float("nan")])
 def test_an_accuracy_out_of_range_is_refused(accuracy):
-    with pytest.raises(InputError, match="accuracy of the force"):
+    with pytest.raises(InputError, match="force_accuracy: received"):
         rtol_for(accuracy)

@@ -2,19 +2,19 @@
 
 import os
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import asperity
+from asperity import HalfSpace
 from asperity.cli import main
-from asperity.contact import HalfSpace
 from asperity.contact.device import choose_device, find_device, gpu, processor
+from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError
-from asperity.reduction.batched_scan import solve_rows
-from asperity.reduction.scan import TRUNCATED, scan_forces
+from asperity.surfaces.strip import Rows
 
 DX = 5e-6
 MODULUS = 115e9
@@ -42,61 +42,52 @@ def test_block_agrees_with_the_scan(device, stride, cells, hardness):
     heights = 0.05e-6 * np.random.default_rng(2).standard_normal((cells + 40, cells))
     approaches = np.array([-0.1e-6, 0.1e-6, 0.3e-6])
     planes = 0.02e-6 * np.sin(np.arange(40 // stride + 1))
-    reference = scan_forces(
-        heights,
-        (DX, DX),
-        ball(cells),
-        MODULUS,
-        approaches,
-        hardness,
-        stride=stride,
-        rtol=1e-11,
-        planes=planes,
-    )
-    half_space = HalfSpace((cells, cells), (DX, DX), MODULUS, hardness)
-    forces, iterations, unconverged, truncated = solve_rows(
-        half_space, heights, ball(cells), approaches, planes, stride, 1e-11, device, TRUNCATED
-    )
-    np.testing.assert_allclose(forces, reference.forces, rtol=1e-9)
-    assert iterations.sum() > 0
-    assert unconverged.sum() == reference.unconverged == 0
-    assert truncated.sum() == reference.truncated
-    assert bool(reference.truncated) == (cells == 15)
+    job = ScanJob(
+        HalfSpace((cells, cells), DX, MODULUS, hardness), Rows(heights), ball(cells), approaches, stride,
+        1e-11, planes, device=None,
+    )  # fmt: skip
+    reference, found = scan_forces(job), scan_forces(replace(job, device=device))
+    np.testing.assert_allclose(found.forces, reference.forces, rtol=1e-9)
+    assert found.counts.iterations > 0
+    assert found.counts.solved == reference.counts.solved == np.count_nonzero(reference.forces)
+    assert found.counts.unconverged == reference.counts.unconverged == 0
+    assert found.counts.truncated == reference.counts.truncated
+    assert bool(reference.counts.truncated) == (cells == 15)
+
+
+def scan(cells, **keywords):
+    heights = 0.05e-6 * np.random.default_rng(3).standard_normal((90, cells))
+    return HalfSpace((cells, cells), DX, MODULUS).scan(heights, ball(cells), [0.0, 0.2e-6], **keywords)
 
 
 def test_scan_on_a_device_agrees_and_keeps_its_own_blocks(monkeypatch):
     """Blocks of the device are longer, and not taken for those of the processor."""
-    heights = 0.05e-6 * np.random.default_rng(3).standard_normal((90, 31))
-    arguments = (heights, (DX, DX), ball(31), MODULUS, [0.0, 0.2e-6])
     kept = {}
     cache = SimpleNamespace(get=kept.get, put=kept.__setitem__)
-    alone = asperity.scan(*arguments, rtol=1e-11, cache=cache)
-    monkeypatch.setattr("asperity.reduction.scan.find_device", lambda name: processor())
-    monkeypatch.setattr("asperity.reduction.batched_scan.BLOCK", 32)
-    together = asperity.scan(*arguments, rtol=1e-11, cache=cache, device="gpu")
+    alone = scan(31, rtol=1e-11, cache=cache)
+    monkeypatch.setattr("asperity.contact.public_scan.find_device", lambda name: processor())
+    monkeypatch.setattr("asperity.contact.scan.BATCH", 32)
+    together = scan(31, rtol=1e-11, cache=cache, device="gpu")
     np.testing.assert_allclose(together, alone, rtol=1e-9)
     assert len(kept) == 1 + 2
     kept_then = dict(kept)
-    assert asperity.scan(*arguments, rtol=1e-11, cache=cache, device="gpu").equals(together)
+    assert scan(31, rtol=1e-11, cache=cache, device="gpu").equals(together)
     assert kept == kept_then
 
 
 def test_scan_on_the_gpu(device):
     if device.name.startswith("processor"):
         pytest.skip("stands for the scan on a real GPU")
-    heights = 0.05e-6 * np.random.default_rng(3).standard_normal((90, 31))
-    arguments = (heights, (DX, DX), ball(31), MODULUS, [0.0, 0.2e-6])
-    found = asperity.scan(*arguments, rtol=1e-11, device="gpu")
-    np.testing.assert_allclose(found, asperity.scan(*arguments, rtol=1e-11), rtol=1e-9)
+    found = scan(31, rtol=1e-11, device="gpu")
+    np.testing.assert_allclose(found, scan(31, rtol=1e-11), rtol=1e-9)
 
 
 def test_scan_refuses_unknown_devices(monkeypatch):
-    arguments = (np.zeros((20, 11)), (DX, DX), ball(11), MODULUS, [0.1e-6])
     with pytest.raises(InputError, match="device: received 'tpu'; allowed: 'cpu' or 'gpu'"):
-        asperity.scan(*arguments, device="tpu")
+        scan(11, device="tpu")
     monkeypatch.setenv("ASPERITY_DEVICE", "GPU")
     with pytest.raises(InputError, match=r"\$ASPERITY_DEVICE: received 'GPU'; allowed: 'cpu' or 'gpu'"):
-        asperity.scan(*arguments)
+        scan(11)
 
 
 def test_the_command_line_refuses_a_gpu_that_is_not_there(monkeypatch):

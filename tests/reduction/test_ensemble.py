@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from asperity.contact import Hertz
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.scan import first_touch
 from asperity.errors import InputError
 from asperity.reduction.areal import punch_weights
 from asperity.reduction.ensemble import patches, stiffness_ensemble, weighted_mean
-from asperity.reduction.scan import first_touch
 
 DX, MODULUS, RADIUS, N = 5e-6, 115e9, 10e-3, 51
 APPROACHES = np.linspace(-0.2e-6, 0.4e-6, 7)
@@ -20,7 +20,7 @@ def body():
 
 def loaded(samples):
     datum = -min(first_touch(s, body()).min() for s in samples)
-    return stiffness_ensemble(samples, (DX, DX), body(), MODULUS, APPROACHES, max(datum, 0.0))
+    return stiffness_ensemble(samples, HalfSpace((N, N), DX, MODULUS), body(), APPROACHES, max(datum, 0.0))
 
 
 def test_smooth_samples_give_hertz():

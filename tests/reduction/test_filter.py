@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from asperity.contact import Hertz
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError
 from asperity.reduction.filter import FLOOR, closed_form, estimate_filter, filter_spectra, punch_filter
 from asperity.reduction.fir import design_fir, tap_count
-from asperity.reduction.scan import scan_forces
+from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS, RADIUS, DELTA = 115e9, 25e-3, 1.2e-6
@@ -26,9 +27,9 @@ def scanned(line, dx, stride):
     nx = 2 * int(1.25 * A / dx) + 1
     x = (np.arange(nx) - nx // 2) * dx
     body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
-    forces = scan_forces(
-        np.repeat(line[:, None], nx, axis=1), (dx, dx), body, MODULUS, [DELTA], stride=stride, rtol=1e-9
-    ).forces
+    surface = Rows(np.repeat(line[:, None], nx, axis=1))
+    job = ScanJob(HalfSpace((nx, nx), dx, MODULUS), surface, body, np.array([DELTA]), stride, 1e-9)
+    forces = scan_forces(job).forces
     return forces, line[None, nx // 2 :][:, : forces.shape[1] * stride]
 
 

@@ -6,19 +6,21 @@ import subprocess
 import sys
 import time
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from asperity.contact import HalfSpace
+from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import ComputationError, InputError
 from asperity.reduction.areal import areal_texture
-from asperity.reduction.blocks import solve_block
 from asperity.reduction.ensemble import stiffness_ensemble
-from asperity.reduction.pool import in_order
-from asperity.reduction.scan import first_touch, scan_forces, scan_into
+from asperity.reduction.stored import scan_into
 from asperity.reduction.table import ForceTable
 from asperity.store import Store
-from asperity.surfaces.strip import LongStrip
+from asperity.surfaces.strip import LongStrip, Rows
+from asperity.threads import in_order
 
 DX, MODULUS, RADIUS, N = 5e-6, 115e9, 3e-3, 15
 APPROACHES = [0.0, 0.02e-6, 0.05e-6]
@@ -36,34 +38,33 @@ def strip(rows):
     return LongStrip((rows, N), (DX, DX), piece, 1, stride=400, blend=20)
 
 
-SCAN = ((DX, DX), body(), MODULUS, APPROACHES)
+def job(rows, **details):
+    return ScanJob(HalfSpace((N, N), DX, MODULUS), strip(rows), body(), np.array(APPROACHES), **details)
 
 
 @pytest.fixture
 def short_blocks(monkeypatch):
-    monkeypatch.setattr("asperity.reduction.scan.BLOCK", 16)
+    monkeypatch.setattr("asperity.contact.scan.BLOCK", 16)
 
 
 @pytest.mark.usefixtures("short_blocks")
 def test_stored_forces_are_those_in_memory(tmp_path):
-    path = strip(300)
-    planes = 0.01e-6 * np.sin(np.arange(96))
-    keywords = {"stride": 3, "planes": planes}
-    held = scan_forces(path.rows(0, 300), *SCAN, **keywords)
-    stored = scan_into(Store(tmp_path), path, *SCAN, **keywords)
+    path = job(300, stride=3, planes=0.01e-6 * np.sin(np.arange(96)))
+    held = scan_forces(replace(path, surface=Rows(path.surface.rows(0, 300))))
+    stored = scan_into(Store(tmp_path), path)
     assert stored.forces.shape == held.forces.shape == (3, 96)
     for first, stop in [(0, 96), (0, 16), (15, 17), (40, 41), (80, 200), (7, 7)]:
         assert np.array_equal(stored.forces.columns(first, stop), held.forces[:, first:stop])
-    assert stored.solved == held.solved == np.count_nonzero(held.forces)
-    assert (stored.iterations, stored.unconverged) == (held.iterations, held.unconverged)
+    assert stored.counts == held.counts
+    assert held.counts.solved == np.count_nonzero(held.forces)
 
 
 @pytest.mark.usefixtures("short_blocks")
 def test_a_table_of_stored_forces_is_that_of_held_ones(tmp_path, monkeypatch):
-    path = strip(300)
-    held = ForceTable(scan_forces(path, *SCAN).forces, APPROACHES, 0.0, DX)
+    path = job(300)
+    held = ForceTable(scan_forces(path).forces, APPROACHES, 0.0, DX)
     monkeypatch.setattr("asperity.reduction.table.PIECE", 50)
-    stored = ForceTable(scan_into(Store(tmp_path), path, *SCAN).forces, APPROACHES, 0.0, DX)
+    stored = ForceTable(scan_into(Store(tmp_path), path).forces, APPROACHES, 0.0, DX)
     at = np.linspace(0.0, 285 * DX, 700)
     np.testing.assert_allclose(stored.at(at), held.at(at), rtol=1e-11, atol=1e-12)
     np.testing.assert_allclose(stored.at(at[::-1])[::-1], held.at(at), rtol=1e-11, atol=1e-12)
@@ -72,7 +73,7 @@ def test_a_table_of_stored_forces_is_that_of_held_ones(tmp_path, monkeypatch):
 @pytest.mark.usefixtures("short_blocks")
 def test_forces_that_were_cleared_away_are_missed(tmp_path):
     store = Store(tmp_path)
-    stored = scan_into(store, strip(60), *SCAN)
+    stored = scan_into(store, job(60))
     store.clear()
     with pytest.raises(ComputationError, match="no longer in the cache"):
         stored.forces.columns(0, 5)
@@ -81,17 +82,18 @@ def test_forces_that_were_cleared_away_are_missed(tmp_path):
 @pytest.mark.usefixtures("short_blocks")
 @pytest.mark.parametrize("workers", [2, 3, 8])
 def test_workers_change_no_digit_of_scans_and_samples(tmp_path, workers):
-    path = strip(400)
-    alone = scan_into(Store(tmp_path / "1"), path, *SCAN, workers=1)
-    together = scan_into(Store(tmp_path / "n"), path, *SCAN, workers=workers)
+    path = job(400)
+    alone = scan_into(Store(tmp_path / "1"), path, workers=1)
+    together = scan_into(Store(tmp_path / "n"), path, workers=workers)
     assert together.forces.keys == alone.forces.keys
     for one, other in zip(Store(tmp_path / "1").files(), Store(tmp_path / "n").files(), strict=True):
         assert one.name == other.name
         with np.load(one) as a, np.load(other) as b:
             assert all(np.array_equal(a[name], b[name]) for name in ("forces", "counts"))
-    samples = [path.rows(20 * i, 20 * i + N) for i in range(9)]
+    samples = [path.surface.rows(20 * i, 20 * i + N) for i in range(9)]
     curves = [
-        stiffness_ensemble(samples, *SCAN[:3], np.array(APPROACHES), 0.1e-6, workers=w) for w in (1, workers)
+        stiffness_ensemble(samples, path.half_space, path.body, path.approaches, 0.1e-6, workers=w)
+        for w in (1, workers)
     ]
     assert np.array_equal(curves[0].forces, curves[1].forces)
 
@@ -109,18 +111,17 @@ def peak(work):
 
 def test_memory_does_not_grow_with_the_path(tmp_path, monkeypatch):
     """Beyond a few bytes a position (names of blocks, planes); the strip alone would take 120 a row."""
-    monkeypatch.setattr("asperity.reduction.scan.BLOCK", 64)
+    monkeypatch.setattr("asperity.contact.scan.BLOCK", 64)
     store = Store(tmp_path)
-    monkeypatch.setattr("asperity.reduction.scan.solve_block", overlaps)
-    short, long = peak(lambda rows: scan_into(store, strip(rows), *SCAN, workers=1))
+    monkeypatch.setattr(ScanJob, "solve", overlaps)
+    short, long = peak(lambda rows: scan_into(store, job(rows), workers=1))
     assert long - short < 12 * 20000
 
 
-def overlaps(contacts, rows, planes, device):
+def overlaps(job, rows, planes):
     """Instead of contacts: something that costs nothing."""
-    nx = len(contacts.body)
-    largest = [(rows[m : m + nx] - contacts.body).max() - plane for m, plane in enumerate(planes)]
-    return np.maximum(np.add.outer(contacts.approaches, largest), 0.0), np.zeros(4, dtype=np.int64)
+    largest = [(rows[m : m + N] - job.body).max() - plane for m, plane in enumerate(planes)]
+    return np.maximum(np.add.outer(job.approaches, largest), 0.0), np.zeros(4, dtype=np.int64)
 
 
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
@@ -145,24 +146,25 @@ def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
 SCRIPT = """
 import sys
 import numpy as np
-from asperity.reduction import scan
+from asperity.contact import scan
+from asperity.reduction.stored import scan_into
 from asperity.store import Store
 sys.path.insert(0, {folder!r})
-from test_long_scan import SCAN, strip
+from test_long_scan import job
 scan.BLOCK = 16
-scan.scan_into(Store({root!r}), strip(1000000), *SCAN, workers=1)
+scan_into(Store({root!r}), job(1000000), workers=1)
 """
 
 
-def counted(solved):
+def counted(solved, solve=ScanJob.solve):
     """Solution of a block that tells of the number of its contacts."""
 
-    def solve(*block):
-        forces, counts = solve_block(*block)
+    def told(*block):
+        forces, counts = solve(*block)
         solved.append(counts[0])
         return forces, counts
 
-    return solve
+    return told
 
 
 def test_a_killed_scan_goes_on_with_nothing_recomputed_but_the_last_block(tmp_path, monkeypatch):
@@ -179,13 +181,13 @@ def test_a_killed_scan_goes_on_with_nothing_recomputed_but_the_last_block(tmp_pa
     kept = len(store.files())
     assert kept >= 4
     solved = []
-    monkeypatch.setattr("asperity.reduction.scan.BLOCK", 16)
-    monkeypatch.setattr("asperity.reduction.scan.solve_block", counted(solved))
+    monkeypatch.setattr("asperity.contact.scan.BLOCK", 16)
+    monkeypatch.setattr(ScanJob, "solve", counted(solved))
     positions = 16 * (kept + 2)
-    resumed = scan_into(store, strip(positions + N - 1), *SCAN, workers=1)
+    resumed = scan_into(store, job(positions + N - 1), workers=1)
     again = np.count_nonzero(resumed.forces.columns(16 * kept, positions))
     assert sum(solved) == again  # the two blocks beyond the last kept one, and no other
-    fresh = scan_forces(strip(positions + N - 1), *SCAN, workers=2)
+    fresh = scan_forces(job(positions + N - 1), workers=2)
     assert np.array_equal(resumed.forces.columns(0, positions), fresh.forces)
 
 

@@ -69,7 +69,7 @@ def test_size_on_disk_and_number_of_positions(spacing):
     assert expected.single == scanned.single
     files = [Store().path(key) for key in scanned.forces.keys]
     assert sum(file.stat().st_size for file in files) == pytest.approx(expected.bytes, rel=0.05)
-    assert 0 < scanned.solved <= expected.solutions
+    assert 0 < scanned.counts.solved <= expected.solutions
 
 
 def test_the_states_that_are_tried_are_much_like_those_of_the_run():
@@ -108,7 +108,7 @@ def test_every_part_of_the_work_counts_once():
     steps = round(8e-3 / prepared.case.time_step)
     assert seconds["direct"] == pytest.approx(3 * steps * 7e-4)
     rows, strips = prepared.textures.path.shape[0], sum(s.shape[0] for s in prepared.textures.strips)
-    under_the_patch = (2 * rows + strips) * 1e-5 + rows * (1 + 14) * 1e-6
+    under_the_patch = (rows + strips) * 1e-5 + rows * (1 + 14) * 1e-6
     assert seconds["averaging under the patch"] == pytest.approx(under_the_patch)
     assert {"textures", "rolling", "spectra and statistics", "report"} < set(seconds)
     assert expected_path_scan(prepared, quiet) == scans["path"]

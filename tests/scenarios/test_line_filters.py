@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 import pytest
 
+from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
 from asperity.kinds.ball_on_beam import compute as ball_on_beam
 from asperity.kinds.cases import parse_case
@@ -14,7 +15,6 @@ from asperity.kinds.report import parts_of
 from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
 from asperity.laws import Printed, Shifted
 from asperity.reduction.fir import response
-from asperity.reduction.scan import first_touch
 from asperity.running import prepare, run
 from asperity.scenarios.reducing import patch_planes
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from asperity.cli.planning import plan
+from asperity.contact import HalfSpace
+from asperity.contact.flaws import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.kinds.cases import parse_case
-from asperity.reduction.scan import scan, warn_of_flaws, window_for
 from asperity.running import prepare, run
 from asperity.scenarios.expecting import Work, expected_area_ratio
 from asperity.scenarios.validity import SLOPE
@@ -203,15 +204,15 @@ class TestWindow:
         x = 1e-5 * np.arange(-10, 11)
         body = (x[:, None] ** 2 + x**2) / (2 * 0.025)
         with pytest.warns(PhysicsWarning, match=r"A window of 0\.\d+ mm holds them\.") as caught:
-            scan(np.zeros((25, 21)), (1e-5, 1e-5), body, 115e9, [1e-6, 2e-6])
+            HalfSpace((21, 21), 1e-5, 115e9).scan(np.zeros((25, 21)), body, [1e-6, 2e-6])
         assert caught[0].message.grade is Grade.OUT
 
 
 class TestGrades:
-    def told(self, *counts):
+    def told(self, solved, unconverged, truncated):
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            warn_of_flaws(*counts, "the path")
+            warn_of_flaws(Counts(solved, 0, unconverged, truncated), "the path", "numerics.force_accuracy")
         return caught[0].message
 
     def test_few_contacts_cut_off_do_not_read_like_many(self):

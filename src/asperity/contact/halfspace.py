@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,11 +16,17 @@ from asperity.arguments import real, real_array, two, two_lengths, whole
 from asperity.errors import InputError, Outcome, UnconvergedWarning
 from asperity.kernels.contact import REACH, displace, indent, room
 from asperity.kernels.fourier import smooth_length
-from asperity.kernels.influence import Influence, influence, is_prepared, prepared
+from asperity.kernels.influence import Influence, influence, prepared
 from asperity.kernels.love import influence_table
 from asperity.kernels.overlap import box_of_positive, foundation_approach
 from asperity.kernels.preconditioner import inverse_stencil
 from asperity.kernels.scanning import Block, solve_positions
+from asperity.progress import Progress
+from asperity.store import Cache
+from asperity.surfaces.heightmap import HeightMap
+
+if TYPE_CHECKING:
+    import xarray
 
 MAX_ITERATIONS = 2000
 BELOW_ONE = math.nextafter(1.0, 0.0)
@@ -226,6 +233,62 @@ class HalfSpace:
             _warn_unconverged(f"contact at approach {contact.approach:.4g} m", contact.outcome)
         return contact
 
+    def scan(
+        self,
+        surface: ArrayLike | HeightMap,
+        body: ArrayLike,
+        approaches: ArrayLike,
+        stride: int = 1,
+        *,
+        rtol: float | None = None,
+        force_accuracy: float | None = None,
+        workers: int | None = None,
+        cache: Cache | None = None,
+        progress: Progress | None = None,
+        device: str | None = None,
+    ) -> xarray.DataArray:
+        """Move a body along a surface and record the contact force at fixed approaches.
+
+        Parameters
+        ----------
+        surface : HeightMap, or array_like, shape (n, ny)
+            Heights, m, peaks positive, on the half-space's spacing; the first axis is the rolling direction.
+        body : array_like, shape (nx, ny)
+            Shape of the smooth body, m, zero at its lowest point. Position m puts it on rows m … m + nx − 1.
+        approaches : array_like, shape (k,)
+            Approaches from the mean plane of the heights, m, positive closing, increasing; one number is one.
+        stride : int
+            Rows between positions.
+        rtol : float, optional
+            Tolerance of each solution, as in `solve`; by default 1e-6.
+        force_accuracy : float, optional
+            Instead of it, the largest relative error of a force: `numerics.force_accuracy` of a case.
+        workers : int, optional
+            Threads; by default one per processor, or ``$ASPERITY_THREADS``. The result does not depend on it.
+        cache : Cache, optional
+            Keeps finished blocks, so that an interrupted scan goes on where it was: `Store()`, as in a run.
+        progress : callable, optional
+            ``progress(done, total, message)``.
+        device : str, optional
+            ``"cpu"``, or ``"gpu"`` to solve in batches through CuPy; by default what ``$ASPERITY_DEVICE``
+            says, else ``"cpu"``. Forces agree within the tolerance.
+
+        Returns
+        -------
+        xarray.DataArray, dims (approach, position)
+            Force, N. The coordinate `position` is the offset of the body's window along x, m.
+
+        Raises
+        ------
+        InputError
+            For sizes that do not fit, or values that are not finite.
+        """
+        from asperity.contact.public_scan import scan_surface
+
+        return scan_surface(
+            self, surface, body, approaches, stride, rtol, force_accuracy, workers, cache, progress, device
+        )
+
     @property
     def pressure_cap(self) -> float:
         """Largest pressure, Pa; infinite without hardness."""
@@ -257,10 +320,22 @@ class HalfSpace:
             )
         return a
 
-    def _prepare(self, nx: int, ny: int) -> None:
-        """Prepare the convolution on a box: few do for a path, as few lengths transform fast."""
-        if not is_prepared(self.influence, nx, ny):
-            self.influence = prepared(self.influence, nx, ny)
+    def _prepare(self, nx: int, ny: int, single: bool = False) -> None:
+        """Prepare the convolution on a box: few do for a path, as few lengths transform fast.
+
+        Threads share what is prepared: at worst one overwrites what another has, which then comes again.
+        """
+        known = prepared(self._known(single), nx, ny)
+        if single:
+            self._single = known
+        else:
+            self.influence = known
+
+    def _known(self, single: bool) -> Influence:
+        if not single:
+            return self.influence
+        self._single = self._single or influence(self.influence.table, self.influence.taps, np.float32)
+        return self._single
 
     def at_approach(
         self, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64] | None, rtol: float
@@ -333,12 +408,9 @@ class HalfSpace:
         """
         rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
         k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
-        known = self.influence
-        if single:
-            known = self._single or influence(known.table, known.taps, np.float32)
         block = Block(
             rows, body, planes, approaches, stride, load, self.pressure_cap, rtol, MAX_ITERATIONS,
-            room(known, *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
+            room(self._known(single), *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
             np.zeros(size), np.zeros(4, dtype=np.int64),
         )  # fmt: skip
@@ -347,13 +419,9 @@ class HalfSpace:
         position, level = 0, 0
         while position < len(planes):
             end = min(position + AT_ONCE, len(planes))
-            position, level, nx, ny = solve_positions(known, block, position, level, end)
+            position, level, nx, ny = solve_positions(self._known(single), block, position, level, end)
             if position < end:
-                known = prepared(known, nx, ny)
-        if single:
-            self._single = known
-        else:
-            self.influence = known
+                self._prepare(nx, ny, single)
         return block
 
     def _at_load(

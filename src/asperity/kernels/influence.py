@@ -63,8 +63,10 @@ def influence(
 
 
 def prepared(known: Influence, nx: int, ny: int) -> Influence:
-    """Add the convolution on a box of nx × ny cells."""
+    """Add the convolution on a box of nx × ny cells, unless it is there."""
     mx, my = (int(known.lengths[-(-n // UNIT)]) for n in (nx, ny))
+    if known.places[mx // UNIT, my // UNIT] >= 0:
+        return known
     places = known.places.copy()
     places[mx // UNIT, my // UNIT] = len(known.spectra)
     dtype = known.spectra.dtype

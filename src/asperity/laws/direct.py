@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, make_interp_spline
 
+from asperity.contact.flaws import TRUNCATED, Counts, warn_of_flaws, window_for
 from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import InputError
 from asperity.laws.base import check_damping
-from asperity.reduction.scan import TRUNCATED, warn_of_flaws, window_for
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +150,8 @@ class DirectOnPath:
         """Warn of contacts that did not converge or were cut off."""
         window = window_for(self.law.body, self.law.spacing, self.overlap)
         remedy = f'contact.window = "{window * 1e3:.3g} mm" holds them.'
-        warn_of_flaws(self.solves, self.unconverged, self.truncated, "the direct law", remedy)
+        counts = Counts(self.solves, self.iterations, self.unconverged, self.truncated)
+        warn_of_flaws(counts, "the direct law", "numerics.rtol", remedy)
 
     def _gap_at(self, step: int) -> NDArray[np.float64]:
         if self._gap is None or self._gap[0] != step:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.contact import HalfSpace
+from asperity.contact.flaws import total, warn_of_flaws
+from asperity.contact.scan import ScanJob, ScannedForces, scan_forces
 from asperity.errors import InputError
-from asperity.reduction.pool import in_order
-from asperity.reduction.scan import ScannedForces, scan_forces, warn_of_scans
+from asperity.progress import Progress
 from asperity.reduction.stiffness import ForceCurve
+from asperity.surfaces.strip import Rows
+from asperity.threads import in_order
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,16 +142,15 @@ def weighted_mean(heights: NDArray[np.float64], weights: NDArray[np.float64]) ->
 
 def stiffness_ensemble(
     samples: Sequence[NDArray[np.float64]],
-    spacing: tuple[float, float],
+    half_space: HalfSpace,
     body: NDArray[np.float64],
-    modulus: float,
     approaches: NDArray[np.float64],
     datum: float,
-    hardness: float | None = None,
     *,
     rtol: float = 1e-6,
     workers: int | None = None,
-    progress: Callable[[int, int, str], None] | None = None,
+    progress: Progress | None = None,
+    tolerance: str = "rtol",
     remedy: str = "Enlarge the window.",
 ) -> StiffnessEnsemble:
     """Press the body on each sample, stepping the approach up.
@@ -156,33 +159,37 @@ def stiffness_ensemble(
     ----------
     samples : sequence of ndarray, shape (nx, ny)
         Heights, m, from `patches`.
-    spacing, body, modulus, hardness, rtol, workers, progress
-        As in `asperity.reduction.scan.scan`.
+    half_space, body, rtol
+        As in `asperity.contact.scan.ScanJob`.
     approaches : ndarray, shape (k,)
         Approaches, m, increasing.
     datum : float
         d0, m.
-    remedy : str
-        What to do about contacts that the window cuts off.
+    workers, progress
+        As in `asperity.contact.scan.solved_blocks`.
+    tolerance, remedy : str
+        As in `asperity.contact.flaws.warn_of_flaws`.
 
     Returns
     -------
     StiffnessEnsemble
         One loading curve a sample.
     """
-    report = progress or (lambda done, total, message: None)
-    report(0, len(samples), "pressing the samples")
 
     def load(sample: NDArray[np.float64]) -> ScannedForces[NDArray[np.float64]]:
-        return scan_forces(
-            sample, spacing, body, modulus, approaches, hardness, rtol=rtol, workers=1, device="cpu"
-        )
+        job = ScanJob(half_space, Rows(sample), body, approaches, rtol=rtol, device=None)
+        return scan_forces(job, workers=1)
 
-    scans = []
+    scans, message = [], "pressing the samples"
+    if progress:
+        progress(0, len(samples), message)
     for scanned in in_order(load, samples, workers):
         scans.append(scanned)
-        report(len(scans), len(samples), "pressing the samples")
-    warn_of_scans(scans, "the loading curves", remedy)
+        if progress:
+            progress(len(scans), len(samples), message)
+    warn_of_flaws(total(s.counts for s in scans), "the loading curves", tolerance, remedy)
     forces = np.array([scanned.forces[:, 0] for scanned in scans])
-    held = len(approaches) - max(s.truncated for s in scans)  # contacts grow: the highest states are cut off
-    return StiffnessEnsemble(np.asarray(approaches, dtype=np.float64), forces, datum, held)
+    cut_off = max(s.counts.truncated for s in scans)  # contacts grow: the highest states are cut off
+    return StiffnessEnsemble(
+        np.asarray(approaches, dtype=np.float64), forces, datum, len(approaches) - cut_off
+    )

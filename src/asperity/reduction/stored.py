@@ -7,7 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.contact.flaws import total
+from asperity.contact.scan import ScanJob, ScannedForces, solved_blocks
 from asperity.errors import ComputationError
+from asperity.progress import Progress
 from asperity.store import Cache
 
 
@@ -64,6 +67,26 @@ class StoredForces:
                 "the run again: it recomputes what is missing",
             )
         return found["forces"]
+
+
+def scan_into(
+    cache: Cache,
+    job: ScanJob,
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    message: str = "scanning the contact",
+) -> ScannedForces[StoredForces]:
+    """Scan a path of any length: its forces stay in the cache, block by block.
+
+    Memory holds the blocks in work and eight bytes a position. Arguments as in `solved_blocks`.
+    """
+    keys, counts = [], []
+    for block in solved_blocks(job, cache, workers, progress, message):
+        keys.append(block.key)
+        counts.append(block.counts)
+    forces = StoredForces(cache, tuple(keys), job.block, (len(job.approaches), job.positions))
+    return ScannedForces(forces, total(counts), job.single)
 
 
 def columns(forces: NDArray[np.float64] | StoredForces, first: int, stop: int) -> NDArray[np.float64]:

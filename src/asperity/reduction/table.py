@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.contact.accuracy import FORCE_ACCURACY
 from asperity.errors import InputError
 from asperity.kernels.along import OVERLAP, splines_along
-from asperity.reduction.accuracy import FORCE_ACCURACY
 from asperity.reduction.stored import StoredForces, columns
 from asperity.reduction.texture import check_states, grid_index
 

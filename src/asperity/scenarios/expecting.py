@@ -10,7 +10,6 @@ import numpy as np
 from asperity.config.case import Case
 from asperity.progress import Progress
 from asperity.reduction.real_contact import expected_area_ratio as expected_area_ratio_of
-from asperity.reduction.scan import BLOCK
 from asperity.scenarios.preparing import Prepared
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.scan_sizes import Expected, scan_sizes
@@ -81,7 +80,7 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
         seconds = {"textures": prepared.processor}
         if samples:
             trial = try_contacts(prepared, progress)
-            scans = {name: _timed_scan(name, scan, trial, case) for name, scan in scans.items()}
+            scans = {name: _timed_scan(name, scan, trial) for name, scan in scans.items()}
             seconds |= _contact_seconds(prepared, trial, scans, pace)
         seconds |= prepared.kind.plan.seconds(prepared, progress, pace)
         seconds |= _rolling_seconds(prepared, pace)
@@ -89,9 +88,18 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
 
 
 def expected_area_ratio(prepared: Prepared) -> float | None:
-    """Expect the real contact area under the working load over that of smooth bodies, from slopes.
+    """Expect the real contact area under the working load over that of smooth bodies.
 
-    About what `asperity.scenarios.reducing.Reduction.area_ratio` will be; None without samples.
+    Parameters
+    ----------
+    prepared : Prepared
+        The case.
+
+    Returns
+    -------
+    float or None
+        About what `asperity.scenarios.reducing.Reduction.area_ratio` will be, from the slope of the
+        samples; None where the case has none.
     """
     shape, samples = prepared.shape, prepared.textures.maps
     if not samples:
@@ -118,15 +126,14 @@ def expected_path_scan(prepared: Prepared, progress: Progress) -> Expected:
     with one_thread_in_linear_algebra():
         prepared.kind.compile_kernels(progress)
         size = scan_sizes(case, prepared.shape, prepared.textures)["path"]
-        return _timed_scan("path", size, try_contacts(prepared, progress), case)
+        return _timed_scan("path", size, try_contacts(prepared, progress))
 
 
-def _timed_scan(name: str, scan: Expected, trial: ContactTrial, case: Case) -> Expected:
+def _timed_scan(name: str, scan: Expected, trial: ContactTrial) -> Expected:
     """Time of a scan: that of its positions, on as many threads as it has blocks."""
     position = trial.filters if name == "filters" else trial.path
-    blocks = case.contact.samples if name == "filters" else -(-scan.positions // BLOCK)
     seconds = scan.positions * position * (SINGLE_TIME if scan.single else 1.0)
-    return replace(scan, seconds=seconds / min(thread_count(), blocks))
+    return replace(scan, seconds=seconds / min(thread_count(), scan.blocks))
 
 
 def _contact_seconds(
@@ -136,7 +143,9 @@ def _contact_seconds(
     case, textures = prepared.case, prepared.textures
     samples, laws = case.contact.samples, case.laws
     rows = 0 if textures.path is None else textures.path.shape[0]
-    touched = rows * (1 + ("table" in laws)) + sum(strip.shape[0] for strip in textures.strips)
+    touched = rows * (1 + ("table" in laws and textures.defects is not None)) + sum(
+        strip.shape[0] for strip in textures.strips
+    )
     averaged = rows * (1 + ("areal" in laws) * len(trial.approaches))
     found = {
         "pressing the samples": samples * trial.load + samples * trial.curve / min(thread_count(), samples),

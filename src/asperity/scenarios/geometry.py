@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase
-from asperity.contact import Hertz
+from asperity.contact import HalfSpace, Hertz
+from asperity.contact.flaws import window_for
 from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
-from asperity.reduction.scan import window_for
 
 HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in working loads."""
@@ -22,16 +22,33 @@ FILLED = 0.9
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """The gap of two smooth bodies on the contact grid, and their closed-form contact."""
+    """The gap of two smooth bodies on the contact grid, and their closed-form contact.
 
-    # (nx, ny), gap of the smooth bodies at zero approach, m; zero at its lowest point, the middle cell
+    Attributes
+    ----------
+    body : ndarray, shape (nx, ny)
+        Gap of the smooth bodies at zero approach, m, zero at its lowest point, the middle cell.
+    spacing : tuple of float
+        (dx, dy), m.
+    modulus : float
+        Contact modulus E*, Pa.
+    hertz : Hertz
+        Smooth contact of the bodies; of their osculating paraboloids where the gap is none.
+    load : float
+        Working load, N.
+    largest_force : float
+        Largest force that chosen states cover, N.
+    lowest_approach : float
+        Lowest approach that chosen states cover, m.
+    """
+
     body: NDArray[np.float64]
-    spacing: tuple[float, float]  # (dx, dy), m
-    modulus: float  # E*, Pa
-    hertz: Hertz  # smooth contact; of the osculating paraboloids where the gap is none
-    load: float  # working load, N
-    largest_force: float  # that chosen states cover, N
-    lowest_approach: float = -math.inf  # that chosen states cover, m
+    spacing: tuple[float, float]
+    modulus: float
+    hertz: Hertz
+    load: float
+    largest_force: float
+    lowest_approach: float = -math.inf
 
     @property
     def semi_axes(self) -> tuple[float, float]:
@@ -39,14 +56,41 @@ class Geometry:
         return self.axes(self.load)
 
     def axes(self, force: float) -> tuple[float, float]:
-        """Semi-axes (a_x, a_y) of the nominal patch under a force, N; m."""
+        """Semi-axes of the nominal patch under a force, m.
+
+        Parameters
+        ----------
+        force : float
+            N.
+
+        Returns
+        -------
+        tuple of float
+            (a_x, a_y), m.
+        """
         return self.hertz.semi_axes(self.hertz.approach(force))
+
+    def half_space(self, hardness: float | None) -> HalfSpace:
+        """Make the half-space of the window, whose asperities flow at a pressure, Pa, or not at all."""
+        nx, ny = self.body.shape
+        return HalfSpace((nx, ny), self.spacing, self.modulus, hardness)
 
     def remedy_for_cut_off(self, highest: float, working: float, datum: float, widest: float) -> str:
         """Name a window that holds the contacts of all states, also of those that this one keeps out.
 
-        Approaches of the highest state and under the working load, m; d0 of the states, m, minus the lowest
-        first touch; widest window that the samples allow, m. One sentence.
+        Parameters
+        ----------
+        highest, working : float
+            Approach of the highest state, and under the working load, m.
+        datum : float
+            d0 of the states, m: minus the lowest first touch.
+        widest : float
+            Widest window that the samples allow, m.
+
+        Returns
+        -------
+        str
+            One sentence.
         """
         wanted = max(HIGHEST_FORCE * self.load, self.largest_force)
         kept_out = self.hertz.approach(wanted) - self.hertz.approach(self.largest_force)
@@ -66,8 +110,11 @@ class Geometry:
     def within_window(self) -> Geometry:
         """Bound the states: above by a contact that the window holds, below by the working approach.
 
-        States below minus the working approach, which a hollow deeper than it asks for, would take those away
-        that carry load.
+        Returns
+        -------
+        Geometry
+            The same gap. States below minus the working approach, which a hollow deeper than it asks for,
+            would take those away that carry load.
         """
         sides = [n * d for n, d in zip(self.body.shape, self.spacing, strict=True)]
         room = min(FILLED * side / (2 * a) for side, a in zip(sides, self.semi_axes, strict=True))
@@ -76,18 +123,53 @@ class Geometry:
 
 
 def window_cells(contact: ContactCase) -> int:
-    """Cells along the window's side: odd, so that the lowest point of the gap lies on a cell."""
+    """Cells along the window's side: odd, so that the lowest point of the gap lies on a cell.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+
+    Returns
+    -------
+    int
+        Odd number of cells.
+    """
     return 2 * (contact.cells // 2) + 1
 
 
 def across_window(contact: ContactCase) -> NDArray[np.float64]:
-    """Coordinates (n,) of the window's cells from its middle, in both directions, m."""
+    """Coordinate of the window's cells from its middle, m.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        m, in both directions.
+    """
     n = window_cells(contact)
     return contact.spacing * np.arange(-(n // 2), n // 2 + 1, dtype=np.float64)
 
 
 def parabola(contact: ContactCase, radius: float) -> NDArray[np.float64]:
-    """Section x²/2R (n,) of the gap on the window's cells, R and section in m."""
+    """Section x²/2R of the gap on the window's cells.
+
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+    radius : float
+        R, m.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        m.
+    """
     return across_window(contact) ** 2 / (2.0 * radius)
 
 
@@ -100,12 +182,32 @@ def geometry(
     smallest_radius: float,
     body: str,
 ) -> Geometry:
-    """Lay the gap x²/2R + section (n,), m, of two bodies out on the contact grid.
+    """Lay the gap of two bodies out on the contact grid, checked against the half-space assumption.
 
-    The section is across the rolling direction, from `parabola` or of given profiles; the radius in the
-    rolling direction is that of the smooth contact `hertz`, under the working load, N. The gap is checked
-    against the half-space assumption: a contact that is not small against the smallest radius of curvature, m
-    (a > R/3), is refused, and a window that does not hold it. `body` names what rolls in messages.
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of a case.
+    section : ndarray, shape (n,)
+        Gap across the rolling direction, m, from `parabola` or of given profiles.
+    hertz : Hertz
+        Smooth contact; its radius in the rolling direction is that of the gap.
+    load : float
+        Working load, N.
+    smallest_radius : float
+        Smallest radius of curvature of the bodies, m.
+    body : str
+        The rolling body, for messages.
+
+    Returns
+    -------
+    Geometry
+        The gap x²/2R + section.
+
+    Raises
+    ------
+    InputError
+        If the contact is not small against the bodies (a > R/3), or the window does not hold it.
     """
     n, h = window_cells(contact), contact.spacing
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]

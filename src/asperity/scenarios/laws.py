@@ -9,33 +9,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase, Numerics
+from asperity.contact.accuracy import rtol_for
+from asperity.contact.flaws import warn_of_flaws
+from asperity.contact.scan import ScanJob, ScannedForces, first_touch
 from asperity.laws import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
 from asperity.progress import Progress
-from asperity.reduction.accuracy import rtol_for
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import filtered_texture, punch_taps
-from asperity.reduction.scan import Cache, ScannedForces, first_touch, scan_into, warn_of_scans
-from asperity.reduction.stored import StoredForces
+from asperity.reduction.stored import StoredForces, scan_into
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.line_filters import normalisation, warn_of_filter
-from asperity.scenarios.reducing import Reduction
+from asperity.scenarios.reducing import SCAN_TOLERANCE, Reduction
 from asperity.scenarios.textures import Textures
+from asperity.store import Cache
 
 
 @dataclass(frozen=True, eq=False)
 class Workshop:
-    """What the laws of one case are made of."""
+    """What the laws of one case are made of.
+
+    Attributes
+    ----------
+    contact : ContactCase
+        The contact section of the case.
+    numerics : Numerics
+        The numerics section of the case: how accurately contacts are solved.
+    textures, shape
+        Textures and geometry of the case.
+    reduction : Reduction or None
+        State functions; None where the case has no samples.
+    planes : ndarray, shape (rows,), or None
+        Height of the plane that the nominal patch feels along the path, m, peaks positive.
+    cache, progress
+        For the scan of the path.
+    """
 
     contact: ContactCase
-    numerics: Numerics  # how accurately contacts are solved
+    numerics: Numerics
     textures: Textures
     shape: Geometry
-    reduction: Reduction | None  # state functions; None where the case has no samples
-    # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
+    reduction: Reduction | None
     planes: NDArray[np.float64] | None
-    cache: Cache  # for the scan of the path
+    cache: Cache
     progress: Progress
 
     def build(self, name: str) -> tuple[Law, ScannedForces[StoredForces] | None]:
@@ -128,18 +145,21 @@ class Workshop:
         dx, half = self.shape.spacing[0], self.shape.body.shape[0] // 2
         stride, surface = table_stride(self.shape), self.textures.surface
         planes = -plane.heights[0, half : len(self.planes) - half : stride]
-        scanned = scan_into(
-            self.cache, surface, self.shape.spacing, self.shape.body, self.shape.modulus,
-            self.reduction.approaches, self.contact.hardness,
-            stride=stride, rtol=rtol_for(self.numerics.force_accuracy), planes=planes,
-            progress=self.progress, message="scanning the path",
+        job = ScanJob(
+            self.shape.half_space(self.contact.hardness), surface, self.shape.body, self.reduction.approaches,
+            stride, rtol_for(self.numerics.force_accuracy), planes,
         )  # fmt: skip
+        scanned = scan_into(self.cache, job, progress=self.progress, message="scanning the path")
         reduction, widest = self.reduction, self.textures.widest_window
         remedy = self.shape.remedy_for_cut_off(
             float(reduction.approaches[-1]), reduction.working_approach, reduction.datums["path"], widest
         )
-        warn_of_scans([scanned], "the path", remedy)
-        touches = first_touch(surface, self.shape.body, stride) + planes
+        warn_of_flaws(scanned.counts, "the path", SCAN_TOLERANCE, remedy)
+        if self.textures.defects is not None:
+            touches = first_touch(surface, self.shape.body, stride) + planes
+        else:
+            assert self.reduction.touches is not None
+            touches = self.reduction.touches[::stride]
         table = ForceTable(
             scanned.forces, self.reduction.approaches, self.textures.start + half * dx, stride * dx, touches
         )
@@ -160,15 +180,38 @@ class Workshop:
 
 
 def table_stride(shape: Geometry) -> int:
-    """Rows of the contact grid between the positions of a table: an eighth of the patch."""
+    """Rows between the positions of a table: an eighth of the patch.
+
+    Parameters
+    ----------
+    shape : Geometry
+        What presses on what.
+
+    Returns
+    -------
+    int
+        Rows of the contact grid.
+    """
     return max(1, math.floor(shape.semi_axes[0] / 8 / shape.spacing[0]))
 
 
 def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | None) -> tuple[float, float]:
-    """Approach under the working load, m, and the stiffness that a linear contact has there, N/m.
+    """Approach under the working load, and the stiffness that a linear contact has there.
 
-    dF/dr of the smooth or the rough contact, or F/r of the rough one (thesis Eq. 2.3), as the case says; of
-    the smooth one where there are no samples.
+    Parameters
+    ----------
+    contact : ContactCase
+        The contact section of the case, which says which stiffness.
+    shape : Geometry
+        What presses on what.
+    reduction : Reduction or None
+        State functions of the rough contact.
+
+    Returns
+    -------
+    approach, stiffness : float
+        m and N/m: dF/dr of the smooth or the rough contact, or F/r of the rough one (thesis Eq. 2.3), of the
+        smooth one where there are no samples.
     """
     if contact.linearise == "hertz" or reduction is None:
         approach = shape.hertz.approach(shape.load)

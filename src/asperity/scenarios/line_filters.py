@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase
 from asperity.contact.device import find_device
+from asperity.contact.scan import ScanJob, ScannedForces, scan_forces
 from asperity.errors import ContactFilterWarning
 from asperity.progress import Progress
 from asperity.reduction.ensemble import StiffnessEnsemble
@@ -22,12 +23,11 @@ from asperity.reduction.filter import (
     filter_spectra,
 )
 from asperity.reduction.fir import LineFilter, design_fir, punch_taps, tap_count
-from asperity.reduction.pool import in_order
-from asperity.reduction.scan import Cache, ScannedForces, scan_forces
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
+from asperity.store import Cache
 from asperity.surfaces.heightmap import HeightMap
-from asperity.threads import thread_count
+from asperity.threads import in_order, thread_count
 
 LONG_WAVE = 0.5
 """k a below which a filter is taken to be at its asymptote: sin q/q is 0.96 there."""
@@ -80,7 +80,18 @@ def normalisations(contact: ContactCase, laws: Iterable[str]) -> tuple[Normalise
 
 
 def filter_stride(shape: Geometry) -> int:
-    """Rows of the contact grid between the positions of a scan for a filter: a sixth of the patch."""
+    """Rows between the positions of a scan for a filter: a sixth of the patch.
+
+    Parameters
+    ----------
+    shape : Geometry
+        What presses on what.
+
+    Returns
+    -------
+    int
+        Rows of the contact grid.
+    """
     return max(1, math.floor(shape.semi_axes[0] / 6 / shape.spacing[0]))
 
 
@@ -113,7 +124,7 @@ def line_filters(
     needed : iterable of str
         Normalisations.
     rtol, cache, progress
-        As in `asperity.reduction.scan.scan`.
+        As in `asperity.contact.scan`.
 
     Returns
     -------
@@ -131,7 +142,12 @@ def line_filters(
         smooth = closed_form(approaches, wavenumber, axes[:, 0], tangent)
         taps = punch_taps(axes[:, 0], dx)
         return dict.fromkeys(needed, LineFilter(smooth, taps, dx)), []
-    scans = _scanned(contact, textures.strips, shape, approaches, rtol, cache, progress)
+    half_space, device = shape.half_space(contact.hardness), find_device()
+    jobs = [
+        ScanJob(half_space, strip, shape.body, approaches, filter_stride(shape), rtol, device=device)
+        for strip in textures.strips
+    ]
+    scans = _scanned(jobs, cache, progress)
     spectra = [
         _spectra(strip, scanned, shape, axes[:, 1])
         for strip, scanned in zip(textures.strips, scans, strict=True)
@@ -148,30 +164,21 @@ def line_filters(
 
 
 def _scanned(
-    contact: ContactCase,
-    strips: tuple[HeightMap, ...],
-    shape: Geometry,
-    approaches: NDArray[np.float64],
-    rtol: float,
-    cache: Cache | None,
-    progress: Progress,
-) -> list[ScannedForces]:
+    jobs: list[ScanJob], cache: Cache | None, progress: Progress
+) -> list[ScannedForces[NDArray[np.float64]]]:
     """Forces at constant approach along each strip."""
-    workers = thread_count() if find_device() is None else 1  # one block fills a device
+    workers = thread_count() if jobs[0].device is None else 1  # one block fills a device
     message = "scanning for the contact filters"
 
-    def scan_strip(strip: HeightMap) -> ScannedForces[NDArray[np.float64]]:
+    def scan(job: ScanJob) -> ScannedForces[NDArray[np.float64]]:
         # one strip is a block or two: strips beside each other keep all processors busy
-        return scan_forces(
-            strip.heights, shape.spacing, shape.body, shape.modulus, approaches, contact.hardness,
-            stride=filter_stride(shape), rtol=rtol, cache=cache, workers=math.ceil(workers / len(strips)),
-        )  # fmt: skip
+        return scan_forces(job, cache=cache, workers=math.ceil(workers / len(jobs)))
 
-    progress(0, len(strips), message)
+    progress(0, len(jobs), message)
     scans = []
-    for scanned in in_order(scan_strip, strips, workers):
+    for scanned in in_order(scan, jobs, workers):
         scans.append(scanned)
-        progress(len(scans), len(strips), message)
+        progress(len(scans), len(jobs), message)
     return scans
 
 
@@ -187,9 +194,21 @@ def _spectra(
 
 
 def warn_of_filter(found: LineFilter, law: str, working_approach: float) -> None:
-    """Say what of a filter a law that uses it should not rest on, with the working approach, m.
+    """Say what of a filter a law that uses it should not rest on.
 
-    That the texture lacks the long waves at which the printed filter is one, or that the taps miss the fit.
+    Parameters
+    ----------
+    found : LineFilter
+        The filter of the law.
+    law : str
+        Name of the law.
+    working_approach : float
+        Approach under the working load, m.
+
+    Warns
+    -----
+    ContactFilterWarning
+        If the texture lacks the long waves at which the printed filter is one, or the taps miss the fit.
     """
     if found.miss > LARGEST_MISS:
         order = found.taps.shape[1] - 1

@@ -10,23 +10,27 @@ from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase, Numerics
 from asperity.contact import Contact, HalfSpace
+from asperity.contact.accuracy import FILTER_SHARE, rtol_for
+from asperity.contact.flaws import Counts, total, warn_of_flaws
+from asperity.contact.scan import first_touch
 from asperity.errors import InputError
 from asperity.progress import Progress
-from asperity.reduction.accuracy import FILTER_SHARE, rtol_for
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
 from asperity.reduction.filter import Normalise
 from asperity.reduction.real_contact import isolated_share
-from asperity.reduction.scan import Cache, first_touch, warn_of_scans
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.line_filters import LineFilters, line_filters
 from asperity.scenarios.textures import Textures
+from asperity.store import Cache
 from asperity.surfaces.strip import Strip
 
 STATES = 14
 """States chosen where the case names no approaches."""
 LIGHTEST_STATE = 0.02
 """Least mean force of a state that has a filter, in working loads."""
+SCAN_TOLERANCE = "numerics.force_accuracy"
+"""Key of a case that says how tightly contacts of scans and loading curves are solved."""
 LEAST_DATUM = 1e-12
 """Least datum, m: above the rounding of a touch at zero, between smooth bodies."""
 
@@ -55,8 +59,11 @@ class Reduction:
         Contact area of the samples under the working load over that of smooth bodies, mean.
     isolated_share : float
         Share of that load on cells that touch alone, mean.
-    solves, iterations, truncated : int
-        Contact solutions done for the filters, their iterations, and those that are cut off.
+    touches : ndarray, shape (positions,), or None
+        Approach of first touch along the path, before defects are put on it, at every row on which the
+        window may begin, m; None where the path is a line.
+    counts : Counts
+        Contact solutions done for the filters.
     """
 
     approaches: NDArray[np.float64]
@@ -68,15 +75,24 @@ class Reduction:
     working_approach: float
     area_ratio: float
     isolated_share: float
-    solves: int
-    iterations: int
-    truncated: int
+    touches: NDArray[np.float64] | None
+    counts: Counts
 
 
 def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
-    """Height (rows,) of the plane that the nominal patch feels at each row of a path, m, peaks positive.
+    """Height of the plane that the nominal patch feels at each row of a path, m.
 
-    The mean under the patch of the geometry's working load, centred on each row.
+    Parameters
+    ----------
+    path : Strip, shape (rows, ny)
+        Texture of the path, m.
+    shape : Geometry
+        Its patch under the working load is the weight.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        Mean height under the patch centred on each row, m, peaks positive.
     """
     return -areal_texture(path, shape.spacing, [0.0], [shape.semi_axes]).heights[0]
 
@@ -117,37 +133,38 @@ def reduce(
     Reduction
         Stiffness and filters.
     """
-    hardness = contact.hardness
     weights = punch_weights(shape.spacing, shape.semi_axes)
     cells = (shape.body.shape[0], shape.body.shape[1])
     samples = patches([m.heights for m in textures.maps], cells, contact.samples, weights)
-    half_space = HalfSpace(cells, shape.spacing, shape.modulus, hardness)
+    half_space = shape.half_space(contact.hardness)
     contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=numerics.rtol) for s in samples]
     smooth = half_space.solve(shape.body, load=shape.load, rtol=numerics.rtol)
-    touches = _first_touches(textures, shape, planes, samples)
-    approaches = _approaches(contact, shape, touches["path"], samples, half_space)
+    along = None
+    if textures.path is not None and planes is not None:
+        along = first_touch(textures.path, shape.body) + _centred(planes, shape)
+    lowest = _lowest_touches(textures, shape, along, samples)
+    approaches = _approaches(contact, shape, lowest["path"], samples, half_space)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
     working = float(np.mean([c.approach for c in contacts]))
-    remedy = shape.remedy_for_cut_off(
-        float(approaches[-1]), working, -touches["path"], textures.widest_window
-    )
+    remedy = shape.remedy_for_cut_off(float(approaches[-1]), working, -lowest["path"], textures.widest_window)
     ensemble = stiffness_ensemble(
-        samples, shape.spacing, shape.body, shape.modulus, approaches, 0.0, hardness,
-        rtol=rtol_for(numerics.force_accuracy), progress=progress, remedy=remedy,
+        samples, half_space, shape.body, approaches, 0.0, rtol=rtol_for(numerics.force_accuracy),
+        progress=progress, tolerance=SCAN_TOLERANCE, remedy=remedy,
     )  # fmt: skip
     mean = ensemble.mean_force
     if contact.approaches is None and np.count_nonzero(mean) < 2:
         raise _too_rough(textures, f"contact in {np.count_nonzero(mean)} of {len(mean)} states")
     refuse_low_states(approaches, mean, shape, contacts[0].approach)
     # the curve, drawn through few states, may start a little before the first touch
-    datums = {name: -min(touch, ensemble.curve.first_touch, -LEAST_DATUM) for name, touch in touches.items()}
+    datums = {name: -min(touch, ensemble.curve.first_touch, -LEAST_DATUM) for name, touch in lowest.items()}
     ensemble = replace(ensemble, datum=datums[contact.datum])
     filters, scans = line_filters(
         contact, textures, shape, ensemble, LIGHTEST_STATE * shape.load, needed,
         rtol=rtol_for(FILTER_SHARE * numerics.force_accuracy), cache=cache, progress=progress,
     )  # fmt: skip
-    warn_of_scans(scans, "the filters", remedy)
+    counts = total(scan.counts for scan in scans)
+    warn_of_flaws(counts, "the filters", SCAN_TOLERANCE, remedy)
     return Reduction(
         approaches,
         ensemble,
@@ -158,19 +175,31 @@ def reduce(
         working,
         float(np.mean([c.area for c in contacts])) / smooth.area,
         float(np.mean([isolated_share(c.pressure) for c in contacts])),
-        sum(s.solved for s in scans),
-        sum(s.iterations for s in scans),
-        sum(s.truncated for s in scans),
+        along,
+        counts,
     )
 
 
 def refuse_low_states(
     approaches: NDArray[np.float64], highest: NDArray[np.float64], shape: Geometry, working_approach: float
 ) -> None:
-    """Refuse states (k,), m, that do not reach the working load, or of which only one is in contact.
+    """Refuse states that do not reach the working load, or of which only one is in contact.
 
-    `highest` are the mean forces of the samples in the last states, two or more, N; the working approach, m,
-    is that of a sample under the load.
+    Parameters
+    ----------
+    approaches : ndarray, shape (k,)
+        States, m.
+    highest : ndarray, shape (2,) or more
+        Mean force of the samples in the last states, N.
+    shape : Geometry
+        With the working load.
+    working_approach : float
+        Approach of a sample under it, m.
+
+    Raises
+    ------
+    InputError
+        If they are such.
     """
     reached = f"up to {approaches[-1] * 1e6:.4g} um, where the samples carry {highest[-1]:.3g} N"
     if highest[-1] < shape.load:
@@ -200,17 +229,17 @@ def _too_rough(textures: Textures, sign: str) -> InputError:
     )
 
 
-def _first_touches(
+def _lowest_touches(
     textures: Textures,
     shape: Geometry,
-    planes: NDArray[np.float64] | None,
+    along: NDArray[np.float64] | None,
     samples: Sequence[NDArray[np.float64]],
 ) -> dict[str, float]:
     """Lowest approach of first touch of all samples, and of samples, strips and path, m."""
     lowest = min(float(first_touch(s, shape.body).min()) for s in samples)
     touches = [first_touch(s.heights, shape.body).min() for s in textures.strips]
-    if textures.path is not None and planes is not None:
-        touches.append((first_touch(textures.path, shape.body) + _centred(planes, shape)).min())
+    if along is not None:
+        touches.append(along.min())
     return {"samples": lowest, "path": float(min([lowest, *touches]))}
 
 
@@ -234,4 +263,9 @@ def _approaches(
     high = max(
         half_space.solve(shape.body - s, load=shape.largest_force, rtol=1e-3).approach for s in samples
     )
+    return chosen_states(low, high)
+
+
+def chosen_states(low: float, high: float) -> NDArray[np.float64]:
+    """States from an approach to another, m, shape (STATES,), denser where contact begins."""
     return np.asarray(low + (high - low) * np.linspace(0.0, 1.0, STATES) ** 1.3)

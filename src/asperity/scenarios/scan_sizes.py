@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from asperity.config.case import Case
-from asperity.contact.device import find_device
+from asperity.contact.accuracy import FILTER_SHARE, rtol_for
+from asperity.contact.scan import ScanJob
 from asperity.errors import InputError
 from asperity.files import amount, free_space
-from asperity.reduction.accuracy import FILTER_SHARE, in_single, rtol_for
-from asperity.reduction.scan import BLOCK
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.line_filters import filter_stride
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.textures import Textures
 from asperity.store import MOST_HELD
-
-BLOCK_BYTES = 1200
-"""What the file of a block holds beside its forces, bytes."""
+from asperity.surfaces.strip import Strip
 
 
 @dataclass(frozen=True)
@@ -38,6 +37,8 @@ class Expected:
         Size on disk.
     single : bool
         Whether the iteration will be in single precision.
+    blocks : int
+        Blocks that threads may solve beside each other.
     seconds : float
         Time on all threads, nothing of it found in the cache; NaN before it was tried.
     """
@@ -47,6 +48,7 @@ class Expected:
     step: float
     bytes: int
     single: bool
+    blocks: int
     seconds: float = math.nan
 
     @property
@@ -68,28 +70,49 @@ def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, Exp
     dict of Expected
         ``"filters"`` where rough samples are scanned, ``"path"`` where `table` is among the laws.
     """
-    strips = [strip.shape[0] for strip in textures.strips if strip.heights.any()]
-    result = {}
+    strips = [strip for strip in textures.strips if strip.heights.any()]
+    accuracy, result = case.numerics.force_accuracy, {}
     if strips:
-        result["filters"] = _sized(case, shape, strips, filter_stride(shape), FILTER_SHARE)
+        result["filters"] = _sized(case, shape, strips, filter_stride(shape), FILTER_SHARE * accuracy)
     if "table" in case.laws and textures.path is not None:
-        result["path"] = _sized(case, shape, [textures.path.shape[0]], table_stride(shape))
+        result["path"] = _sized(case, shape, [textures.path], table_stride(shape), accuracy)
     return result
 
 
-def _sized(case: Case, shape: Geometry, rows: list[int], stride: int, share: float = 1.0) -> Expected:
-    """Size of scans of so many rows whose forces are accurate to a share of what the case asks for."""
-    window = shape.body.shape[0]
-    positions = sum(max(n - window, 0) // stride + 1 for n in rows)
-    states = STATES if case.contact.approaches is None else len(case.contact.approaches)
-    cells = positions // len(rows) * states * shape.body.size  # of each scan
-    single = find_device() is None and in_single(rtol_for(share * case.numerics.force_accuracy), cells)
-    size = positions * states * 8 + sum(-(-positions // len(rows) // BLOCK) for _ in rows) * BLOCK_BYTES
-    return Expected(positions, states, stride * shape.spacing[0], size, single)
+def _sized(
+    case: Case, shape: Geometry, strips: Sequence[Strip], stride: int, force_accuracy: float
+) -> Expected:
+    """Size of the scans of some strips, of as many states as the case names or the run chooses."""
+    states = np.arange(float(len(case.contact.approaches or range(STATES))))
+    half_space = shape.half_space(None)
+    jobs = [
+        ScanJob(half_space, strip, shape.body, states, stride, rtol_for(force_accuracy)) for strip in strips
+    ]
+    return Expected(
+        positions=sum(job.positions for job in jobs),
+        states=len(states),
+        step=stride * shape.spacing[0],
+        bytes=sum(job.bytes for job in jobs),
+        single=any(job.single for job in jobs),
+        blocks=sum(len(job.starts) for job in jobs),
+    )
 
 
 def problem_of_disk(expected: Expected, root: Path) -> Iterator[InputError]:
-    """Find out whether the disk of the cache has room for a scan, or memory is to hold it."""
+    """Find out whether the disk holds a scan.
+
+    Parameters
+    ----------
+    expected : Expected
+        The scan.
+    root : Path
+        Folder of the cache.
+
+    Yields
+    ------
+    InputError
+        If the disk has less room, and memory is not to hold it either.
+    """
     free = free_space(root)
     if free < expected.bytes > MOST_HELD:
         yield InputError(

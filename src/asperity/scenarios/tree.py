@@ -126,15 +126,15 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
     if (device := find_device()) is not None:
         yield "scans solved on", device.name
     if chain.reduction is not None:
-        solves, iterations = chain.reduction.solves, chain.reduction.iterations
+        solves, iterations = chain.reduction.counts.solved, chain.reduction.counts.iterations
         yield "contacts solved for the filters", f"{solves}"
         yield "iterations per contact", f"{iterations / max(solves, 1):.1f}"
         orders = {found.taps.shape[1] - 1 for found in chain.reduction.filters.values()}
         yield "filter order J", ", ".join(map(str, sorted(orders)))
     if chain.scan is not None:
         precision = "single" if chain.scan.single else "double"
-        yield "contacts solved for the table", f"{chain.scan.solved} in {precision} precision"
-        yield "contacts of the table not converged", f"{chain.scan.unconverged}"
+        yield "contacts solved for the table", f"{chain.scan.counts.solved} in {precision} precision"
+        yield "contacts of the table not converged", f"{chain.scan.counts.unconverged}"
     main, first = next(iter(chain.runs.items()))
     thirds = ", ".join(f"{np.std(third):.3g}" for third in np.array_split(first.contact_force, 3))
     yield f"rms of the contact force in thirds of the record, {main}", f"{thirds} N"
@@ -182,9 +182,19 @@ def loss_variables(chain: Chain[Any]) -> dict[str, xarray.Variable]:
 
 
 def spectrum_segment(samples: int, step: float) -> int:
-    """Length of the segments that spectra are averaged over, in time steps.
+    """Length of the segments that spectra are averaged over.
 
-    A quarter of the record within `SEGMENT`, so that windows leave most of it.
+    Parameters
+    ----------
+    samples : int
+        Length of the record.
+    step : float
+        Time step, s.
+
+    Returns
+    -------
+    int
+        Time steps: a quarter of the record within `SEGMENT`, so that windows leave most of it.
     """
     shortest, longest = (round(length / step) for length in SEGMENT)
     return min(max(samples // 4, shortest), longest, samples)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TypeVar
 
@@ -13,23 +13,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.contact import HalfSpace
+from asperity.contact.accuracy import FILTER_SHARE, rtol_for
+from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import PhysicsWarning
 from asperity.progress import Progress
-from asperity.reduction.accuracy import FILTER_SHARE, rtol_for
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import patches
-from asperity.reduction.scan import first_touch, scan_forces
+from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.line_filters import filter_stride
 from asperity.scenarios.preparing import Prepared
 from asperity.scenarios.reducing import (
     LIGHTEST_STATE,
-    STATES,
+    chosen_states,
     patch_planes,
     refuse_low_states,
 )
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.strip import Strip
+from asperity.surfaces.strip import Rows, Strip
 
 T = TypeVar("T")
 
@@ -47,17 +48,35 @@ STEPS = 400
 
 @dataclass(frozen=True, eq=False)
 class ContactTrial:
-    """Times of contact solutions and of what surrounds them, on one core, s."""
+    """Times of contact solutions and of what surrounds them, on one core.
 
-    approaches: NDArray[np.float64]  # (k,), states much as the run will choose them, m
-    loaded: int  # states that have a filter
-    load: float  # finding the working approach and the highest state of a sample
-    curve: float  # a loading curve
-    filters: float  # a position of the scan, all states together; zero where there is no such scan
-    path: float  # likewise
-    direct: float  # a solution from its neighbour's pressure
-    touch: float  # a row in finding first touches
-    average: float  # a row in averaging under one patch
+    Attributes
+    ----------
+    approaches : ndarray, shape (k,)
+        States much as the run will choose them, m.
+    loaded : int
+        States that have a filter.
+    load : float
+        Time of finding the working approach and the highest state of a sample, s.
+    curve : float
+        Time of a loading curve, s.
+    filters, path : float
+        Time of a position of the scans, all states together, s; zero where there is no such scan.
+    direct : float
+        Time of a solution from its neighbour's pressure, s.
+    touch, average : float
+        Time of a row in finding first touches, and in averaging under one patch, s.
+    """
+
+    approaches: NDArray[np.float64]
+    loaded: int
+    load: float
+    curve: float
+    filters: float
+    path: float
+    direct: float
+    touch: float
+    average: float
 
 
 def timed(task: Callable[[], T]) -> tuple[T, float]:
@@ -90,26 +109,28 @@ def try_contacts(prepared: Prepared, progress: Progress) -> ContactTrial:
         If the approaches of the case do not reach its load.
     """
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
-    contact, accuracy = case.contact, case.numerics.force_accuracy
+    rtol = rtol_for(case.numerics.force_accuracy)
     message, (nx, ny) = "trying contacts", shape.body.shape
     progress(0, 4, message)
     weights = punch_weights(shape.spacing, shape.semi_axes)
-    samples = patches([m.heights for m in textures.maps], (nx, ny), contact.samples, weights)
-    half_space = HalfSpace((nx, ny), shape.spacing, shape.modulus, contact.hardness)
+    samples = patches([m.heights for m in textures.maps], (nx, ny), case.contact.samples, weights)
+    half_space = shape.half_space(case.contact.hardness)
     approaches, working, load = _states(prepared, half_space, samples)
     progress(1, 4, message)
-    forces, curve = timed(lambda: _scan(samples[0], prepared, approaches, 1, rtol_for(accuracy)))
-    loaded = approaches[forces[:, 0] >= LIGHTEST_STATE * shape.load]
+    job = ScanJob(half_space, Rows(samples[0]), shape.body, approaches, rtol=rtol, device=None)
+    scanned, curve = timed(partial(scan_forces, job, workers=1))
+    loaded = approaches[scanned.forces[:, 0] >= LIGHTEST_STATE * shape.load]
     progress(2, 4, message)
     filters = path = 0.0
     if any(np.ptp(strip.heights) for strip in textures.strips) and len(loaded):
-        rtol = rtol_for(FILTER_SHARE * accuracy)
-        filters = _position_time(textures.strips[0], prepared, loaded, filter_stride(shape), rtol)
+        finer = rtol_for(FILTER_SHARE * case.numerics.force_accuracy)
+        like = replace(
+            job, surface=textures.strips[0], approaches=loaded, stride=filter_stride(shape), rtol=finer
+        )
+        filters = _position_time(like)
     progress(3, 4, message)
     if "table" in case.laws:
-        path = _position_time(
-            textures.surface, prepared, approaches, table_stride(shape), rtol_for(accuracy), level=True
-        )
+        path = _position_time(replace(job, surface=textures.surface, stride=table_stride(shape)), shape)
     rows = _middle(textures.path or textures.strips[0], ROWS)
     _, touch = timed(lambda: first_touch(rows.heights[: nx + 100], shape.body))
     axes = (min(shape.semi_axes[0], 0.45 * rows.size[0]), min(shape.semi_axes[1], 0.5 * rows.size[1]))
@@ -139,50 +160,32 @@ def _states(
     highest, more = timed(lambda: half_space.solve(gap, load=shape.largest_force, rtol=1e-3))
     touched = [*samples, *(strip.heights for strip in prepared.textures.strips)]
     low = max(min(float(first_touch(z, shape.body).min()) for z in touched), shape.lowest_approach)
-    approaches = low + (highest.approach - low) * np.linspace(0.0, 1.0, STATES) ** 1.3
+    approaches = chosen_states(low, highest.approach)
     return approaches, working.approach, load + more
 
 
-def _scan(
-    heights: NDArray[np.float64],
-    prepared: Prepared,
-    approaches: NDArray[np.float64],
-    stride: int,
-    rtol: float,
-    planes: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
-    shape = prepared.shape
-    return scan_forces(
-        heights, shape.spacing, shape.body, shape.modulus, approaches, prepared.case.contact.hardness,
-        stride=stride, rtol=rtol, workers=1, planes=planes, device="cpu",
-    ).forces  # fmt: skip
+def _position_time(job: ScanJob, level_by: Geometry | None = None) -> float:
+    """Time of a position in a long scan: of those that start from a neighbour, at some places.
 
-
-def _position_time(
-    strip: Strip,
-    prepared: Prepared,
-    approaches: NDArray[np.float64],
-    stride: int,
-    rtol: float,
-    *,
-    level: bool = False,
-) -> float:
-    """Time of a position in a long scan: of those that start from a neighbour, at some places."""
-    shape, found = prepared.shape, []
-    nx = shape.body.shape[0]
+    States count from the plane that the patch of a geometry feels, if one is given.
+    """
+    nx, rows, found = job.body.shape[0], job.surface.shape[0], []
     begin = time.process_time()
     for place in PLACES:
-        first = round(place * max(strip.shape[0] - nx - POSITIONS * stride, 0))
-        rows = np.ascontiguousarray(strip.rows(first, min(first + nx + POSITIONS * stride, strip.shape[0])))
-        planes = np.zeros((len(rows) - nx) // stride + 1)
-        if level:  # states count from the plane that the patch feels
-            along = patch_planes(HeightMap(rows, shape.spacing), shape)
-            planes = along[nx // 2 : len(rows) - nx // 2 : stride][: len(planes)]
-        _, cold = timed(partial(_scan, rows[:nx], prepared, approaches, stride, rtol, planes[:1]))
-        if cold > LONG or len(planes) == 1:
+        first = round(place * max(rows - nx - POSITIONS * job.stride, 0))
+        piece = HeightMap(
+            job.surface.rows(first, min(first + nx + POSITIONS * job.stride, rows)), job.surface.spacing
+        )
+        planes = np.zeros((piece.shape[0] - nx) // job.stride + 1)
+        if level_by is not None:
+            planes = patch_planes(piece, level_by)[nx // 2 :: job.stride][: len(planes)]
+        here = replace(job, surface=piece, planes=planes)
+        alone = replace(job, surface=Rows(piece.heights[:nx]), planes=planes[:1])
+        _, cold = timed(partial(scan_forces, alone, workers=1))
+        if cold > LONG or here.positions == 1:
             return cold
-        _, all_of = timed(partial(_scan, rows, prepared, approaches, stride, rtol, planes))
-        found.append(max(all_of - cold, 0.1 * all_of) / (len(planes) - 1))
+        _, all_of = timed(partial(scan_forces, here, workers=1))
+        found.append(max(all_of - cold, 0.1 * all_of) / (here.positions - 1))
         if time.process_time() - begin > LONG:
             break
     return float(np.mean(found))

@@ -14,14 +14,36 @@ MODES_BEYOND = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """What is rolled in a case."""
+    """What is rolled in a case.
+
+    Attributes
+    ----------
+    ball, beam
+        The bodies.
+    """
 
     ball: Ball
     beam: Beam
 
 
 def bodies_of(case: BallOnBeam) -> Bodies:
-    """Build ball and beam of a case; a beam without natural frequency in the range is refused."""
+    """Build the bodies of a case.
+
+    Parameters
+    ----------
+    case : BallOnBeam
+        The case.
+
+    Returns
+    -------
+    Bodies
+        Ball and beam.
+
+    Raises
+    ------
+    InputError
+        If the beam has no natural frequency in the range.
+    """
     beam = Beam.rectangular(
         case.beam.length,
         case.beam.width,

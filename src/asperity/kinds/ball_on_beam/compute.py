@@ -23,10 +23,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Computed:
-    """Everything that was computed for a case, before it is laid out as a result."""
+    """Everything that was computed for a case, before it is laid out as a result.
+
+    Attributes
+    ----------
+    case : BallOnBeam
+        The case.
+    chain : Chain
+        Textures, state functions, laws and runs.
+    ball, beam
+        What was rolled.
+    """
 
     case: BallOnBeam
-    chain: Chain[Rolling]  # textures, state functions, laws and runs
+    chain: Chain[Rolling]
     ball: Ball
     beam: Beam
 

@@ -12,46 +12,13 @@ SAFETY = 2.5
 """Residual asked for, below the accuracy of the force: see `rtol_for`."""
 
 SINGLE_ENOUGH = 2e-6
-"""Tolerance from which single precision reaches it in as many iterations as double."""
+"""`rtol` from which single precision reaches it in as many iterations as double."""
 SINGLE_PAYS = 2e9
 """Cells of all contacts of a scan from which single precision saves more than the 10 s to compile it."""
 
 
-def in_single(rtol: float, cells: float) -> bool:
-    """Whether single precision is enough for a scan, and pays.
-
-    Parameters
-    ----------
-    rtol : float
-        Tolerance of each solution.
-    cells : float
-        Cells of a window times the number of solutions.
-
-    Returns
-    -------
-    bool
-        Known before the scan, and the same on all machines.
-    """
-    return rtol >= SINGLE_ENOUGH and cells >= SINGLE_PAYS
-
-
-def rtol_for(accuracy: float) -> float:
-    """Tolerance of a contact solution whose force shall have a relative accuracy.
-
-    Parameters
-    ----------
-    accuracy : float
-        Largest relative error of the force, above 0 and at most 0.1.
-
-    Returns
-    -------
-    float
-        `rtol` of `HalfSpace.solve`: the largest complementarity residual relative to the largest overlap.
-
-    Raises
-    ------
-    InputError
-        If the accuracy is out of range.
+def rtol_for(force_accuracy: float) -> float:
+    """`rtol` of a contact solution whose force shall have a relative accuracy, above 0 and at most 0.1.
 
     Notes
     -----
@@ -62,6 +29,6 @@ def rtol_for(accuracy: float) -> float:
     heavy loads, the largest error found is twice the relative residual
     (``benchmarks/force_accuracy.py``).
     """
-    if not 0.0 < accuracy <= 0.1:
-        raise InputError("accuracy of the force", accuracy, "a number above 0, at most 0.1", "Try 1e-4.")
-    return accuracy / SAFETY
+    if not 0.0 < force_accuracy <= 0.1:
+        raise InputError("force_accuracy", force_accuracy, "a number above 0, at most 0.1", "Try 1e-4.")
+    return force_accuracy / SAFETY

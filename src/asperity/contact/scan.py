@@ -1,0 +1,256 @@
+"""The quasi-static scan F_c(x, r): a body moved along a surface, the 3-D contact solved at each position."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from contextlib import closing
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.contact import accuracy
+from asperity.contact.batched import solve_batched
+from asperity.contact.device import Device, find_device
+from asperity.contact.flaws import Counts, total
+from asperity.errors import InputError
+from asperity.kernels.scanning import TRUNCATED
+from asperity.progress import Progress
+from asperity.store import Cache, content_key
+from asperity.surfaces.strip import Rows, Strip
+from asperity.threads import in_order, thread_count
+
+if TYPE_CHECKING:
+    from asperity.contact.halfspace import HalfSpace
+
+F = TypeVar("F")
+
+BLOCK = 256
+"""Positions solved in one go, from a cold start: the unit of parallel work and of what is kept on disk."""
+BATCH = 4096
+"""Positions of a block on a device: enough to fill it, and few enough to be kept often."""
+BLOCK_BYTES = 1200
+"""What the file of a block holds beside its forces, bytes."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScanJob:
+    """A body to be moved along a surface, and how its contacts are solved: all that the forces depend on.
+
+    Attributes
+    ----------
+    half_space : HalfSpace
+        The window's grid of (nx, ny) cells, modulus and hardness.
+    surface : Strip, shape (n, ny)
+        Heights, m, peaks positive.
+    body : ndarray, shape (nx, ny)
+        Shape of the smooth body, m, zero at its lowest point.
+    approaches : ndarray, shape (k,)
+        Approaches from the planes, m, increasing.
+    stride : int
+        Rows between positions: the first rows under the body are 0, stride, 2 stride, …
+    rtol : float
+        Tolerance of each solution, as in `HalfSpace.solve`.
+    planes : ndarray, shape (positions,), or float
+        Height of the plane from which approaches count at each position, m.
+    device : Device or None
+        Where contacts are solved in batches; None for the processor, which solves them one by one.
+    """
+
+    half_space: HalfSpace
+    surface: Strip
+    body: NDArray[np.float64]
+    approaches: NDArray[np.float64]
+    stride: int = 1
+    rtol: float = 1e-6
+    planes: NDArray[np.float64] | float = 0.0
+    device: Device | None = field(default_factory=find_device)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "body", np.ascontiguousarray(self.body, dtype=np.float64))
+        object.__setattr__(self, "approaches", np.atleast_1d(np.asarray(self.approaches, dtype=np.float64)))
+        self._check()
+
+    def _check(self) -> None:
+        (n, width), cells, approaches = self.surface.shape, self.half_space.shape, self.approaches
+        if self.body.shape != cells or not np.isfinite(self.body).all():
+            allowed = f"a finite array of the half-space's shape {cells}"
+            raise InputError("body of the scan", f"shape {self.body.shape}", allowed)
+        if width != cells[1] or n < cells[0]:
+            raise InputError(
+                "window of the scan",
+                f"{cells[0]} × {cells[1]} cells on a surface of {n} × {width} cells",
+                "a window as wide as the surface and not longer",
+                "Choose a smaller window or provide a larger map.",
+            )
+        if approaches.size == 0 or not np.isfinite(approaches).all() or np.any(np.diff(approaches) <= 0):
+            raise InputError("approaches of the scan", approaches.tolist(), "finite, increasing lengths in m")
+        if self.stride < 1:
+            raise InputError("stride of the scan", self.stride, "a whole number ≥ 1")
+
+    @property
+    def positions(self) -> int:
+        """Number of positions."""
+        return len(range(0, self.surface.shape[0] - self.body.shape[0] + 1, self.stride))
+
+    @property
+    def block(self) -> int:
+        """Positions of a block; the last may have fewer."""
+        return BLOCK if self.device is None else BATCH
+
+    @property
+    def starts(self) -> range:
+        """First position of each block."""
+        return range(0, self.positions, self.block)
+
+    @property
+    def single(self) -> bool:
+        """Whether the processor iterates in single precision: where it is enough, and pays."""
+        cells = self.positions * self.approaches.size * self.body.size
+        enough = self.rtol >= accuracy.SINGLE_ENOUGH
+        return self.device is None and enough and cells >= accuracy.SINGLE_PAYS
+
+    @property
+    def bytes(self) -> int:
+        """What the kept blocks take on disk, about."""
+        return 8 * self.positions * self.approaches.size + BLOCK_BYTES * len(self.starts)
+
+    def under(self, start: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Heights under a block, m, shape (rows, ny), and the planes of its positions, m."""
+        known = np.broadcast_to(np.asarray(self.planes, dtype=np.float64), (self.positions,))
+        planes = np.ascontiguousarray(known[start : start + self.block])
+        stop = (start + len(planes) - 1) * self.stride + self.body.shape[0]
+        return np.ascontiguousarray(self.surface.rows(start * self.stride, stop)), planes
+
+    def key(self, rows: NDArray[np.float64], planes: NDArray[np.float64]) -> str:
+        """Name in the store of the block on these heights."""
+        space = self.half_space
+        parameters = [list(space.spacing), space.modulus, space.hardness, self.stride, self.rtol]
+        parameters += ["batched"] if self.device else ["single"] if self.single else []
+        return content_key("scan", rows, self.body, self.approaches, planes, parameters)
+
+    def solve(
+        self, rows: NDArray[np.float64], planes: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Forces of a block from a cold start, N, shape (k, positions), and its `Counts`."""
+        space = self.half_space
+        if self.device is not None:
+            return self._solve_batched(rows, planes, self.device)
+        block = space.at_positions(
+            rows, self.body, planes, self.approaches, self.stride, self.rtol, single=self.single
+        )
+        return block.totals * space.cell_area, block.counts
+
+    def _solve_batched(
+        self, rows: NDArray[np.float64], planes: NDArray[np.float64], device: Device
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """All positions of a block at once, approach by approach."""
+        xp = device.xp
+        heights, shape, plane = xp.asarray(rows), xp.asarray(self.body), xp.asarray(planes)
+        window = xp.arange(self.body.shape[0])
+
+        def gaps(first: int, last: int) -> Any:
+            under = heights[xp.arange(first, last)[:, None] * self.stride + window]
+            return shape + plane[first:last, None, None] - under
+
+        found = solve_batched(self.half_space, gaps, len(planes), self.approaches, self.rtol, device)
+        flaws = (~found.converged).sum(), (found.edge_share > TRUNCATED).sum()
+        counts = [np.count_nonzero(found.force), found.iterations.sum(), *flaws]
+        return found.force, np.array(counts, dtype=np.int64)
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedBlock:
+    """Solutions at the positions of a block: name in the store, forces (k, positions) in N, and counts."""
+
+    key: str
+    forces: NDArray[np.float64]
+    counts: Counts
+
+
+@dataclass(frozen=True, eq=False)
+class ScannedForces(Generic[F]):
+    """Forces of a scan, with how well the solutions went.
+
+    Attributes
+    ----------
+    forces : ndarray, or StoredForces, shape (n_approaches, n_positions)
+        F_c(x_m, r_i), N.
+    counts : Counts
+        How the solutions went.
+    single : bool
+        Whether the iteration was in single precision.
+    """
+
+    forces: F
+    counts: Counts
+    single: bool
+
+
+def solved_blocks(
+    job: ScanJob,
+    cache: Cache | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    message: str = "scanning the contact",
+) -> Generator[SolvedBlock]:
+    """Blocks of a scan in order, from the cache or solved, on so many threads (by default `thread_count`).
+
+    A scan that was interrupted goes on after the last block kept; the number of threads changes no digit.
+    """
+    count = (workers or thread_count()) if job.device is None else 1  # one block fills a device
+
+    def block(start: int) -> SolvedBlock:
+        rows, planes = job.under(start)
+        key = "" if cache is None else job.key(rows, planes)
+        kept = None if cache is None else cache.get(key)
+        if kept is None:
+            forces, counts = job.solve(rows, planes)
+            kept = {"forces": forces, "counts": counts}
+            if cache is not None:
+                cache.put(key, kept)
+        return SolvedBlock(key, kept["forces"], Counts(*kept["counts"].tolist()))
+
+    done = 0
+    if progress:
+        progress(done, job.positions, message)
+    with closing(in_order(block, job.starts, min(count, len(job.starts)))) as blocks:
+        for found in blocks:
+            done += found.forces.shape[1]
+            if progress:
+                progress(done, job.positions, message)
+            yield found
+
+
+def scan_forces(
+    job: ScanJob,
+    *,
+    cache: Cache | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> ScannedForces[NDArray[np.float64]]:
+    """Scan, and hold the forces in memory; arguments as in `solved_blocks`."""
+    blocks = list(solved_blocks(job, cache, workers, progress))
+    forces = np.concatenate([block.forces for block in blocks], axis=1)
+    return ScannedForces(forces, total(block.counts for block in blocks), job.single)
+
+
+def first_touch(
+    surface: NDArray[np.float64] | Strip, body: NDArray[np.float64], stride: int = 1
+) -> NDArray[np.float64]:
+    """Approach, m, at which the body first touches the surface at each position, shape (n_positions,).
+
+    It counts from the plane z = 0, and is usually negative: peaks touch before the planes meet. Surface, body
+    and stride as in `ScanJob`.
+    """
+    strip, nx = Rows(surface) if isinstance(surface, np.ndarray) else surface, body.shape[0]
+    starts = range(0, strip.shape[0] - nx + 1, stride)
+    result = np.empty(len(starts))
+    for first in range(0, len(starts), BLOCK):
+        block = starts[first : first + BLOCK]
+        rows = strip.rows(block[0], block[-1] + nx)
+        for m, start in enumerate(block):
+            at = start - block[0]
+            result[first + m] = (body - rows[at : at + nx]).min()
+    return result
