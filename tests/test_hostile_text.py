@@ -382,6 +382,11 @@ def test_marks_between_digits_are_refused_in_files(tmp_path):
     (tmp_path / "a.csv").write_text("1.5;2\n1_0;4\n")
     with pytest.raises(InputError, match=r"received '1_0;4' in line 2"):
         read_surface(tmp_path / "a.csv", height_unit="um", pixel="1 um")
+    (tmp_path / "b.csv").write_text("line_1\n2024_01_15\n1_0;2\n3;4\n5;6\n")  # no heading of two columns
+    with pytest.raises(InputError, match=r"received '1_0;2' in line 3"):
+        read_surface(tmp_path / "b.csv", height_unit="um", pixel="1 um")
+    (tmp_path / "c.csv").write_text("line_1\n2024_01_15\n____;____\n3;4\n5;6\n")
+    assert read_surface(tmp_path / "c.csv", height_unit="um", pixel="1 um").heights.size == 2
     (tmp_path / "levels.csv").write_text("0.1, 1_0\n0.08, 2\n")
     with pytest.raises(InputError, match="in line 1"):
         read_levels(tmp_path / "levels.csv")

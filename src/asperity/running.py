@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import shown
-from asperity.errors import InputError
+from asperity.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     import xarray
@@ -52,16 +52,23 @@ def run(
     loaded = case if isinstance(case, Prepared) else as_case(case)
     if progress is not None and not callable(progress):
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
-    with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
-        warnings.simplefilter("always", PhysicsWarning)
-        prepared = loaded if isinstance(loaded, Prepared) else prepare(loaded)
-        caught += prepared.caught
-        quiet = progress or (lambda done, total, message: None)
-        result = prepared.kind.computed(prepared, quiet, caught)
-    for message in caught:
-        if not issubclass(message.category, PhysicsWarning):
-            warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
+    quiet = progress or (lambda done, total, message: None)
+    try:
+        with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
+            warnings.simplefilter("always", PhysicsWarning)
+            prepared = loaded if isinstance(loaded, Prepared) else prepare(loaded)
+            caught += prepared.caught
+            result = prepared.kind.computed(prepared, quiet, caught)
+    except ComputationError:
+        _warn_again(caught)  # they may say why
+        raise
+    _warn_again(message for message in caught if not issubclass(message.category, PhysicsWarning))
     return result
+
+
+def _warn_again(caught: Iterable[warnings.WarningMessage]) -> None:
+    for message in caught:
+        warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
 
 
 def open_result(path: str | os.PathLike[str]) -> xarray.DataTree:

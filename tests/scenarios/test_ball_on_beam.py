@@ -296,6 +296,13 @@ class TestLimits:
         with pytest.raises(InputError, match="at most R/3"):
             self.shape_of(load='"5 MN"')
 
+    @pytest.mark.parametrize("side", ["width", "height"])
+    def test_a_beam_that_is_smaller_than_its_contact(self, side):
+        half = (3 * 30.0 * 25e-3 / (4 * 115e9)) ** (1 / 3)
+        self.shape_of(load=f'"30 N"\n[beam]\n{side} = "{2.01 * half} m"')
+        with pytest.raises(InputError, match=rf"beam\.{side}: received 338 um; allowed: at least 339 um"):
+            self.shape_of(load=f'"30 N"\n[beam]\n{side} = "{1.99 * half} m"')
+
     def test_approach_beyond_the_half_space(self):
         beyond = case(laws=["areal"], contact='approaches = ["0 um", "4 mm"]')
         with pytest.raises(InputError, match="an approach of 4e\\+03 µm"):

@@ -53,6 +53,13 @@ def test_self_affine_anisotropy_is_the_ratio_of_correlation_lengths():
     assert_allclose(longest / shortest, 4.0, rtol=0.15)
 
 
+def test_self_affine_takes_no_map_beyond_all_measure():
+    with pytest.raises(InputError, match=r"longest: received 10 m at 8e-06 m, which take a map of 2500000 x"):
+        self_affine((600, 63), (8e-6, 8e-6), rms=UM, hurst=0.8, longest=10.0, shortest=16 * UM, seed=1)
+    with pytest.raises(InputError, match=r"allowed: at most 134217728 points.*nearer to 1"):
+        self_affine((64, 64), (UM, UM), seed=1, **(AFFINE | {"anisotropy": 1e9}))
+
+
 def test_self_affine_does_not_close_on_itself():
     surface = self_affine((64, 64), (UM, UM), seed=3, **AFFINE).heights
     step_inside, step_around = np.std(np.diff(surface, axis=0)), np.std(surface[0] - surface[-1])

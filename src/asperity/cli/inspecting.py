@@ -32,21 +32,9 @@ def inspect(
 ) -> None:
     """Print what is in a measured file, and draw it.
 
-    Parameters
-    ----------
-    file : Path
-        The measured file.
-    picture : Path or None
-        Where the picture goes; the ending names its format. By default a name made of those of file, array
-        and map, in the working folder.
-    array : str, optional
-        Name of the array.
-    index : int, optional
-        Which map of an ensemble.
-    lines : bool, optional
-        Whether an array of two dimensions holds lines measured side by side; by default its shape tells.
-    **hints
-        What else the file does not say itself, as `read_surface` takes it.
+    The ending of `picture` names its format; by default its name is made of those of file, array and map, in
+    the working folder. `index` says which map of an ensemble, `lines` whether an array of two dimensions
+    holds lines measured side by side; by default its shape tells. Hints are as `read_surface` takes them.
     """
     chosen = [str(part) for part in (array, index) if part is not None]
     if picture is None:
@@ -106,21 +94,7 @@ def _inspect_lines(lines: tuple[Profile, ...], title: str, picture: Path, *, tol
 
 
 def read(file: Path, index: int | None = None, **hints: Any) -> list[HeightMap | Profile]:
-    """Read the map, the line, or all maps of an ensemble.
-
-    Parameters
-    ----------
-    file : Path
-        The measured file.
-    index : int, optional
-        Which map of an ensemble; all of them by default.
-    **hints
-        As `read_surface` takes them.
-
-    Returns
-    -------
-    list of HeightMap or Profile
-    """
+    """Read the map, the line, or all maps of an ensemble; hints are as `read_surface` takes them."""
     from asperity.surfaces.readers import read_surface, read_surfaces
 
     if index is not None:
@@ -213,22 +187,7 @@ def homogeneity_line(surface: HeightMap | Profile) -> str:
 
 
 def draw(surface: HeightMap | Profile, title: str, picture: Path) -> Path:
-    """Draw a levelled surface.
-
-    Parameters
-    ----------
-    surface : HeightMap or Profile
-        Levelled heights.
-    title : str
-        Heading.
-    picture : Path
-        The file, PNG, PDF or SVG.
-
-    Returns
-    -------
-    Path
-        The file written.
-    """
+    """Draw a levelled surface to a PNG, PDF or SVG file."""
     from asperity.reporting import surface_picture
     from asperity.surfaces.heightmap import HeightMap
 

@@ -17,18 +17,7 @@ _PLAIN = {
 
 
 def plain(text: str) -> str:
-    """Write text in ASCII.
-
-    Parameters
-    ----------
-    text : str
-        Any text.
-
-    Returns
-    -------
-    str
-        With ``-`` for a minus sign, ``u`` for the prefix micro, and so on; ``?`` for what has no likeness.
-    """
+    """Write text in ASCII: ``-`` for a minus sign, ``u`` for micro; ``?`` for what has no likeness."""
     return "".join(character if character.isascii() else _alike(character) for character in text)
 
 

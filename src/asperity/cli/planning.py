@@ -22,15 +22,7 @@ SMALL_PART = 0.05  # of the work: shorter parts are not named
 
 
 def show_plan(prepared: Prepared, source: str) -> None:
-    """Print the values of a case, and what will be computed from it.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        The case.
-    source : str
-        Its file.
-    """
+    """Print the values of a case, and what will be computed from it."""
     from asperity.scenarios.expecting import expect
 
     for warning in prepared.caught:
@@ -121,18 +113,7 @@ def _described_work(expected: Work) -> str:
 
 
 def described_scan(scan: Expected) -> str:
-    """Describe the scan of a path: its size, time, disk use, and what an interruption costs.
-
-    Parameters
-    ----------
-    scan : Expected
-        From `asperity.scenarios.expecting`.
-
-    Returns
-    -------
-    str
-        One sentence.
-    """
+    """Describe the scan of a path in a sentence: its size, time, disk use, and what an interruption costs."""
     from asperity.store import Store
     from asperity.threads import thread_count
 
@@ -146,15 +127,7 @@ def described_scan(scan: Expected) -> str:
 
 
 def announce_scan(prepared: Prepared, progress: Progress) -> None:
-    """Before a long scan of a path starts, say what it takes.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        The case.
-    progress : Progress
-        Called while a few contacts are tried.
-    """
+    """Before a long scan of a path starts, say what it takes; a few contacts are tried for that."""
     from asperity.scenarios.expecting import expected_path_scan
     from asperity.scenarios.scan_sizes import scan_sizes
 

@@ -36,25 +36,10 @@ def study_into(
     scheduler: str | None = None,
     overwrite: bool = False,
 ) -> None:
-    """Compute a study and write its table.
+    """Compute a study and write ``study.nc`` and ``study.csv`` to a folder.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    directory : Path
-        Where ``study.nc`` and ``study.csv`` go.
-    workers : int, optional
-        Number of processes of this machine; one per processor by default.
-    scheduler : str, optional
-        Address of a Dask scheduler, whose workers compute instead.
-    overwrite : bool
-        Whether another study in `directory` may be replaced.
-
-    Raises
-    ------
-    InputError
-        If `directory` holds another study, or both `workers` and `scheduler` are given.
+    Either processes of this machine compute it, one per processor by default, or the workers of the Dask
+    scheduler at an address. `overwrite` says whether another study in the folder may be replaced.
     """
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
@@ -89,25 +74,7 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
 
 
 def speeds_and_loads(case: Path, speeds: str | None, loads: str | None) -> Study:
-    """Make a study of speeds and loads from the words of the command line.
-
-    Parameters
-    ----------
-    case : Path
-        The case.
-    speeds, loads : str or None
-        Values with units, with commas between them; None for that of the case.
-
-    Returns
-    -------
-    Study
-        The study.
-
-    Raises
-    ------
-    InputError
-        If neither is given, or a value is wrong.
-    """
+    """Make a study of speeds and loads from the words of the command line: values with units, and commas."""
     body = kind_of(load_case(case)).rolling
     given = {"speed": speeds, f"{body}.load": loads}
     words = {name: text.split(",") for name, text in given.items() if text is not None}

@@ -75,13 +75,7 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
 
 
 def remove_report(directory: str | os.PathLike[str]) -> None:
-    """Remove an earlier report, of any kind of case: it would not belong to the run beside it.
-
-    Parameters
-    ----------
-    directory : path
-        The folder; files of other names stay.
-    """
+    """Remove an earlier report, of any kind, from a folder: it would not belong to the run beside it."""
     directory = Path(directory)
     if not (directory / "report.html").exists():
         return

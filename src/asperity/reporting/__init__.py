@@ -20,19 +20,8 @@ __all__ = ["lines_picture", "surface_picture"]
 def surface_picture(heights: NDArray[Any], spacing: tuple[float, float], title: str) -> Figure:
     """Draw what a surface file holds: its map and the distribution of its heights.
 
-    Parameters
-    ----------
-    heights : (nx, ny) array, or (n,) array for a line
-        Heights in m, positive out of the material; NaN where missing.
-    spacing : (float, float)
-        Distance of neighbouring points along x and y in m.
-    title : str
-        Heading, as the name of the file.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Save it with ``savefig``.
+    Heights (nx, ny), or (n,) for a line, and distances along x and y, m, positive out of the material; NaN
+    where missing.
     """
     from asperity.reporting.texture import surface_picture as draw
 
@@ -42,19 +31,7 @@ def surface_picture(heights: NDArray[Any], spacing: tuple[float, float], title: 
 def lines_picture(lines: Sequence[NDArray[Any]], spacing: float, title: str) -> Figure:
     """Draw lines that were measured side by side, and the distribution of their heights.
 
-    Parameters
-    ----------
-    lines : sequence of (n,) arrays
-        Levelled heights in m, positive out of the material; NaN where missing.
-    spacing : float
-        Distance of neighbouring points along the lines in m.
-    title : str
-        Heading, as the name of the file.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Save it with ``savefig``.
+    Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
     """
     from asperity.reporting.texture import lines_picture as draw
 

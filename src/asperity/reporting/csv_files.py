@@ -13,14 +13,7 @@ from asperity.reporting.part import Columns
 def csv_text(columns: Columns) -> str:
     """Comma-separated text: a header ``quantity [unit]``, then one row per value, exact to the last bit.
 
-    Parameters
-    ----------
-    columns : dict of str to (n,) array
-        The columns, in SI units. A missing number (NaN) is an empty field.
-
-    Returns
-    -------
-    str
+    A missing number (NaN) is an empty field.
     """
     return comma_separated.csv_text(list(columns), _rows(columns))
 

@@ -347,21 +347,9 @@ def _columns(labels: Sequence[str], most: int) -> int:
 def envelope(
     signal: NDArray[np.float64], columns: int
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Smallest and largest value of a long series in each of about `columns` stretches.
+    """Smallest and largest value of a long series (n,) in each of at most `columns` stretches.
 
-    Parameters
-    ----------
-    signal : (n,) array
-        The series.
-    columns : int
-        How many stretches, at most.
-
-    Returns
-    -------
-    starts : (m,) array of int
-        Index at which each stretch starts.
-    low, high : (m,) arrays
-        Extremes of the stretch.
+    Returns the index at which each stretch starts, and the extremes, all (m,).
     """
     starts = np.unique(
         np.linspace(0, len(signal), min(columns, len(signal)), endpoint=False).astype(np.int64)
@@ -374,19 +362,7 @@ def smooth_on_log_axis(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Mean power in stretches of 1/`per_octave` octave, where lines are denser than that; for drawing only.
 
-    Parameters
-    ----------
-    frequency : (n,) array
-        Frequency or wavenumber, increasing, positive.
-    psd : (..., n) array
-        Power spectral density.
-    per_octave : int
-        Stretches per octave.
-
-    Returns
-    -------
-    frequency, psd : arrays
-        The same, with fewer lines.
+    Positive, increasing frequencies or wavenumbers (n,) and PSD (..., n); returns the same, with fewer lines.
     """
     index = np.floor(np.log2(frequency / frequency[0]) * per_octave).astype(int)
     starts = np.flatnonzero(np.diff(index, prepend=-1))

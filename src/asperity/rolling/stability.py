@@ -3,9 +3,17 @@
 For a force that is linear over each step the bodies move exactly. A force that alternates from step to step
 meets their *alternating compliance*: inertia makes it negative, −h²/12m for a free mass. As the poles of
 bodies and contact interlace on the unit circle, the coupled step is stable while 1/K + (alternating
-compliance) is positive, K being what the contact opposes to an alternating approach. Where a stiff contact,
-a strong damper or a light body violates that, the contact is softened by just this compliance in series:
-then the step is stable whatever K is. For a free mass that is Newmark's method with β = 1/4 instead of 1/6.
+compliance) is positive, K being what the contact opposes to an alternating approach. Where a strong damper
+on a light body violates that, the contact is softened by just this compliance in series: then the step is
+stable whatever K is. For a free mass that is Newmark's method with β = 1/4 instead of 1/6.
+
+A contact that opens and closes asks for more. A free mass m under forces that are linear over steps h meets
+them as impulses hF between which it flies: with x + h²F/6m for its place x it moves by the leapfrog, on the
+stiffness k = 1/(1/K + h²/6m). Over an impact the leapfrog keeps v² − (k/m)|ab|, with a and b the places at
+the ends of the step in which the contact closes, or opens; |ab| is v²h²/4 at most. An impact may therefore
+return more energy than it receives, by a factor up to 1/(1 − kh²/4m): without bound where the step is barely
+stable, by 2 for kh² = 2m. A contact softened by h²/3m, four times the above, is never stiffer than that; a
+rigid one then returns what it receives.
 """
 
 from __future__ import annotations
@@ -24,6 +32,10 @@ from asperity.structures.wheel import Wheel
 
 MARGIN = 0.5
 """Share of the bound up to which a step is taken as it is."""
+RETURNED = 0.25
+"""Share of the bound up to which an impact on the contact as it is returns twice its energy at most."""
+RIGID = 4.0
+"""Times the compliance that keeps a step stable: with it an impact on a rigid contact returns its energy."""
 RESOLVED = 0.9 * np.pi
 """Angle by which a mode may turn in a step to be followed."""
 NEGLIGIBLE = 0.01
@@ -32,8 +44,8 @@ RUNAWAY = 1e4
 """Times the load, or the largest force that the law was made for, that no contact force reaches."""
 PLACES = 256
 """Positions at which mode shapes are looked at."""
-STEPPED_RISE = 4.0
-"""How much stiffer than at rest a law that is stepped from Python may become."""
+RISE = 4.0
+"""How much stiffer than at rest a law without an end may become: Hertz's does under 64 times the load."""
 
 
 def beam_step(natural: NDArray, damping_ratio: NDArray, time_step: float) -> NDArray:
@@ -152,9 +164,9 @@ def largest_stiffness(prepared: Prepared | SteppedLaw, at_rest: tuple[float, flo
         N/m, N; the force is zero where it is not known.
     """
     if not isinstance(prepared, Prepared):
-        return STEPPED_RISE * at_rest[1], 0.0
+        return RISE * at_rest[1], 0.0
     if not np.isfinite(prepared.upper):
-        return at_rest[1], 0.0
+        return (1.0 if prepared.exponent == 1.0 else RISE) * at_rest[1], 0.0
     height = prepared.values.max(axis=1) if not len(prepared.slopes) else 0.0
     force, stiffness = evaluate_all(prepared, prepared.planes + height + prepared.upper)
     return max(at_rest[1], float(stiffness.max())), float(force.max())
@@ -186,21 +198,24 @@ def softening(compliance: float, stiffness: float, damping: float, at_rest: floa
     CoarseSamplingWarning
         If it is not, and the contact becomes softer by more than NEGLIGIBLE.
     """
-    opposed = -compliance * (stiffness + 4.0 * damping / time_step)
-    if opposed <= MARGIN:
+    lacking = -compliance
+    opposed = lacking * (stiffness + 4.0 * damping / time_step)
+    impact = lacking * stiffness > RETURNED
+    if opposed <= MARGIN and not impact:
         return 0.0
-    if -compliance * at_rest < NEGLIGIBLE:
-        return -compliance
-    times = opposed / MARGIN
-    enough = time_step / (times if damping > 0.0 else np.sqrt(times))
+    softer = RIGID * lacking if impact else lacking
+    if softer * at_rest < NEGLIGIBLE:
+        return softer
+    shorter = opposed / MARGIN if damping > 0.0 else 1.0
+    enough = time_step / max(shorter, np.sqrt(lacking * stiffness / RETURNED))
     warnings.warn(
         f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies as "
-        f"light: it is kept stable by softening the contact by {-100 * compliance * at_rest:.2g} %, "
+        f"light: it is kept stable by softening the contact by {100 * softer * at_rest:.2g} %, "
         f"and motion near {0.5 / time_step:.2g} Hz is distorted; take at most {enough:.2g} s",
         CoarseSamplingWarning,
         stacklevel=3,
     )
-    return -compliance
+    return softer
 
 
 def largest_force(load: float, force: float) -> float:

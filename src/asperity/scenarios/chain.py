@@ -54,44 +54,19 @@ R = TypeVar("R", bound=Run)
 
 @dataclass(frozen=True, eq=False)
 class Chain(Generic[R]):
-    """What was computed for a case of any kind, before it is laid out as a result.
-
-    Attributes
-    ----------
-    case, textures, shape
-        What was rolled.
-    reduction : Reduction or None
-        State functions; None without samples.
-    laws, runs : dict
-        Laws and their time histories, by name, in the order of the case.
-    scan : ScannedForces or None
-        Scan of the path.
-    seconds : dict
-        Wall time of each part, s.
-    """
+    """What was computed for a case of any kind, before it is laid out as a result."""
 
     case: Case
     textures: Textures
     shape: Geometry
-    reduction: Reduction | None
-    laws: dict[str, Law]
-    runs: dict[str, R]
-    scan: ScannedForces[Any] | None
-    seconds: dict[str, float]
+    reduction: Reduction | None  # state functions; None without samples
+    laws: dict[str, Law]  # by name, in the order of the case
+    runs: dict[str, R]  # time histories, by law
+    scan: ScannedForces[Any] | None  # of the path
+    seconds: dict[str, float]  # wall time of each part, s
 
     def stacked(self, name: str) -> NDArray[np.float64]:
-        """Stack one record of all runs.
-
-        Parameters
-        ----------
-        name : str
-            Attribute of the runs.
-
-        Returns
-        -------
-        ndarray, shape (laws, ...)
-            The record.
-        """
+        """Stack one record of all runs, (laws, ...), by the name of its attribute."""
         return np.stack([getattr(run, name) for run in self.runs.values()])
 
 
@@ -110,15 +85,7 @@ class Stopwatch:
 
 
 def warn_of_start(case: Case, remedy: str) -> None:
-    """Warn of a record that holds the start from rest.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    remedy : str
-        How to make room for a run-in.
-    """
+    """Warn of a record that holds the start from rest; `remedy` is how to make room for a run-in."""
     settling = case.settled_time
     if settling < SETTLED * (1 - 1e-9):
         warnings.warn(

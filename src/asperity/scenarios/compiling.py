@@ -24,14 +24,8 @@ MESSAGE = "compiled functions (the first run compiles them, some 10 s)"
 def compile_kernels(progress: Progress, stepping: Any, rolling: Callable[[], None]) -> None:
     """Call every kernel of a kind of case once on next to nothing: it is compiled now, or loaded from disk.
 
-    Parameters
-    ----------
-    progress : Progress
-        Called between the pieces.
-    stepping : compiled function
-        The one whose compilation takes longest.
-    rolling : callable
-        Function of a module that rolls a few steps, so that all that is stepped is compiled.
+    `stepping` is the one whose compilation takes longest; `rolling`, a function of a module, rolls a few
+    steps, so that all that is stepped is compiled.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)

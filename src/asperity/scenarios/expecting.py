@@ -88,18 +88,9 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
 
 
 def expected_area_ratio(prepared: Prepared) -> float | None:
-    """Expect the real contact area under the working load over that of smooth bodies.
+    """Expect the real contact area under the working load over that of smooth bodies, from slopes.
 
-    Parameters
-    ----------
-    prepared : Prepared
-        The case.
-
-    Returns
-    -------
-    float or None
-        About what `asperity.scenarios.reducing.Reduction.area_ratio` will be, from the slope of the
-        samples; None where the case has none.
+    About what `asperity.scenarios.reducing.Reduction.area_ratio` will be; None without samples.
     """
     shape, samples = prepared.shape, prepared.textures.maps
     if not samples:

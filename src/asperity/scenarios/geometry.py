@@ -22,33 +22,16 @@ FILLED = 0.9
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """The gap of two smooth bodies on the contact grid, and their closed-form contact.
+    """The gap of two smooth bodies on the contact grid, and their closed-form contact."""
 
-    Attributes
-    ----------
-    body : ndarray, shape (nx, ny)
-        Gap of the smooth bodies at zero approach, m, zero at its lowest point, the middle cell.
-    spacing : tuple of float
-        (dx, dy), m.
-    modulus : float
-        Contact modulus E*, Pa.
-    hertz : Hertz
-        Smooth contact of the bodies; of their osculating paraboloids where the gap is none.
-    load : float
-        Working load, N.
-    largest_force : float
-        Largest force that chosen states cover, N.
-    lowest_approach : float
-        Lowest approach that chosen states cover, m.
-    """
-
+    # (nx, ny), gap of the smooth bodies at zero approach, m; zero at its lowest point, the middle cell
     body: NDArray[np.float64]
-    spacing: tuple[float, float]
-    modulus: float
-    hertz: Hertz
-    load: float
-    largest_force: float
-    lowest_approach: float = -math.inf
+    spacing: tuple[float, float]  # (dx, dy), m
+    modulus: float  # E*, Pa
+    hertz: Hertz  # smooth contact; of the osculating paraboloids where the gap is none
+    load: float  # working load, N
+    largest_force: float  # that chosen states cover, N
+    lowest_approach: float = -math.inf  # that chosen states cover, m
 
     @property
     def semi_axes(self) -> tuple[float, float]:
@@ -56,18 +39,7 @@ class Geometry:
         return self.axes(self.load)
 
     def axes(self, force: float) -> tuple[float, float]:
-        """Semi-axes of the nominal patch under a force, m.
-
-        Parameters
-        ----------
-        force : float
-            N.
-
-        Returns
-        -------
-        tuple of float
-            (a_x, a_y), m.
-        """
+        """Semi-axes (a_x, a_y) of the nominal patch under a force, N; m."""
         return self.hertz.semi_axes(self.hertz.approach(force))
 
     def half_space(self, hardness: float | None) -> HalfSpace:
@@ -78,19 +50,8 @@ class Geometry:
     def remedy_for_cut_off(self, highest: float, working: float, datum: float, widest: float) -> str:
         """Name a window that holds the contacts of all states, also of those that this one keeps out.
 
-        Parameters
-        ----------
-        highest, working : float
-            Approach of the highest state, and under the working load, m.
-        datum : float
-            d0 of the states, m: minus the lowest first touch.
-        widest : float
-            Widest window that the samples allow, m.
-
-        Returns
-        -------
-        str
-            One sentence.
+        Approaches of the highest state and under the working load, m; d0 of the states, m, minus the lowest
+        first touch; widest window that the samples allow, m. One sentence.
         """
         wanted = max(HIGHEST_FORCE * self.load, self.largest_force)
         kept_out = self.hertz.approach(wanted) - self.hertz.approach(self.largest_force)
@@ -110,11 +71,8 @@ class Geometry:
     def within_window(self) -> Geometry:
         """Bound the states: above by a contact that the window holds, below by the working approach.
 
-        Returns
-        -------
-        Geometry
-            The same gap. States below minus the working approach, which a hollow deeper than it asks for,
-            would take those away that carry load.
+        States below minus the working approach, which a hollow deeper than it asks for, would take those away
+        that carry load.
         """
         sides = [n * d for n, d in zip(self.body.shape, self.spacing, strict=True)]
         room = min(FILLED * side / (2 * a) for side, a in zip(sides, self.semi_axes, strict=True))
@@ -123,53 +81,18 @@ class Geometry:
 
 
 def window_cells(contact: ContactCase) -> int:
-    """Cells along the window's side: odd, so that the lowest point of the gap lies on a cell.
-
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of a case.
-
-    Returns
-    -------
-    int
-        Odd number of cells.
-    """
+    """Cells along the window's side: odd, so that the lowest point of the gap lies on a cell."""
     return 2 * (contact.cells // 2) + 1
 
 
 def across_window(contact: ContactCase) -> NDArray[np.float64]:
-    """Coordinate of the window's cells from its middle, m.
-
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of a case.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        m, in both directions.
-    """
+    """Coordinates (n,) of the window's cells from its middle, in both directions, m."""
     n = window_cells(contact)
     return contact.spacing * np.arange(-(n // 2), n // 2 + 1, dtype=np.float64)
 
 
 def parabola(contact: ContactCase, radius: float) -> NDArray[np.float64]:
-    """Section x²/2R of the gap on the window's cells.
-
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of a case.
-    radius : float
-        R, m.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        m.
-    """
+    """Section x²/2R (n,) of the gap on the window's cells, R and section in m."""
     return across_window(contact) ** 2 / (2.0 * radius)
 
 
@@ -182,32 +105,12 @@ def geometry(
     smallest_radius: float,
     body: str,
 ) -> Geometry:
-    """Lay the gap of two bodies out on the contact grid, checked against the half-space assumption.
+    """Lay the gap x²/2R + section (n,), m, of two bodies out on the contact grid.
 
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of a case.
-    section : ndarray, shape (n,)
-        Gap across the rolling direction, m, from `parabola` or of given profiles.
-    hertz : Hertz
-        Smooth contact; its radius in the rolling direction is that of the gap.
-    load : float
-        Working load, N.
-    smallest_radius : float
-        Smallest radius of curvature of the bodies, m.
-    body : str
-        The rolling body, for messages.
-
-    Returns
-    -------
-    Geometry
-        The gap x²/2R + section.
-
-    Raises
-    ------
-    InputError
-        If the contact is not small against the bodies (a > R/3), or the window does not hold it.
+    The section is across the rolling direction, from `parabola` or of given profiles; the radius in the
+    rolling direction is that of the smooth contact `hertz`, under the working load, N. The gap is checked
+    against the half-space assumption: a contact that is not small against the smallest radius of curvature, m
+    (a > R/3), is refused, and a window that does not hold it. `body` names what rolls in messages.
     """
     n, h = window_cells(contact), contact.spacing
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]

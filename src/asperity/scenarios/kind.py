@@ -22,20 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Words:
-    """What a commented case of a kind says beside its keys.
+    """What a commented case of a kind says beside its keys."""
 
-    Attributes
-    ----------
-    title : str
-        One sentence: what rolls over what.
-    sources : str
-        Where texture may come from, as the end of a sentence.
-    written_out : mapping of str to str
-        Values, in TOML, of keys that have no default and shall stand in the case.
-    """
-
-    title: str
-    sources: str
+    title: str  # one sentence: what rolls over what
+    sources: str  # where texture may come from, as the end of a sentence
+    # values, in TOML, of keys that have no default and shall stand in the case
     written_out: Mapping[str, str]
 
 

@@ -28,31 +28,16 @@ from asperity.store import Cache
 
 @dataclass(frozen=True, eq=False)
 class Workshop:
-    """What the laws of one case are made of.
-
-    Attributes
-    ----------
-    contact : ContactCase
-        The contact section of the case.
-    numerics : Numerics
-        The numerics section of the case: how accurately contacts are solved.
-    textures, shape
-        Textures and geometry of the case.
-    reduction : Reduction or None
-        State functions; None where the case has no samples.
-    planes : ndarray, shape (rows,), or None
-        Height of the plane that the nominal patch feels along the path, m, peaks positive.
-    cache, progress
-        For the scan of the path.
-    """
+    """What the laws of one case are made of."""
 
     contact: ContactCase
-    numerics: Numerics
+    numerics: Numerics  # how accurately contacts are solved
     textures: Textures
     shape: Geometry
-    reduction: Reduction | None
+    reduction: Reduction | None  # state functions; None where the case has no samples
+    # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: NDArray[np.float64] | None
-    cache: Cache
+    cache: Cache  # for the scan of the path
     progress: Progress
 
     def build(self, name: str) -> tuple[Law, ScannedForces[StoredForces] | None]:
@@ -180,38 +165,15 @@ class Workshop:
 
 
 def table_stride(shape: Geometry) -> int:
-    """Rows between the positions of a table: an eighth of the patch.
-
-    Parameters
-    ----------
-    shape : Geometry
-        What presses on what.
-
-    Returns
-    -------
-    int
-        Rows of the contact grid.
-    """
+    """Rows of the contact grid between the positions of a table: an eighth of the patch."""
     return max(1, math.floor(shape.semi_axes[0] / 8 / shape.spacing[0]))
 
 
 def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | None) -> tuple[float, float]:
-    """Approach under the working load, and the stiffness that a linear contact has there.
+    """Approach under the working load, m, and the stiffness that a linear contact has there, N/m.
 
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of the case, which says which stiffness.
-    shape : Geometry
-        What presses on what.
-    reduction : Reduction or None
-        State functions of the rough contact.
-
-    Returns
-    -------
-    approach, stiffness : float
-        m and N/m: dF/dr of the smooth or the rough contact, or F/r of the rough one (thesis Eq. 2.3), of the
-        smooth one where there are no samples.
+    dF/dr of the smooth or the rough contact, or F/r of the rough one (thesis Eq. 2.3), as the case says; of
+    the smooth one where there are no samples.
     """
     if contact.linearise == "hertz" or reduction is None:
         approach = shape.hertz.approach(shape.load)

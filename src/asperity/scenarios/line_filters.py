@@ -80,18 +80,7 @@ def normalisations(contact: ContactCase, laws: Iterable[str]) -> tuple[Normalise
 
 
 def filter_stride(shape: Geometry) -> int:
-    """Rows between the positions of a scan for a filter: a sixth of the patch.
-
-    Parameters
-    ----------
-    shape : Geometry
-        What presses on what.
-
-    Returns
-    -------
-    int
-        Rows of the contact grid.
-    """
+    """Rows of the contact grid between the positions of a scan for a filter: a sixth of the patch."""
     return max(1, math.floor(shape.semi_axes[0] / 6 / shape.spacing[0]))
 
 
@@ -194,21 +183,9 @@ def _spectra(
 
 
 def warn_of_filter(found: LineFilter, law: str, working_approach: float) -> None:
-    """Say what of a filter a law that uses it should not rest on.
+    """Say what of a filter a law that uses it should not rest on, with the working approach, m.
 
-    Parameters
-    ----------
-    found : LineFilter
-        The filter of the law.
-    law : str
-        Name of the law.
-    working_approach : float
-        Approach under the working load, m.
-
-    Warns
-    -----
-    ContactFilterWarning
-        If the texture lacks the long waves at which the printed filter is one, or the taps miss the fit.
+    That the texture lacks the long waves at which the printed filter is one, or that the taps miss the fit.
     """
     if found.miss > LARGEST_MISS:
         order = found.taps.shape[1] - 1

@@ -25,58 +25,20 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A case that can be computed.
-
-    Attributes
-    ----------
-    case : Case
-        The case.
-    kind : Kind
-        Its kind.
-    bodies : Bodies of its kind
-        What is rolled.
-    shape : Geometry
-        The gap of the bodies on the contact grid.
-    textures : Textures
-        What is rolled over.
-    caught : tuple of WarningMessage
-        Warnings met on the way.
-    seconds, processor : float
-        Time it took, and processor time, s.
-    """
+    """A case that can be computed."""
 
     case: Case
     kind: Kind
     bodies: Any
-    shape: Geometry
-    textures: Textures
-    caught: tuple[warnings.WarningMessage, ...]
-    seconds: float
-    processor: float
+    shape: Geometry  # the gap of the bodies on the contact grid
+    textures: Textures  # what is rolled over
+    caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
+    seconds: float  # that it took
+    processor: float  # time, s
 
 
 def prepare(case: Case, kind: Kind) -> Prepared:
-    """Build and read all that a case needs, and refuse what cannot be computed.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    kind : Kind
-        Its kind.
-
-    Returns
-    -------
-    Prepared
-        Everything but the work.
-
-    Raises
-    ------
-    InputError
-        If one thing is wrong.
-    CaseError
-        If several are, with all of them.
-    """
+    """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
     begin, spent = time.perf_counter(), time.process_time()
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
         warnings.simplefilter("always", PhysicsWarning)

@@ -17,23 +17,7 @@ _LINE_KEYS = {"array": "line_array", "height_unit": "line_unit", "pixel": "line_
 
 
 def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
-    """Read the map, or all maps of an ensemble, that the surface section names.
-
-    Parameters
-    ----------
-    surface : Surface
-        The surface section of a case, with a file.
-
-    Returns
-    -------
-    sequence of HeightMap or Profile
-        As they lie in the file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
-    """
+    """Read the map, or all maps of an ensemble, that the surface section names, as they lie in the file."""
     assert surface.file is not None
     with spelled(in_case("surface", _MAP_KEYS)):
         read = read_surfaces if surface.index is None else partial(read_surface, index=surface.index)
@@ -48,24 +32,9 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
 
 
 def read_lines(section: MeasuredLine, name: str) -> HeightMap | Profile:
-    """Read the measured line, or lines side by side, that a section names.
+    """Read the measured line, or lines side by side, that a section of a name has.
 
-    Parameters
-    ----------
-    section : MeasuredLine
-        A section of a case, with a line.
-    name : str
-        Its name, for messages.
-
-    Returns
-    -------
-    HeightMap or Profile
-        Lines side by side are a map; the distance across is not known to it.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
+    Lines side by side are a map; the distance across is not known to it.
     """
     assert section.line is not None
     with spelled(in_case(name, _LINE_KEYS)):

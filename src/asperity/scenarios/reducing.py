@@ -80,19 +80,9 @@ class Reduction:
 
 
 def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
-    """Height of the plane that the nominal patch feels at each row of a path, m.
+    """Height (rows,) of the plane that the nominal patch feels at each row of a path, m, peaks positive.
 
-    Parameters
-    ----------
-    path : Strip, shape (rows, ny)
-        Texture of the path, m.
-    shape : Geometry
-        Its patch under the working load is the weight.
-
-    Returns
-    -------
-    ndarray, shape (rows,)
-        Mean height under the patch centred on each row, m, peaks positive.
+    The mean under the patch of the geometry's working load, centred on each row.
     """
     return -areal_texture(path, shape.spacing, [0.0], [shape.semi_axes]).heights[0]
 
@@ -183,23 +173,10 @@ def reduce(
 def refuse_low_states(
     approaches: NDArray[np.float64], highest: NDArray[np.float64], shape: Geometry, working_approach: float
 ) -> None:
-    """Refuse states that do not reach the working load, or of which only one is in contact.
+    """Refuse states (k,), m, that do not reach the working load, or of which only one is in contact.
 
-    Parameters
-    ----------
-    approaches : ndarray, shape (k,)
-        States, m.
-    highest : ndarray, shape (2,) or more
-        Mean force of the samples in the last states, N.
-    shape : Geometry
-        With the working load.
-    working_approach : float
-        Approach of a sample under it, m.
-
-    Raises
-    ------
-    InputError
-        If they are such.
+    `highest` are the mean forces of the samples in the last states, two or more, N; the working approach, m,
+    is that of a sample under the load.
     """
     reached = f"up to {approaches[-1] * 1e6:.4g} um, where the samples carry {highest[-1]:.3g} N"
     if highest[-1] < shape.load:

@@ -99,20 +99,7 @@ def _sized(
 
 
 def problem_of_disk(expected: Expected, root: Path) -> Iterator[InputError]:
-    """Find out whether the disk holds a scan.
-
-    Parameters
-    ----------
-    expected : Expected
-        The scan.
-    root : Path
-        Folder of the cache.
-
-    Yields
-    ------
-    InputError
-        If the disk has less room, and memory is not to hold it either.
-    """
+    """Find out whether the disk of the cache has room for a scan, or memory is to hold it."""
     free = free_space(root)
     if free < expected.bytes > MOST_HELD:
         yield InputError(

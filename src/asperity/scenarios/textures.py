@@ -31,50 +31,26 @@ FORM_DEGREE = {"plane": 1, "quadratic": 2}
 
 @dataclass(frozen=True, eq=False)
 class Textures:
-    """Everything rough in a case, on the grid of the contact solution.
+    """Everything rough in a case, on the grid of the contact solution."""
 
-    Attributes
-    ----------
-    maps : tuple of HeightMap
-        Samples for the stiffness; empty where only a line is given.
-    strips : tuple of HeightMap, shape (n, ny)
-        Strips for the filters, as wide as the window.
-    path : Strip or None, shape (rows, ny)
-        Texture of the path with its neighbourhood; None where the path is a line.
-    line : ndarray, shape (rows,)
-        Line texture of the path, m, peaks positive.
-    start : float
-        Position of the first row, m.
-    before, beyond : int
-        Rows of the path before the place where the record starts, and beyond its end.
-    missing_share : float
-        Share of points without a height in the measured file.
-    origin : str
-        Where samples and path come from, in one sentence.
-    parts : dict
-        Line textures that `line` is the sum of, by the body that bears them, m.
-    defects, trajectory : ndarray, shape (rows,), or None
-        Heights of defects along the path, and of the rolling body's centre over them, m; neither in
-        `line` nor in `path`.
-    areal : bool
-        Whether heights beside the line are a texture of their own, not carried over from lines.
-    lines : dict
-        Measured lines that a texture is interpolated between, by the body that bears them, m.
-    """
-
-    maps: tuple[HeightMap, ...]
-    strips: tuple[HeightMap, ...]
+    maps: tuple[HeightMap, ...]  # samples for the stiffness; empty where only a line is given
+    strips: tuple[HeightMap, ...]  # (n, ny) each, for the filters, as wide as the window
+    # (rows, ny), texture of the path with its neighbourhood; None where the path is a line
     path: Strip | None
-    line: NDArray[np.float64]
-    start: float
-    before: int
-    beyond: int
-    missing_share: float
-    origin: str
+    line: NDArray[np.float64]  # (rows,), texture of the path, m, peaks positive
+    start: float  # position of the first row, m
+    before: int  # rows of the path before the place where the record starts
+    beyond: int  # rows beyond its end
+    missing_share: float  # of points without a height in the measured file
+    origin: str  # where samples and path come from, in one sentence
+    # line textures that `line` is the sum of, by the body that bears them, m
     parts: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    # (rows,), heights of defects along the path, m; neither in `line` nor in `path`
     defects: NDArray[np.float64] | None = None
-    trajectory: NDArray[np.float64] | None = None
+    trajectory: NDArray[np.float64] | None = None  # (rows,), height of the rolling body's centre over them, m
+    # whether heights beside the line are a texture of their own, not carried over from lines
     areal: bool = True
+    # measured ones that a texture is interpolated between, by the body that bears them, m
     lines: dict[str, tuple[Profile, ...]] = field(default_factory=dict)
 
     @property
@@ -103,26 +79,9 @@ class Textures:
 
 
 def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:
-    """Read the maps of a case's file, levelled and on the contact grid.
+    """Read the maps of a case's file, complete, levelled and on the contact grid of a spacing, m.
 
-    Parameters
-    ----------
-    surface : Surface
-        The surface section of the case, with a file.
-    spacing : float
-        Of the contact grid, m.
-
-    Returns
-    -------
-    maps : tuple of HeightMap
-        Complete maps.
-    missing_share : float
-        Share of points that had no height in the file.
-
-    Raises
-    ------
-    InputError
-        If the file holds a line, or points are missing and are not to be filled.
+    With the share of points that had no height in the file.
     """
     found = read_maps(surface)
     result, degree = [], FORM_DEGREE[surface.form]
@@ -148,18 +107,7 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
 
 
 def strip_rows(contact: ContactCase) -> int:
-    """Rows of a strip for the filters.
-
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of a case.
-
-    Returns
-    -------
-    int
-        Rows of the contact grid.
-    """
+    """Rows of the contact grid in a strip for the filters."""
     wanted = contact.sample_length
     return STRIP_WINDOWS * window_cells(contact) if wanted is None else math.ceil(wanted / contact.spacing)
 
@@ -167,23 +115,9 @@ def strip_rows(contact: ContactCase) -> int:
 def strips_of(
     maps: tuple[HeightMap, ...], contact: ContactCase, seeds: list[int]
 ) -> tuple[tuple[HeightMap, ...], str]:
-    """Take strips for the filters from maps.
+    """Take strips for the filters from measured maps, one for each seed, and say how.
 
-    Parameters
-    ----------
-    maps : tuple of HeightMap
-        From `measured_maps`.
-    contact : ContactCase
-        The contact section of the case.
-    seeds : list of int
-        One a strip.
-
-    Returns
-    -------
-    strips : tuple of HeightMap
-        Cut from the maps where these are long enough, else synthesised in their likeness.
-    origin : str
-        Which of the two.
+    Cut from the maps where these are long enough, else synthesised in their likeness.
     """
     rows, ny = strip_rows(contact), window_cells(contact)
     longest = min(m.shape[0] for m in maps)
@@ -204,26 +138,10 @@ def strips_of(
 def path_of(
     maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int, run_in: int = 0
 ) -> tuple[Strip, str]:
-    """Take the path from maps.
+    """Take the path (rows, ny) from measured maps, and say how.
 
-    Parameters
-    ----------
-    maps : tuple of HeightMap
-        From `measured_maps`.
-    shape : tuple of int
-        (rows, ny) of the path.
-    seed : int
-        Of the synthesis.
-    run_in : int
-        Rows at the start that a map need not hold: they are mirrored where it is too short.
-
-    Returns
-    -------
-    path : Strip
-        Cut from the first map where it is large enough, else synthesised in their likeness, in pieces
-        where it is long.
-    origin : str
-        Which of the two.
+    Cut from the first map where it is large enough, but for the run-in, whose rows are mirrored where it is
+    too short; else synthesised in their likeness, in pieces where it is long.
     """
     first = maps[0]
     if first.shape[0] >= shape[0] - run_in and first.shape[1] >= shape[1]:
@@ -239,19 +157,9 @@ def path_of(
 
 
 def mirrored_before(heights: NDArray[np.float64], rows: int) -> NDArray[np.float64]:
-    """Put the mirror image of a texture before it, for a run-in over what was not measured.
+    """Put the mirror image of a texture (n, ...) before it, for a run-in over what was not measured.
 
-    Parameters
-    ----------
-    heights : ndarray, shape (n, ...)
-        Heights along the path, m.
-    rows : int
-        Points along the path that are wanted.
-
-    Returns
-    -------
-    ndarray, shape (rows, ...)
-        The texture at the end, mirrored at its first point as often as it takes.
+    The texture is at the end of the (rows, ...), mirrored at its first point as often as it takes.
     """
     before = [(max(rows - len(heights), 0), 0), *((0, 0) for _ in heights.shape[1:])]
     return np.pad(heights, before, mode="reflect")
@@ -263,18 +171,7 @@ def mirrored_words(heights: NDArray[np.float64], rows: int) -> str:
 
 
 def middle_line(strip: Strip) -> NDArray[np.float64]:
-    """Take the line in the middle of a strip.
-
-    Parameters
-    ----------
-    strip : Strip, shape (rows, ny)
-        Any strip.
-
-    Returns
-    -------
-    ndarray, shape (rows,)
-        Heights, m.
-    """
+    """Take the line (rows,) in the middle of a strip, m."""
     rows, ny = strip.shape
     piece = max(1, HELD_POINTS // ny)
     lines = [strip.rows(i, min(i + piece, rows))[:, ny // 2].copy() for i in range(0, rows, piece)]
@@ -282,40 +179,12 @@ def middle_line(strip: Strip) -> NDArray[np.float64]:
 
 
 def synthesised(surface: Surface, spacing: float, shape: tuple[int, int], seed: int) -> HeightMap:
-    """Synthesise a self-affine texture.
-
-    Parameters
-    ----------
-    surface : Surface
-        The surface section of a case, with an rms height.
-    spacing : float
-        Of the contact grid, m.
-    shape : tuple of int
-        (rows, ny).
-    seed : int
-        Of the synthesis.
-
-    Returns
-    -------
-    HeightMap
-        Gaussian texture.
-    """
+    """Synthesise a self-affine, Gaussian texture (rows, ny) on a spacing, m."""
     return self_affine(shape, (spacing, spacing), **_self_affine_keys(surface), seed=seed)
 
 
 def synthesised_path(surface: Surface, spacing: float, shape: tuple[int, int], seed: int) -> Strip:
-    """Synthesise a self-affine path, in pieces where it is long.
-
-    Parameters
-    ----------
-    surface, spacing, shape, seed
-        As in `synthesised`.
-
-    Returns
-    -------
-    Strip
-        Gaussian texture.
-    """
+    """Synthesise a self-affine path as `synthesised` does, in pieces where it is long."""
     if shape[0] * shape[1] <= HELD_POINTS:
         return synthesised(surface, spacing, shape, seed)
     return long_self_affine(shape, (spacing, spacing), **_self_affine_keys(surface), seed=seed)

@@ -182,19 +182,9 @@ def loss_variables(chain: Chain[Any]) -> dict[str, xarray.Variable]:
 
 
 def spectrum_segment(samples: int, step: float) -> int:
-    """Length of the segments that spectra are averaged over.
+    """Length of the segments that spectra are averaged over, in time steps.
 
-    Parameters
-    ----------
-    samples : int
-        Length of the record.
-    step : float
-        Time step, s.
-
-    Returns
-    -------
-    int
-        Time steps: a quarter of the record within `SEGMENT`, so that windows leave most of it.
+    A quarter of the record within `SEGMENT`, so that windows leave most of it.
     """
     shortest, longest = (round(length / step) for length in SEGMENT)
     return min(max(samples // 4, shortest), longest, samples)

@@ -48,35 +48,17 @@ STEPS = 400
 
 @dataclass(frozen=True, eq=False)
 class ContactTrial:
-    """Times of contact solutions and of what surrounds them, on one core.
+    """Times of contact solutions and of what surrounds them, on one core, s."""
 
-    Attributes
-    ----------
-    approaches : ndarray, shape (k,)
-        States much as the run will choose them, m.
-    loaded : int
-        States that have a filter.
-    load : float
-        Time of finding the working approach and the highest state of a sample, s.
-    curve : float
-        Time of a loading curve, s.
-    filters, path : float
-        Time of a position of the scans, all states together, s; zero where there is no such scan.
-    direct : float
-        Time of a solution from its neighbour's pressure, s.
-    touch, average : float
-        Time of a row in finding first touches, and in averaging under one patch, s.
-    """
-
-    approaches: NDArray[np.float64]
-    loaded: int
-    load: float
-    curve: float
-    filters: float
-    path: float
-    direct: float
-    touch: float
-    average: float
+    approaches: NDArray[np.float64]  # (k,), states much as the run will choose them, m
+    loaded: int  # states that have a filter
+    load: float  # finding the working approach and the highest state of a sample
+    curve: float  # a loading curve
+    filters: float  # a position of the scan, all states together; zero where there is no such scan
+    path: float  # likewise
+    direct: float  # a solution from its neighbour's pressure
+    touch: float  # a row in finding first touches
+    average: float  # a row in averaging under one patch
 
 
 def timed(task: Callable[[], T]) -> tuple[T, float]:

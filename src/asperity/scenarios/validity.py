@@ -30,30 +30,16 @@ CELLS_PER_WAVE = 4
 
 @dataclass(frozen=True)
 class Finding:
-    """One quantity, how far it may go, and what to make of it.
+    """One quantity, how far it may go, and what to make of it."""
 
-    Attributes
-    ----------
-    quantity, value, limit : str
-        What was found, its number, and where its range ends.
-    grade : Grade or None
-        None where it is inside its range.
-    meaning, remedy : str
-        What it means to be outside, and what to do.
-    brief : str
-        Quantity and number in a few words, for a headline.
-    laws : tuple of str
-        Laws of the case that it concerns.
-    """
-
-    quantity: str
-    value: str
-    limit: str
-    grade: Grade | None
-    meaning: str
-    remedy: str
-    brief: str
-    laws: tuple[str, ...]
+    quantity: str  # what was found
+    value: str  # its number
+    limit: str  # where its range ends
+    grade: Grade | None  # None where it is inside its range
+    meaning: str  # of being outside
+    remedy: str  # what to do
+    brief: str  # quantity and number in a few words, for a headline
+    laws: tuple[str, ...]  # of the case that it concerns
 
     def concerns(self, law: str) -> bool:
         """Whether it makes a law doubtful."""
@@ -66,31 +52,14 @@ class Finding:
 
 
 def findings(chain: Chain[Any]) -> list[Finding]:
-    """Hold a case to the range in which its laws are known to hold.
-
-    Parameters
-    ----------
-    chain : Chain
-        What was computed.
-
-    Returns
-    -------
-    list of Finding
-        Every quantity, inside its range or not; none without samples.
-    """
+    """Hold a case to the range in which its laws are known to hold; nothing is found without samples."""
     return (
         [] if chain.reduction is None else [_area(chain), _slope(chain), _isolated(chain), *_cut_off(chain)]
     )
 
 
 def warn_of(found: list[Finding]) -> None:
-    """Warn of what is outside its range; cut-off contacts have been warned of where they were solved.
-
-    Parameters
-    ----------
-    found : list of Finding
-        From `findings`.
-    """
+    """Warn of what is outside its range; cut-off contacts have been warned of where they were solved."""
     for finding in found:
         if finding.grade is not None and not finding.quantity.startswith(_CUT_OFF):
             warnings.warn(OutOfRangeWarning(finding.message, finding.grade), stacklevel=2)

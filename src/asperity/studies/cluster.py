@@ -22,25 +22,9 @@ GOODBYE = 5.0
 
 @contextmanager
 def cluster(address: str) -> Iterator[Executor]:
-    """Connect to a Dask cluster.
+    """Connect to a Dask cluster by the address of its scheduler, as ``"tcp://node7:8786"``.
 
-    Parameters
-    ----------
-    address : str
-        Of its scheduler, as ``"tcp://node7:8786"``.
-
-    Yields
-    ------
-    concurrent.futures.Executor
-        Computes on the workers of the cluster. The scheduler itself repeats what a lost worker had.
-
-    Raises
-    ------
-    InputError
-        If the package distributed is not there, or no scheduler answers.
-
-    Notes
-    -----
+    The executor computes on the workers of the cluster; the scheduler itself repeats what a lost worker had.
     A process computes one member at a time, whatever the number of its threads: start workers of one thread
     each, ``dask worker --nworkers -1 --nthreads 1``, with ``ASPERITY_THREADS=1`` in their environment.
     """
@@ -65,14 +49,9 @@ def cluster(address: str) -> Iterator[Executor]:
 
 
 class Heart:
-    """Whether the scheduler behind an executor still answers; of other executors nothing is asked.
+    """Whether the scheduler behind an executor of Dask still answers; of other executors nothing is asked.
 
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor
-        Any; of Dask, what a client's ``get_executor`` returns.
-    members : int
-        How many members it was given, for the message; `finished` of them have ended.
+    Of `members` that it was given `finished` have ended, for the message.
     """
 
     def __init__(self, executor: Executor, members: int) -> None:
@@ -81,18 +60,7 @@ class Heart:
         self.members, self.finished = members, 0
 
     def listen(self) -> bool:
-        """Ask the scheduler for a sign.
-
-        Returns
-        -------
-        bool
-            Whether it gave one.
-
-        Raises
-        ------
-        ComputationError
-            If it has given none for long.
-        """
+        """Ask the scheduler for a sign; return whether it gave one, and fail if it gave none for long."""
         if not hasattr(self._client, "scheduler"):
             return True
         try:

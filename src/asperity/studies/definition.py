@@ -44,21 +44,11 @@ seed = [1, 2, 3]
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """A key and its values.
+    """A key and its values."""
 
-    Attributes
-    ----------
-    entry : Entry
-        The key.
-    written : tuple
-        Values as they stand in TOML.
-    values : tuple
-        The same in SI.
-    """
-
-    entry: Entry
-    written: tuple[Any, ...]
-    values: tuple[Any, ...]
+    entry: Entry  # the key
+    written: tuple[Any, ...]  # as they stand in TOML
+    values: tuple[Any, ...]  # the same in SI
 
     @property
     def name(self) -> str:
@@ -80,27 +70,13 @@ class Axis:
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """One case of a study.
+    """One case of a study."""
 
-    Attributes
-    ----------
-    index : tuple of int
-        Its place on the axes.
-    values : dict
-        The swept keys with their values as they stand in TOML.
-    case : Case or None
-        The case; None if its values do not fit together.
-    error : CaseError or None
-        Why there is no case.
-    key : str
-        Names its result by everything the result depends on.
-    """
-
-    index: tuple[int, ...]
-    values: dict[str, Any]
-    case: Case | None
-    error: CaseError | None
-    key: str
+    index: tuple[int, ...]  # its place on the axes
+    values: dict[str, Any]  # the swept keys with their values as they stand in TOML
+    case: Case | None  # None if its values do not fit together
+    error: CaseError | None  # why there is no case
+    key: str  # names its result by everything the result depends on
 
     @property
     def label(self) -> str:
@@ -110,24 +86,12 @@ class Member:
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A case, and lists of values for some of its keys.
+    """A case, and lists of values for some of its keys."""
 
-    Attributes
-    ----------
-    data : dict
-        Keys and values of the case, as TOML gives them.
-    text : str
-        Its TOML text.
-    source : str
-        Its file, from whose folder relative paths start.
-    axes : tuple of Axis
-        The keys that are swept.
-    """
-
-    data: dict[str, Any]
-    text: str
-    source: str
-    axes: tuple[Axis, ...]
+    data: dict[str, Any]  # keys and values of the case, as TOML gives them
+    text: str  # TOML of the case
+    source: str  # its file, from whose folder relative paths start
+    axes: tuple[Axis, ...]  # the keys that are swept
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -140,18 +104,7 @@ class Study:
         return {axis.name: list(axis.written) for axis in self.axes}
 
     def members(self) -> list[Member]:
-        """List all cases.
-
-        Returns
-        -------
-        list of Member
-            The last key varies fastest.
-
-        Raises
-        ------
-        CaseError
-            If no member is a valid case.
-        """
+        """List all cases; the last key varies fastest. A `CaseError` says that none is valid."""
         digests: dict[Path, str] = {}
         found = [self._member(index, digests) for index in np.ndindex(self.shape)]
         errors = [member.error for member in found if member.error is not None]
@@ -171,24 +124,9 @@ class Study:
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study from a TOML file.
+    """Read a study, with all its values, from a TOML file: ``case``, a path or a section, and ``[sweep]``.
 
-    Parameters
-    ----------
-    path : path
-        The study: ``case``, the path of a case or a section with its keys, and a section ``[sweep]``.
-
-    Returns
-    -------
-    Study
-        The study, with all its values read.
-
-    Raises
-    ------
-    InputError
-        If a file is missing or no TOML.
-    CaseError
-        With all errors at once, if keys or values are wrong.
+    All errors of keys and values are reported at once.
     """
     remedy = "Check the path, or write a study with 'asperity new study > study.toml'."
     data = read_toml(read_text(path, "study", remedy), "study", path)

@@ -41,24 +41,9 @@ BEAT = 5.0
 
 
 def through(executor: Executor, members: Sequence[Member]) -> Outcomes:
-    """Compute members through any executor.
+    """Compute members through any executor; yield each once, as they end, as `compute_member` returned it.
 
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor
-        Where; a member whose worker is lost goes to another one.
-    members : sequence of Member
-        The members.
-
-    Yields
-    ------
-    Member, dict or Failure
-        Each member once, in the order in which they end, with what `compute_member` returned.
-
-    Raises
-    ------
-    ComputationError
-        If the executor takes no more members, or no longer answers.
+    A member whose worker is lost goes to another one.
     """
     lost: dict[Member, Exception] = dict.fromkeys(members, Exception())
     heart = Heart(executor, len(members))
@@ -106,20 +91,10 @@ def _submitted(executor: Executor, member: Member) -> Future[Outcome]:
 
 
 def locally(members: Sequence[Member], workers: int | None = None) -> Outcomes:
-    """Compute members in processes of this machine.
+    """Compute members in processes of this machine; yield each once, in the order in which they end.
 
-    Parameters
-    ----------
-    members : sequence of Member
-        The members.
-    workers : int, optional
-        Number of processes; one per processor by default.
-
-    Yields
-    ------
-    Member, dict or Failure
-        Each member once, in the order in which they end. A member that ends its process, as one that needs
-        too much memory does, fails alone: those that were computed beside it are computed again.
+    One process per processor by default. A member that ends its process, as one that needs too much memory
+    does, fails alone: those that were computed beside it are computed again.
     """
     waiting = deque(members)
     while waiting:

@@ -31,17 +31,9 @@ PLACES = ("sensor", "point")
 
 
 def kept(tree: xarray.DataTree) -> xarray.Dataset:
-    """Choose what a study keeps of a result.
+    """Choose what a study keeps of a result: quantities by law, and by band where they have bands.
 
-    Parameters
-    ----------
-    tree : xarray.DataTree
-        Result of a member.
-
-    Returns
-    -------
-    xarray.Dataset
-        Quantities by law, and by band where they have bands. Attributes: citations and warnings.
+    With citations and warnings as attributes.
     """
     found = {name: tree[group][name] for name, group in KEPT.items() if name in tree[group]}
     force = tree["rolling"].to_dataset()["contact_force"]
@@ -72,18 +64,7 @@ def _numbered(table: xarray.Dataset, place: str) -> xarray.Dataset:
 
 
 def packed(table: xarray.Dataset) -> dict[str, NDArray[Any]]:
-    """Lay out a table as plain arrays, as a store keeps them.
-
-    Parameters
-    ----------
-    table : xarray.Dataset
-        From `kept`.
-
-    Returns
-    -------
-    dict of str to ndarray
-        The variables by name, and a description of them as JSON.
-    """
+    """Lay out a table from `kept` as a store keeps it: plain arrays, and their description as JSON."""
     layout = {
         str(name): {"dims": values.dims, "attrs": values.attrs} for name, values in table.variables.items()
     }
@@ -93,17 +74,7 @@ def packed(table: xarray.Dataset) -> dict[str, NDArray[Any]]:
 
 
 def unpacked(arrays: Mapping[str, NDArray[Any]]) -> xarray.Dataset:
-    """Make the table that `packed` laid out.
-
-    Parameters
-    ----------
-    arrays : mapping of str to ndarray
-        From `packed`.
-
-    Returns
-    -------
-    xarray.Dataset
-    """
+    """Make the table that `packed` laid out."""
     description = json.loads(str(arrays["__description__"]))
     return xarray.Dataset(
         {

@@ -17,18 +17,10 @@ _one_at_a_time = threading.Lock()
 
 @dataclass(frozen=True)
 class Failure:
-    """Why a member has no result.
+    """Why a member has no result."""
 
-    Attributes
-    ----------
-    error : str
-        Kind of error.
-    message : str
-        What failed, and what to try.
-    """
-
-    error: str
-    message: str
+    error: str  # kind of error
+    message: str  # what failed, and what to try
 
     @classmethod
     def of(cls, error: BaseException) -> Failure:
@@ -40,21 +32,9 @@ class Failure:
 
 
 def compute_member(key: str, data: dict[str, Any], source: str) -> dict[str, NDArray[Any]] | Failure:
-    """Compute a member, or take what an earlier study has kept of it.
+    """Compute a member, or take what an earlier study has kept of it under its key, `packed`.
 
-    Parameters
-    ----------
-    key : str
-        Names its result in the store.
-    data : dict
-        Keys and values of its case, as TOML gives them.
-    source : str
-        File from whose folder relative paths start.
-
-    Returns
-    -------
-    dict of str to ndarray, or Failure
-        What `asperity.studies.kept.packed` makes of its result; a failure where there is none.
+    Relative paths in the keys and values of its case start at the folder of `source`.
     """
     from asperity.kinds.cases import case_of
     from asperity.running import run

@@ -23,22 +23,10 @@ def tabulated(
     results: Mapping[tuple[int, ...], xarray.Dataset],
     failures: Mapping[tuple[int, ...], Failure],
 ) -> xarray.Dataset:
-    """Put the members of a study together.
+    """Put results and failures of the members of a study together, by their places on the axes.
 
-    Parameters
-    ----------
-    study : Study
-        What was swept.
-    members : sequence of Member
-        Its members.
-    results, failures : mapping of tuple of int
-        What became of each member, by its place on the axes.
-
-    Returns
-    -------
-    xarray.Dataset
-        The swept keys as first dimensions of every variable; NaN where a member failed or has no such
-        value. Attributes: version, case, swept values, citations, warnings and failures.
+    The swept keys are the first dimensions of every variable; NaN where a member failed or has no such value.
+    Attributes: version, case, swept values, citations, warnings and failures.
     """
     swept = [axis.name for axis in study.axes]
     ordered = [(member.index, results[member.index]) for member in members if member.index in results]

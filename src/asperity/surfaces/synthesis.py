@@ -22,6 +22,8 @@ PIECE_REACHES = 16
 """Length of a piece of a long strip in correlation lengths, at least."""
 BLEND_REACHES = 2
 """Length of the blend of two pieces in correlation lengths."""
+LARGEST_MAP = 2**27
+"""Points of a map that is made for its longest wavelength: 1 GiB, and three times that while it is made."""
 
 
 def self_affine(
@@ -56,6 +58,10 @@ def self_affine(
         fft.next_fast_len(int(np.ceil(max(n + r / d, 2.0 * r / d))), real=True)
         for n, r, d in zip(shape, reach, steps, strict=True)
     ]
+    if grid[0] * grid[1] > max(LARGEST_MAP, 4 * shape[0] * shape[1]):
+        received = f"{longest:.4g} m at {steps[0]:.4g} m, which take a map of {grid[0]} x {grid[1]} points"
+        remedy = "Shorten it, coarsen the spacing, or bring the anisotropy nearer to 1."
+        raise InputError("longest", received, f"at most {LARGEST_MAP} points", remedy)
     qx = 2.0 * np.pi * fft.fftfreq(grid[0], steps[0])[:, None]
     qy = 2.0 * np.pi * fft.rfftfreq(grid[1], steps[1])[None, :]
     scaled = np.maximum((qx * stretch) ** 2 + (qy / stretch) ** 2, (2.0 * np.pi / longest) ** 2)

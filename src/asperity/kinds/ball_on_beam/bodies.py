@@ -14,36 +14,14 @@ MODES_BEYOND = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """What is rolled in a case.
-
-    Attributes
-    ----------
-    ball, beam
-        The bodies.
-    """
+    """What is rolled in a case."""
 
     ball: Ball
     beam: Beam
 
 
 def bodies_of(case: BallOnBeam) -> Bodies:
-    """Build the bodies of a case.
-
-    Parameters
-    ----------
-    case : BallOnBeam
-        The case.
-
-    Returns
-    -------
-    Bodies
-        Ball and beam.
-
-    Raises
-    ------
-    InputError
-        If the beam has no natural frequency in the range.
-    """
+    """Build ball and beam of a case; a beam without natural frequency in the range is refused."""
     beam = Beam.rectangular(
         case.beam.length,
         case.beam.width,

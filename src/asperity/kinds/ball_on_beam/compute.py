@@ -23,20 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Computed:
-    """Everything that was computed for a case, before it is laid out as a result.
-
-    Attributes
-    ----------
-    case : BallOnBeam
-        The case.
-    chain : Chain
-        Textures, state functions, laws and runs.
-    ball, beam
-        What was rolled.
-    """
+    """Everything that was computed for a case, before it is laid out as a result."""
 
     case: BallOnBeam
-    chain: Chain[Rolling]
+    chain: Chain[Rolling]  # textures, state functions, laws and runs
     ball: Ball
     beam: Beam
 

@@ -20,35 +20,17 @@ from asperity.kernels.modal import (
 class EnergyBalance:
     """Energies gained and work done since the start, J.
 
-    The work of the load equals the sum of the others, up to what the time step leaves open: the
-    integrals are taken by the trapezoidal rule from the recorded motion, the energies from the
-    state at the end.
-
-    Parameters
-    ----------
-    load : float
-        Work of the load on the ball.
-    ball : float
-        Kinetic energy gained by the ball.
-    beam : float
-        Kinetic and bending energy gained by the beam.
-    beam_damping : float
-        Dissipated in the beam.
-    contact : float
-        Work on the contact: stored, damped, less what the texture feeds in.
-    slope : float
-        Work against the slope of the deflected beam, given up to the drive that keeps the speed.
-    throughput : float
-        Time integral of the moduli of the powers at ball and beam.
+    The work of the load equals the sum of the others, up to what the time step leaves open: the integrals are
+    taken by the trapezoidal rule from the recorded motion, the energies from the state at the end.
     """
 
-    load: float
-    ball: float
-    beam: float
-    beam_damping: float
-    contact: float
-    slope: float
-    throughput: float
+    load: float  # work of the load on the ball
+    ball: float  # kinetic energy gained by the ball
+    beam: float  # kinetic and bending energy gained by the beam
+    beam_damping: float  # dissipated in the beam
+    contact: float  # work on the contact: stored, damped, less what the texture feeds in
+    slope: float  # work against the slope of the deflected beam, given up to the drive that keeps the speed
+    throughput: float  # time integral of the moduli of the powers at ball and beam
 
     @property
     def residual(self) -> float:
@@ -57,13 +39,7 @@ class EnergyBalance:
         return abs(left) / self.throughput if self.throughput > 0.0 else 0.0
 
     def terms(self) -> dict[str, float]:
-        """The terms by their names in results, J.
-
-        Returns
-        -------
-        dict of str to float
-            The first equals the sum of the others within the residual.
-        """
+        """The terms by their names in results, J; the first equals the sum of the others."""
         return {
             "work of the load": self.load,
             "ball kinetic": self.ball,
@@ -75,20 +51,7 @@ class EnergyBalance:
 
 
 def beam_energy(system: System, motion: BeamMotion) -> float:
-    """Kinetic and bending energy of the beam.
-
-    Parameters
-    ----------
-    system : System
-        Constants.
-    motion : BeamMotion
-        State.
-
-    Returns
-    -------
-    float
-        J.
-    """
+    """Kinetic and bending energy of the beam, J."""
     return 0.5 * float(np.sum(motion.velocity**2 + system.stiffness * motion.displacement**2))
 
 

@@ -184,11 +184,13 @@ def roll(
     beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])
     stepper = BeamStepper(system, motion, record, beam, positions)
     restore(checkpoint, stepper, prepared)
-    run(stepper, prepared, law.damping, largest_force(ball.static_load, strongest), progress, checkpoint)
+    try:
+        run(stepper, prepared, law.damping, largest_force(ball.static_load, strongest), progress, checkpoint)
+    finally:  # why a motion may have run away
+        _warn_if_bent(record.beam, beam)
     seen = record.approach - system.softening * record.force
     apart = flying(prepared, record.force, seen)[settled:]
     warn_after(law.name, motion.counts, prepared, seen)
-    _warn_if_bent(record.beam, beam)
     return Rolling(
         time=time_step * np.arange(len(positions) - settled),
         position=positions[settled:],

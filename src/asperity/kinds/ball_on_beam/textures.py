@@ -33,52 +33,17 @@ from asperity.surfaces.synthesis import from_bands
 
 
 def textures_of(case: BallOnBeam) -> Textures:
-    """Gather the textures of a case.
-
-    Parameters
-    ----------
-    case : BallOnBeam
-        The case.
-
-    Returns
-    -------
-    Textures
-        With a window before and beyond the path.
-    """
+    """Gather the textures of a case, with a window before and beyond the path."""
     return gather(case, window_cells(case.contact))
 
 
 def warn_of(case: BallOnBeam, shape: Geometry, textures: Textures) -> None:
-    """Warn of what is doubtful before anything is computed.
-
-    Parameters
-    ----------
-    case, shape, textures
-        The case, its geometry and its textures.
-    """
+    """Warn of what is doubtful before anything is computed."""
     warn_of_start(case, "shorten the duration or start farther along the beam")
 
 
 def gather(case: BallOnBeam, margin: int) -> Textures:
-    """Read or synthesise all textures of a case.
-
-    Parameters
-    ----------
-    case : BallOnBeam
-        The case.
-    margin : int
-        Rows needed before the start of the path and beyond its end.
-
-    Returns
-    -------
-    Textures
-        Samples, strips and path.
-
-    Raises
-    ------
-    InputError
-        If a file does not hold what the case needs of it.
-    """
+    """Read or synthesise all textures of a case, with `margin` rows before the path and beyond its end."""
     seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
     ny, spacing = window_cells(case.contact), case.contact.spacing
     lead = math.ceil(case.settled_time * case.speed / spacing)

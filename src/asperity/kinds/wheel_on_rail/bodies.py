@@ -12,52 +12,19 @@ from asperity.structures.wheel import Wheel
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """What is rolled in a case.
-
-    Attributes
-    ----------
-    wheel, track
-        The bodies.
-    """
+    """What is rolled in a case."""
 
     wheel: Wheel
     track: Track
 
 
 def bodies_of(case: WheelOnRail) -> Bodies:
-    """Build the bodies of a case.
-
-    Parameters
-    ----------
-    case : WheelOnRail
-        The case.
-
-    Returns
-    -------
-    Bodies
-        Wheel and track.
-
-    Raises
-    ------
-    InputError
-        If the wheel's receptance is none.
-    """
+    """Build wheel and track of a case."""
     return Bodies(wheel_of(case), case.track_model())
 
 
 def wheel_of(case: WheelOnRail) -> Wheel:
-    """Build the wheel of a case.
-
-    Parameters
-    ----------
-    case : WheelOnRail
-        The case.
-
-    Returns
-    -------
-    Wheel
-        Rigid, or with the modes or the receptance that the case names.
-    """
+    """Build the wheel of a case: rigid, or with the modes or the receptance that the case names."""
     section = case.wheel
     if section.modes is not None:
         return Wheel.from_modes(section.mass, section.load, *read_modes(section.modes))

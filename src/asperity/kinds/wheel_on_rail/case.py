@@ -108,25 +108,13 @@ class WheelOnRail(Case):
         return sleeper, sleeper + bay / 2
 
     def track_model(self) -> Track:
-        """Build the track of this case.
-
-        Returns
-        -------
-        Track
-            The named set with the case's own keys in it.
-        """
+        """Build the track of this case: the named set with the case's own keys in it."""
         from asperity.structures.track import Track
 
         return Track.named(self.track.name, **self.track.overrides)
 
     def parameters(self) -> list[dict[str, Any]]:
-        """List the keys that matter in this case, for people, with the values of the named track.
-
-        Returns
-        -------
-        list of dict
-            As `Case.parameters`.
-        """
+        """List the keys that matter, as `Case.parameters`, with the values of the named track."""
         track, own = self.track_model(), self.track.overrides
         listed = []
         for item in super().parameters():

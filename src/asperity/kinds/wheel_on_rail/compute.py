@@ -34,30 +34,15 @@ POLES = 100
 
 @dataclass(frozen=True, eq=False)
 class Computed:
-    """Everything that was computed for a case, before it is laid out as a result.
-
-    Attributes
-    ----------
-    case : WheelOnRail
-        The case.
-    chain : Chain
-        Textures, state functions, laws and runs.
-    wheel, track
-        What was rolled.
-    kernel : MovingKernel
-        Response of the rail under the moving contact.
-    rail : RailPoles or MovingKernel
-        How it was carried on in time.
-    points : tuple of ndarray (laws, points, n)
-        Displacement, m, and velocity, m/s, of the passed points.
-    """
+    """Everything that was computed for a case, before it is laid out as a result."""
 
     case: WheelOnRail
-    chain: Chain[WheelRolling]
+    chain: Chain[WheelRolling]  # textures, state functions, laws and runs
     wheel: Wheel
     track: Track
-    kernel: MovingKernel
-    rail: RailPoles | MovingKernel
+    kernel: MovingKernel  # response of the rail under the moving contact
+    rail: RailPoles | MovingKernel  # how it was carried on in time
+    # (laws, points, n), displacement, m, and velocity, m/s, of the passed points
     points: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 

@@ -17,21 +17,9 @@ NEED_GEOMETRY = ("table", "direct")
 
 
 def corrugated(case: WheelOnRail, rows: int, seed: int) -> NDArray[np.float64]:
-    """Corrugation of the rail along the path.
+    """Corrugation of the rail along the path: heights (rows,), m, the same all across; zero without one.
 
-    Parameters
-    ----------
-    case : WheelOnRail
-        The case.
-    rows : int
-        Points along the path.
-    seed : int
-        Of a corrugation with a bandwidth.
-
-    Returns
-    -------
-    ndarray, shape (rows,)
-        Heights, m, the same all across; zero without a corrugation.
+    The seed is that of a corrugation with a bandwidth.
     """
     surface = case.surface
     if surface.corrugation is None or surface.corrugation_wavelength is None:
@@ -50,21 +38,10 @@ def corrugated(case: WheelOnRail, rows: int, seed: int) -> NDArray[np.float64]:
 def defects(
     case: WheelOnRail, position: NDArray[np.float64], turn: int
 ) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | None]:
-    """Wheel flat and dipped joint along the path.
+    """Heights of wheel flat and dipped joint, and of the wheel's centre rolling over them, (rows,), m.
 
-    Parameters
-    ----------
-    case : WheelOnRail
-        The case.
-    position : ndarray, shape (rows,)
-        Positions of the path, m from a sleeper.
-    turn : int
-        Cells of one turn of the wheel.
-
-    Returns
-    -------
-    geometry, trajectory : ndarray, shape (rows,), or None
-        Heights of the defects, and of the wheel's centre rolling over them, m; None without defects.
+    At positions (rows,) of the path, m from a sleeper, for `turn` cells of one turn of the wheel; None
+    without defects.
     """
     geometry, trajectory = np.zeros(len(position)), np.zeros(len(position))
     surface, wheel, spacing = case.surface, case.wheel, case.contact.spacing

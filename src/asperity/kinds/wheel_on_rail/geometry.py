@@ -25,21 +25,8 @@ _FINE = 10
 def geometry_of(case: WheelOnRail) -> Geometry:
     """Lay wheel and rail of a case out on the contact grid.
 
-    Parameters
-    ----------
-    case : WheelOnRail
-        The case.
-
-    Returns
-    -------
-    Geometry
-        Gap of the smooth bodies. Where a section is measured, Hertz's contact is that of the paraboloid
-        fitted to the gap over the width of the contact.
-
-    Raises
-    ------
-    InputError
-        If a measured section does not cover the window, or the bodies do not touch in its middle.
+    Where a section is measured, Hertz's contact is that of the paraboloid fitted to the gap over the width of
+    the contact. Such a section must cover the window, and the bodies touch in its middle.
     """
     modulus = contact_modulus(case.wheel.material, case.track.material)
     y = across_window(case.contact)

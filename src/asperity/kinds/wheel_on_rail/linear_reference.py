@@ -36,30 +36,11 @@ class RailReceptance(Protocol):
 def force_transfer(
     frequency: ArrayLike, wheel: WheelReceptance, track: RailReceptance, stiffness: float, x: ArrayLike
 ) -> NDArray[np.complex128]:
-    """Contact force per height of the texture, the wheel at given positions on the rail.
+    """Contact force per height of the texture, the wheel at given positions on the rail: (n, f), N/m.
 
-    Parameters
-    ----------
-    frequency : array_like (f,)
-        Hz, zero or above; at zero the force is zero, since the wheel is free.
-    wheel : WheelReceptance
-        The wheel.
-    track : RailReceptance
-        The rail.
-    stiffness : float
-        Tangent stiffness of the contact at the static load, N/m; infinite for a rigid contact.
-    x : array_like (n,)
-        Positions, m from a sleeper.
-
-    Returns
-    -------
-    ndarray (n, f) of complex
-        F/z = 1/(α_W + α_C + α_R), N/m; force compressive, height out of the material; e^{+iωt}.
-
-    Raises
-    ------
-    InputError
-        If a frequency is negative or the stiffness not positive.
+    F/z = 1/(α_W + α_C + α_R), force compressive, height out of the material, e^{+iωt}. Frequencies (f,), Hz,
+    zero or above: at zero the force is zero, since the wheel is free. Stiffness of the contact at the static
+    load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
     """
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
     if not (f >= 0.0).all():
@@ -81,30 +62,10 @@ def mean_square_transfer(
     stiffness: float,
     positions: int = 12,
 ) -> NDArray[np.float64]:
-    """Mean square over a bay of the contact force per height of the texture.
+    """Mean square over a bay of the contact force per height of the texture, |F/z|², (f,), (N/m)².
 
-    Parameters
-    ----------
-    frequency : array_like (f,)
-        Hz, zero or above.
-    wheel : WheelReceptance
-        The wheel.
-    track : RailReceptance
-        The rail; a bay is its own mirror image, so the positions cover half of it.
-    stiffness : float
-        Tangent stiffness of the contact at the static load, N/m.
-    positions : int
-        Midpoints of as many equal parts of half a bay.
-
-    Returns
-    -------
-    ndarray (f,)
-        Mean of |F/z|², (N/m)².
-
-    Raises
-    ------
-    InputError
-        As `force_transfer`, or if there are no positions.
+    As `force_transfer`, at the midpoints of `positions` equal parts of half a bay, which is its own mirror
+    image.
     """
     if positions < 1:
         raise InputError("positions in a bay", positions, "one or more")
@@ -121,41 +82,15 @@ def linear_force_psd(
     stiffness: float,
     positions: int = 12,
 ) -> NDArray[np.float64]:
-    """Power spectral density of the linear contact force.
+    """One-sided power spectral density of the linear contact force, (f,), N²/Hz.
 
-    Parameters
-    ----------
-    frequency : array_like (f,)
-        Hz, zero or above.
-    texture_psd : array_like (f,)
-        One-sided PSD per cycle/m of the texture that the contact feels (wheel and rail added, filtered
-        where a filter belongs), m³, at the wavenumbers frequency/speed.
-    speed : float
-        m/s.
-    wheel : WheelReceptance
-        The wheel.
-    track : RailReceptance
-        The rail.
-    stiffness : float
-        Tangent stiffness of the contact at the static load, N/m.
-    positions : int
-        As `mean_square_transfer`.
+    The mean of |F/z|² times W(f/v)/v, where W is the one-sided PSD per cycle/m of the texture that the
+    contact feels (wheel and rail added, filtered where a filter belongs), (f,), m³, at the wavenumbers
+    frequency/speed; frequency in Hz, speed in m/s; the rest as in `mean_square_transfer`.
 
-    Returns
-    -------
-    ndarray (f,)
-        One-sided, N²/Hz: mean of |F/z|² times W(f/v)/v.
-
-    Raises
-    ------
-    InputError
-        If the speed is not positive or the lengths differ; or as `mean_square_transfer`.
-
-    Notes
-    -----
-    Without motion: at each position the structures answer as if the wheel stood there. Valid while the
-    speed is far below that of waves in the rail, and away from the pinned-pinned frequency, whose peak
-    motion splits and lowers; without the tones of the sleepers.
+    Without motion: at each position the structures answer as if the wheel stood there. Valid while the speed
+    is far below that of waves in the rail, and away from the pinned-pinned frequency, whose peak motion
+    splits and lowers; without the tones of the sleepers.
     """
     f, texture = np.atleast_1d(np.asarray(frequency, dtype=float)), np.atleast_1d(np.asarray(texture_psd))
     if not (np.isfinite(speed) and speed > 0.0):

@@ -30,24 +30,9 @@ SAME_TEXTURE = 0.3
 
 
 def rail_lines(surface: RailSurface, grid: Grid) -> Record:
-    """Lay measured lines of a rail out along the path; the record begins where the run-in begins.
+    """Lay measured lines of a rail out along the path, m; the record begins where the run-in begins.
 
-    Parameters
-    ----------
-    surface : RailSurface
-        The surface section of the case, with a line.
-    grid : Grid
-        Size of the path.
-
-    Returns
-    -------
-    Record
-        Strip of the path, m.
-
-    Raises
-    ------
-    InputError
-        If the record is shorter than the path and is not to be continued, or its levels are unlikely.
+    Refused are a record shorter than the path that is not to be continued, and unlikely levels.
     """
     profiles, origin = _measured(surface, "surface", degree=1)
     lines = common_length([resample(profile, grid.spacing) for profile in profiles])
@@ -61,31 +46,11 @@ def rail_lines(surface: RailSurface, grid: Grid) -> Record:
 
 
 def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
-    """Lay measured lines around a wheel out as one turn that closes on itself.
+    """Lay measured lines around a wheel out as one turn that closes on itself, m.
 
-    Parameters
-    ----------
-    wheel : WheelCase
-        The wheel section of the case, with a line.
-    grid : Grid
-        One turn of the path's grid; the rows returned are those of the record, if it is nearly as long.
-    check : bool
-        Whether unlikely levels are refused.
-
-    Returns
-    -------
-    Record
-        One turn, m.
-
-    Raises
-    ------
-    InputError
-        If no line goes round the whole wheel, or levels are unlikely.
-
-    Warns
-    -----
-    ShortRecordWarning
-        If lines are left out because they do not.
+    `grid` holds one turn of the path's grid; the rows returned are those of the record, if it is nearly as
+    long. `check` says whether unlikely levels are refused. Lines that do not go round are left out, with a
+    warning.
     """
     measured, origin = _measured(wheel, "wheel", degree=0)
     whole = grid.rows * grid.spacing

@@ -24,24 +24,12 @@ DOUBTFUL = 0.75
 
 @dataclass(frozen=True, eq=False)
 class LossFactorError:
-    """What the causal track changes of a track with constant loss factors, for a linear contact at rest.
+    """What the causal track changes of a track with constant loss factors, for a linear contact at rest."""
 
-    Parameters
-    ----------
-    track : Track
-        With constant loss factors.
-    bands : ndarray (b,)
-        Centres of one-third octaves, Hz.
-    force : ndarray (b,)
-        Level of the contact force over that with constant loss factors, dB.
-    rail : ndarray (b,)
-        Level of the rail's displacement under a given force over that with constant loss factors, dB.
-    """
-
-    track: Track
-    bands: NDArray[np.float64]
-    force: NDArray[np.float64]
-    rail: NDArray[np.float64]
+    track: Track  # with constant loss factors
+    bands: NDArray[np.float64]  # (b,), centres of one-third octaves, Hz
+    force: NDArray[np.float64]  # (b,), level of the contact force over that with constant loss factors, dB
+    rail: NDArray[np.float64]  # (b,), level of the rail's displacement under a given force over that, dB
 
     @property
     def worst(self) -> int:
@@ -52,23 +40,10 @@ class LossFactorError:
 def loss_factor_error(
     track: Track, wheel: WheelReceptance, stiffness: float, highest: float
 ) -> LossFactorError:
-    """Compare a track with the causal one that stands for it in time.
+    """Compare a track with the causal one that stands for it in time; the error of a causal one is zero.
 
-    Parameters
-    ----------
-    track : Track
-        The track; the error of a causal one is zero.
-    wheel : WheelReceptance
-        The wheel.
-    stiffness : float
-        Tangent stiffness of the contact at the static load, N/m.
-    highest : float
-        Frequency in the last band, Hz; the first is that of 5 Hz.
-
-    Returns
-    -------
-    LossFactorError
-        In each band, of mean squares over a bay and over the band, for a texture that is white in it.
+    Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to that of `highest`, Hz. In
+    each band of mean squares over a bay and over the band, for a texture that is white in it.
     """
     bands, low, high = third_octave_bands(LOWEST, highest)
     steps = (np.arange(LINES) + 0.5) / LINES
@@ -88,18 +63,7 @@ def loss_factor_error(
 
 
 def warn_of_loss_factors(error: LossFactorError) -> None:
-    """Say where loss factors change the contact force by more than is tolerable.
-
-    Parameters
-    ----------
-    error : LossFactorError
-        Of the track, for the wheel.
-
-    Warns
-    -----
-    LossFactorWarning
-        If the force of a band is more than 0.75 dB off.
-    """
+    """Say where loss factors change the contact force of a band by more than is tolerable, 0.75 dB."""
     off = np.flatnonzero(np.abs(error.force) > DOUBTFUL)
     if not off.size:
         return

@@ -24,41 +24,14 @@ LEAST_SHOWN = 0.05
 
 
 def error_of_losses(computed: Computed) -> LossFactorError:
-    """Error of the contact force in bands, for the contact stiffness at the load.
-
-    Parameters
-    ----------
-    computed : Computed
-        What was computed.
-
-    Returns
-    -------
-    LossFactorError
-        Zero where the track has no loss factors.
-    """
+    """Error of the contact force in bands, for the contact stiffness at the load."""
     case = computed.case
     _, stiffness = working_point(case.contact, computed.chain.shape, computed.chain.reduction)
     return loss_factor_error(computed.track, computed.wheel, stiffness, case.numerics.highest_frequency)
 
 
 def expected_error_of_losses(case: WheelOnRail) -> LossFactorError:
-    """Expect the error of the contact force in bands, with the stiffness of smooth bodies.
-
-    Parameters
-    ----------
-    case : WheelOnRail
-        The case.
-
-    Returns
-    -------
-    LossFactorError
-        As `error_of_losses`.
-
-    Raises
-    ------
-    InputError
-        If the wheel's file cannot be read, or the bodies do not fit the contact's window.
-    """
+    """Expect the error of the contact force in bands, with the stiffness of smooth bodies."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)  # the run tells
         shape, wheel = geometry_of(case), wheel_of(case)
@@ -114,19 +87,9 @@ def loss_variables(error: LossFactorError) -> dict[str, xarray.Variable]:
 
 
 def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str, str]]:
-    """Say how far the force is off in each band, and how much softer the track is at rest.
+    """Say how far the force is off in each band, and how much softer the track is at rest under a load, N.
 
-    Parameters
-    ----------
-    error : LossFactorError
-        Of the track of a case.
-    load : float
-        Of the wheel, N.
-
-    Yields
-    ------
-    (str, str)
-        Name and value; nothing where the track has no loss factors.
+    Names and values; nothing where the track has no loss factors.
     """
     nominal, track = error.track, causal_track(error.track)
     if nominal.is_causal or track.relaxations is None:

@@ -28,35 +28,14 @@ def passed_points(
     points: ArrayLike,
     progress: Progress | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Displacement and velocity of the rail at fixed points under the contact forces of runs.
+    """Displacement, m, and velocity, m/s, (runs, p, n), of the rail at fixed points under the forces of runs.
 
-    Parameters
-    ----------
-    kernel : MovingKernel
-        Its track, speed, time step and length are used.
-    runs : sequence of WheelRolling
-        Runs over the same path.
-    points : array_like (p,)
-        Positions on the rail, m from the sleeper at zero.
-    progress : callable, optional
-        Called with bays done, bays in all, and a message.
+    Positive downwards, at the times of the runs, which go over the same path; points (p,), m from the sleeper
+    at zero. The force acts from the start of the run-in on; the velocity is the central difference of sixth
+    order (−0.2 % at an eighth of the sampling frequency).
 
-    Returns
-    -------
-    displacement, velocity : ndarray (runs, p, n)
-        m and m/s, positive downwards, at the times of the runs. The force acts from the start of the run-in
-        on; the velocity is the central difference of sixth order (−0.2 % at an eighth of the sampling
-        frequency).
-
-    Raises
-    ------
-    InputError
-        If a point is not finite.
-
-    Notes
-    -----
-    By reciprocity G(x_f|x) = G(x|x_f), so that one source at the point gives the responses to forces at
-    all places of a bay. Responses as in `asperity.structures.moving_kernel`.
+    By reciprocity G(x_f|x) = G(x|x_f), so that one source at the point gives the responses to forces at all
+    places of a bay. Responses as in `asperity.structures.moving_kernel`.
     """
     places = np.atleast_1d(np.asarray(points, dtype=float))
     if not np.isfinite(places).all():
@@ -103,15 +82,7 @@ def _pass(
 
 
 class _Point:
-    """A point of the rail, and its responses to hats of force elsewhere.
-
-    Parameters
-    ----------
-    kernel : MovingKernel
-        Its track, time step and length.
-    place : float
-        Position, m.
-    """
+    """A point of the rail, m, and its responses to hats of force elsewhere, as long as a kernel."""
 
     def __init__(self, kernel: MovingKernel, place: float) -> None:
         self.spacing = kernel.spacing

@@ -35,21 +35,11 @@ LAGS = 4
 
 @dataclass(frozen=True, eq=False)
 class TrackTrial:
-    """Times of what the rail adds, on one core, s.
+    """Times of what the rail adds, on one core, s."""
 
-    Attributes
-    ----------
-    length : float
-        Length of the moving kernel, s.
-    kernel : float
-        The moving kernel, with the shorter ones before it.
-    points : float
-        One passed point, all laws together.
-    """
-
-    length: float
-    kernel: float
-    points: float
+    length: float  # of the moving kernel, s
+    kernel: float  # the moving kernel, with the shorter ones before it
+    points: float  # one passed point, all laws together
 
 
 def rows(case: Any) -> list[tuple[str, str]]:
@@ -105,20 +95,7 @@ def _rail_like(prepared: Prepared) -> RailPoles | MovingKernel:
 
 
 def try_track(prepared: Prepared, progress: Progress) -> TrackTrial:
-    """Compute short moving kernels of a track, and let the wheel pass a point that remembers little.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        A wheel on a rail.
-    progress : Progress
-        Called between the pieces.
-
-    Returns
-    -------
-    TrackTrial
-        Times.
-    """
+    """Compute short moving kernels of a track, and let the wheel pass a point that remembers little."""
     case: Any = prepared.case
     track, speed, step = case.track_model(), case.speed, case.time_step
     message = "trying the track"

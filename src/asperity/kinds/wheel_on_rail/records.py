@@ -18,70 +18,31 @@ from asperity.surfaces.heightmap import Profile
 
 @dataclass(frozen=True)
 class Grid:
-    """Where strips of texture are wanted.
+    """Where strips of texture are wanted."""
 
-    Attributes
-    ----------
-    rows, lines : int
-        Points along and across.
-    spacing : float
-        In both directions, m.
-    """
-
-    rows: int
-    lines: int
-    spacing: float
+    rows: int  # points along
+    lines: int  # points across
+    spacing: float  # in both directions, m
 
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """Texture of one body along the path.
+    """Texture of one body along the path."""
 
-    Attributes
-    ----------
-    heights : ndarray, shape (rows, lines)
-        m, peaks positive.
-    origin : str
-        Where it comes from.
-    areal : bool
-        Whether heights beside a line are a texture of their own, not carried over from it.
-    lines : tuple of Profile
-        Measured lines that heights are interpolated between, m; none of an areal texture.
-    """
-
-    heights: NDArray[np.float64]
-    origin: str
-    areal: bool = True
+    heights: NDArray[np.float64]  # (rows, lines), m, peaks positive
+    origin: str  # where it comes from
+    areal: bool = True  # whether heights beside a line are a texture of their own, not carried over from it
+    # measured lines that heights are interpolated between, m; none of an areal texture
     lines: tuple[Profile, ...] = ()
 
 
 def spectrum_strip(
     wavelength: ArrayLike, levels: ArrayLike, grid: Grid, *, lateral: float, seed: int, name: str
 ) -> Record:
-    """Synthesise a strip from band levels, leaving out bands that grid or length cannot hold.
+    """Synthesise a strip from band levels, dB re 1 µm, leaving out bands that grid or length cannot hold.
 
-    Parameters
-    ----------
-    wavelength, levels : array_like, shape (b,)
-        Band centres, m, and levels, dB re 1 µm.
-    grid : Grid
-        Size; the strip closes on itself along it.
-    lateral : float
-        Correlation length across over that along.
-    seed : int
-        Of the synthesis.
-    name : str
-        Of the spectrum.
-
-    Returns
-    -------
-    Record
-        The strip, and which bands it holds.
-
-    Raises
-    ------
-    InputError
-        If no band is left.
+    Centres (b,) in m. The strip closes on itself along the grid; `lateral` is its correlation length across
+    over that along. `name` is that of the spectrum.
     """
     given, level_db = np.asarray(wavelength, float), np.asarray(levels, float)
     length = grid.rows * grid.spacing
@@ -103,40 +64,14 @@ def spectrum_strip(
 
 
 def rail_levels(spectrum: str | Path) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
-    """Band levels of a rail: a named spectrum or a table.
-
-    Parameters
-    ----------
-    spectrum : str or Path
-        Name or file.
-
-    Returns
-    -------
-    wavelength, level : ndarray
-        m and dB re 1 µm.
-    name : str
-        For the record.
-    """
+    """Band levels of a rail, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
     if isinstance(spectrum, Path):
         return *read_levels(spectrum), spectrum.name
     return *cnossos.rail_roughness(spectrum), spectrum
 
 
 def wheel_levels(roughness: str | Path) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
-    """Band levels of a wheel: a named roughness or a table.
-
-    Parameters
-    ----------
-    roughness : str or Path
-        Name or file.
-
-    Returns
-    -------
-    wavelength, level : ndarray
-        m and dB re 1 µm.
-    name : str
-        For the record.
-    """
+    """Band levels of a wheel, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
     if isinstance(roughness, Path):
         return *read_levels(roughness), roughness.name
     return *cnossos.wheel_roughness(roughness), roughness

@@ -21,18 +21,10 @@ SOURCES = ("track", "wheel", "total")
 
 @dataclass(frozen=True, eq=False)
 class SoundPower:
-    """Sound power levels of rolling, by source.
+    """Sound power levels of rolling, by source."""
 
-    Parameters
-    ----------
-    band : ndarray (b,)
-        Exact centres of the one-third octaves, Hz.
-    levels : ndarray (3, b)
-        Of the `SOURCES` track, wheel and total, dB re 1 pW; NaN where no roughness is known.
-    """
-
-    band: NDArray[np.float64]
-    levels: NDArray[np.float64]
+    band: NDArray[np.float64]  # (b,), exact centres of the one-third octaves, Hz
+    levels: NDArray[np.float64]  # (3, b), of the `SOURCES`, dB re 1 pW; NaN where no roughness is known
 
     @property
     def a_weighted(self) -> NDArray[np.float64]:
@@ -41,28 +33,10 @@ class SoundPower:
         return energy_sum(self.levels[:, known] + a_weighting(self.band[known]))
 
     def with_difference(self, band: ArrayLike, difference: ArrayLike) -> SoundPower:
-        """The same with another contact force: each band changed by as much as the force.
+        """The same with another contact force: each band changed by as much as the force, dB.
 
-        Parameters
-        ----------
-        band : array_like (n,)
-            Centres of one-third octaves, nominal or exact, Hz.
-        difference : array_like (n,)
-            Level of the contact force less that of the force behind these levels, dB.
-
-        Returns
-        -------
-        SoundPower
-            Bands without a difference, or with NaN, keep their level.
-
-        Raises
-        ------
-        InputError
-            If the lengths differ, or a difference is infinite.
-
-        Notes
-        -----
-        The sound of rail and wheel is linear in the contact force; both change alike.
+        Centres (n,), nominal or exact, Hz; bands without a difference, or with NaN, keep their level. The
+        sound of rail and wheel is linear in the contact force; both change alike.
         """
         numbers, change = _band_numbers(band), np.atleast_1d(np.asarray(difference, dtype=float))
         if numbers.shape != change.shape or np.isinf(change).any():
@@ -83,34 +57,13 @@ def rolling_sound_power(
     contact_filter: Table | None = None,
     axles: int = 1,
 ) -> SoundPower:
-    """Sound power of rolling: L_W = (L_rail ⊕ L_wheel + A₃) + L_H + 10 lg N.
+    """Sound power of rolling: L_W = (L_rail ⊕ L_wheel + A₃) + L_H + 10 lg N, for N axles at a speed, m/s.
 
-    Parameters
-    ----------
-    speed : float
-        m/s.
-    rail_roughness, wheel_roughness : tuple of array_like or None
-        Wavelengths, m, and levels, dB re 1 µm; None for a smooth one.
-    track_transfer, wheel_transfer : tuple of array_like
-        Frequencies, Hz, and L_H, dB; both for the same bands.
-    contact_filter : tuple of array_like, optional
-        Wavelengths, m, and A₃, dB, for all bands of the roughness. Leave it out where a difference of
-        force levels will be added that holds the filtering of the contact already.
-    axles : int
-        N, number of axles.
+    Roughnesses are wavelengths, m, and levels, dB re 1 µm, None for a smooth one; transfers frequencies, Hz,
+    and L_H, dB, both for the same bands, in which the result is; the contact filter wavelengths, m, and A₃,
+    dB, for all bands of the roughness. Leave it out where a difference of force levels will be added that
+    holds the filtering of the contact already.
 
-    Returns
-    -------
-    SoundPower
-        In the bands of the transfers.
-
-    Raises
-    ------
-    InputError
-        If speed or axles are not positive, both surfaces smooth, or a table has gaps or too few bands.
-
-    Notes
-    -----
     A band of frequency f holds the wavelengths around v/f: those of two wavelength bands, whose energies are
     shared in proportion, that is interpolated in lg λ. Where one surface has no level, the other one's counts
     alone; where both have none, the band is NaN and left out of totals.

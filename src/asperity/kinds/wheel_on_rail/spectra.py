@@ -82,23 +82,10 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
 def linear_reference(
     computed: Computed, frequency: NDArray[np.float64], segment: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Force of the linear contact in the frequency domain, for the texture that is passed.
+    """One-sided PSDs (f,) of the force of the linear contact, N²/Hz, and of the texture passed, m²/Hz.
 
-    The track is the nominal one, with constant loss factors.
-
-    Parameters
-    ----------
-    computed : Computed
-        What was computed.
-    frequency : ndarray, shape (f,)
-        Of the spectra, from zero, Hz.
-    segment : int
-        Time steps of their segments.
-
-    Returns
-    -------
-    force, texture : ndarray, shape (f,)
-        One-sided PSDs, N²/Hz and m²/Hz.
+    In the frequency domain; the track is the nominal one, with constant loss factors. Frequencies (f,) of the
+    spectra, from zero, Hz; segments in time steps.
     """
     case, chain = computed.case, computed.chain
     run = next(iter(chain.runs.values()))

@@ -37,24 +37,10 @@ RECEPTANCE = (Column("frequency", "Hz"), Column("real part", "m/N"), Column("ima
 
 
 def read_levels(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Read one-third-octave band levels of a texture over wavelength.
+    """Read one-third-octave band levels of a texture over wavelength, from a table of two columns.
 
-    Parameters
-    ----------
-    path : Path
-        Table of two columns, wavelength (m, unless the heading names another unit) and level (dB re 1 um).
-
-    Returns
-    -------
-    wavelength : ndarray, shape (n,)
-        Band centres in m, falling.
-    level : ndarray, shape (n,)
-        dB re 1 um.
-
-    Raises
-    ------
-    InputError
-        If the file is no such table, or if a band is missing.
+    Wavelengths (n,), m, unless the heading names another unit, falling, and levels (n,), dB re 1 µm; no band
+    may be missing.
     """
     wavelength, level = read_table(path, LEVELS).T
     order = np.argsort(-wavelength)
@@ -72,23 +58,7 @@ def read_levels(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def read_modes(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Read the modes of a wheel.
-
-    Parameters
-    ----------
-    path : Path
-        Table of three columns: frequency (Hz), damping ratio, modal mass (kg).
-
-    Returns
-    -------
-    frequency, damping_ratio, modal_mass : ndarray, shape (n,)
-        In Hz, 1 and kg.
-
-    Raises
-    ------
-    InputError
-        If the file is no such table, or if a value cannot belong to a mode.
-    """
+    """Read the modes of a wheel: frequencies, Hz, damping ratios and modal masses, kg, (n,) each."""
     frequency, ratio, mass = read_table(path, MODES).T
     for name, values, right, allowed in (
         ("frequency", frequency, frequency > 0, "greater than 0 Hz"),
@@ -101,24 +71,9 @@ def read_modes(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64], ND
 
 
 def read_receptance(path: Path) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-    """Read the receptance of a wheel.
+    """Read the receptance of a wheel, (n,), m/N, e^{+iωt}, with its rising frequencies, Hz.
 
-    Parameters
-    ----------
-    path : Path
-        Table of three columns: frequency (Hz), real and imaginary part (m/N), e^{+iwt}.
-
-    Returns
-    -------
-    frequency : ndarray, shape (n,)
-        Hz, rising.
-    receptance : ndarray, shape (n,)
-        m/N.
-
-    Raises
-    ------
-    InputError
-        If the file is no such table, or too short, or its frequencies do not rise.
+    A table of three columns: frequency, real and imaginary part.
     """
     frequency, real, imaginary = read_table(path, RECEPTANCE).T
     if frequency.size < FEWEST_LINES:
@@ -129,20 +84,7 @@ def read_receptance(path: Path) -> tuple[NDArray[np.float64], NDArray[np.complex
 
 
 def check_levels(levels: NDArray[np.float64], name: str) -> None:
-    """Ask for the unit where levels are those of no wheel or rail.
-
-    Parameters
-    ----------
-    levels : ndarray
-        Band levels, dB re 1 um.
-    name : str
-        The key, for the message.
-
-    Raises
-    ------
-    InputError
-        If a level is beyond 60 dB re 1 um.
-    """
+    """Ask for the unit where levels, dB re 1 µm, are those of no wheel or rail: beyond 60 dB."""
     worst = levels[np.argmax(np.abs(levels))]
     if abs(worst) > LARGEST_LEVEL:
         received = f"a level of {worst:.3g} dB re 1 um"
@@ -152,25 +94,11 @@ def check_levels(levels: NDArray[np.float64], name: str) -> None:
 
 
 def read_table(path: Path, columns: tuple[Column, ...]) -> NDArray[np.float64]:
-    """Read a table of numbers.
+    """Read a table of numbers (lines, columns), in SI.
 
-    Parameters
-    ----------
-    path : Path
-        Text: columns apart by comma, semicolon (with decimal commas) or white space; text from '#' on is
-        left out. A heading may name units in brackets, as ``wavelength (cm)``; without one, they are SI.
-    columns : tuple of Column
-        What the columns hold.
-
-    Returns
-    -------
-    ndarray, shape (lines, columns)
-        In SI.
-
-    Raises
-    ------
-    InputError
-        If a line does not hold one finite number for each column, or a unit is of another dimension.
+    Columns are apart by comma, semicolon (with decimal commas) or white space; text from '#' on is left out.
+    A heading may name units in brackets, as ``wavelength (cm)``; without one, they are SI. A line that does
+    not hold one finite number for each column is refused.
     """
     allowed = "a table with the columns " + ", ".join(
         f"{column.name} ({column.dimension or '1'})" for column in columns

@@ -32,28 +32,11 @@ LEAST_LENGTH = 5.0
 
 
 def textures_of(case: WheelOnRail) -> Textures:
-    """Read or synthesise all textures of a case.
+    """Read or synthesise all textures of a case: what rail and wheel bear together, m from a sleeper.
 
-    Parameters
-    ----------
-    case : WheelOnRail
-        The case.
-
-    Returns
-    -------
-    Textures
-        Samples, strips and path: what rail and wheel bear together, rail positions in m from a sleeper.
-
-    Raises
-    ------
-    InputError
-        If a file does not hold what the case needs of it.
-
-    Notes
-    -----
     Heights of wheel and rail add up; the wheel's repeat with its circumference, rounded to whole cells.
-    Samples and strips are cut from the path, before defects are put on it, unless [surface] names samples
-    and the wheel is smooth.
+    Samples and strips are cut from the path, before defects are put on it, unless [surface] names samples and
+    the wheel is smooth.
     """
     contact, margin = case.contact, window_cells(case.contact)
     before = margin + math.ceil(case.speed * case.settling / contact.spacing)

@@ -92,6 +92,7 @@ def _dialect(lines: list[str], decimal: str | None, source: str) -> Dialect:
 def _table(lines: list[str], dialect: Dialect, source: str) -> tuple[list[str], NDArray[np.float64]]:
     header: list[str] = []
     rows: list[list[float]] = []
+    marked: list[tuple[int, int]] = []  # line and fields of headings that are numbers but for marks in them
     blanks: list[int] = []  # how many rows stand above each empty line
     closed = 0  # rows whose last field is not empty
     for i, text in enumerate(lines, 1):
@@ -107,12 +108,23 @@ def _table(lines: list[str], dialect: Dialect, source: str) -> tuple[list[str], 
             closed += bool(words[-1])
         elif not rows:
             header.append(text)
+            if any(map(str.isdigit, text)) and _numbers([word.replace("_", "") for word in words]):
+                marked.append((i, len(words)))
         else:
-            received, allowed = f"{text.strip()[:60]!r} in line {i}", "numbers, NaN, BAD, NA, *** or nothing"
-            raise InputError(source, received, allowed, "Correct or remove the line.")
+            raise _no_numbers(lines, i, source)
+    for i, fields in marked:
+        if rows and fields == len(rows[0]):
+            raise _no_numbers(lines, i, source)
     if rows and not closed and len(rows[0]) > 1:  # every line ends with a delimiter
         rows = [row[:-1] for row in rows]
     return header, _rectangular(rows, blanks, source)
+
+
+def _no_numbers(lines: list[str], number: int, source: str) -> InputError:
+    received = f"{lines[number - 1].strip()[:60]!r} in line {number}"
+    return InputError(
+        source, received, "numbers, NaN, BAD, NA, *** or nothing", "Correct or remove the line."
+    )
 
 
 def _numbers(words: list[str]) -> list[float] | None:
