@@ -130,7 +130,7 @@ class CoarseSamplingWarning(PhysicsWarning):
 
 
 class LargeDeflectionWarning(PhysicsWarning):
-    """A beam leaves the small slopes of beam theory."""
+    """A body leaves the small slopes of beam theory."""
 
 
 class ExtrapolationWarning(PhysicsWarning):

@@ -34,7 +34,7 @@ def run(
     Returns
     -------
     xarray.DataTree
-        Groups scenario, surface, contact, rolling and spectra, and track for a wheel on rail; see
+        Groups scenario, surface, contact, rolling and spectra, and what its kind adds; see
         `asperity.results`.
 
     Raises

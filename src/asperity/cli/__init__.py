@@ -9,6 +9,7 @@ import click
 
 from asperity import __version__
 from asperity.cli.door import Door
+from asperity.kinds import KINDS
 from asperity.terminal import say
 
 _case = click.argument("case", type=click.Path(path_type=Path))
@@ -52,16 +53,21 @@ def _study_options(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-@click.group(cls=Door, context_settings={"help_option_names": ["-h", "--help"]})
+_HELP = f"""Roll a body over a rough surface: 3-D contact, reduced to a point force, and its vibration.
+
+Start with 'asperity demo', then 'asperity new {next(iter(KINDS))} > case.toml' and 'asperity run case.toml'.
+
+Kinds of case: {", ".join(KINDS)}.
+
+Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
+"""
+
+
+@click.group(cls=Door, help=_HELP, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="asperity")
 @click.option("--debug", is_flag=True, help="Show where in the program an error arose.")
 def main(debug: bool) -> None:
-    """Roll a ball or a wheel over a rough surface: 3-D contact, reduced to a point force, and its vibration.
-
-    Start with 'asperity demo', then 'asperity new ball-on-beam > case.toml' and 'asperity run case.toml';
-    'asperity new wheel-on-rail' writes the case of a railway wheel.
-    Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
-    """
+    """Take the options that stand before a command."""
 
 
 @main.command()
@@ -82,22 +88,22 @@ def demo(directory: Path, overwrite: bool) -> None:
     run_into(demo_case(), directory, overwrite=overwrite)
 
 
+_WRITTEN = (*KINDS, "study")
+
+
 def _templates(context: click.Context, argument: click.Parameter, incomplete: str) -> list[str]:
     """Complete what 'asperity new' can write."""
-    from asperity.kinds import KINDS
-
-    return [name for name in (*KINDS, "study") if name.startswith(incomplete)]
+    return [name for name in _WRITTEN if name.startswith(incomplete)]
 
 
 @main.command()
-@click.argument("kind", metavar="ball-on-beam|wheel-on-rail|study", shell_complete=_templates)
+@click.argument("kind", metavar="|".join(_WRITTEN), shell_complete=_templates)
 def new(kind: str) -> None:
     """Write a commented case, or a study of one, to standard output."""
-    from asperity.kinds import KINDS
     from asperity.kinds.cases import not_a_kind, template
 
-    if kind not in (names := (*KINDS, "study")):
-        raise not_a_kind(kind, names)
+    if kind not in _WRITTEN:
+        raise not_a_kind(kind, _WRITTEN)
     if kind == "study":
         from asperity.studies.definition import TEMPLATE
 

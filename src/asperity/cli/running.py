@@ -18,7 +18,7 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
 
     Parameters
     ----------
-    case : BallOnBeam or WheelOnRail
+    case : Case
         The case.
     directory : Path
         Where ``run.nc``, ``report.html`` and the CSVs go.
@@ -77,7 +77,7 @@ def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> No
 
     Parameters
     ----------
-    case : BallOnBeam or WheelOnRail
+    case : Case
         The case.
     directory : Path
         Where its results shall go.

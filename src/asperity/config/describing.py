@@ -16,7 +16,7 @@ from asperity.units import factor
 class Entry(NamedTuple):
     """One key of a case."""
 
-    dotted: str  # name with its section, as "ball.radius"
+    dotted: str  # name with its section, as "contact.spacing"
     name: str
     field: FieldInfo
     section: type[BaseModel]

@@ -24,7 +24,7 @@ def entry_of(model: type[Case], dotted: str) -> Entry:
     model : class of cases
         The kind.
     dotted : str
-        The key with its section, as ``"wheel.load"``.
+        The key with its section, as ``"contact.spacing"``.
 
     Returns
     -------

@@ -35,8 +35,8 @@ def load_case(path: str | os.PathLike[str]) -> Case:
 
     Returns
     -------
-    BallOnBeam or WheelOnRail
-        The case, in SI.
+    Case
+        Of the class of its kind, in SI.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    remedy = "Check the path, or write a case with 'asperity new ball-on-beam > case.toml'."
+    remedy = f"Check the path, or write a case with 'asperity new {next(iter(KINDS))} > case.toml'."
     return parse_case(read_text(path, "case", remedy), path)
 
 
@@ -60,8 +60,8 @@ def as_case(case: object) -> Case:
 
     Returns
     -------
-    BallOnBeam or WheelOnRail
-        The case, in SI.
+    Case
+        Of the class of its kind, in SI.
 
     Raises
     ------
@@ -91,8 +91,8 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
 
     Returns
     -------
-    BallOnBeam or WheelOnRail
-        The case, in SI.
+    Case
+        Of the class of its kind, in SI.
 
     Raises
     ------
@@ -118,8 +118,8 @@ def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> 
 
     Returns
     -------
-    BallOnBeam or WheelOnRail
-        The case, in SI.
+    Case
+        Of the class of its kind, in SI.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def kind_named(name: object) -> Kind:
     Parameters
     ----------
     name : str
-        As ``"ball-on-beam"``.
+        One of `KINDS`.
 
     Returns
     -------
@@ -168,7 +168,7 @@ def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
     """Error about a kind of case that this version does not have; None stands for a missing key."""
     allowed = ", ".join(f'"{name}"' for name in names)
     if kind is None:
-        return InputError("kind", "nothing", allowed, 'Write kind = "ball-on-beam" as the first line.')
+        return InputError("kind", "nothing", allowed, f'Write kind = "{names[0]}" as the first line.')
     return InputError("kind", shown(kind), allowed, nearest(kind, list(names)))
 
 
@@ -178,7 +178,7 @@ def template(kind: str) -> str:
     Parameters
     ----------
     kind : str
-        What rolls: ``"ball-on-beam"`` or ``"wheel-on-rail"``.
+        What rolls on what: one of `KINDS`.
 
     Returns
     -------

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class ContactLoss:
-    """One flight of the ball.
+    """One flight.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def contact_losses(flying: NDArray, time_step: float) -> list[ContactLoss]:
     Parameters
     ----------
     flying : ndarray (n,) of bool
-        Whether the ball is out of contact at each time step.
+        Whether the bodies are apart at each time step.
     time_step : float
         s.
 

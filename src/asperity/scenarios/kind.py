@@ -72,7 +72,7 @@ class Kind:
 
     @property
     def rolling(self) -> str:
-        """The section of the case that describes what rolls, as ``"ball"``."""
+        """The section of the case that describes what rolls."""
         return str(self._part("case").ROLLING)
 
     def bodies_of(self, case: Case) -> Any:

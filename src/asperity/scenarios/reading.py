@@ -44,7 +44,7 @@ def read_lines(section: MeasuredLine, name: str) -> HeightMap | Profile:
 
 
 def read_section(path: Path, key: str) -> Profile:
-    """Read a measured section across wheel or rail.
+    """Read a measured section of a body across the path.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def read_section(path: Path, key: str) -> Profile:
     with spelled(in_case(key.partition(".")[0], {})):
         measured = read_surface(path)
     if not isinstance(measured, Profile):
-        raise InputError(key, "a map of heights", "one line across the rail")
+        raise InputError(key, "a map of heights", "one line across the path")
     if measured.missing_share > 0.0:
         raise InputError(key, "points without a height", "a complete line", "Fill it first.")
     return measured

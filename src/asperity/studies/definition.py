@@ -38,7 +38,7 @@ case = "case.toml"
 [sweep]                         # keys of the case, each with a list of values as they stand in a case
 speed = ["20 m/s", "56 m/s"]
 seed = [1, 2, 3]
-# "wheel.load" = ["50 kN", "65 kN"]
+# "contact.spacing" = ["4 um", "8 um"]
 """
 
 
@@ -52,7 +52,7 @@ class Axis:
 
     @property
     def name(self) -> str:
-        """The key with its section, as ``"wheel.load"``."""
+        """The key with its section, as ``"contact.spacing"``."""
         return self.entry.dotted
 
     @property
@@ -156,7 +156,7 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Map
     case : path, mapping or case object
         The case, as `asperity.run` takes it.
     sweep : mapping of str to list
-        Keys with lists of values as they stand in TOML, as ``{"wheel.load": ["50 kN", "65 kN"]}``.
+        Keys with lists of values as they stand in TOML, as ``{"contact.spacing": ["4 um", "8 um"]}``.
 
     Returns
     -------
@@ -229,7 +229,7 @@ def _checked(
 
 
 def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]]:
-    """Keys with their sections, written as ``"wheel.load" =``, ``wheel.load =`` or below [sweep.wheel]."""
+    """Keys with their sections, written as ``"a.b" =``, ``a.b =`` or below [sweep.a]."""
     for name, values in sweep.items():
         if isinstance(values, Mapping) and not section:
             yield from _flat(values, f"{name}.")

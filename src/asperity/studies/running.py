@@ -37,7 +37,7 @@ def study(
     definition : path, Study, or with `sweep` a mapping or a case object
         A study file; with `sweep`, a case as `asperity.run` takes it.
     sweep : mapping of str to list, optional
-        Keys with lists of values as they stand in TOML, as ``{"wheel.load": ["50 kN", "65 kN"]}``.
+        Keys with lists of values as they stand in TOML, as ``{"contact.spacing": ["4 um", "8 um"]}``.
     executor : concurrent.futures.Executor, optional
         Where the members are computed: for instance the executor of a Dask client. By default processes of
         this machine; a script then needs ``if __name__ == "__main__":`` around the call.
@@ -52,8 +52,8 @@ def study(
         The swept keys are the first dimensions of every variable. `completed` tells which members have
         results. By law: `mean_force`, `rms_force`, `contact_loss_share`, `contact_loss_events`,
         `longest_loss`; by law and band: `force_level`, `force_level_difference_to_linear_filtered`,
-        `force_level_difference_to_linear`, `force_level_difference_to_reference`, `acceleration_level` (ball
-        on beam), `point_velocity_level` and `sound_power_level` (wheel on rail); by band:
+        `force_level_difference_to_linear`, `force_level_difference_to_reference`, and of what its
+        kind computes `acceleration_level`, `point_velocity_level` or `sound_power_level`; by band:
         `band_time_product`, below 10 where a level says little. NaN where a member failed or has no such
         value. The attributes ``failures`` and ``warnings`` are JSON lists of what members met, grouped.
 
