@@ -15,6 +15,11 @@ from asperity.laws import Hertz, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling import stability
+from asperity.rolling.ball import RollingBall
+from asperity.rolling.beam import modal_alternating_compliance, resolved_step
+from asperity.rolling.path import Path
+from asperity.rolling.rail import RolledRail
+from asperity.rolling.wheel import RollingWheel, wheel_step
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 from asperity.structures.moving_kernel import moving_kernel
@@ -134,14 +139,15 @@ class TestAlternatingCompliance:
         # Newmark's β = 1/6 at the highest frequency: −h²/12m; a mode far below that frequency is such a mass
         h, mass = 1e-4, 0.3
         a = modal_coefficients(np.array([1e-3]), np.array([0.0]), h)
-        found = stability.modes_and_ball(a, np.array([[1.0 / np.sqrt(mass)]]), 0.7, h)
-        assert found == pytest.approx(-(h**2) / 12 * (1 / mass + 1 / 0.7), rel=1e-6)
+        found = modal_alternating_compliance(a, np.array([[1.0 / np.sqrt(mass)]]))
+        assert found == pytest.approx(-(h**2) / 12 / mass, rel=1e-6)
+        ball = RollingBall(Ball(0.025, STEEL, given_mass=mass))
+        assert ball.alternating_compliance(Path(np.zeros(2), 1.0, h)) == pytest.approx(found, rel=1e-6)
 
     def test_stiff_mode(self):
         # a mode far above it answers statically
         a = modal_coefficients(np.array([1e7]), np.array([0.5]), 1e-3)
-        found = stability.modes_and_ball(a, np.array([[2.0]]), 1e30, 1e-3)
-        assert found == pytest.approx(4.0 / 1e14, rel=1e-3)
+        assert modal_alternating_compliance(a, np.array([[2.0]])) == pytest.approx(4.0 / 1e14, rel=1e-3)
 
     def test_modes_stepped_for_long(self):
         h, natural = 2e-4, 2 * np.pi * np.array([90.0, 1300.0, 2700.0])
@@ -151,31 +157,29 @@ class TestAlternatingCompliance:
             p = shape * force
             q, v = a[0] * q + a[1] * v + (a[2] - a[3]) * p, a[4] * q + a[5] * v + (a[6] - a[7]) * p
             force = -force
-        assert stability.modes_and_ball(a, shape[None], 1e30, h) == pytest.approx(
-            force * (shape @ q), rel=1e-9
-        )
+        assert modal_alternating_compliance(a, shape[None]) == pytest.approx(force * (shape @ q), rel=1e-9)
 
-    def test_a_wheel_stepped_for_long(self):
+    def test_a_rail_and_a_wheel(self):
+        path = Path(np.zeros(2), 56.0, 50e-6)
         kernel = moving_kernel(TRACK, 56.0, 50e-6)
-        rigid = stability.rail_and_wheel(kernel, Wheel.rigid(1e30, 65e3))
         alternating = min(row @ (-1.0) ** np.arange(row.size) for row in kernel.weights)
-        assert rigid == pytest.approx(alternating, rel=1e-12)
-        wheel = Wheel.from_modes(1e30, 65e3, [3000.0], [0.2], [20.0])
-        # the mode by itself, as an oscillator that the force pushes the other way
+        assert RolledRail(kernel).alternating_compliance(path) == pytest.approx(alternating, rel=1e-12)
+        wheel = RollingWheel(Wheel.from_modes(1e30, 65e3, [3000.0], [0.2], [20.0]))
+        # the mode by itself, as an oscillator
         a = modal_coefficients(np.array([2 * np.pi * 3000.0]), np.array([0.2]), 50e-6)
-        mode = stability.modes_and_ball(a, np.array([[1.0 / np.sqrt(20.0)]]), 1e30, 50e-6)
-        assert stability.rail_and_wheel(kernel, wheel) - rigid == pytest.approx(mode, rel=1e-6)
+        mode = modal_alternating_compliance(a, np.array([[1.0 / np.sqrt(20.0)]]))
+        assert wheel.alternating_compliance(path) == pytest.approx(mode, rel=1e-6)
 
 
 def test_modes_too_fast_for_the_step_answer_statically():
     natural = np.array([1e3, 4e4])
-    coefficients = stability.beam_step(natural, np.full(2, 0.01), 1e-4)
+    coefficients = resolved_step(natural, np.full(2, 0.01), 1e-4)
     np.testing.assert_array_equal(
         coefficients[:, 0], modal_coefficients(natural, np.full(2, 0.01), 1e-4)[:, 0]
     )
     assert coefficients[:, 1].tolist() == [0.0, 0.0, 0.0, 1 / 1.6e9, 0.0, 0.0, 0.0, 0.0]
     wheel = Wheel.from_modes(600.0, 65e3, [4e4 / (2 * np.pi)], [0.01], [20.0])
-    decay, before, now = stability.wheel_step(wheel, 1e-4)
+    decay, before, now = wheel_step(wheel, 1e-4)
     assert not decay.any()
     assert not before.any()
     assert 2 * now.sum().real == pytest.approx(1 / (20.0 * 1.6e9))

@@ -19,6 +19,7 @@ STEPPED_BLOCK = 8  # steps between looks at the clock when the law is evaluated 
 SAVE_EVERY = 10.0  # s
 STEPPED_TOLERANCE = 1e-6  # of the force plus the load; a law stepped from Python iterates itself
 STEPPED_ITERATIONS = 40
+MOTION, LAW = "motion.", "law."  # prefixes of what is kept
 
 Free = tuple[float, float, float, float]
 
@@ -26,8 +27,9 @@ Free = tuple[float, float, float, float]
 class Stepper(Protocol):
     """Bodies that a contact force couples, advanced step by step.
 
-    `motion` and `record` are named tuples of arrays written in place. The motion holds ``force`` (now
-    first) and ``counts`` (steps done first); the last axis of all records is time.
+    `motion` and `record` are named tuples of arrays written in place. The motion holds ``force`` and
+    ``approach`` (as the law sees it; both now first) and ``counts`` (steps done, not converged, evaluations);
+    records hold ``force`` and ``approach``, and the last axis of all of them is time.
     """
 
     @property
@@ -70,6 +72,25 @@ class Stepper(Protocol):
         """Time and position of a step, in words."""
         ...
 
+    def state(self) -> dict[str, NDArray]:
+        """Copies of all that changes from step to step, but for the records."""
+        ...
+
+    def restore(self, state: dict[str, NDArray]) -> None:
+        """Go on from a saved state."""
+        ...
+
+
+def copied(motion: Any) -> dict[str, NDArray]:
+    """Copies of the arrays of a named tuple, by their names."""
+    return {name: value.copy() for name, value in motion._asdict().items()}
+
+
+def put_back(motion: Any, state: dict[str, NDArray]) -> None:
+    """Write saved arrays into those of a named tuple."""
+    for name in motion._fields:
+        getattr(motion, name)[...] = state[name]
+
 
 def run(
     stepper: Stepper,
@@ -102,6 +123,7 @@ def run(
         If the force exceeds that, or is not a number: the motion has run away.
     """
     motion, saved = stepper.motion, time.monotonic()
+    held = _state(stepper, prepared)
     try:
         while motion.counts[0] < stepper.total:
             end = stepper.bound()
@@ -117,15 +139,16 @@ def run(
                     f"{motion.force[0]:.3g} N under a load of {stepper.load:.4g} N",
                     "a smaller time step, and check masses, damping and the texture there",
                 )
+            held = _state(stepper, prepared)
             if progress is not None:
                 progress(int(motion.counts[0]), stepper.total, "rolling")
             if checkpoint is not None and time.monotonic() - saved > SAVE_EVERY:
-                checkpoint.save(_snapshot(stepper, prepared))
+                checkpoint.save(held | _histories(stepper, held))
                 saved = time.monotonic()
     finally:
-        # at the end, and whatever stopped the run: it goes on from the last step done
+        # at the end, and whatever stopped the run, maybe amid a step: it goes on from the last steps done
         if checkpoint is not None and abs(motion.force[0]) <= largest:
-            checkpoint.save(_snapshot(stepper, prepared))
+            checkpoint.save(held | _histories(stepper, held))
 
 
 def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: int, largest: float) -> bool:
@@ -161,13 +184,18 @@ def _solve_from_python(
     return (free_approach - approach) / compliance, STEPPED_ITERATIONS, False
 
 
-def _snapshot(stepper: Stepper, prepared: Prepared | SteppedLaw) -> dict[str, NDArray]:
-    done = int(stepper.motion.counts[0]) + 1
-    arrays = {f"motion.{name}": value.copy() for name, value in stepper.motion._asdict().items()}
-    arrays |= {f"record.{n}": value[..., :done].copy() for n, value in stepper.record._asdict().items()}
+def _state(stepper: Stepper, prepared: Prepared | SteppedLaw) -> dict[str, NDArray]:
+    """What bodies and law need to go on from here."""
+    found = {f"{MOTION}{name}": value for name, value in stepper.state().items()}
     if not isinstance(prepared, Prepared):
-        arrays |= {f"law.{name}": value for name, value in prepared.state().items()}
-    return arrays
+        found |= {f"{LAW}{name}": value for name, value in prepared.state().items()}
+    return found
+
+
+def _histories(stepper: Stepper, held: dict[str, NDArray]) -> dict[str, NDArray]:
+    """Records up to a state."""
+    done = int(held[f"{MOTION}counts"][0]) + 1
+    return {f"record.{name}": value[..., :done].copy() for name, value in stepper.record._asdict().items()}
 
 
 def restore(checkpoint: Checkpoint | None, stepper: Stepper, prepared: Prepared | SteppedLaw) -> None:
@@ -190,12 +218,11 @@ def restore(checkpoint: Checkpoint | None, stepper: Stepper, prepared: Prepared 
     arrays = checkpoint.load() if checkpoint is not None else None
     if arrays is None:
         return
-    motion, record = stepper.motion, stepper.record
+    record, state = stepper.record, _named(arrays, MOTION)
     histories = {name: arrays.get(f"record.{name}", np.zeros(0)) for name in record._fields}
-    same = all(
-        arrays.get(f"motion.{name}", np.zeros(0)).shape == getattr(motion, name).shape
-        for name in motion._fields
-    ) and all(
+    same = {name: value.shape for name, value in state.items()} == {
+        name: value.shape for name, value in stepper.state().items()
+    } and all(
         value.shape[:-1] == getattr(record, name).shape[:-1]
         and value.shape[-1] <= getattr(record, name).shape[-1]
         for name, value in histories.items()
@@ -203,10 +230,13 @@ def restore(checkpoint: Checkpoint | None, stepper: Stepper, prepared: Prepared 
     if not same:
         remedy = "Clear what was kept, and roll anew."
         raise InputError("checkpoint", "a run with other modes, sensors or duration", "this run", remedy)
-    for name in motion._fields:
-        getattr(motion, name)[...] = arrays[f"motion.{name}"]
+    stepper.restore(state)
     for name, value in histories.items():
         getattr(record, name)[..., : value.shape[-1]] = value
     if not isinstance(prepared, Prepared):
-        prefix = "law."
-        prepared.restore({k[len(prefix) :]: v for k, v in arrays.items() if k.startswith(prefix)})
+        prepared.restore(_named(arrays, LAW))
+
+
+def _named(arrays: dict[str, NDArray], prefix: str) -> dict[str, NDArray]:
+    """Arrays whose names have a prefix, without it."""
+    return {name.removeprefix(prefix): value for name, value in arrays.items() if name.startswith(prefix)}

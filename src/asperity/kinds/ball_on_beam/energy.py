@@ -55,29 +55,26 @@ def beam_energy(system: System, motion: BeamMotion) -> float:
     return 0.5 * float(np.sum(motion.velocity**2 + system.stiffness * motion.displacement**2))
 
 
-def balance(
-    system: System, motion: BeamMotion, *, ball_start: float, ball_end: float, beam_start: float
-) -> EnergyBalance:
+def balance(system: System, motion: BeamMotion, at_rest: tuple[float, float]) -> EnergyBalance:
     """Balance of a run that started with the ball at rest.
 
     Parameters
     ----------
     system, motion
         Constants, and the state at the end.
-    ball_start, ball_end : float
-        Displacement of the ball at both ends, m.
-    beam_start : float
-        Energy of the beam at the start, J.
+    at_rest : tuple of float
+        Displacement of the ball, m, and energy of the beam, J, at the start.
 
     Returns
     -------
     EnergyBalance
         The terms.
     """
+    displacement, energy = at_rest
     return EnergyBalance(
-        load=system.load * (ball_end - ball_start),
+        load=system.load * (float(motion.ball[0]) - displacement),
         ball=0.5 * system.mass * float(motion.ball[1]) ** 2,
-        beam=beam_energy(system, motion) - beam_start,
+        beam=beam_energy(system, motion) - energy,
         beam_damping=float(motion.ledger[BEAM_DAMPING]),
         contact=float(motion.ledger[CONTACT_WORK]),
         slope=float(motion.ledger[SLOPE_WORK]),

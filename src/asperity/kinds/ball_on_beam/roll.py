@@ -1,42 +1,24 @@
-"""A ball rolls over a beam: the moving contact force couples them, step by step."""
+"""A ball rolls over a beam: the moving contact force couples them, step by step, compiled."""
 
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.errors import (
-    CoarseSamplingWarning,
-    InputError,
-    LargeDeflectionWarning,
-    Outcome,
-)
-from asperity.kernels.modal import (
-    BeamMotion,
-    BeamRecord,
-    System,
-    observe,
-)
-from asperity.kernels.pointforce import Prepared
-from asperity.kinds.ball_on_beam.energy import EnergyBalance, balance, beam_energy
+from asperity.errors import LargeDeflectionWarning
+from asperity.kernels.modal import BeamMotion, BeamRecord, System, observe
+from asperity.kinds.ball_on_beam.energy import EnergyBalance, balance
 from asperity.kinds.ball_on_beam.stepper import BeamStepper
 from asperity.laws.base import Law
 from asperity.progress import Progress
-from asperity.rolling.equilibrium import static_approach
-from asperity.rolling.events import ContactLoss, contact_losses
-from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
-from asperity.rolling.stability import (
-    PLACES,
-    beam_step,
-    largest_force,
-    largest_stiffness,
-    modes_and_ball,
-    softening,
-)
-from asperity.rolling.stepping import restore, run
+from asperity.rolling.ball import RollingBall
+from asperity.rolling.beam import RolledBeam, beam_step, refuse_off_the_beam
+from asperity.rolling.path import Path
+from asperity.rolling.rolled import Limit, Rolled, roll_along
 from asperity.store import Checkpoint
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
@@ -46,58 +28,23 @@ LARGEST_DEFLECTION = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Rolling:
+class Rolling(Rolled):
     """A ball has rolled over a beam.
 
     Parameters
     ----------
-    time : ndarray (n,)
-        s, uniform from zero, after the run-in.
-    position : ndarray (n,)
-        Of the contact on the beam, m.
-    contact_force : ndarray (n,)
-        N, compression positive.
-    relative_displacement : ndarray (n,)
-        Approach of the mean surfaces, m, positive closing.
     ball_displacement, beam_displacement : ndarray (n,)
         Of the ball, and of the beam under it, m, positive downwards.
     acceleration : ndarray (sensors, n)
         Of the beam at the sensors, m/s^2, positive downwards.
-    in_contact : ndarray (n,) of bool
-        Whether the bodies touch.
-    contact_loss : list of ContactLoss
-        Flights.
     energy : EnergyBalance
         Where the work of the load went, in run-in and run.
-    evaluations, unconverged_steps : int
-        Evaluations of the law, and time steps whose contact force missed the tolerance, of run-in and run.
-    outcome : Outcome
-        Whether all steps converged.
     """
 
-    time: NDArray
-    position: NDArray
-    contact_force: NDArray
-    relative_displacement: NDArray
     ball_displacement: NDArray
     beam_displacement: NDArray
     acceleration: NDArray
-    in_contact: NDArray
-    contact_loss: list[ContactLoss]
     energy: EnergyBalance
-    evaluations: int
-    unconverged_steps: int
-    outcome: Outcome
-
-    @property
-    def contact_loss_share(self) -> float:
-        """Share of the time out of contact."""
-        return 1.0 - float(np.mean(self.in_contact))
-
-    @property
-    def longest_loss(self) -> float:
-        """Duration of the longest flight, s."""
-        return max((event.duration for event in self.contact_loss), default=0.0)
 
 
 def roll(
@@ -169,101 +116,62 @@ def roll(
     UnconvergedWarning
         If contact forces missed the tolerance.
     """
-    positions, settled = _path(beam, speed, start, duration, settling, time_step)
-    at = np.atleast_1d(np.asarray(sensors, float))
-    prepared = law.prepare(positions)
-    relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
-    approach, stiffness = static_approach(evaluation(prepared, 0), ball.static_load, relative)
-    _warn_if_coarse(time_step, stiffness, ball.mass, beam, highest_frequency)
-    system = _system(beam, ball, at, speed, time_step)
-    shapes = beam.shapes(positions[:: max(1, len(positions) // PLACES)])[0]
-    alternating = modes_and_ball(system.coefficients, shapes, ball.mass, time_step)
-    stiffest, strongest = largest_stiffness(prepared, (approach, stiffness))
-    system = system._replace(softening=softening(alternating, stiffest, law.damping, stiffness, time_step))
-    motion, record = _at_rest(system, beam, positions[0], approach, len(positions))
-    beam_start, ball_start = beam_energy(system, motion), float(motion.ball[0])
-    stepper = BeamStepper(system, motion, record, beam, positions)
-    restore(checkpoint, stepper, prepared)
-    try:
-        run(stepper, prepared, law.damping, largest_force(ball.static_load, strongest), progress, checkpoint)
-    finally:  # why a motion may have run away
-        _warn_if_bent(record.beam, beam)
-    seen = record.approach - system.softening * record.force
-    apart = flying(prepared, record.force, seen)[settled:]
-    warn_after(law.name, motion.counts, prepared, seen)
+    path = Path.laid(start, speed, time_step, duration, settling)
+    refuse_off_the_beam(beam, path)
+    system = _system(beam, ball, np.atleast_1d(np.asarray(sensors, float)), path)
+    over, rolls = RolledBeam(beam), RollingBall(ball)
+
+    def stand(approach: float, softening: float) -> BeamStepper:
+        softened = system._replace(softening=softening)
+        return BeamStepper(softened, *_at_rest(softened, beam, path, approach), beam, path)
+
+    def limits(stiffness: float) -> Iterator[Limit]:
+        resonance = np.sqrt(max(stiffness, 0.0) / ball.mass) / (2.0 * np.pi)
+        yield "the contact resonance sqrt(k/m)", resonance, 10.0
+        yield "the highest mode of the beam", beam.natural_frequencies.max(), 4.0
+        yield "the highest frequency asked for", highest_frequency or 0.0, 10.0
+
+    rolled, stepper = roll_along(
+        path,
+        law,
+        rolls.load,
+        stand,
+        alternating=over.alternating_compliance(path) + rolls.alternating_compliance(path),
+        limits=limits,
+        judge=lambda stepper: _warn_if_bent(stepper.record.beam, beam),
+        progress=progress,
+        checkpoint=checkpoint,
+    )
+    record = stepper.record
     return Rolling(
-        time=time_step * np.arange(len(positions) - settled),
-        position=positions[settled:],
-        contact_force=record.force[settled:],
-        relative_displacement=record.approach[settled:],
-        ball_displacement=record.ball[settled:],
-        beam_displacement=record.beam[settled:],
-        acceleration=record.acceleration[:, settled:],
-        in_contact=~apart,
-        contact_loss=contact_losses(apart, time_step),
-        energy=balance(
-            system,
-            motion,
-            ball_start=ball_start,
-            ball_end=float(motion.ball[0]),
-            beam_start=beam_start,
-        ),
-        evaluations=int(motion.counts[2]),
-        unconverged_steps=int(motion.counts[1]),
-        outcome=Outcome.STEPS_UNCONVERGED if motion.counts[1] else Outcome.CONVERGED,
+        **vars(rolled),
+        ball_displacement=record.ball[path.settled :],
+        beam_displacement=record.beam[path.settled :],
+        acceleration=record.acceleration[:, path.settled :],
+        energy=balance(stepper.system, stepper.motion, stepper.at_rest),
     )
 
 
-def _path(
-    beam: Beam, speed: float, start: float, duration: float, settling: float, time_step: float
-) -> tuple[NDArray, int]:
-    """Positions of the contact at every time step of run-in and record, checked, and steps of the run-in."""
-    for what, value in (
-        ("speed (m/s)", speed),
-        ("duration (s)", duration),
-        ("time step (s)", time_step),
-    ):
-        if not (np.isfinite(value) and value > 0.0):
-            raise InputError(what, value, "a finite positive number")
-    if not (np.isfinite(settling) and settling >= 0.0):
-        raise InputError("settling (s)", settling, "zero or a finite positive number")
-    steps, settled = (int(np.floor(time / time_step * (1.0 + 1e-12))) for time in (duration, settling))
-    if steps < 1:
-        raise InputError("duration (s)", duration, f"at least one time step of {time_step:.6g} s")
-    step = speed * time_step
-    first, end = start - step * settled, start + step * steps
-    if not (first >= -1e-9 * beam.length and end <= beam.length * (1.0 + 1e-9)):
-        longest = (beam.length - start) / speed
-        remedy = f"From there the beam ends after {longest:.6g} s." if first >= 0.0 else "Start on the beam."
-        raise InputError(
-            "path (m)", f"{first:.6g} to {end:.6g}", f"0 to {beam.length:.6g}, on the beam", remedy
-        )
-    return start + step * np.arange(-settled, steps + 1), settled
-
-
-def _system(beam: Beam, ball: Ball, sensors: NDArray, speed: float, time_step: float) -> System:
+def _system(beam: Beam, ball: Ball, sensors: NDArray, path: Path) -> System:
     natural = 2.0 * np.pi * beam.natural_frequencies
-    ratio = np.full(natural.shape, beam.damping_ratio)
     return System(
-        beam_step(natural, ratio, time_step),
+        beam_step(beam, path.time_step),
         natural**2,
-        2.0 * ratio * natural,
+        2.0 * beam.damping_ratio * natural,
         beam.shapes(sensors)[0] if sensors.size else np.zeros((0, natural.size)),
         float(ball.mass),
         float(ball.static_load),
-        float(time_step),
-        float(speed),
+        float(path.time_step),
+        float(path.speed),
         0.0,
     )
 
 
-def _at_rest(
-    system: System, beam: Beam, start: float, approach: float, samples: int
-) -> tuple[BeamMotion, BeamRecord]:
+def _at_rest(system: System, beam: Beam, path: Path, approach: float) -> tuple[BeamMotion, BeamRecord]:
     """State and records with the load carried statically at the start of the path."""
-    shape, slope = (row[0] for row in beam.shapes(start))
+    shape, slope = (row[0] for row in beam.shapes(path.positions[0]))
     displacement = shape * system.load / system.stiffness
-    modes = displacement.size
+    modes, samples = displacement.size, len(path.positions)
     motion = BeamMotion(
         displacement,
         np.zeros(modes),
@@ -297,23 +205,3 @@ def _warn_if_bent(deflection: NDArray, beam: Beam) -> None:
             LargeDeflectionWarning,
             stacklevel=3,
         )
-
-
-def _warn_if_coarse(
-    time_step: float, stiffness: float, mass: float, beam: Beam, highest_frequency: float | None
-) -> None:
-    """Compare the time step with the periods that it must resolve."""
-    limits = [
-        ("the contact resonance sqrt(k/m)", np.sqrt(max(stiffness, 0.0) / mass) / (2.0 * np.pi), 10.0),
-        ("the highest mode of the beam", beam.natural_frequencies.max(), 4.0),
-        ("the highest frequency asked for", highest_frequency or 0.0, 10.0),
-    ]
-    for what, frequency, least in limits:
-        if frequency * time_step * least > 1.0:
-            warnings.warn(
-                f"{what}, {frequency:.4g} Hz, has {1.0 / (frequency * time_step):.3g} time steps in a "
-                f"period, fewer than {least:.0f}: its response is distorted; "
-                f"take a time step of at most {1.0 / (least * frequency):.2g} s",
-                CoarseSamplingWarning,
-                stacklevel=3,
-            )

@@ -1,8 +1,7 @@
-"""A ball on a beam, advanced step by step."""
+"""A ball on a beam, advanced step by step, compiled."""
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.modal import (
@@ -14,63 +13,55 @@ from asperity.kernels.modal import (
     roll_beam,
 )
 from asperity.kernels.pointforce import Prepared
-from asperity.rolling.stepping import Free
+from asperity.kinds.ball_on_beam.energy import beam_energy
+from asperity.rolling.beam import ShapesAlong
+from asperity.rolling.path import Path
+from asperity.rolling.stepping import Free, copied, put_back
 from asperity.structures.beam import Beam
-
-CHUNK = 2048  # steps whose mode shapes are held at once
 
 
 class BeamStepper:
     """Ball and beam behind the protocol of `asperity.rolling.stepping.Stepper`.
 
-    Mode shapes are evaluated in chunks whose bounds do not depend on where a run was taken up, so that a
-    resumed run equals an uninterrupted one bit by bit.
-
     Parameters
     ----------
     system, motion, record
-        Constants, state and histories.
+        Constants, state and histories, at rest.
     beam : Beam
         Gives the mode shapes under the contact.
-    positions : ndarray (n,)
-        Of the contact, m; equally spaced by speed and time step.
+    path : Path
+        Where the contact is.
+
+    Attributes
+    ----------
+    at_rest : tuple of float
+        Displacement of the ball, m, and energy of the beam, J, at the start.
     """
 
     def __init__(
-        self,
-        system: System,
-        motion: BeamMotion,
-        record: BeamRecord,
-        beam: Beam,
-        positions: NDArray[np.float64],
+        self, system: System, motion: BeamMotion, record: BeamRecord, beam: Beam, path: Path
     ) -> None:
         self.system, self.motion, self.record = system, motion, record
-        self.beam, self.positions = beam, positions
-        self.load, self.total = system.load, len(positions) - 1
-        self._offset = -1
-        self._shapes = self._slopes = np.zeros((0, 0))
+        self.path, self.along = path, ShapesAlong(beam, path)
+        self.load, self.total = system.load, path.total
+        self.at_rest = float(motion.ball[0]), beam_energy(system, motion)
 
     def bound(self) -> int:
         """End of the chunk in which the next step lies; its mode shapes are made ready."""
-        offset = int(self.motion.counts[0]) // CHUNK * CHUNK
-        end = min(offset + CHUNK, self.total)
-        if offset != self._offset:
-            start, spacing = float(self.positions[offset]), self.system.speed * self.system.time_step
-            self._shapes, self._slopes = self.beam.shapes_along(start, spacing, end + 1 - offset)
-            self._offset = offset
-        return end
+        return self.along.end_of_chunk(int(self.motion.counts[0]) + 1)
 
     def roll(self, law: Prepared, stop: int, largest: float) -> bool:
         """Advance to a step under a compiled law."""
+        along = self.along
         return bool(
             roll_beam(
                 self.system,
                 self.motion,
                 self.record,
                 law,
-                self._shapes,
-                self._slopes,
-                self._offset,
+                along.shapes,
+                along.slopes,
+                along.offset,
                 stop,
                 largest,
             )
@@ -78,19 +69,25 @@ class BeamStepper:
 
     def free(self, step: int) -> Free:
         """Where a step ends without the force at its end."""
-        row = step - self._offset
-        result: Free = free_beam_step(self.system, self.motion, self._shapes[row - 1], self._shapes[row])
+        shape, ahead, _ = self.along.around(step)
+        result: Free = free_beam_step(self.system, self.motion, shape, ahead)
         return result
 
     def complete(self, step: int, force: float, evaluations: int, converged: bool) -> None:
         """Advance over the step whose end has this force."""
-        row = step - self._offset
-        shape, next_shape, next_slope = self._shapes[row - 1], self._shapes[row], self._slopes[row]
+        around = self.along.around(step)
         complete_beam_step(
-            self.system, self.motion, self.record, step, shape, next_shape, next_slope,
-            force, evaluations, converged,
+            self.system, self.motion, self.record, step, *around, force, evaluations, converged
         )  # fmt: skip
 
     def where(self, step: int) -> str:
         """Time and position of a step."""
-        return f"time {step * self.system.time_step:.6g} s, position {self.positions[step]:.6g} m"
+        return self.path.where(step)
+
+    def state(self) -> dict[str, NDArray]:
+        """Of the motion."""
+        return copied(self.motion)
+
+    def restore(self, state: dict[str, NDArray]) -> None:
+        """Go on from a saved state."""
+        put_back(self.motion, state)

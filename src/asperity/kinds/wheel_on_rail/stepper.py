@@ -1,8 +1,7 @@
-"""A wheel on a rail, advanced step by step."""
+"""A wheel on a rail, advanced step by step, compiled."""
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.pointforce import Prepared
@@ -14,7 +13,8 @@ from asperity.kernels.rail import (
     free_rail_step,
     roll_rail,
 )
-from asperity.rolling.stepping import Free
+from asperity.rolling.path import Path
+from asperity.rolling.stepping import Free, copied, put_back
 
 CHUNK = 16384  # steps between reports of progress
 
@@ -26,15 +26,13 @@ class RailStepper:
     ----------
     vehicle, motion, record
         Constants, state and histories.
-    positions : ndarray (n,)
-        Of the contact, m.
+    path : Path
+        Where the contact is.
     """
 
-    def __init__(
-        self, vehicle: Vehicle, motion: RailMotion, record: RailRecord, positions: NDArray[np.float64]
-    ) -> None:
-        self.vehicle, self.motion, self.record, self.positions = vehicle, motion, record, positions
-        self.load, self.total = vehicle.load, len(positions) - 1
+    def __init__(self, vehicle: Vehicle, motion: RailMotion, record: RailRecord, path: Path) -> None:
+        self.vehicle, self.motion, self.record, self.path = vehicle, motion, record, path
+        self.load, self.total = vehicle.load, path.total
 
     def bound(self) -> int:
         """Step up to which it is advanced in one go."""
@@ -55,4 +53,12 @@ class RailStepper:
 
     def where(self, step: int) -> str:
         """Time and position of a step."""
-        return f"time {step * self.vehicle.time_step:.6g} s, position {self.positions[step]:.6g} m"
+        return self.path.where(step)
+
+    def state(self) -> dict[str, NDArray]:
+        """Of the motion."""
+        return copied(self.motion)
+
+    def restore(self, state: dict[str, NDArray]) -> None:
+        """Go on from a saved state."""
+        put_back(self.motion, state)

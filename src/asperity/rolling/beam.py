@@ -1,0 +1,157 @@
+"""A finite beam that is rolled over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+from asperity.kernels.modal import modal_coefficients
+from asperity.rolling.path import Path
+from asperity.rolling.stability import RESOLVED
+from asperity.structures.beam import Beam
+
+CHUNK = 2048  # steps whose mode shapes are held at once
+PLACES = 256
+"""Positions at which mode shapes are looked at."""
+
+
+@dataclass(frozen=True)
+class RolledBeam:
+    """A beam behind the protocol of `asperity.rolling.bodies.RolledOver`."""
+
+    beam: Beam
+
+    def laid(self, path: Path, load: float) -> BeamSide:
+        """Let it carry the load at rest at the start of the path."""
+        refuse_off_the_beam(self.beam, path)
+        return BeamSide(self.beam, path, load)
+
+    def alternating_compliance(self, path: Path) -> float:
+        """Least of all places on the path, m/N."""
+        shapes = self.beam.shapes(path.positions[:: max(1, len(path.positions) // PLACES)])[0]
+        return modal_alternating_compliance(beam_step(self.beam, path.time_step), shapes)
+
+
+class BeamSide:
+    """A beam in contact, exact mode by mode: q'' + 2ζω q' + ω² q = φ F, displacement Σ φ q."""
+
+    def __init__(self, beam: Beam, path: Path, load: float) -> None:
+        self.path, self.shapes = path, ShapesAlong(beam, path)
+        self.step = beam_step(beam, path.time_step)
+        shape = beam.shapes(path.positions[0])[0][0]
+        self.modes = shape * load / (2.0 * np.pi * beam.natural_frequencies) ** 2
+        self.rates = np.zeros_like(self.modes)
+        self.displacement, self.velocity = float(shape @ self.modes), 0.0
+
+    def free(self, step: int, before: float) -> float:
+        """Displacement at the end of a step without the force there, m."""
+        a, (shape, ahead, _) = self.step, self.shapes.around(step)
+        return float(ahead @ (a[0] * self.modes + a[1] * self.rates + a[2] * (shape * before)))
+
+    def compliance(self, step: int) -> float:
+        """Of the force at the end of a step, m/N."""
+        return float(self.shapes.around(step)[1] ** 2 @ self.step[3])
+
+    def complete(self, step: int, before: float, force: float) -> None:
+        """Advance over a step; the velocity holds what the contact climbs on the bent beam."""
+        a, (shape, ahead, slope) = self.step, self.shapes.around(step)
+        parts = np.array([self.modes, self.rates, shape * before, ahead * force])
+        self.modes, self.rates = (a[:4] * parts).sum(axis=0), (a[4:] * parts).sum(axis=0)
+        self.displacement = float(ahead @ self.modes)
+        self.velocity = float(ahead @ self.rates + self.path.speed * (slope @ self.modes))
+
+    def state(self) -> dict[str, NDArray]:
+        """Modal coordinates and their rates, and what they are at the contact."""
+        contact = np.array([self.displacement, self.velocity])
+        return {"modes": self.modes, "rates": self.rates, "contact": contact}
+
+    def restore(self, state: dict[str, NDArray]) -> None:
+        """Go on from there."""
+        self.modes, self.rates = state["modes"], state["rates"]
+        self.displacement, self.velocity = (float(value) for value in state["contact"])
+
+
+class ShapesAlong:
+    """Mode shapes under the contact, in chunks whose bounds do not depend on where a run was taken up.
+
+    A resumed run thus equals an uninterrupted one bit by bit.
+    """
+
+    def __init__(self, beam: Beam, path: Path) -> None:
+        self.beam, self.path, self.offset = beam, path, -1
+        self.shapes = self.slopes = np.zeros((0, 0))
+
+    def end_of_chunk(self, step: int) -> int:
+        """Make ready the chunk of the step that ends at `step`; the last one in it."""
+        offset = (step - 1) // CHUNK * CHUNK
+        end = min(offset + CHUNK, self.path.total)
+        if offset != self.offset:
+            start, spacing = float(self.path.positions[offset]), self.path.speed * self.path.time_step
+            self.shapes, self.slopes = self.beam.shapes_along(start, spacing, end + 1 - offset)
+            self.offset = offset
+        return end
+
+    def around(self, step: int) -> tuple[NDArray, NDArray, NDArray]:
+        """Shapes at start and end of a step, kg^-1/2, and slopes at its end, kg^-1/2 per metre."""
+        self.end_of_chunk(step)
+        row = step - self.offset
+        return self.shapes[row - 1], self.shapes[row], self.slopes[row]
+
+
+def beam_step(beam: Beam, time_step: float) -> NDArray:
+    """Exact step of a beam's modes, as `asperity.kernels.modal.modal_coefficients` has it.
+
+    Parameters
+    ----------
+    beam : Beam
+        Its natural frequencies and damping.
+    time_step : float
+        s.
+
+    Returns
+    -------
+    ndarray (8, modes)
+        Of modes that turn by more than RESOLVED in a step only the static answer to the force at its end:
+        sampled, they would seem slow, and move the wrong way.
+    """
+    natural = 2.0 * np.pi * beam.natural_frequencies
+    return resolved_step(natural, np.full(natural.shape, beam.damping_ratio), time_step)
+
+
+def resolved_step(natural: NDArray, damping_ratio: NDArray, time_step: float) -> NDArray:
+    """As `beam_step`, of natural angular frequencies (modes,), rad/s, and damping ratios (modes,)."""
+    coefficients = modal_coefficients(natural, damping_ratio, time_step)
+    damped = natural * np.sqrt(np.maximum(1.0 - damping_ratio**2, 0.0))
+    fast = damped * time_step > RESOLVED
+    coefficients[:, fast] = 0.0
+    coefficients[3, fast] = 1.0 / natural[fast] ** 2
+    return coefficients
+
+
+def modal_alternating_compliance(coefficients: NDArray, shapes: NDArray) -> float:
+    """Least alternating compliance of modes, m/N: of coefficients (8, modes) and shapes (places, modes)."""
+    a = coefficients
+    # q and q' change their sign from step to step, as the force does
+    determinant = (1.0 + a[0]) * (1.0 + a[5]) - a[1] * a[4]
+    each = ((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant
+    return float((shapes**2 @ each).min())
+
+
+def refuse_off_the_beam(beam: Beam, path: Path) -> None:
+    """Refuse a path that leaves the beam.
+
+    Raises
+    ------
+    InputError
+        If it does.
+    """
+    start, first, end = (float(path.positions[i]) for i in (path.settled, 0, -1))
+    if not (first >= -1e-9 * beam.length and end <= beam.length * (1.0 + 1e-9)):
+        longest = (beam.length - start) / path.speed
+        remedy = f"From there the beam ends after {longest:.6g} s." if first >= 0.0 else "Start on the beam."
+        raise InputError(
+            "path (m)", f"{first:.6g} to {end:.6g}", f"0 to {beam.length:.6g}, on the beam", remedy
+        )

@@ -1,0 +1,170 @@
+"""Rolling any bodies under a law: from rest to the end of the path, and what is recorded of it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import CoarseSamplingWarning, Outcome
+from asperity.kernels.pointforce import Prepared
+from asperity.laws.base import Law
+from asperity.progress import Progress
+from asperity.rolling.equilibrium import static_approach
+from asperity.rolling.events import ContactLoss, contact_losses
+from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
+from asperity.rolling.path import Path
+from asperity.rolling.stability import largest_force, largest_stiffness, softening
+from asperity.rolling.stepping import Stepper, restore, run
+from asperity.store import Checkpoint
+
+S = TypeVar("S", bound=Stepper)
+Limit = tuple[str, float, float]
+"""What must be resolved: its name, its frequency, Hz, and the time steps in a period that it takes."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rolled:
+    """One body has rolled over another.
+
+    Parameters
+    ----------
+    time : ndarray (n,)
+        s, uniform from zero, after the run-in.
+    position : ndarray (n,)
+        Of the contact, m.
+    contact_force : ndarray (n,)
+        N, compression positive.
+    relative_displacement : ndarray (n,)
+        Approach of the mean surfaces, m, positive closing.
+    in_contact : ndarray (n,) of bool
+        Whether the bodies touch.
+    contact_loss : list of ContactLoss
+        Flights.
+    evaluations, unconverged_steps : int
+        Evaluations of the law, and time steps whose contact force missed the tolerance, of run-in and run.
+    outcome : Outcome
+        Whether all steps converged.
+    """
+
+    time: NDArray[np.float64]
+    position: NDArray[np.float64]
+    contact_force: NDArray[np.float64]
+    relative_displacement: NDArray[np.float64]
+    in_contact: NDArray[np.bool_]
+    contact_loss: list[ContactLoss]
+    evaluations: int
+    unconverged_steps: int
+    outcome: Outcome
+
+    @property
+    def contact_loss_share(self) -> float:
+        """Share of the time out of contact."""
+        return 1.0 - float(np.mean(self.in_contact))
+
+    @property
+    def longest_loss(self) -> float:
+        """Duration of the longest flight, s."""
+        return max((event.duration for event in self.contact_loss), default=0.0)
+
+
+def roll_along(
+    path: Path,
+    law: Law,
+    load: float,
+    stand: Callable[[float, float], S],
+    *,
+    alternating: float,
+    limits: Callable[[float], Iterable[Limit]],
+    judge: Callable[[S], None] = lambda stepper: None,
+    progress: Progress | None,
+    checkpoint: Checkpoint | None,
+) -> tuple[Rolled, S]:
+    """Roll bodies along a path under a law, from static equilibrium.
+
+    Parameters
+    ----------
+    path : Path
+        Where the contact is at every time step.
+    law : Law
+        The contact between the bodies.
+    load : float
+        Static force, N.
+    stand : callable
+        From the approach as the law sees it under the load, m, and a compliance in series with the contact,
+        m/N, to the bodies at rest.
+    alternating : float
+        Least alternating compliance of the bodies, m/N (`asperity.rolling.stability`).
+    limits : callable
+        From the contact stiffness at rest, N/m, to what the time step must resolve.
+    judge : callable, optional
+        Looks at the bodies at the end, also at that of a motion that runs away, and may warn.
+    progress : callable or None
+        Called with steps done, steps in all, and a message.
+    checkpoint : Checkpoint or None
+        Where to keep the state about every 10 s, at the end and when interrupted, and to go on from.
+
+    Returns
+    -------
+    rolled : Rolled
+        Time histories and losses of contact.
+    stepper : Stepper
+        The bodies at the end of the path, with their records of run-in and record.
+
+    Raises
+    ------
+    InputError
+        If the checkpoint is of another run.
+    ComputationError
+        If the load cannot be carried, or the motion runs away.
+
+    Warns
+    -----
+    CoarseSamplingWarning, ExtrapolationWarning, UnconvergedWarning
+        If the time step is coarse, the law was continued beyond its data, or forces missed the tolerance.
+    """
+    prepared = law.prepare(path.positions)
+    relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
+    approach, stiffness = static_approach(evaluation(prepared, 0), load, relative)
+    _warn_if_coarse(path.time_step, limits(stiffness))
+    stiffest, strongest = largest_stiffness(prepared, (approach, stiffness))
+    softer = softening(alternating, stiffest, law.damping, stiffness, path.time_step)
+    stepper = stand(approach, softer)
+    restore(checkpoint, stepper, prepared)
+    try:
+        run(stepper, prepared, law.damping, largest_force(load, strongest), progress, checkpoint)
+    finally:  # why a motion may have run away
+        judge(stepper)
+    record, counts, kept = stepper.record, stepper.motion.counts, slice(path.settled, None)
+    seen = record.approach - softer * record.force
+    apart = flying(prepared, record.force, seen)[kept]
+    warn_after(law.name, counts, prepared, seen)
+    rolled = Rolled(
+        time=path.time,
+        position=path.positions[kept],
+        contact_force=record.force[kept],
+        relative_displacement=record.approach[kept],
+        in_contact=~apart,
+        contact_loss=contact_losses(apart, path.time_step),
+        evaluations=int(counts[2]),
+        unconverged_steps=int(counts[1]),
+        outcome=Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
+    )
+    return rolled, stepper
+
+
+def _warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:
+    """Compare the time step with the periods that it must resolve."""
+    for what, frequency, least in limits:
+        if frequency * time_step * least > 1.0:
+            warnings.warn(
+                f"{what}, {frequency:.4g} Hz, has {1.0 / (frequency * time_step):.3g} time steps in a "
+                f"period, fewer than {least:.0f}: its response is distorted; "
+                f"take a time step of at most {1.0 / (least * frequency):.2g} s",
+                CoarseSamplingWarning,
+                stacklevel=4,
+            )
