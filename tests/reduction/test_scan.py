@@ -1,12 +1,13 @@
 """The quasi-static scan: geometry, signs, caching and messages."""
 
+import doctest
 import threading
 
 import numpy as np
 import pytest
 
 from asperity import HalfSpace, HeightMap
-from asperity.contact import Hertz
+from asperity.contact import Hertz, halfspace
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
 from asperity.store import content_key
@@ -221,6 +222,14 @@ def test_bad_input(change, message):
     keywords = {"surface": np.zeros((60, 41)), "body": ball(41), "approaches": [0.1e-6]}
     with pytest.raises(InputError, match=message):
         half_space().scan(**(keywords | change))
+
+
+def test_the_example_of_a_scan_holds():
+    """A crest of 50 nm lifts the force above Hertz's on the plane, 1.37 N, a trough lowers it."""
+    found = doctest.testmod(halfspace)
+    assert found.attempted >= 6
+    assert found.failed == 0
+    assert 1.03 < Hertz(MODULUS, RADIUS, RADIUS).force(0.2e-6) < 1.75
 
 
 def test_a_height_map_is_scanned_like_its_heights():

@@ -62,7 +62,7 @@ def test_first_touch_along_the_path_is_found_once(monkeypatch):
 
 
 def test_every_scan_of_a_case_has_the_tolerance_of_its_key(monkeypatch):
-    """1e-3 of the force asks for a residual of 4e-4, in scans for filters a tenth; each is named by its key."""
+    """1e-3 of the force asks for a residual of 4e-4, scans for filters for a tenth; warnings name the key."""
     asked = set()
 
     def noted(self):

@@ -282,6 +282,16 @@ class HalfSpace:
         ------
         InputError
             For sizes that do not fit, or values that are not finite.
+
+        Examples
+        --------
+        >>> x = 5e-6 * np.arange(-20, 21)
+        >>> ball = np.add.outer(x**2, x**2) / (2 * 10e-3)
+        >>> wave = 50e-9 * np.cos(2 * np.pi * np.arange(80) / 40)
+        >>> surface = np.repeat(wave[:, None], 41, axis=1)
+        >>> forces = HalfSpace((41, 41), 5e-6, 115e9).scan(surface, ball, [0.1e-6, 0.2e-6], stride=10)
+        >>> forces.sel(approach=0.2e-6).values.round(2)  # a crest is under the ball at the third position
+        array([1.03, 1.44, 1.75, 1.44])
         """
         from asperity.contact.public_scan import scan_surface
 
