@@ -7,6 +7,8 @@ import json
 import numpy as np
 import xarray as xr
 
+from asperity.schema import VERSION
+
 LAWS = ["areal", "shifted", "printed", "table", "linear-filtered", "linear"]
 SENSORS = [0.2, 0.35, 0.5, 0.65, 0.8]
 DATUM = 1.5e-6
@@ -23,6 +25,7 @@ def root_attrs():
     return {
         "title": "Steel ball on a steel beam",
         "asperity_version": "0.1.0",
+        "schema_version": VERSION,
         "created": "2026-01-02T03:04:05+00:00",
         "case": 'kind = "ball-on-beam"\nspeed = "1 m/s"\n\n[ball]\nradius = "25 mm"\nmaterial = "steel"\n',
         "seed": 1,
@@ -203,7 +206,11 @@ def contact(rng):
             "tangent_stiffness": variable("approach", np.gradient(force, approach), "N/m", "dF/dδ"),
             "hertz_force": variable("approach", hertz, "N", "Hertz"),
             "hertz_stiffness": variable("approach", hertz / r, "N/m", "F/r of smooth bodies, at r − d₀"),
-            "filter": variable(("approach", "wavenumber"), np.abs(noisy), "1", "contact filter, magnitude"),
+            "filter": (
+                ("approach", "wavenumber"),
+                np.abs(noisy),
+                {"units": "1", "long_name": "contact filter, magnitude", "normalise": "tangent"},
+            ),
             "filter_raw": variable(("approach", "wavenumber"), 1.02 * estimated, "1", "ratio of the spectra"),
             "filter_applied": variable(("approach", "wavenumber"), 0.99 * np.abs(noisy), "1", "of the taps"),
             "filter_std": variable(("approach", "wavenumber"), 0.05 + 0 * noisy, "1", "its spread"),
@@ -230,7 +237,6 @@ def contact(rng):
             "datum_samples": DATUM,
             "datum_path": 1.25 * DATUM,
             "samples": 8,
-            "normalise": "tangent",
             "working_load": LOAD,
             "working_approach": 0.55e-6,
             "hertz_radius": 1.25e-4,
@@ -312,8 +318,10 @@ def spectra(rng, laws, duration):
             "force_level_difference_to_linear": variable(
                 ("law", "band"), difference("linear"), "dB", "difference to linear"
             ),
-            "force_level_difference_to_reference": variable(
-                ("law", "band"), difference("table"), "dB", "difference to table"
+            "force_level_difference_to_reference": (
+                ("law", "band"),
+                difference("table"),
+                {"units": "dB", "long_name": "difference to table", "reference": "table"},
             ),
             "acceleration_psd": variable(
                 ("law", "sensor", "frequency"), acceleration, "(m/s2)2/Hz", "acceleration PSD"

@@ -82,6 +82,7 @@ def track():
             "start_position": ("start_position", start, {"units": "m"}),
         },
         attrs={
+            "sleeper_spacing": SLEEPERS,
             "pinned_pinned_frequency": PINNED,
             "cut_on_frequency": 283.0,
             "antiresonance_frequency": 225.0,
@@ -154,6 +155,7 @@ def rolling(rng, laws, steps, time_step, flat=True):
             "point": ("point", points, {"units": "m"}),
             "time": ("time", time, {"units": "s"}),
         },
+        attrs={"speed": SPEED},
     )
 
 

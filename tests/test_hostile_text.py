@@ -22,6 +22,7 @@ from asperity.kinds import KINDS
 from asperity.kinds.cases import as_case, load_case, parse_case
 from asperity.kinds.wheel_on_rail.tables import LEVELS, read_levels, read_table
 from asperity.results import GROUPS, read_result, save
+from asperity.schema import VERSION
 from asperity.store import Store
 from asperity.studies.definition import load_study, study_of
 from asperity.surfaces.heightmap import HeightMap
@@ -363,7 +364,9 @@ def test_few_of_many_names_are_listed(tmp_path):
 
 def test_a_result_may_name_files_that_are_no_utf8(tmp_path):
     groups = {f"/{name}": xr.Dataset() for name in GROUPS}
-    groups["/"] = xr.Dataset(attrs={"asperity_version": "1", "case": 'file = "\udcff.npy"'})
+    groups["/"] = xr.Dataset(
+        attrs={"asperity_version": "1", "schema_version": VERSION, "case": 'file = "\udcff.npy"'}
+    )
     tree = xr.DataTree.from_dict(groups)
     assert read_result(save(tree, tmp_path / "run.nc")).attrs["case"] == 'file = "\\udcff.npy"'
     assert tree.attrs["case"] == 'file = "\udcff.npy"'

@@ -7,6 +7,7 @@ import xarray as xr
 import asperity
 from asperity.errors import InputError
 from asperity.results import GROUPS, case_text, checked, read_result, save, variable
+from asperity.schema import VERSION
 
 
 def small_tree():
@@ -19,7 +20,12 @@ def small_tree():
     groups["/rolling"] = xr.Dataset({"contact_force": force}, coords={"time": time, "law": laws})
     groups["/scenario"] = xr.Dataset(attrs={"kind": "ball-on-beam"})
     groups["/"] = xr.Dataset(
-        attrs={"asperity_version": "0.1.0", "seed": 1, "case": "kind = 'ball-on-beam'  # µm"}
+        attrs={
+            "asperity_version": "0.1.0",
+            "schema_version": VERSION,
+            "seed": 1,
+            "case": "kind = 'ball-on-beam'  # µm",
+        }
     )
     return xr.DataTree.from_dict(groups)
 
@@ -84,6 +90,24 @@ def test_a_netcdf_file_of_another_kind_is_refused(tmp_path):
     xr.Dataset({"force": ("time", [1.0])}).to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
     with pytest.raises(InputError, match="of another kind"):
         read_result(tmp_path / "run.nc")
+
+
+@pytest.mark.parametrize(
+    ("version", "remedy"),
+    [
+        (VERSION + 1, r"Update asperity\."),
+        (VERSION - 1, r"Run its case again, or read it with asperity '0\.0\.9'\."),
+        (None, r"Run its case again"),
+        ("one", "Run its case again"),
+    ],
+)
+def test_a_result_of_another_schema_is_refused_with_what_to_do(tmp_path, version, remedy):
+    tree = small_tree()
+    tree.attrs |= {"schema_version": version, "asperity_version": "0.0.9"}
+    if version is None:
+        del tree.attrs["schema_version"]
+    with pytest.raises(InputError, match=f"allowed: schema version {VERSION}.*{remedy}"):
+        read_result(save(tree, tmp_path / "run.nc"))
 
 
 def test_a_file_too_large_is_refused(tmp_path, monkeypatch):

@@ -5,21 +5,22 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Hashable, Sequence
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from asperity.apart import apart, reason
-from asperity.arguments import file_path, no_file
+from asperity.arguments import file_path, no_file, shown
 from asperity.errors import InputError
 from asperity.files import is_sealed, write_bytes
+from asperity.schema import VERSION
+from asperity.schema.provenance import ASPERITY_VERSION, CASE, SCHEMA_VERSION
 
 if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike
 
 GROUPS = ("scenario", "surface", "contact", "rolling", "spectra")
-BASELINES = ("linear-filtered", "linear")
-"""Laws that all others are compared with; first that of practice, as in CNOSSOS-EU and TWINS."""
 LARGEST_FILE = 16 * 2**30  # bytes
 
 
@@ -48,22 +49,6 @@ def variable(
     import xarray
 
     return xarray.Variable(dims, values, {"units": units, "long_name": long_name, **attrs})
-
-
-def difference_name(baseline: str) -> str:
-    """Name of the variable that holds the force levels over those of a law.
-
-    Parameters
-    ----------
-    baseline : str
-        The law.
-
-    Returns
-    -------
-    str
-        In the group of spectra.
-    """
-    return f"force_level_difference_to_{baseline.replace('-', '_')}"
 
 
 def checked(tree: xarray.DataTree) -> xarray.DataTree:
@@ -173,9 +158,22 @@ def read_result(path: str | os.PathLike[str]) -> xarray.DataTree:
         received = "a damaged file: its digest does not fit its contents"
         raise InputError(str(path), received, allowed, "Run its case again.")
     tree = _opened(path)
-    if "asperity_version" not in tree.attrs or not set(GROUPS) <= set(tree.children):
+    if ASPERITY_VERSION.name not in tree.attrs or not set(GROUPS) <= set(tree.children):
         raise InputError(str(path), "a netCDF-4 file of another kind", allowed)
+    _check_version(path, tree)
     return tree
+
+
+def _check_version(path: Path, tree: xarray.DataTree) -> None:
+    """Refuse a result whose names are those of another version: figures would vanish from its report."""
+    stated = tree.attrs.get(SCHEMA_VERSION.name)
+    found = int(stated) if isinstance(stated, Integral) else 0
+    if found == VERSION:
+        return
+    writer = f"asperity {shown(tree.attrs[ASPERITY_VERSION.name])}"
+    received = f"a result of schema version {found}, written by {writer}"
+    remedy = "Update asperity." if found > VERSION else f"Run its case again, or read it with {writer}."
+    raise InputError(str(path), received, f"schema version {VERSION}", remedy)
 
 
 def _opened(path: Path) -> xarray.DataTree:
@@ -228,7 +226,7 @@ def case_text(path: str | os.PathLike[str]) -> str:
             if not is_sealed(sealed):
                 raise ValueError("its digest is missing, or does not fit")
         with h5netcdf.File(path, "r") as file:
-            return str(file.attrs["case"])
+            return str(file.attrs[CASE.name])
     except Exception as error:  # h5py raises errors of many kinds on damaged files
         received = f"a file without a readable case ({reason(error)})"
         raise InputError(str(path), received, "a result file that a run has written (run.nc)") from error

@@ -17,6 +17,7 @@ from asperity.apart import MEMORY
 from asperity.errors import AsperityError, InputError, PhysicsWarning
 from asperity.kinds.cases import parse_case
 from asperity.results import read_result, save, variable
+from asperity.schema import VERSION
 from asperity.surfaces.readers import netcdf, read_surface
 from asperity.surfaces.readers.hints import checked_hints
 
@@ -198,7 +199,9 @@ def test_no_damage_of_a_result_goes_unseen(tmp_path):
     force = variable("time", np.random.default_rng(1).normal(size=2000), "N", "force")
     groups = {f"/{name}": xarray.Dataset() for name in ("scenario", "surface", "contact", "spectra")}
     groups["/rolling"] = xarray.Dataset({"contact_force": force})
-    groups["/"] = xarray.Dataset(attrs={"asperity_version": "1", "case": "kind", "warnings": "[]"})
+    groups["/"] = xarray.Dataset(
+        attrs={"asperity_version": "1", "schema_version": VERSION, "case": "kind", "warnings": "[]"}
+    )
     file = save(xarray.DataTree.from_dict(groups), tmp_path / "run.nc")
     whole, source = file.read_bytes(), random.Random("run")
     for place in range(0, len(whole), 7 if LONG else 211):

@@ -5,6 +5,7 @@ import warnings
 
 import numpy as np
 import pytest
+from asperity.scenarios.missing import UNKNOWN
 from program import LONG
 
 import asperity
@@ -13,7 +14,6 @@ from asperity.config.keys import Choice, Number, Quantity, extra_of, kind_of
 from asperity.errors import AsperityError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of
-from asperity.scenarios.missing import UNKNOWN
 from asperity.units import quantity
 
 SHORT = {

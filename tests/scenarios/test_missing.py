@@ -7,8 +7,9 @@ import xarray as xr
 import asperity
 from asperity.errors import PhysicsWarning
 from asperity.kinds.report import page
-from asperity.results import variable
-from asperity.scenarios.missing import NO_SIGNAL, UNKNOWN, marked
+from asperity.schema import Entry
+from asperity.schema.entry import UNKNOWN
+from asperity.schema.spectra import NO_SIGNAL
 
 BEAM = {
     "kind": "ball-on-beam",
@@ -27,24 +28,26 @@ RAIL = {
 }
 
 
+LEVEL = Entry("spectra", "level", ("band",), "dB re 1 N", "level", missing=NO_SIGNAL)
+FORCE = Entry("rolling", "force", ("time",), "N", "force")
+
+
 def test_levels_of_nothing_are_missing_not_infinite():
-    group = xr.Dataset({"level": variable("band", [1.0, -np.inf], "dB re 1 N", "level")})
-    found = marked(group)["level"]
+    found = LEVEL.variable([1.0, -np.inf])
     np.testing.assert_array_equal(found.values, [1.0, np.nan])
     assert found.attrs["missing"] == NO_SIGNAL
     assert found.attrs["long_name"] == "level"
 
 
 def test_what_is_finite_is_left_as_it_is():
-    group = xr.Dataset({"force": variable("time", [1.0, 2.0], "N", "force")})
-    xr.testing.assert_identical(marked(group), group)
+    expected = xr.Variable("time", [1.0, 2.0], {"units": "N", "long_name": "force"})
+    xr.testing.assert_identical(FORCE.variable([1.0, 2.0]), expected)
 
 
 def test_a_number_that_should_be_there_is_warned_of():
-    group = xr.Dataset({"force": variable("time", [1.0, np.nan], "N", "force")})
     with pytest.warns(PhysicsWarning, match="1 of 2 values of force are not finite numbers"):
-        found = marked(group)
-    assert found["force"].attrs["missing"] == UNKNOWN
+        found = FORCE.variable([1.0, np.nan])
+    assert found.attrs["missing"] == UNKNOWN
 
 
 def unmarked(tree):

@@ -15,16 +15,17 @@ from asperity.kinds import KINDS
 from asperity.reporting import page as pages
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.csv_files import write_csv
-from asperity.reporting.data import group_attrs
+from asperity.reporting.data import stated
 from asperity.reporting.page import drawable_parts
 from asperity.reporting.part import Part
+from asperity.schema.provenance import KIND
 
 
 def chapters_of(tree: DataTree) -> tuple[Chapter, ...]:
     """Chapters for the kind of case that `tree` is the result of; where it does not say, that shows most."""
-    stated = group_attrs(tree, "scenario").get("kind")
-    if stated in KINDS:
-        return KINDS[stated].chapters
+    kind = stated(tree, KIND)
+    if kind in KINDS:
+        return KINDS[kind].chapters
     return max(
         (kind.chapters for kind in KINDS.values()), key=lambda chapters: len(drawable_parts(tree, chapters))
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +13,7 @@ from xarray import DataTree
 
 from asperity.reporting.data import engineering, force_unit, laws, number, present, values
 from asperity.reporting.filter_figures import FILTER
-from asperity.reporting.part import Columns, Part
+from asperity.reporting.part import Data, Part, Series, field, present_series, series
 from asperity.reporting.style import (
     INK,
     LAW_STYLES,
@@ -20,6 +22,8 @@ from asperity.reporting.style import (
     styled,
 )
 from asperity.reporting.texture import draw_map, length_unit
+from asperity.schema import Entry, contact
+from asperity.schema.rolling import CONTACT_FORCE
 
 _BLUE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "table"))
 CURVE_POINTS = 200
@@ -30,13 +34,17 @@ def _centre(axis: NDArray[np.float64]) -> float:
     return 0.0 if axis[0] <= 0 <= axis[-1] else float(axis[0] + axis[-1]) / 2
 
 
+def pressure_data(tree: DataTree) -> Data:
+    """Pressure: one row per x, one column per y."""
+    return field(tree, contact.PRESSURE, contact.PX, contact.PY, "p")
+
+
 @styled()
-def pressure_figure(tree: DataTree) -> Figure:
+def pressure_figure(tree: DataTree, data: Data) -> Figure:
     """Pressure and, if known, gap at the working load, with the outline of Hertz's contact."""
-    with_gap = present(tree, "contact/gap")
+    with_gap = present(tree, contact.GAP)
     figure, panels = side_by_side(4.1, (1, 1))
-    x, y = values(tree, "contact/px"), values(tree, "contact/py")
-    pressure = values(tree, "contact/pressure", "px", "py")
+    x, y, pressure = data.at, values(tree, contact.PY), data.field
     unit = length_unit(np.ptp(x))
     symbol, size = ("GPa", 1e9) if pressure.max() >= 2e9 else ("MPa", 1e6)
     loaded = np.where(pressure > 0, pressure, np.nan) / size
@@ -46,7 +54,7 @@ def pressure_figure(tree: DataTree) -> Figure:
     panels[0].set_facecolor("#f6f6f6")  # on a dark page too: the colours run from light to black
     semi_axes = _semi_axes(tree)
     if with_gap:
-        gap = values(tree, "contact/gap", "px", "py")
+        gap = values(tree, contact.GAP, "px", "py")
         height, height_symbol = length_unit(float(np.nanmax(gap)) or 1e-6)
         image = draw_map(panels[1], x, y, gap / height, unit, cmap="cividis", vmin=0)
         figure.colorbar(image, ax=panels[1], label=f"gap / {height_symbol}", shrink=0.9)
@@ -60,7 +68,7 @@ def pressure_figure(tree: DataTree) -> Figure:
 
 def _semi_axes(tree: DataTree) -> tuple[float, float] | None:
     """Semi-axes of Hertz's contact in m: along the rolling direction and across; the same for a circle."""
-    along, across = (number(tree, "contact", f"hertz_radius{end}") for end in ("", "_across"))
+    along, across = (number(tree, axis) for axis in (contact.HERTZ_RADIUS, contact.HERTZ_RADIUS_ACROSS))
     return (along, across or along) if along else None
 
 
@@ -98,95 +106,91 @@ def _pressure_section(
     axes.set_title("along the middle")
 
 
-def pressure_columns(tree: DataTree) -> Columns:
-    """Pressure: one row per x, one column per y."""
-    pressure = values(tree, "contact/pressure", "px", "py")
-    columns: Columns = {"x [m]": values(tree, "contact/px")}
-    for index, position in enumerate(values(tree, "contact/py")):
-        columns[f"p(y={position:.9g} m) [Pa]"] = pressure[:, index]
-    return columns
-
-
 def _pressure_caption(tree: DataTree) -> str:
     parts = []
     semi_axes = _semi_axes(tree)
     oval = semi_axes is not None and semi_axes[0] != semi_axes[1]
     outline = "semi-axis of Hertz's contact in rolling direction" if oval else "radius of Hertz's contact"
-    for name, label, unit in (
-        ("working_load", "working load", "N"),
-        ("working_approach", "approach", "m"),
-        ("hertz_radius", f"{outline} (dashed {'ellipse' if oval else 'circle'})", "m"),
-        *([("hertz_radius_across", "across", "m")] if oval else []),
-        ("contact_area", "area in contact", "m²"),
+    for attribute, label in (
+        (contact.WORKING_LOAD, "working load"),
+        (contact.WORKING_APPROACH, "approach"),
+        (contact.HERTZ_RADIUS, f"{outline} (dashed {'ellipse' if oval else 'circle'})"),
+        *([(contact.HERTZ_RADIUS_ACROSS, "across")] if oval else []),
+        (contact.CONTACT_AREA, "area in contact"),
     ):
-        found = number(tree, "contact", name)
+        found = number(tree, attribute)
         if found is not None:
-            parts.append(f"{label} {engineering(found, unit)}")
-    peak = engineering(float(np.nanmax(values(tree, "contact/pressure"))), "Pa")
-    area = number(tree, "contact", "contact_area")
+            parts.append(f"{label} {engineering(found, attribute.units.replace('m2', 'm²'))}")
+    peak = engineering(float(np.nanmax(values(tree, contact.PRESSURE))), "Pa")
+    area = number(tree, contact.CONTACT_AREA)
     if area and semi_axes:
         parts[-1] += f" ({100 * area / (np.pi * semi_axes[0] * semi_axes[1]):.0f} % of Hertz's)"
     return f"First sample at the working load: {'; '.join([*parts, f'highest pressure {peak}'])}."
 
 
+_CURVES = (
+    contact.FORCE,
+    contact.FORCE_STD,
+    contact.HERTZ_FORCE,
+    contact.STIFFNESS,
+    contact.STIFFNESS_STD,
+    contact.TANGENT_STIFFNESS,
+    contact.HERTZ_STIFFNESS,
+    contact.CONTACT_RADIUS,
+)
+
+
+def force_data(tree: DataTree) -> Data:
+    """Force and stiffness against approach and state."""
+    approach = series(tree, contact.APPROACH)
+    lines = present_series(tree, {entry: entry.name for entry in _CURVES})
+    datum = number(tree, contact.DATUM)
+    if datum is not None:
+        state: dict[Any, Series] = {"state": Series("state r", "m", approach.values + datum)}
+        lines = state | lines
+    return Data(approach, lines)
+
+
 @styled()
-def force_figure(tree: DataTree) -> Figure:
+def force_figure(tree: DataTree, data: Data) -> Figure:
     """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
     figure, panels = side_by_side(4.2, (1, 1))
-    approach = values(tree, "contact/approach")
-    rough = present(tree, "contact/force_std") and bool(np.nanmax(values(tree, "contact/force_std")) > 0)
-    size, symbol = force_unit(float(np.nanmax(values(tree, "contact/force"))))
-    forces = (
-        (
-            "force",
-            "rough, mean ± standard deviation" if rough else "smooth bodies (Hertz)",
-            _BLUE,
-            "-",
-            "o",
-            size,
-        ),
-    )
-    _curves(panels[0], tree, approach, forces)
-    _hertz(panels[0], tree, approach, 1.5, size)
+    rough = bool(contact.FORCE_STD in data.lines and np.nanmax(data.lines[contact.FORCE_STD].values) > 0)
+    size, symbol = force_unit(float(np.nanmax(data.lines[contact.FORCE].values)))
+    force = "rough, mean ± standard deviation" if rough else "smooth bodies (Hertz)"
+    secant = "k_c = F/r, mean ± standard deviation" if rough else "F/r, smooth bodies (Hertz)"
+    solid, dotted = {"color": _BLUE, "linestyle": "-"}, {"color": _GREEN, "linestyle": (0, (1.5, 1.5))}
+    _curve(panels[0], data, contact.FORCE, contact.FORCE_STD, size, label=force, **solid)
+    _hertz(panels[0], tree, data.at, 1.5, size)
     panels[0].set_ylabel(f"contact force F / {symbol}")
-    stiffnesses = (
-        (
-            "stiffness",
-            "k_c = F/r, mean ± standard deviation" if rough else "F/r, smooth bodies (Hertz)",
-            _BLUE,
-            "-",
-            "o",
-            1e6,
-        ),
-        ("tangent_stiffness", "tangent dF/dδ", _GREEN, (0, (1.5, 1.5)), "", 1e6),
-    )
-    _curves(panels[1], tree, approach, stiffnesses)
-    _hertz(panels[1], tree, approach, 0.5, 1e6)
+    _curve(panels[1], data, contact.STIFFNESS, contact.STIFFNESS_STD, 1e6, label=secant, **solid)
+    _curve(panels[1], data, contact.TANGENT_STIFFNESS, None, 1e6, label="tangent dF/dδ", **dotted)
+    _hertz(panels[1], tree, data.at, 0.5, 1e6)
     panels[1].set_ylabel("stiffness / (MN/m)")
     for axes in panels:
-        _approach_axis(axes, tree, approach)
+        _approach_axis(axes, tree, data.at)
         axes.set_ylim(bottom=0)
         axes.legend(loc="upper left")
     return figure
 
 
-def _curves(axes: Axes, tree: DataTree, approach: NDArray[np.float64], draw: tuple) -> None:
-    for name, label, colour, dashes, marker, size in draw:
-        if not present(tree, f"contact/{name}"):
-            continue
-        mean = values(tree, f"contact/{name}", "approach") / size
-        marker = marker if len(approach) <= 40 else ""
-        axes.plot(approach * 1e6, mean, color=colour, linestyle=dashes, marker=marker, label=label, zorder=3)
-        if present(tree, f"contact/{name}_std"):
-            spread = values(tree, f"contact/{name}_std", "approach") / size
-            axes.fill_between(
-                approach * 1e6, mean - spread, mean + spread, color=colour, alpha=0.25, linewidth=0
-            )
+def _curve(axes: Axes, data: Data, mean: Entry, spread: Entry | None, size: float, **look: Any) -> None:
+    """Draw a curve, with dots where its states are few, and what it varies by."""
+    if mean not in data.lines:
+        return
+    approach, level = data.at * 1e6, data.lines[mean].values / size
+    marker = "o" if spread and len(approach) <= 40 else ""
+    axes.plot(approach, level, marker=marker, zorder=3, **look)
+    if spread in data.lines:
+        reach = data.lines[spread].values / size
+        axes.fill_between(
+            approach, level - reach, level + reach, color=look["color"], alpha=0.25, linewidth=0
+        )
 
 
 def _hertz(axes: Axes, tree: DataTree, approach: NDArray[np.float64], power: float, size: float) -> None:
     """Draw Hertz's closed form K δ^power from where the smooth bodies touch: there is none below."""
-    constant = number(tree, "contact", "hertz_constant")
+    constant = number(tree, contact.HERTZ_CONSTANT)
     if constant is None or approach.max() <= 0:
         return
     closed = np.linspace(0.0, approach.max(), CURVE_POINTS)
@@ -205,42 +209,23 @@ def _approach_axis(axes: Axes, tree: DataTree, approach: NDArray[np.float64]) ->
     margin = 0.02 * (high - low or 1.0)
     axes.set_xlim(low - margin, high + margin)
     axes.set_xlabel("approach δ / µm (closing →)")
-    datum = number(tree, "contact", "datum")
+    datum = number(tree, contact.DATUM)
     if datum is not None:
         top = axes.twiny()
         top.set_xlim(*(edge + 1e6 * datum for edge in axes.get_xlim()))
         top.grid(visible=False)
         top.set_xlabel("state r = δ + d₀ / µm")
-    working = number(tree, "contact", "working_approach")
+    working = number(tree, contact.WORKING_APPROACH)
     if working is not None and low <= 1e6 * working <= high:
         axes.axvline(1e6 * working, color=MUTED, linewidth=0.9, linestyle=":", label="working load")
 
 
-_FORCE_UNITS = {
-    "force": "N", "force_std": "N", "hertz_force": "N", "stiffness": "N/m", "stiffness_std": "N/m",
-    "tangent_stiffness": "N/m", "hertz_stiffness": "N/m", "contact_radius": "m",
-}  # fmt: skip
-
-
-def force_columns(tree: DataTree) -> Columns:
-    """Force and stiffness against approach and state."""
-    approach = values(tree, "contact/approach")
-    columns: Columns = {"approach [m]": approach}
-    datum = number(tree, "contact", "datum")
-    if datum is not None:
-        columns["state r [m]"] = approach + datum
-    for name, unit in _FORCE_UNITS.items():
-        if present(tree, f"contact/{name}"):
-            columns[f"{name} [{unit}]"] = values(tree, f"contact/{name}", "approach")
-    return columns
-
-
 def _force_caption(tree: DataTree) -> str:
-    datum = number(tree, "contact", "datum")
+    datum = number(tree, contact.DATUM)
     common = (
         f"one common datum d₀ = {engineering(datum, 'm')}" if datum is not None else "no common datum stated"
     )
-    rough = number(tree, "contact", "samples") is not None
+    rough = number(tree, contact.SAMPLES) is not None
     plane = "Approach from the plane that the nominal patch feels" if rough else "Approach"
     return (
         f"{plane}, positive closing; rough contact starts below zero. The state r counts from {common}. "
@@ -252,14 +237,20 @@ def _force_caption(tree: DataTree) -> str:
 def _datum_sensitivity(tree: DataTree) -> str:
     """What the force of `printed`, k_c = F/r times the texture, owes to where r counts from."""
     load, approach, datum, samples, path = (
-        number(tree, "contact", name)
-        for name in ("working_load", "working_approach", "datum", "datum_samples", "datum_path")
+        number(tree, attribute)
+        for attribute in (
+            contact.WORKING_LOAD,
+            contact.WORKING_APPROACH,
+            contact.DATUM,
+            contact.DATUM_SAMPLES,
+            contact.DATUM_PATH,
+        )
     )
-    used = [law for law in laws(tree, "rolling/contact_force") if law.startswith("printed")]
+    used = [law for law in laws(tree, CONTACT_FORCE) if law.startswith("printed")]
     if not used or load is None or approach is None or datum is None or samples is None or path is None:
         return ""
     other, where = (path, "samples and path") if datum == samples else (samples, "the samples alone")
-    tangent = np.interp(approach, values(tree, "contact/approach"), values(tree, "contact/tangent_stiffness"))
+    tangent = np.interp(approach, values(tree, contact.APPROACH), values(tree, contact.TANGENT_STIFFNESS))
     below = 20 * np.log10(tangent * (approach + datum) / load)
     change = f"{20 * np.log10((approach + datum) / (approach + other)):+.1f}".replace("-", "−")
     return (
@@ -272,17 +263,17 @@ CONTACT = (
     Part(
         "contact_pressure",
         "Pressure at the working load",
-        ("contact/pressure", "contact/px", "contact/py"),
+        (contact.PRESSURE, contact.PX, contact.PY),
+        pressure_data,
         pressure_figure,
-        pressure_columns,
         _pressure_caption,
     ),
     Part(
         "contact_force",
         "Contact force and stiffness",
-        ("contact/force", "contact/approach"),
+        (contact.FORCE, contact.APPROACH),
+        force_data,
         force_figure,
-        force_columns,
         _force_caption,
     ),
     *FILTER,

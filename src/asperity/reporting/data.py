@@ -4,86 +4,92 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from xarray import DataArray, DataTree
 
-from asperity.results import BASELINES, difference_name
+from asperity.schema import Attribute, Entry
+from asperity.schema.spectra import BASELINES, FORCE_LEVEL_DIFFERENCES
 from asperity.spectra import LEAST_PRODUCT, nominal
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def variable(tree: DataTree, path: str) -> DataArray | None:
-    """Variable at `path`, as ``"contact/force"``, or None if it is missing or holds no finite number."""
-    group, _, name = path.partition("/")
-    if group not in tree.children or name not in tree[group].variables:
+def variable(tree: DataTree, entry: Entry) -> DataArray | None:
+    """Variable of an entry, or None if it is missing or holds no finite number."""
+    if entry.group not in tree.children or entry.name not in tree[entry.group].variables:
         return None
-    values: DataArray = tree[group].to_dataset()[name]
+    values: DataArray = tree[entry.group].to_dataset()[entry.name]
     if values.dtype.kind in "fiu" and not np.isfinite(values.values).any():
         return None
     return values
 
 
-def values(tree: DataTree, path: str, *dims: str) -> NDArray[np.float64]:
-    """Numbers at `path`, which must exist, with the dimensions in the order of `dims`.
+def values(tree: DataTree, entry: Entry, *dims: str) -> NDArray[np.float64]:
+    """Numbers of an entry, which must exist, with the dimensions in the order of `dims`.
 
     A dimension of the variable that is not in `dims` is a fault of the caller.
     """
-    found = variable(tree, path)
+    found = variable(tree, entry)
     if found is None:
-        raise KeyError(path)
+        raise KeyError(entry.path)
     return np.asarray((found.transpose(*dims) if dims else found).values, dtype=float)
 
 
-def present(tree: DataTree, *paths: str) -> bool:
-    """Whether every one of `paths` is a variable with at least one finite number."""
-    return all(variable(tree, path) is not None for path in paths)
+def present(tree: DataTree, *entries: Entry) -> bool:
+    """Whether every one of `entries` is a variable with at least one finite number."""
+    return all(variable(tree, entry) is not None for entry in entries)
 
 
-def missing(tree: DataTree, *paths: str) -> str:
+def missing(tree: DataTree, *entries: Entry) -> str:
     """Say of which of these variables how many values are missing, and why; nothing where none is."""
     told = []
-    for path in paths:
-        found = variable(tree, path)
+    for entry in entries:
+        found = variable(tree, entry)
         if found is not None and "missing" in found.attrs:
             lost = int((~np.isfinite(found.values)).sum())
-            name = found.attrs.get("long_name", path.rpartition("/")[2])
-            told.append(f"{lost} of {found.size} values of the {name} are missing: {found.attrs['missing']}.")
+            what = f"{lost} of {found.size} values of the {entry.long_name}"
+            told.append(f"{what} are missing: {found.attrs['missing']}.")
     return " ".join(told)
 
 
-def number(tree: DataTree, group: str, name: str) -> float | None:
-    """Finite number in an attribute of a group, or None."""
-    found = tree[group].attrs.get(name) if group in tree.children else None
+def stated(tree: DataTree, attribute: Attribute) -> Any:
+    """Value of an attribute, or None."""
+    if attribute.group and attribute.group not in tree.children:
+        return None
+    return (tree[attribute.group] if attribute.group else tree).attrs.get(attribute.name)
+
+
+def number(tree: DataTree, attribute: Attribute) -> float | None:
+    """Finite number in an attribute, or None."""
     try:
-        result = float(found)  # type: ignore[arg-type]
+        result = float(stated(tree, attribute))
     except (TypeError, ValueError):
         return None
     return result if math.isfinite(result) else None
 
 
-def entries(attrs: Mapping[Any, Any], name: str, empty: Any) -> Any:
+def decoded(tree: DataTree, attribute: Attribute, empty: Any) -> Any:
     """JSON text in an attribute, decoded; `empty` if it is missing, damaged or of another kind."""
     try:
-        found = json.loads(attrs.get(name, "null"))
+        found = json.loads(stated(tree, attribute))
     except (TypeError, ValueError):
         return empty
     return found if isinstance(found, type(empty)) else empty
 
 
-def group_attrs(tree: DataTree, group: str) -> dict[str, Any]:
-    """Attributes of a group; none if the group is missing."""
-    return {str(k): v for k, v in tree[group].attrs.items()} if group in tree.children else {}
+def records(tree: DataTree, attribute: Attribute) -> list[dict[str, Any]]:
+    """Entries of a list in an attribute, each a mapping; none if it is missing or damaged."""
+    return [entry for entry in decoded(tree, attribute, []) if isinstance(entry, dict)]
 
 
-def laws(tree: DataTree, path: str) -> list[str]:
-    """Laws that the variable at `path` has finite numbers for, in the order of the case."""
-    found = variable(tree, path)
+def laws(tree: DataTree, entry: Entry) -> list[str]:
+    """Laws that a variable has finite numbers for, in the order of the case."""
+    found = variable(tree, entry)
     if found is None:
         return []
     rest = [dim for dim in found.dims if dim != "law"]
@@ -91,11 +97,11 @@ def laws(tree: DataTree, path: str) -> list[str]:
     return [str(law) for law, keep in zip(found["law"].values, kept, strict=True) if keep]
 
 
-def of_law(tree: DataTree, path: str, law: str, *dims: str) -> NDArray[np.float64]:
-    """Numbers of one law at `path`, with the remaining dimensions in the order of `dims`."""
-    found = variable(tree, path)
+def of_law(tree: DataTree, entry: Entry, law: str, *dims: str) -> NDArray[np.float64]:
+    """Numbers of one law, with the remaining dimensions in the order of `dims`."""
+    found = variable(tree, entry)
     if found is None:
-        raise KeyError(path)
+        raise KeyError(entry.path)
     row = [str(name) for name in found["law"].values].index(law)
     return np.asarray(found.isel(law=row).transpose(*dims).values, dtype=float)
 
@@ -105,38 +111,17 @@ def baselines(names: Sequence[str]) -> list[str]:
     return [name for name in BASELINES if name in names]
 
 
-def differences(tree: DataTree) -> dict[str, str]:
+def differences(tree: DataTree) -> dict[Entry, str]:
     """Variables of force level differences to the linear laws, with the law each compares with."""
-    paths = {f"spectra/{difference_name(name)}": name for name in BASELINES}
-    return {path: name for path, name in paths.items() if present(tree, path)}
+    return {entry: law for law, entry in FORCE_LEVEL_DIFFERENCES.items() if present(tree, entry)}
 
 
-PRODUCTS = {
-    "band": "spectra/band_time_product",
-    "noise_band": "spectra/noise_band_time_product",
-    "surface_band": "spectra/surface_band_length_product",
-}
-"""Bandwidth times averaging time, by the dimension of the bands."""
-
-
-def doubtful(tree: DataTree, dim: str) -> NDArray[np.bool_]:
-    """Bands along `dim` whose levels say little, because too few of their waves were averaged."""
-    count = tree["spectra"].sizes[dim]
-    if not present(tree, PRODUCTS[dim]):
-        return np.zeros(count, dtype=bool)
-    return values(tree, PRODUCTS[dim], dim) < LEAST_PRODUCT
-
-
-def sensor_labels(tree: DataTree, path: str) -> list[str]:
-    """Labels of the sensors of the variable at `path`: their names if they have any, else their positions."""
-    found = variable(tree, path)
-    if found is None:
-        return []
-    for name in ("sensor_label", "label"):
-        if name in found.coords:
-            return [str(label) for label in found[name].values]
-    positions = found["sensor"].values
-    return [f"x = {p:g} m" if isinstance(p, float) else str(p) for p in positions.tolist()]
+def doubtful(tree: DataTree, product: Entry) -> NDArray[np.bool_]:
+    """Bands whose levels say little, because the `product` of bandwidth and averaging time is small."""
+    (dim,) = product.dims
+    if not present(tree, product):
+        return np.zeros(tree[product.group].sizes[dim], dtype=bool)
+    return values(tree, product, dim) < LEAST_PRODUCT
 
 
 def engineering(value: float, unit: str, digits: int = 3) -> str:

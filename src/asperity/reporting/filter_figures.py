@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.reporting.data import number, plain, present, values, variable
-from asperity.reporting.part import Columns, Part
+from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.style import INK, MUTED, new_figure, sequence, styled, wavenumber_axis
+from asperity.schema import Entry, contact
 
 FLOOR = -40.0  # dB, lowest level of a drawn filter
 MOST_FILTERS, MOST_PRINTED = 5, 3
@@ -23,63 +24,89 @@ _APPLIED: dict[str, Any] = {"linewidth": 1.1}
 _THEORY: dict[str, Any] = {"linewidth": 0.8, "linestyle": (0, (4, 2))}
 
 
-def _drawn_filters(tree: DataTree, path: str, most: int = MOST_FILTERS) -> list[int]:
+def filter_data(tree: DataTree) -> Data:
+    """Filters against wavenumber, one group of lines per approach."""
+    return _filters(
+        tree, *contact.FILTERS, contact.FILTER_SIGNED, contact.FILTER_COHERENCE, contact.FILTER_THEORY
+    )
+
+
+def printed_filter_data(tree: DataTree) -> Data:
+    """Filters as printed against wavenumber, one group of lines per approach."""
+    return _filters(tree, *contact.PRINTED_FILTERS)
+
+
+def _filters(tree: DataTree, *entries: Entry) -> Data:
+    approach = values(tree, contact.APPROACH)
+    lines: dict[Any, Series] = {}
+    for entry in entries:
+        if not present(tree, entry):
+            continue
+        rows = values(tree, entry, *entry.dims)
+        for row in np.flatnonzero(np.isfinite(rows).any(axis=1)).tolist():
+            name = f"{entry.name}(approach={approach[row]:.9g} m)"
+            lines[entry, row] = Series(name, entry.units, rows[row])
+    return Data(series(tree, contact.WAVENUMBER), lines)
+
+
+def _rows(data: Data, entry: Entry) -> dict[int, NDArray[np.float64]]:
+    """Filters of an entry by the place of their state."""
+    return {
+        key[1]: line.values for key, line in data.lines.items() if isinstance(key, tuple) and key[0] is entry
+    }
+
+
+def _drawn_filters(tree: DataTree, data: Data, entry: Entry, most: int = MOST_FILTERS) -> list[int]:
     """States whose filters are drawn: a few, evenly spread, that of the working load among them."""
-    rows = values(tree, path, "approach", "wavenumber")
-    filled = np.flatnonzero(np.isfinite(rows).any(axis=1))
+    filled = np.array(list(_rows(data, entry)))
     picks = np.linspace(0, len(filled) - 1, min(most, len(filled))).round().astype(int)
-    working = number(tree, "contact", "working_approach")
+    working = number(tree, contact.WORKING_APPROACH)
     if working is not None:
-        at_load = int(np.argmin(np.abs(values(tree, "contact/approach")[filled] - working)))
+        at_load = int(np.argmin(np.abs(values(tree, contact.APPROACH)[filled] - working)))
         picks[np.argmin(np.abs(picks - at_load))] = at_load
     return filled[picks].tolist()
 
 
 @styled()
-def filter_figure(tree: DataTree) -> Figure:
+def filter_figure(tree: DataTree, data: Data) -> Figure:
     """Contact filters of several approaches: magnitude, and below it the signed estimate."""
-    signed = present(tree, "contact/filter_signed")
+    signed = present(tree, contact.FILTER_SIGNED)
+    rows = _drawn_filters(tree, data, contact.FILTER)
     figure = new_figure(7.4 if signed else 4.4)
     panels = figure.subplots(2 if signed else 1, 1, squeeze=False, height_ratios=(3, 2)[: 1 + signed])[:, 0]
-    _magnitudes(panels[0], tree, "filter")
+    _magnitudes(panels[0], tree, data, contact.FILTERS, rows)
     if signed:
-        _signed(panels[1], tree, _drawn_filters(tree, "contact/filter"))
+        _signed(panels[1], tree, data, rows)
         panels[0].set_xlabel("")  # the panels share their axes: name each quantity once
         figure.axes[-1].set_xlabel("")
     return figure
 
 
 @styled()
-def printed_filter_figure(tree: DataTree) -> Figure:
+def printed_filter_figure(tree: DataTree, data: Data) -> Figure:
     """The same filters, normalised as printed."""
     figure = new_figure(4.4)
-    _magnitudes(figure.subplots(), tree, "printed_filter")
+    rows = _drawn_filters(tree, data, contact.PRINTED_FILTER, MOST_PRINTED)
+    _magnitudes(figure.subplots(), tree, data, contact.PRINTED_FILTERS, rows)
     return figure
 
 
-def _magnitudes(axes: Axes, tree: DataTree, name: str) -> None:
+def _magnitudes(axes: Axes, tree: DataTree, data: Data, entries: tuple[Entry, ...], rows: list[int]) -> None:
     """A filter as estimated (dots), as fitted (wide) and as applied (thin), and what theory says (dashed)."""
-    wavenumber, approach = values(tree, "contact/wavenumber"), values(tree, "contact/approach")
-    excited, theory = _excited(tree), _theory(tree)
-    fitted, raw, applied, spread = (
-        values(tree, f"contact/{name}{end}", "approach", "wavenumber")
-        if present(tree, f"contact/{name}{end}")
-        else None
-        for end in ("", "_raw", "_applied", "_std")
-    )
-    assert fitted is not None
-    rows = _drawn_filters(tree, f"contact/{name}", MOST_FILTERS if name == "filter" else MOST_PRINTED)
+    wavenumber, approach, excited = data.at, values(tree, contact.APPROACH), _excited(tree)
+    fitted, raw, applied, spread = (_rows(data, entry) for entry in entries)
+    theory = _theory(tree)
     for row, colour in zip(rows, sequence(len(rows)), strict=True):
         level = np.where(excited, _level(fitted[row]), np.nan)
         label = f"δ = {plain(approach[row] * 1e6)} µm"
-        if applied is None:
+        if row not in applied:
             axes.plot(wavenumber, level, color=colour, label=label, linewidth=1.7)
         else:
             axes.plot(wavenumber, level, color=colour, label=label, linewidth=4.5, alpha=0.35)
             axes.plot(wavenumber, np.where(excited, _level(applied[row]), np.nan), color=colour, **_APPLIED)
-        if raw is not None:
+        if row in raw:
             axes.plot(*_dots(wavenumber, _level(raw[row])), color=colour, **_RAW)
-        if spread is not None:
+        if row in spread:
             edges = (_level(fitted[row] - spread[row]), _level(fitted[row] + spread[row]))
             clear = excited & (fitted[row] > spread[row])
             axes.fill_between(wavenumber, *edges, where=clear, color=colour, alpha=0.09, linewidth=0)
@@ -96,7 +123,7 @@ def _magnitudes(axes: Axes, tree: DataTree, name: str) -> None:
         (theory, "sin q / q", _THEORY),
     )
     for found, label, style in kinds:
-        if found is not None:
+        if found is not None and len(found):
             axes.plot([], [], color=INK, label=label, **style)
     axes.legend(loc="lower left", ncols=2)
     _over_wavenumbers(axes, wavenumber, excited)
@@ -108,21 +135,15 @@ def _dots(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[NDArray[np.fl
     return np.stack([x / _DOT, x * _DOT, gap], axis=1).ravel(), np.stack([y, y, gap], axis=1).ravel()
 
 
-def _signed(axes: Axes, tree: DataTree, rows: list[int]) -> None:
+def _signed(axes: Axes, tree: DataTree, data: Data, rows: list[int]) -> None:
     """The signed estimate, faint where it explains little of the force."""
-    wavenumber, excited, theory = values(tree, "contact/wavenumber"), _excited(tree), _theory(tree)
-    estimate = values(tree, "contact/filter_signed", "approach", "wavenumber")
-    coherence = (
-        values(tree, "contact/filter_coherence", "approach", "wavenumber")
-        if present(tree, "contact/filter_coherence")
-        else np.ones(estimate.shape)
-    )
+    wavenumber, excited, theory = data.at, _excited(tree), _theory(tree)
+    estimate, coherence = (_rows(data, entry) for entry in (contact.FILTER_SIGNED, contact.FILTER_COHERENCE))
     for row, colour in zip(rows, sequence(len(rows)), strict=True):
-        known = excited & (coherence[row] >= LEAST_COHERENCE)
-        axes.plot(
-            wavenumber, np.where(excited, estimate[row], np.nan), color=colour, linewidth=0.8, alpha=0.4
-        )
-        axes.plot(wavenumber, np.where(known, estimate[row], np.nan), color=colour, linewidth=1.7)
+        signed = estimate.get(row, np.full(len(wavenumber), np.nan))
+        known = excited & (coherence.get(row, np.ones(len(wavenumber))) >= LEAST_COHERENCE)
+        axes.plot(wavenumber, np.where(excited, signed, np.nan), color=colour, linewidth=0.8, alpha=0.4)
+        axes.plot(wavenumber, np.where(known, signed, np.nan), color=colour, linewidth=1.7)
         if theory is not None:
             axes.plot(wavenumber, theory[row], color=colour, **_THEORY)
     axes.axhline(0, color=MUTED, linewidth=0.8)
@@ -149,43 +170,18 @@ def _over_wavenumbers(axes: Axes, wavenumber: NDArray[np.float64], excited: NDAr
 
 def _excited(tree: DataTree) -> NDArray[np.bool_]:
     """Where the texture excites the contact, by wavenumber; everywhere if the result does not say."""
-    if not present(tree, "contact/filter_excited"):
-        return np.ones(len(values(tree, "contact/wavenumber")), dtype=bool)
-    return values(tree, "contact/filter_excited", "wavenumber") > 0
+    if not present(tree, contact.FILTER_EXCITED):
+        return np.ones(len(values(tree, contact.WAVENUMBER)), dtype=bool)
+    return values(tree, contact.FILTER_EXCITED) > 0
 
 
 def _theory(tree: DataTree) -> NDArray[np.float64] | None:
-    path = "contact/filter_theory"
-    return values(tree, path, "approach", "wavenumber") if present(tree, path) else None
+    theory = contact.FILTER_THEORY
+    return values(tree, theory, *theory.dims) if present(tree, theory) else None
 
 
 def _level(ratio: NDArray[np.float64]) -> NDArray[np.float64]:
     return 20 * np.log10(np.maximum(ratio, 10 ** (FLOOR / 20 - 1)))
-
-
-_FILTER = ("filter", "filter_raw", "filter_applied", "filter_std")
-
-
-def filter_columns(tree: DataTree) -> Columns:
-    """Filters against wavenumber, one group of columns per approach."""
-    return _filter_columns(tree, (*_FILTER, "filter_signed", "filter_coherence", "filter_theory"))
-
-
-def printed_filter_columns(tree: DataTree) -> Columns:
-    """Filters as printed against wavenumber, one group of columns per approach."""
-    return _filter_columns(tree, tuple(f"printed_{name}" for name in _FILTER))
-
-
-def _filter_columns(tree: DataTree, names: tuple[str, ...]) -> Columns:
-    columns: Columns = {"wavenumber [1/m]": values(tree, "contact/wavenumber")}
-    approach = values(tree, "contact/approach")
-    for name in names:
-        if not present(tree, f"contact/{name}"):
-            continue
-        rows = values(tree, f"contact/{name}", "approach", "wavenumber")
-        for row in np.flatnonzero(np.isfinite(rows).any(axis=1)):
-            columns[f"{name}(approach={approach[row]:.9g} m) [1]"] = rows[row]
-    return columns
 
 
 def _filter_caption(tree: DataTree) -> str:
@@ -193,7 +189,7 @@ def _filter_caption(tree: DataTree) -> str:
         "Contact filter per approach against the wavenumber in rolling direction (cycles per metre), "
         f"wavelength along the top; cut off at {plain(FLOOR)} dB"
     ]
-    if present(tree, "contact/filter_raw"):
+    if present(tree, contact.FILTER_RAW):
         parts.append(
             "dots: ratio of the scanned force to a point force on the lines (Eq. 2.6, power of all strips); "
             "wide: the fit to it; thin: what the taps of the filtered laws apply; shaded: standard deviation "
@@ -204,15 +200,20 @@ def _filter_caption(tree: DataTree) -> str:
             "dashed: sin q / q, q = ka, the closed form of small roughness, uniform across, on Hertz's "
             "contact of radius a; it is negative beyond q = π, which a magnitude cannot show"
         )
-    if present(tree, "contact/filter_signed"):
+    if present(tree, contact.FILTER_SIGNED):
         parts.append(
             "signed: the force regressed on the mean line under the patch, faint where the two have less "
             f"than {100 * LEAST_COHERENCE:.0f} % of their power in common"
         )
     if not _excited(tree).all():
         parts.append("grey: waves that the texture lacks, where the filter is held")
-    normalise = tree["contact"].attrs.get("normalise")
-    return "; ".join(parts) + "." + (f" {_NORMALISED[normalise]}" if normalise in _NORMALISED else "")
+    return f"{'; '.join(parts)}. {_normalised(tree, contact.FILTER)}".strip()
+
+
+def _normalised(tree: DataTree, entry: Entry) -> str:
+    """What 0 dB of a filter is."""
+    found = variable(tree, entry)
+    return "" if found is None else _NORMALISED.get(found.attrs.get("normalise", ""), "")
 
 
 _NORMALISED = {
@@ -222,32 +223,30 @@ _NORMALISED = {
 
 
 def _printed_filter_caption(tree: DataTree) -> str:
-    scale = variable(tree, "contact/filter_scale")
+    scale = variable(tree, contact.FILTER_SCALE)
     found = ""
     if scale is not None:
         low, high = float(np.nanmin(scale.values)), float(np.nanmax(scale.values))
         found = f" k_0/k_t = {plain(low, 2)} to {plain(high, 2)}: what the patch averages across is left out."
-    return (
-        f"The filter of `printed`: as above, but {_NORMALISED['low-wavenumber'][0].lower()}"
-        f"{_NORMALISED['low-wavenumber'][1:]}{found}"
-    )
+    normalised = _normalised(tree, contact.PRINTED_FILTER)
+    return f"The filter of `printed`: as above, but {normalised[:1].lower()}{normalised[1:]}{found}"
 
 
 FILTER = (
     Part(
         "contact_filter",
         "Contact filter",
-        ("contact/filter", "contact/wavenumber", "contact/approach"),
+        (contact.FILTER, contact.WAVENUMBER, contact.APPROACH),
+        filter_data,
         filter_figure,
-        filter_columns,
         _filter_caption,
     ),
     Part(
         "contact_filter_printed",
         "Contact filter as printed",
-        ("contact/printed_filter", "contact/wavenumber", "contact/approach"),
+        (contact.PRINTED_FILTER, contact.WAVENUMBER, contact.APPROACH),
+        printed_filter_data,
         printed_filter_figure,
-        printed_filter_columns,
         _printed_filter_caption,
     ),
 )

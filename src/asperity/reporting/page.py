@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -13,10 +13,11 @@ from markupsafe import Markup
 from xarray import DataTree
 
 from asperity.reporting.chapter import Chapter
-from asperity.reporting.data import entries, group_attrs, missing
+from asperity.reporting.data import decoded, missing, records, stated
 from asperity.reporting.part import Part
 from asperity.reporting.style import colour_variables, law_style, narrow_page, svg
 from asperity.reporting.tables import Table
+from asperity.schema import provenance
 
 
 @dataclass(frozen=True)
@@ -49,9 +50,10 @@ def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
 
 
 def _picture(tree: DataTree, part: Part) -> Picture:
-    wide = svg(part.draw(tree), part.name, part.title)
+    data = part.collect(tree)
+    wide = svg(part.plot(tree, data), part.name, part.title)
     with narrow_page():
-        narrow = svg(part.draw(tree), f"{part.name}-narrow", part.title)
+        narrow = svg(part.plot(tree, data), f"{part.name}-narrow", part.title)
     lost = missing(tree, *part.needs, *part.any_of)
     caption = f"{part.caption(tree)} {lost}".strip()
     return Picture(part.name, part.title, caption, Markup(wide), Markup(narrow))
@@ -70,17 +72,13 @@ def sections(tree: DataTree, chapters: Sequence[Chapter]) -> list[Section]:
     return [section for section in found if section.blocks]
 
 
-def _records(attrs: Mapping[Any, Any], name: str) -> list[dict[str, Any]]:
-    return [entry for entry in entries(attrs, name, []) if isinstance(entry, dict)]
-
-
 _GRADES = {"out of range": ("out", "out of range"), "warning": ("", "warnings"), "note": ("note", "notes")}
 """Look and plural of the grades of warnings, the gravest first."""
 
 
-def _warnings(root: Mapping[Any, Any]) -> list[dict[str, Any]]:
+def _warnings(tree: DataTree) -> list[dict[str, Any]]:
     """Warnings on the physics with their grade and its look."""
-    graded = [{"grade": "warning", **warning} for warning in _records(root, "warnings")]
+    graded = [{"grade": "warning", **warning} for warning in records(tree, provenance.WARNINGS)]
     return [warning | {"look": _GRADES.get(warning["grade"], ("", ""))[0]} for warning in graded]
 
 
@@ -92,7 +90,7 @@ def _graded(warnings: list[dict[str, Any]]) -> str:
 
 
 def _law_key(tree: DataTree) -> list[dict[str, str]]:
-    meanings = entries(group_attrs(tree, "scenario"), "laws", {})
+    meanings = decoded(tree, provenance.LAWS, {})
     return [
         {"name": str(law), "meaning": str(text), "colour": law_style(law, "")["color"]}
         for law, text in meanings.items()
@@ -144,23 +142,22 @@ def page(tree: DataTree, chapters: Sequence[Chapter]) -> str:
     str
         One self-contained document: styles and figures inside, nothing loaded from elsewhere.
     """
-    root, scenario = dict(tree.attrs), group_attrs(tree, "scenario")
-    parameters = _records(scenario, "parameters")
-    warnings = _warnings(root)
+    kind, parameters = stated(tree, provenance.KIND), records(tree, provenance.PARAMETERS)
+    warnings = _warnings(tree)
     return _template().render(
-        title=root.get("title") or scenario.get("kind") or "Rolling contact",
-        verdict=root.get("verdict", ""),
-        version=root.get("asperity_version", "unknown"),
-        created=root.get("created", ""),
-        seed=root.get("seed", ""),
-        case=root.get("case", ""),
-        kind=scenario.get("kind", ""),
-        citations=[str(text) for text in entries(root, "citations", [])],
+        title=stated(tree, provenance.TITLE) or kind or "Rolling contact",
+        verdict=stated(tree, provenance.VERDICT) or "",
+        version=stated(tree, provenance.ASPERITY_VERSION) or "unknown",
+        created=stated(tree, provenance.CREATED) or "",
+        seed="" if (seed := stated(tree, provenance.SEED)) is None else seed,
+        case=stated(tree, provenance.CASE) or "",
+        kind=kind or "",
+        citations=[str(text) for text in decoded(tree, provenance.CITATIONS, [])],
         warnings=warnings,
         graded=_graded(warnings),
         case_groups=_case_groups(parameters),
         changed=sum(not parameter.get("is_default", True) for parameter in parameters),
-        numerics=_records(scenario, "numerics"),
+        numerics=records(tree, provenance.NUMERICS),
         laws=_law_key(tree),
         sections=sections(tree, chapters),
         light=Markup(colour_variables(dark=False)),

@@ -1,18 +1,98 @@
-"""What a figure of the report consists of: a drawing, a caption, and the numbers in it."""
+"""What a figure of the report consists of: its numbers, a drawing of them, and a caption."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import present
+from asperity.reporting.data import laws, of_law, present, values
+from asperity.schema import Entry
 
 Columns = dict[str, NDArray]
 """Columns of a CSV file: ``"quantity [unit]"`` → numbers, all of one length, in SI units."""
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Numbers with a name and a unit: a line of a figure, and a column of its CSV file."""
+
+    name: str
+    units: str
+    values: NDArray[np.float64]
+
+    @property
+    def heading(self) -> str:
+        """Of its column, as ``"areal [N^2/Hz]"``."""
+        units = re.sub(r"(?<=[A-Za-z)])(\d)", r"^\1", self.units).replace("um", "µm")
+        return f"{self.name} [{units}]"
+
+
+@dataclass(frozen=True, eq=False)
+class Data:
+    """Numbers of a figure, collected once: it is drawn from them, and its CSV file holds them.
+
+    Attributes
+    ----------
+    x : Series or None
+        What they stand over.
+    lines : mapping of Series
+        The numbers, by law, by entry of the schema, or by both.
+    """
+
+    x: Series | None
+    lines: Mapping[Any, Series]
+
+    @property
+    def field(self) -> NDArray[np.float64]:
+        """All lines side by side: ``field[x, y]``."""
+        return np.stack([line.values for line in self.lines.values()], axis=1)
+
+    @property
+    def at(self) -> NDArray[np.float64]:
+        """What the lines are drawn over."""
+        assert self.x is not None
+        return self.x.values
+
+    @property
+    def columns(self) -> Columns:
+        """Of the CSV file."""
+        first = [] if self.x is None else [self.x]
+        return {series.heading: series.values for series in (*first, *self.lines.values())}
+
+
+def series(tree: DataTree, entry: Entry, name: str = "") -> Series:
+    """Numbers of a variable, under its own name or another."""
+    return Series(name or entry.name, entry.units, values(tree, entry, *entry.dims))
+
+
+def field(tree: DataTree, entry: Entry, x: Entry, y: Entry, symbol: str) -> Data:
+    """A field over x and y: one row per x, one column per y."""
+    rows = values(tree, entry, x.name, y.name)
+    lines: dict[Any, Series] = {
+        position: Series(f"{symbol}(y={position:.9g} m)", entry.units, rows[:, index])
+        for index, position in enumerate(values(tree, y).tolist())
+    }
+    return Data(series(tree, x, "x"), lines)
+
+
+def present_series(tree: DataTree, named: Mapping[Entry, str]) -> dict[Any, Series]:
+    """Those of some variables that a result holds, under the names given."""
+    return {entry: series(tree, entry, name) for entry, name in named.items() if present(tree, entry)}
+
+
+def by_law(tree: DataTree, entry: Entry, name: str = "{}") -> dict[str, Series]:
+    """Numbers of each law over the last dimension of a variable; `name` says where the law stands in it."""
+    return {
+        law: Series(name.format(law), entry.units, of_law(tree, entry, law, *entry.dims[1:]))
+        for law in laws(tree, entry)
+    }
 
 
 @dataclass(frozen=True)
@@ -25,15 +105,15 @@ class Part:
         Name of its CSV file and of its place in the page.
     title : str
         Its heading.
-    needs : tuple of str
-        Variables, as ``"contact/force"``, without which it is left out.
-    draw : callable
-        Makes the figure from a result tree.
-    columns : callable
-        Makes the columns of the CSV file from a result tree.
+    needs : tuple of Entry
+        Variables without which it is left out.
+    collect : callable
+        Takes its numbers from a result tree.
+    plot : callable
+        Draws them; what is said beside them stands in the tree.
     caption : callable
         Says, from a result tree, what is drawn and with which conventions.
-    any_of : tuple of str, optional
+    any_of : tuple of Entry, optional
         Variables of which it needs at least one.
     worth : callable, optional
         Whether these variables have anything to show: a smooth surface has no spectrum.
@@ -41,14 +121,22 @@ class Part:
 
     name: str
     title: str
-    needs: tuple[str, ...]
-    draw: Callable[[DataTree], Figure]
-    columns: Callable[[DataTree], Columns]
+    needs: tuple[Entry, ...]
+    collect: Callable[[DataTree], Data]
+    plot: Callable[[DataTree, Data], Figure]
     caption: Callable[[DataTree], str]
-    any_of: tuple[str, ...] = ()
+    any_of: tuple[Entry, ...] = ()
     worth: Callable[[DataTree], bool] = lambda _: True
 
     def drawable(self, tree: DataTree) -> bool:
         """Whether `tree` holds what the figure needs."""
-        some = not self.any_of or any(present(tree, path) for path in self.any_of)
+        some = not self.any_of or any(present(tree, entry) for entry in self.any_of)
         return some and present(tree, *self.needs) and self.worth(tree)
+
+    def draw(self, tree: DataTree) -> Figure:
+        """The figure of a result."""
+        return self.plot(tree, self.collect(tree))
+
+    def columns(self, tree: DataTree) -> Columns:
+        """The numbers of the figure."""
+        return self.collect(tree).columns

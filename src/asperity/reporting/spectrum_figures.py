@@ -1,8 +1,8 @@
-"""Figures over frequency: contact force and acceleration, in narrow bands and in one-third octaves."""
+"""Figures over frequency: contact force in narrow bands and in one-third octaves."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,19 +11,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import (
-    PRODUCTS,
-    differences,
-    doubtful,
-    laws,
-    missing,
-    of_law,
-    present,
-    sensor_labels,
-    values,
-    variable,
-)
-from asperity.reporting.part import Columns, Part
+from asperity.reporting.data import differences, doubtful, laws, present, values
+from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.style import (
     INK,
     MUTED,
@@ -35,25 +24,29 @@ from asperity.reporting.style import (
     legend_above,
     level_limits,
     new_figure,
-    sequence,
     shade_doubtful,
     smooth_on_log_axis,
     styled,
 )
+from asperity.schema import Entry
+from asperity.schema.spectra import (
+    BAND,
+    BAND_TIME_PRODUCT,
+    FORCE_LEVEL,
+    FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
+    FORCE_PSD,
+    FREQUENCY,
+)
 from asperity.spectra import LEAST_PRODUCT
 
-FORCE, ACCELERATION = "spectra/force_psd", "spectra/acceleration_psd"
-LEVEL = "spectra/force_level"
-LINEAR_REFERENCE = "spectra/linear_reference_level"  # by the frequency domain
-ACCELERATION_REFERENCE = 1e-6  # m/s²
-_SENSOR_DASHES = ("-", (0, (6, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (3, 1.5)), (0, (1.5, 1.5)), "-")
-
+IN_FREQUENCY = "linear, frequency domain"
+"""Name of the linear contact that is solved there."""
 REFERENCE_STYLE: dict[str, Any] = {
     "color": INK,
     "linestyle": (0, (3, 3)),
     "linewidth": 1.0,
     "zorder": 5,
-    "label": "linear, frequency domain",
+    "label": IN_FREQUENCY,
 }
 
 Spectrum = tuple[NDArray[np.float64], NDArray[np.float64]]
@@ -61,17 +54,16 @@ Spectrum = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 def frequency_range(tree: DataTree) -> tuple[float, float]:
     """Frequencies that are drawn, in Hz: those of the one-third octaves, else all from 20 Hz on."""
-    if present(tree, "spectra/band"):
-        bands = values(tree, "spectra/band")
+    if present(tree, BAND):
+        bands = values(tree, BAND)
         return bands[0] / 10**0.05, bands[-1] * 10**0.05
-    frequency = values(tree, "spectra/frequency")
-    high = frequency[-1]
+    high = values(tree, FREQUENCY)[-1]
     return min(20.0, high / 100), high
 
 
 def narrow_level(tree: DataTree, psd: NDArray[np.float64], reference: float) -> Spectrum:
     """Level of a PSD in dB within the drawn range, no denser than a line can show."""
-    frequency = values(tree, "spectra/frequency")
+    frequency = values(tree, FREQUENCY)
     low, high = frequency_range(tree)
     kept = (frequency >= low) & (frequency <= high) & (frequency > 0)
     if not kept.any():
@@ -82,193 +74,135 @@ def narrow_level(tree: DataTree, psd: NDArray[np.float64], reference: float) -> 
 
 def shade_bands(axes: Axes, tree: DataTree, labelled: bool = True) -> None:
     """Shade the frequencies of the bands that say little."""
-    if present(tree, "spectra/band"):
-        shade_doubtful(axes, values(tree, "spectra/band"), doubtful(tree, "band"), labelled)
+    if present(tree, BAND):
+        shade_doubtful(axes, values(tree, BAND), doubtful(tree, BAND_TIME_PRODUCT), labelled)
 
 
 def shaded_words(tree: DataTree) -> str:
     """Say what is shaded in a spectrum, where something is; a blank comes first."""
-    return doubtful_words(tree, "band") if present(tree, "spectra/band") else ""
+    return doubtful_words(tree, BAND_TIME_PRODUCT) if present(tree, BAND) else ""
+
+
+def force_data(tree: DataTree) -> Data:
+    """Power spectral density of the contact force of each law, all lines."""
+    return Data(series(tree, FREQUENCY), by_law(tree, FORCE_PSD))
 
 
 @styled()
-def force_figure(tree: DataTree) -> Figure:
+def force_figure(tree: DataTree, data: Data) -> Figure:
     """Power spectral densities of the contact force of all laws on one axis."""
-    names = laws(tree, FORCE)
     figure = new_figure(4.4)
     axes = figure.subplots()
-    spectra = {law: narrow_level(tree, of_law(tree, FORCE, law, "frequency"), 1.0) for law in names}
-    for law, (frequency, level) in spectra.items():
-        axes.plot(frequency, level, label=law, **law_style(law, names[0]))
-    frequency_axis(axes, *frequency_range(tree))
-    shade_bands(axes, tree)
-    level_limits(axes, [level for _, level in spectra.values()])
+    draw_laws(axes, tree, data.lines, 1.0)
     axes.set_ylabel("contact force PSD / dB re 1 N²/Hz")
-    legend_above(axes)
     return figure
 
 
-def force_columns(tree: DataTree) -> Columns:
-    """Power spectral density of the contact force per law, all lines."""
-    columns: Columns = {"frequency [Hz]": values(tree, "spectra/frequency")}
-    for law in laws(tree, FORCE):
-        columns[f"{law} [N^2/Hz]"] = of_law(tree, FORCE, law, "frequency")
-    return columns
+def draw_laws(axes: Axes, tree: DataTree, lines: Mapping[Any, Series], reference: float) -> None:
+    """Draw the level of each law's PSD, the main law first, over frequency."""
+    main = next(iter(lines))
+    spectra = {law: narrow_level(tree, psd.values, reference) for law, psd in lines.items()}
+    for law, spectrum in spectra.items():
+        axes.plot(*spectrum, label=law, **law_style(law, main))
+    finish_spectrum(axes, tree, list(spectra.values()))
+
+
+def finish_spectrum(axes: Axes, tree: DataTree, spectra: Sequence[Spectrum]) -> None:
+    """Axes of levels over frequency, what says little, and a legend."""
+    frequency_axis(axes, *frequency_range(tree))
+    shade_bands(axes, tree)
+    level_limits(axes, [level for _, level in spectra])
+    legend_above(axes)
+
+
+def product_series(tree: DataTree, product: Entry) -> dict[Any, Series]:
+    """Bandwidth times averaging time of bands, and whether their levels say something."""
+    if not present(tree, product):
+        return {}
+    enough = (~doubtful(tree, product)).astype(float)
+    return {
+        product: series(tree, product, "B T"),
+        "enough": Series(f"B T of {LEAST_PRODUCT:g} or more", "1", enough),
+    }
+
+
+def band_data(tree: DataTree, *reference: Entry) -> Data:
+    """Levels per one-third octave and law, and the differences; and the level of a `reference`."""
+    lines = product_series(tree, BAND_TIME_PRODUCT)
+    compared = {entry: f"{{}} minus {law}" for entry, law in differences(tree).items()}
+    compared[FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = "{} minus reference"
+    for entry, name in {FORCE_LEVEL: "{}", **compared}.items():
+        lines |= {(entry, law): line for law, line in by_law(tree, entry, name).items()}
+    lines |= {entry: series(tree, entry, IN_FREQUENCY) for entry in reference if present(tree, entry)}
+    return Data(series(tree, BAND, "band centre"), lines)
 
 
 @styled()
-def band_figure(tree: DataTree) -> Figure:
+def band_figure(tree: DataTree, data: Data, *reference: Entry) -> Figure:
     """One-third-octave levels of the contact force, and below them the differences to the linear laws."""
     compared = differences(tree)
     figure = new_figure(4.0 + 2.4 * len(compared))
     heights = [3.4, *(2.4 for _ in compared)]
     panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
-    _draw_bands(panels[0], tree, LEVEL, laws(tree, LEVEL), span=100.0, step=10.0)
-    if present(tree, LINEAR_REFERENCE):
-        panels[0].plot(values(tree, "spectra/band"), values(tree, LINEAR_REFERENCE), **REFERENCE_STYLE)
+    _draw_bands(panels[0], data, FORCE_LEVEL, span=100.0, step=10.0)
+    for entry in reference:
+        if entry in data.lines:
+            panels[0].plot(values(tree, BAND), data.lines[entry].values, **REFERENCE_STYLE)
     panels[0].set_ylabel("contact force level / dB re 1 N")
     legend_above(panels[0])
-    for axes, (path, name) in zip(panels[1:], compared.items(), strict=True):
-        _draw_bands(axes, tree, path, laws(tree, path), span=np.inf, step=5.0)
+    for axes, (entry, name) in zip(panels[1:], compared.items(), strict=True):
+        _draw_bands(axes, data, entry, span=np.inf, step=5.0)
         axes.axhline(0, color=MUTED, linewidth=0.9)
         axes.set_ylabel(f"level − {name} / dB")
     for axes in panels:
-        shade_doubtful(axes, values(tree, "spectra/band"), doubtful(tree, "band"), labelled=axes is panels[0])
+        shade_bands(axes, tree, labelled=axes is panels[0])
         axes.label_outer()
     return figure
 
 
-def _draw_bands(
-    axes: Axes, tree: DataTree, path: str, names: Sequence[str], span: float, step: float
-) -> None:
-    bands = values(tree, "spectra/band")
-    main = laws(tree, LEVEL)[0] if present(tree, LEVEL) else names[0]
-    levels = [of_law(tree, path, law, "band") for law in names]
-    for law, level in zip(names, levels, strict=True):
-        axes.plot(bands, level, label=law, marker=law_marker(law), markeredgewidth=0, **law_style(law, main))
-    level_limits(axes, levels, span, step)
-    band_axis(axes, bands)
-
-
-def product_columns(tree: DataTree, dim: str) -> Columns:
-    """Bandwidth times averaging time of bands, and whether their levels say something."""
-    if not present(tree, PRODUCTS[dim]):
-        return {}
-    return {
-        "B T [1]": values(tree, PRODUCTS[dim], dim),
-        f"B T of {LEAST_PRODUCT:g} or more [1]": (~doubtful(tree, dim)).astype(float),
+def _draw_bands(axes: Axes, data: Data, entry: Entry, span: float, step: float) -> None:
+    levels = {
+        law: data.lines[entry, law].values
+        for law in _laws_of(data, FORCE_LEVEL)
+        if (entry, law) in data.lines
     }
+    main = _laws_of(data, FORCE_LEVEL)[0]
+    for law, level in levels.items():
+        style = law_style(law, main)
+        axes.plot(data.at, level, label=law, marker=law_marker(law), markeredgewidth=0, **style)
+    level_limits(axes, list(levels.values()), span, step)
+    band_axis(axes, data.at)
 
 
-def band_columns(tree: DataTree) -> Columns:
-    """Levels per one-third octave and law, and the differences."""
-    columns: Columns = {"band centre [Hz]": values(tree, "spectra/band")} | product_columns(tree, "band")
-    compared = {path: f"{{}} minus {name}" for path, name in differences(tree).items()}
-    compared["spectra/force_level_difference_to_reference"] = "{} minus reference"
-    for path, label in {LEVEL: "{}", **compared}.items():
-        unit = "dB re 1 N" if path == LEVEL else "dB"
-        for law in laws(tree, path):
-            columns[f"{label.format(law)} [{unit}]"] = of_law(tree, path, law, "band")
-    if present(tree, LINEAR_REFERENCE):
-        columns["linear, frequency domain [dB re 1 N]"] = values(tree, LINEAR_REFERENCE)
-    return columns
-
-
-def _sensors(tree: DataTree) -> list[int]:
-    found = variable(tree, ACCELERATION)
-    assert found is not None
-    others = [dim for dim in found.dims if dim != "sensor"]
-    return [int(i) for i in np.flatnonzero(found.notnull().any(others).values)]
-
-
-def _acceleration_level(tree: DataTree, law: str, sensor: int) -> Spectrum:
-    psd = of_law(tree, ACCELERATION, law, "sensor", "frequency")[sensor]
-    return narrow_level(tree, psd, ACCELERATION_REFERENCE**2)
-
-
-def _finish_acceleration(axes: Axes, tree: DataTree, spectra: Sequence[Spectrum]) -> None:
-    frequency_axis(axes, *frequency_range(tree))
-    shade_bands(axes, tree)
-    level_limits(axes, [level for _, level in spectra])
-    axes.set_ylabel("acceleration PSD / dB re (1 µm/s²)²/Hz")
-    legend_above(axes)
-
-
-@styled()
-def sensors_figure(tree: DataTree) -> Figure:
-    """Power spectral densities of the acceleration at all sensors, by the main law."""
-    main = laws(tree, ACCELERATION)[0]
-    labels, sensors = sensor_labels(tree, ACCELERATION), _sensors(tree)
-    figure = new_figure(4.2)
-    axes = figure.subplots()
-    spectra = [_acceleration_level(tree, main, sensor) for sensor in sensors]
-    for index, (sensor, colour) in enumerate(zip(sensors, sequence(len(sensors)), strict=True)):
-        dashes = _SENSOR_DASHES[index % len(_SENSOR_DASHES)]
-        axes.plot(*spectra[index], color=colour, linestyle=dashes, label=labels[sensor])
-    _finish_acceleration(axes, tree, spectra)
-    return figure
-
-
-def sensors_columns(tree: DataTree) -> Columns:
-    """Power spectral density of the acceleration per sensor, by the main law."""
-    main = laws(tree, ACCELERATION)[0]
-    psd, labels = of_law(tree, ACCELERATION, main, "sensor", "frequency"), sensor_labels(tree, ACCELERATION)
-    columns: Columns = {"frequency [Hz]": values(tree, "spectra/frequency")}
-    return columns | {f"{main}, {labels[s]} [(m/s^2)^2/Hz]": psd[s] for s in _sensors(tree)}
-
-
-def _middle_sensor(tree: DataTree) -> int:
-    sensors = _sensors(tree)
-    return sensors[len(sensors) // 2]
-
-
-@styled()
-def one_sensor_figure(tree: DataTree) -> Figure:
-    """Power spectral densities of the acceleration at one sensor, by all laws."""
-    names, sensor = laws(tree, ACCELERATION), _middle_sensor(tree)
-    figure = new_figure(4.2)
-    axes = figure.subplots()
-    spectra = [_acceleration_level(tree, law, sensor) for law in names]
-    for law, spectrum in zip(names, spectra, strict=True):
-        axes.plot(*spectrum, label=law, **law_style(law, names[0]))
-    _finish_acceleration(axes, tree, spectra)
-    return figure
-
-
-def one_sensor_columns(tree: DataTree) -> Columns:
-    """Power spectral density of the acceleration at one sensor per law."""
-    sensor = _middle_sensor(tree)
-    label = sensor_labels(tree, ACCELERATION)[sensor]
-    columns: Columns = {"frequency [Hz]": values(tree, "spectra/frequency")}
-    for law in laws(tree, ACCELERATION):
-        psd = of_law(tree, ACCELERATION, law, "sensor", "frequency")[sensor]
-        columns[f"{law}, {label} [(m/s^2)^2/Hz]"] = psd
-    return columns
+def _laws_of(data: Data, entry: Entry) -> list[str]:
+    return [key[1] for key in data.lines if isinstance(key, tuple) and key[0] is entry]
 
 
 DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than that"
 
 
 def _force_caption(tree: DataTree) -> str:
+    main = laws(tree, FORCE_PSD)[0]
     return (
-        f"Contact force of all laws, one-sided PSD, {DRAWN}; thick: the main law, {laws(tree, FORCE)[0]}. "
+        f"Contact force of all laws, one-sided PSD, {DRAWN}; thick: the main law, {main}. "
         "Ticks stand at the one-third octaves." + shaded_words(tree)
     )
 
 
-def _band_caption(tree: DataTree) -> str:
+def band_caption(tree: DataTree, *reference: Entry) -> str:
+    """Say what the levels are compared with."""
     text = ["Levels per one-third octave (IEC 61260-1, base 10)."]
-    if present(tree, LINEAR_REFERENCE):
+    if any(present(tree, entry) for entry in reference):
         text.append("Dashed: the linear contact solved in the frequency domain.")
     if compared := list(differences(tree).values()):
         named = " and that of ".join(compared)
         text.append(f"Below: level minus that of {named}; positive where linear contact underestimates.")
-    return " ".join(text) + doubtful_words(tree, "band")
+    return " ".join(text) + doubtful_words(tree, BAND_TIME_PRODUCT)
 
 
-def doubtful_words(tree: DataTree, dim: str) -> str:
+def doubtful_words(tree: DataTree, product: Entry) -> str:
     """Say what shaded bands are, where there are any; a blank comes first."""
-    if not doubtful(tree, dim).any():
+    if not doubtful(tree, product).any():
         return ""
     scatter = 4.34 / np.sqrt(LEAST_PRODUCT)
     return (
@@ -277,53 +211,24 @@ def doubtful_words(tree: DataTree, dim: str) -> str:
     )
 
 
-def _sensors_caption(tree: DataTree) -> str:
-    main = laws(tree, ACCELERATION)[0]
-    text = f"Acceleration at all sensors by the main law, {main}, positive downwards; {DRAWN}."
-    lost = missing(tree, "spectra/acceleration_level")
-    return f"{text}{shaded_words(tree)} {lost}".strip()
+def force_bands(*reference: Entry) -> Part:
+    """Figure of the force in one-third octaves, with the levels of a `reference` where there is one."""
+    return Part(
+        "force_bands",
+        "Contact force in one-third octaves",
+        (FORCE_LEVEL, BAND),
+        lambda tree: band_data(tree, *reference),
+        lambda tree, data: band_figure(tree, data, *reference),
+        lambda tree: band_caption(tree, *reference),
+    )
 
 
-def _one_sensor_caption(tree: DataTree) -> str:
-    label = sensor_labels(tree, ACCELERATION)[_middle_sensor(tree)]
-    return f"Acceleration at {label} by all laws; {DRAWN}.{shaded_words(tree)}"
-
-
-_ACCELERATION_NEEDS = (ACCELERATION, "spectra/frequency")
-
-FORCE_BANDS = Part(
-    "force_bands",
-    "Contact force in one-third octaves",
-    (LEVEL, "spectra/band"),
-    band_figure,
-    band_columns,
-    _band_caption,
+FORCE_SPECTRUM = Part(
+    "force_psd",
+    "Contact force against frequency",
+    (FORCE_PSD, FREQUENCY),
+    force_data,
+    force_figure,
+    _force_caption,
 )
-
-SPECTRUM = (
-    Part(
-        "force_psd",
-        "Contact force against frequency",
-        (FORCE, "spectra/frequency"),
-        force_figure,
-        force_columns,
-        _force_caption,
-    ),
-    FORCE_BANDS,
-    Part(
-        "acceleration_sensors",
-        "Acceleration at the sensors",
-        _ACCELERATION_NEEDS,
-        sensors_figure,
-        sensors_columns,
-        _sensors_caption,
-    ),
-    Part(
-        "acceleration_laws",
-        "Acceleration by law",
-        _ACCELERATION_NEEDS,
-        one_sensor_figure,
-        one_sensor_columns,
-        _one_sensor_caption,
-    ),
-)
+FORCE_BANDS = force_bands()

@@ -14,8 +14,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import engineering, number, present, values
-from asperity.reporting.part import Columns, Part
+from asperity.reporting.data import engineering, number, present, stated, values
+from asperity.reporting.part import Data, Part, Series, field, present_series, series
 from asperity.reporting.style import (
     INK,
     LAW_STYLES,
@@ -29,6 +29,8 @@ from asperity.reporting.style import (
     styled,
     wavenumber_axis,
 )
+from asperity.schema import surface
+from asperity.schema.contact import HERTZ_RADIUS
 
 SLENDER = 2.5  # times longer than wide: such a map gets the whole width
 STRETCHES = 1200  # of the envelope of a long line
@@ -129,22 +131,26 @@ def _map_and_histogram(slender: bool) -> tuple[Figure, Axes, Axes]:
     return figure, left, right
 
 
+def sample_data(tree: DataTree) -> Data:
+    """Heights of the first sample: one row per x, one column per y."""
+    return field(tree, surface.SAMPLE_HEIGHTS, surface.X, surface.Y, "z")
+
+
 @styled()
-def sample_figure(tree: DataTree) -> Figure:
+def sample_figure(tree: DataTree, data: Data) -> Figure:
     """Map of the first sample, and how its heights are distributed."""
-    heights = values(tree, "surface/sample_heights", "x", "y")
-    x, y = values(tree, "surface/x"), values(tree, "surface/y")
+    x, y, heights = data.at, values(tree, surface.Y), data.field
     size, symbol, colours = height_scale(heights)
     figure, left, right = _map_and_histogram(bool(np.ptp(x) > SLENDER * np.ptp(y)))
     image = draw_map(left, x, y, heights / size, length_unit(np.ptp(x)), **colours)
     left.set_title("first sample" + _between(tree))
     figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9, pad=0.02)
     named = {"sample": distribution(heights)}
-    if present(tree, "surface/path_height_density"):
-        middle = values(tree, "surface/path_height")
+    if present(tree, surface.PATH_HEIGHT_DENSITY):
+        middle = values(tree, surface.PATH_HEIGHT)
         half = (middle[1] - middle[0]) / 2
         edges = np.append(middle - half, middle[-1] + half)
-        named["path, whole"] = (edges, values(tree, "surface/path_height_density"))
+        named["path, whole"] = (edges, values(tree, surface.PATH_HEIGHT_DENSITY))
     height_histogram(right, named, (size, symbol))
     right.set_title("heights")
     return figure
@@ -152,87 +158,74 @@ def sample_figure(tree: DataTree) -> Figure:
 
 def _between(tree: DataTree) -> str:
     """What to add to the title of a map that lines were laid out as."""
-    return ", as laid out between lines" if tree["surface"].attrs.get("across") == "lines" else ""
+    return ", as laid out between lines" if stated(tree, surface.ACROSS) == "lines" else ""
 
 
-def sample_columns(tree: DataTree) -> Columns:
-    """Heights of the first sample: one row per x, one column per y."""
-    return _matrix(tree, "surface/sample_heights", "x", "y", "z", "m")
-
-
-def _matrix(tree: DataTree, path: str, x: str, y: str, symbol: str, unit: str) -> Columns:
-    group = path.partition("/")[0]
-    field = values(tree, path, x, y)
-    columns: Columns = {"x [m]": values(tree, f"{group}/{x}")}
-    for index, position in enumerate(values(tree, f"{group}/{y}")):
-        columns[f"{symbol}(y={position:.9g} m) [{unit}]"] = field[:, index]
-    return columns
+def path_data(tree: DataTree) -> Data:
+    """Lowest and highest point of the middle line of the path, in stretches of it."""
+    starts, low, high = envelope(values(tree, surface.LINE), STRETCHES)
+    units = surface.LINE.units
+    lines = {"lowest": Series("lowest z", units, low), "highest": Series("highest z", units, high)}
+    return Data(Series("x", surface.DISTANCE.units, values(tree, surface.DISTANCE)[starts]), lines)
 
 
 @styled()
-def path_figure(tree: DataTree) -> Figure:
+def path_figure(tree: DataTree, data: Data) -> Figure:
     """Strip of the path, and its middle line; a path given as a line has the line alone."""
-    drawn = [draw for path, draw in _PATH_PANELS.items() if present(tree, path)]
-    figure = new_figure(3.9 if len(drawn) == 2 else 2.2)
-    for axes, draw in zip(figure.subplots(len(drawn), 1, squeeze=False)[:, 0], drawn, strict=True):
-        draw(axes, tree)
+    strip = present(tree, surface.PATH_HEIGHTS)
+    figure = new_figure(3.9 if strip else 2.2)
+    panels = figure.subplots(1 + strip, 1, squeeze=False)[:, 0]
+    if strip:
+        _draw_strip(panels[0], tree)
+    _draw_line(panels[-1], data, float(values(tree, surface.DISTANCE)[-1]))
     return figure
 
 
 def _draw_strip(axes: Axes, tree: DataTree) -> None:
-    heights = values(tree, "surface/path_heights", "path_x", "path_y")
-    x, y = values(tree, "surface/path_x"), values(tree, "surface/path_y")
+    heights = values(tree, surface.PATH_HEIGHTS, "path_x", "path_y")
+    x, y = values(tree, surface.PATH_X), values(tree, surface.PATH_Y)
     size, symbol, colours = height_scale(heights)
     image = draw_map(axes, x, y, heights / size, length_unit(np.ptp(x)), equal=False, **colours)
     axes.set_title(f"a piece of the path, seen from above (y stretched){_between(tree)}")
     axes.figure.colorbar(image, ax=axes, label=f"height / {symbol}", extend="both", pad=0.01)
 
 
-def _draw_line(axes: Axes, tree: DataTree) -> None:
-    distance, line = values(tree, "surface/distance"), values(tree, "surface/line")
-    along, along_symbol = length_unit(np.ptp(distance))
-    size, symbol = length_unit(np.nanmax(np.abs(line)) or 1e-9)
-    starts, low, high = envelope(line / size, STRETCHES)
-    axes.fill_between(distance[starts] / along, low, high, color=_BLUE, linewidth=0.4)
-    axes.set_xlim(distance[0] / along, distance[-1] / along)
+def _draw_line(axes: Axes, data: Data, end: float) -> None:
+    distance, low, high = data.at, data.lines["lowest"].values, data.lines["highest"].values
+    along, along_symbol = length_unit(end - distance[0])
+    size, symbol = length_unit(max(np.nanmax(-low), np.nanmax(high)) or 1e-9)
+    axes.fill_between(distance / along, low / size, high / size, color=_BLUE, linewidth=0.4)
+    axes.set_xlim(distance[0] / along, end / along)
     axes.set_xlabel(f"distance / {along_symbol}")
     axes.set_ylabel(f"height / {symbol}")
     axes.set_title("middle line of the whole path (envelope)")
 
 
-_PATH_PANELS = {"surface/path_heights": _draw_strip, "surface/line": _draw_line}
-
-
-def path_columns(tree: DataTree) -> Columns:
-    """Lowest and highest point of the middle line of the path, in the stretches that are drawn."""
-    distance, line = values(tree, "surface/distance"), values(tree, "surface/line")
-    starts, low, high = envelope(line, STRETCHES)
-    return {"x [m]": distance[starts], "lowest z [m]": low, "highest z [m]": high}
-
-
 _SPECTRA = {
-    "psd_sample": ("samples, mean", _BLUE, "-"),
-    "psd_path": ("path", _ORANGE, (0, (5, 1.5))),
+    surface.PSD_SAMPLE: ("samples, mean", "-", _BLUE),
+    surface.PSD_PATH: ("path", (0, (5, 1.5)), _ORANGE),
 }
 
 
+def psd_data(tree: DataTree) -> Data:
+    """Spectra against wavenumber, all lines."""
+    names = {entry: f"PSD of {name}" for entry, (name, _, _) in _SPECTRA.items()}
+    return Data(series(tree, surface.SURFACE_WAVENUMBER, "wavenumber"), present_series(tree, names))
+
+
 @styled()
-def psd_figure(tree: DataTree) -> Figure:
+def psd_figure(tree: DataTree, data: Data) -> Figure:
     """Power spectral densities of samples and path in the rolling direction."""
     figure = new_figure(3.9)
     axes = figure.subplots()
-    wavenumber = values(tree, "surface/surface_wavenumber")
     drawn = []
-    for name, (label, colour, dashes) in _SPECTRA.items():
-        if not present(tree, f"surface/{name}"):
-            continue
-        psd = values(tree, f"surface/{name}")
-        kept = (wavenumber > 0) & (psd > 0) & np.isfinite(psd)
-        if not kept.any():
-            continue
-        k, level = smooth_on_log_axis(wavenumber[kept], psd[kept])
-        axes.loglog(k, level, color=colour, linestyle=dashes, label=label, linewidth=1.5)
-        drawn.append((k, level))
+    for entry, (label, dashes, colour) in _SPECTRA.items():
+        psd = data.lines[entry].values if entry in data.lines else np.zeros(data.at.shape)
+        kept = (data.at > 0) & (psd > 0)
+        if kept.any():
+            k, level = smooth_on_log_axis(data.at[kept], psd[kept])
+            axes.loglog(k, level, color=colour, linestyle=dashes, label=label, linewidth=1.5)
+            drawn.append((k, level))
     if drawn:
         levels = np.concatenate([level for _, level in drawn])
         axes.set_ylim(max(levels.min() / 2, levels.max() * 1e-8), levels.max() * 4)
@@ -245,7 +238,7 @@ def psd_figure(tree: DataTree) -> Figure:
 
 
 def _mark_contact(axes: Axes, tree: DataTree) -> None:
-    radius = number(tree, "contact", "hertz_radius")
+    radius = number(tree, HERTZ_RADIUS)
     if radius is None or radius <= 0:
         return
     axes.axvline(1 / (2 * radius), color=INK, linewidth=0.9, linestyle=":")
@@ -253,62 +246,53 @@ def _mark_contact(axes: Axes, tree: DataTree) -> None:
     note_at(axes, 1 / (2 * radius), 0.97, label, va="top")
 
 
-def psd_columns(tree: DataTree) -> Columns:
-    """Spectra against wavenumber, all lines."""
-    columns: Columns = {"wavenumber [1/m]": values(tree, "surface/surface_wavenumber")}
-    for name, (label, _, _) in _SPECTRA.items():
-        if present(tree, f"surface/{name}"):
-            columns[f"PSD of {label} [m^3]"] = values(tree, f"surface/{name}")
-    return columns
-
-
 def _sample_caption(tree: DataTree) -> str:
-    missing = number(tree, "surface", "missing_share") or 0.0
-    source = tree["surface"].attrs.get("source") or "not stated"
+    missing = number(tree, surface.MISSING_SHARE) or 0.0
+    source = stated(tree, surface.SOURCE) or "not stated"
     return (
         f"Source: {source}; {100 * missing:.3g} % of its points had no height. Heights are positive out of "
         "the material; the colours leave out 0.1 % of the points at either end."
     )
 
 
-_SPECTRUM_PATHS = tuple(f"surface/{name}" for name in _SPECTRA)
+def _path_caption(tree: DataTree) -> str:
+    above = ", and the piece seen from above" if present(tree, surface.PATH_HEIGHTS) else ""
+    return (
+        "Heights of the path, positive out of the material. The CSV file holds the envelope of its "
+        f"middle line; run.nc has every point of it{above}."
+    )
+
 
 TEXTURE = (
     Part(
         "texture_sample",
         "Texture of the samples",
-        ("surface/sample_heights",),
+        (surface.SAMPLE_HEIGHTS,),
+        sample_data,
         sample_figure,
-        sample_columns,
         _sample_caption,
-        worth=lambda tree: bool(np.nanmax(np.abs(values(tree, "surface/sample_heights"))) > 0),
+        worth=lambda tree: bool(np.nanmax(np.abs(values(tree, surface.SAMPLE_HEIGHTS))) > 0),
     ),
     Part(
         "texture_path",
         "Texture of the path",
-        ("surface/line", "surface/distance"),
+        (surface.LINE, surface.DISTANCE),
+        path_data,
         path_figure,
-        path_columns,
-        lambda tree: (
-            "Heights of the path, positive out of the material. The CSV file holds the envelope of its "
-            "middle line; run.nc has every point of it"
-            + (", and the piece seen from above." if "path_heights" in tree["surface"] else ".")
-        ),
+        _path_caption,
     ),
     Part(
         "texture_psd",
         "Texture against wavenumber",
-        ("surface/surface_wavenumber",),
+        (surface.SURFACE_WAVENUMBER,),
+        psd_data,
         psd_figure,
-        psd_columns,
         lambda _: (
             "Power spectral density of the lines in rolling direction, mean over the lines, one-sided "
             "per cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that."
         ),
-        any_of=_SPECTRUM_PATHS,
-        worth=lambda tree: any(
-            (values(tree, path) > 0).any() for path in _SPECTRUM_PATHS if present(tree, path)
-        ),
+        any_of=tuple(_SPECTRA),
+        worth=lambda tree: any((values(tree, entry) > 0).any() for entry in _SPECTRA if present(tree, entry)),
     ),
 )
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.reporting.data import engineering, force_unit, laws, of_law, values
-from asperity.reporting.part import Columns, Part
+from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.style import (
     INK,
     MUTED,
@@ -22,18 +24,18 @@ from asperity.reporting.style import (
     new_figure,
     styled,
 )
+from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, TIME
 
-FORCE = "rolling/contact_force"
 COLUMNS = 700  # stretches of an envelope
 PIECE = 2000  # time steps of the short piece, at most
 HEADROOM = 0.5  # share of the main law's range by which other laws may widen its axis
 
 
-def lost(tree: DataTree, law: str) -> NDArray[np.bool_]:
-    """Time steps at which `law` has lost contact; none for a law whose contact pulls as well (linear)."""
-    force = of_law(tree, FORCE, law, "time")
-    share = "rolling/contact_loss_share"
-    if is_bilateral(law) or (law in laws(tree, share) and of_law(tree, share, law) == 0):
+def lost(tree: DataTree, law: str, force: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Where contact is lost, as `force` of `law` shows; nowhere if the contact pulls as well (linear)."""
+    if is_bilateral(law) or (
+        law in laws(tree, CONTACT_LOSS_SHARE) and of_law(tree, CONTACT_LOSS_SHARE, law) == 0
+    ):
         return np.zeros(len(force), dtype=bool)
     return force <= 0
 
@@ -45,7 +47,7 @@ def is_bilateral(law: str) -> bool:
 
 def piece(tree: DataTree) -> slice:
     """Short piece of the run: around the main law's longest loss of contact, else in the middle."""
-    flight = lost(tree, laws(tree, FORCE)[0])
+    flight = _main_flight(tree)
     count = len(flight)
     middle = count // 2
     if flight.any():
@@ -58,8 +60,14 @@ def piece(tree: DataTree) -> slice:
     return slice(start, start + length)
 
 
+def _main_flight(tree: DataTree) -> NDArray[np.bool_]:
+    """Time steps at which the main law has lost contact."""
+    main = laws(tree, CONTACT_FORCE)[0]
+    return lost(tree, main, of_law(tree, CONTACT_FORCE, main, "time"))
+
+
 def _force_unit(tree: DataTree) -> tuple[float, str]:
-    return force_unit(float(np.nanmax(np.abs(values(tree, FORCE)))))
+    return force_unit(float(np.nanmax(np.abs(values(tree, CONTACT_FORCE)))))
 
 
 def main_limits(series: Mapping[str, NDArray[np.float64]]) -> tuple[float, float]:
@@ -105,25 +113,38 @@ def time_unit(duration: float) -> tuple[float, str]:
     return (1.0, "s") if duration >= 0.5 else (1e-3, "ms")
 
 
+def envelope_data(tree: DataTree) -> Data:
+    """Lowest and highest contact force of each law in each stretch of the run."""
+    time = values(tree, TIME)
+    lines: dict[Any, Series] = {}
+    for law, force in by_law(tree, CONTACT_FORCE).items():
+        _, low, high = envelope(force.values, COLUMNS)
+        lines[law, "lowest"] = Series(f"{law} lowest", CONTACT_FORCE.units, low)
+        lines[law, "highest"] = Series(f"{law} highest", CONTACT_FORCE.units, high)
+    return Data(Series("time", TIME.units, time[envelope(time, COLUMNS)[0]]), lines)
+
+
 @styled()
-def envelope_figure(tree: DataTree) -> Figure:
+def envelope_figure(tree: DataTree, data: Data) -> Figure:
     """Contact force of the whole run, one row per law, as the envelope of its extremes."""
-    names = laws(tree, FORCE)
-    time, limits = values(tree, "rolling/time"), main_limits(_forces(tree, slice(None)))
+    names = laws(tree, CONTACT_FORCE)
+    whole, limits = values(tree, TIME), main_limits(_forces(tree))
     figure = new_figure(0.6 + 1.0 * len(names))
     panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-    unit, symbol = time_unit(time[-1] - time[0])
+    unit, symbol = time_unit(whole[-1] - whole[0])
     size, force_symbol = _force_unit(tree)
     for axes, law in zip(panels, names, strict=True):
-        colour = law_style(law, names[0])["color"]
+        lowest, highest = (data.lines[law, end].values for end in ("lowest", "highest"))
         columns = COLUMNS // 2 if is_narrow() else COLUMNS
-        starts, low, high = envelope(of_law(tree, FORCE, law, "time") / size, columns)
-        axes.fill_between(time[starts] / unit, low, high, color=colour, linewidth=0.5)
+        starts, low, _ = envelope(lowest, columns)
+        high, time = envelope(highest, columns)[2], data.at[starts] / unit
+        axes.fill_between(
+            time, low / size, high / size, color=law_style(law, names[0])["color"], linewidth=0.5
+        )
         axes.axhline(0, color=MUTED, linewidth=0.8)
-        flights = np.logical_or.reduceat(lost(tree, law), starts)
-        _flight_marks(axes, time[starts[flights]] / unit)
+        _flight_marks(axes, time[lost(tree, law, low)])
         axes.set_title(law + (" (main law)" if law == names[0] and len(names) > 1 else ""))
-        axes.set_xlim(time[0] / unit, time[-1] / unit)
+        axes.set_xlim(whole[0] / unit, whole[-1] / unit)
         axes.set_ylabel(f"F / {force_symbol}")
         if law == names[0] or not is_bilateral(law):
             axes.set_ylim(*(limit / size for limit in limits))
@@ -131,14 +152,14 @@ def envelope_figure(tree: DataTree) -> Figure:
     return figure
 
 
-def _forces(tree: DataTree, part: slice) -> dict[str, NDArray[np.float64]]:
-    """Contact force of each law over the time steps `part`."""
-    return {law: of_law(tree, FORCE, law, "time")[part] for law in laws(tree, FORCE)}
+def _forces(tree: DataTree) -> dict[str, NDArray[np.float64]]:
+    """Contact force of each law over the whole run."""
+    return {law: force.values for law, force in by_law(tree, CONTACT_FORCE).items()}
 
 
-def cut_off(tree: DataTree, part: slice) -> str:
+def cut_off(data: Data) -> str:
     """Say which laws leave the force axis of a piece."""
-    forces = _forces(tree, part)
+    forces = {law: force.values for law, force in data.lines.items()}
     return beyond_limits(forces, main_limits(forces), "N")
 
 
@@ -150,110 +171,78 @@ def _flight_marks(axes: Axes, instants: NDArray[np.float64]) -> None:
     marks.set_in_layout(False)
 
 
-def envelope_columns(tree: DataTree) -> Columns:
-    """Envelope of the contact force per law."""
-    time = values(tree, "rolling/time")
-    columns: Columns = {"time [s]": time[envelope(time, COLUMNS)[0]]}
-    for law in laws(tree, FORCE):
-        _, low, high = envelope(of_law(tree, FORCE, law, "time"), COLUMNS)
-        columns[f"{law} lowest [N]"], columns[f"{law} highest [N]"] = low, high
-    return columns
+def piece_data(tree: DataTree) -> Data:
+    """Contact force of each law over a short piece of the run."""
+    return forces_data(tree, piece(tree))
+
+
+def forces_data(tree: DataTree, part: slice) -> Data:
+    """Contact force of each law over the time steps `part`, every one."""
+    lines: dict[Any, Series] = {
+        law: replace(force, values=force.values[part]) for law, force in by_law(tree, CONTACT_FORCE).items()
+    }
+    time = series(tree, TIME)
+    return Data(replace(time, values=time.values[part]), lines)
 
 
 @styled()
-def piece_figure(tree: DataTree) -> Figure:
-    """Contact force of all laws over a short piece of the run, and below it where each has lost contact."""
-    return forces_with_flights(tree, piece(tree))
-
-
-def forces_with_flights(tree: DataTree, part: slice) -> Figure:
-    """Contact force over the time steps `part`, and below it, where there is any, the loss of contact."""
-    names, flies = laws(tree, FORCE), any_lost(tree, part)
-    figure = new_figure(3.9 + 0.16 * len(names) if flies else 3.9)
-    rows = [1, 0.06 * len(names) + 0.04] if flies else [1]
+def forces_figure(tree: DataTree, data: Data) -> Figure:
+    """Contact force of all laws over a piece of the run, and below it, where there is any, the loss of it."""
+    flights = {law: lost(tree, law, force.values) for law, force in data.lines.items()}
+    flies = any(flight.any() for flight in flights.values())
+    unit, symbol = time_unit(data.at[-1])
+    time = data.at / unit
+    figure = new_figure(3.9 + 0.16 * len(flights) if flies else 3.9)
+    rows = [1, 0.06 * len(flights) + 0.04] if flies else [1]
     panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False, height_ratios=rows)[:, 0]
-    draw_forces(panels[0], tree, part)
+    _draw_forces(panels[0], time, {law: data.lines[law].values for law in flights}, _force_unit(tree))
     if flies:
-        panels[0].set_xlabel("")
-        draw_flights(panels[1], tree, part)
+        _draw_flights(panels[1], time, flights)
+    panels[-1].set_xlabel(f"time / {symbol}")
     return figure
 
 
-def any_lost(tree: DataTree, part: slice) -> bool:
-    """Whether any law loses contact within the time steps `part`."""
-    return any(lost(tree, law)[part].any() for law in laws(tree, FORCE))
-
-
-def draw_forces(axes: Axes, tree: DataTree, part: slice) -> None:
-    """Draw the contact force of all laws over the time steps `part`."""
-    names = laws(tree, FORCE)
-    time = values(tree, "rolling/time")[part]
-    unit, symbol = time_unit(time[-1])
-    size, force_symbol = _force_unit(tree)
-    forces = _forces(tree, part)
-    low, high = main_limits(forces)
+def _draw_forces(
+    axes: Axes, time: NDArray[np.float64], forces: dict[str, NDArray[np.float64]], unit: tuple[float, str]
+) -> None:
+    main, (size, symbol), (low, high) = next(iter(forces)), unit, main_limits(forces)
     for law, force in forces.items():
         faint = {"alpha": 0.5, "linewidth": 0.8} if force.min() < low or force.max() > high else {}
-        axes.plot(time / unit, force / size, label=law, **law_style(law, names[0]) | faint)
+        axes.plot(time, force / size, label=law, **law_style(law, main) | faint)
     axes.axhline(0, color=MUTED, linewidth=0.8)
     axes.set_ylim(low / size, high / size)
-    axes.set_xlabel(f"time / {symbol}")
-    axes.set_ylabel(f"contact force / {force_symbol}")
-    axes.set_xlim(time[0] / unit, time[-1] / unit)
+    axes.set_ylabel(f"contact force / {symbol}")
+    axes.set_xlim(time[0], time[-1])
     legend_above(axes)
 
 
-def draw_flights(axes: Axes, tree: DataTree, part: slice) -> None:
-    """Draw a bar per law where it has lost contact, over the time steps `part`."""
-    names = laws(tree, FORCE)
-    time = values(tree, "rolling/time")[part]
-    unit, symbol = time_unit(time[-1])
-    for row, law in enumerate(names):
-        axes.fill_between(
-            time / unit,
-            row - 0.35,
-            row + 0.35,
-            where=lost(tree, law)[part],
-            color=law_style(law, "")["color"],
-            step="mid",
-            linewidth=0.8,
-        )
-    axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.set_yticks(range(len(names)), names)
+def _draw_flights(axes: Axes, time: NDArray[np.float64], flights: dict[str, NDArray[np.bool_]]) -> None:
+    """Draw a bar per law where it has lost contact."""
+    for row, (law, flight) in enumerate(flights.items()):
+        colour = law_style(law, "")["color"]
+        axes.fill_between(time, row - 0.35, row + 0.35, where=flight, color=colour, step="mid", linewidth=0.8)
+    axes.set_ylim(len(flights) - 0.4, -0.6)
+    axes.set_yticks(range(len(flights)), list(flights))
     axes.grid(visible=False, axis="y")
-    axes.set_xlabel(f"time / {symbol}")
     axes.set_ylabel("no contact", fontsize=8.5)
-
-
-def piece_columns(tree: DataTree) -> Columns:
-    """Contact force per law over the short piece, every time step."""
-    return columns_of_piece(tree, piece(tree))
-
-
-def columns_of_piece(tree: DataTree, part: slice) -> Columns:
-    """Contact force per law over the time steps `part`."""
-    columns: Columns = {"time [s]": values(tree, "rolling/time")[part]}
-    for law in laws(tree, FORCE):
-        columns[f"{law} [N]"] = of_law(tree, FORCE, law, "time")[part]
-    return columns
 
 
 def _piece_caption(tree: DataTree) -> str:
     where = "around the main law's longest loss of contact"
-    if not lost(tree, laws(tree, FORCE)[0]).any():
+    if not _main_flight(tree).any():
         where = "in the middle of the run"
-    part = piece(tree)
-    return f"A short piece {where}, every time step.{bars_words(tree, part)}{cut_off(tree, part)}"
+    data = piece_data(tree)
+    return f"A short piece {where}, every time step.{bars_words(tree, data)}{cut_off(data)}"
 
 
-def bars_words(tree: DataTree, part: slice) -> str:
+def bars_words(tree: DataTree, data: Data) -> str:
     """Sentence about the bars below the forces of a piece, where there are any."""
-    return " Bars below: no contact (F ≤ 0); linear never lets go." if any_lost(tree, part) else ""
+    flies = any(lost(tree, law, force.values).any() for law, force in data.lines.items())
+    return " Bars below: no contact (F ≤ 0); linear never lets go." if flies else ""
 
 
 def _envelope_caption(tree: DataTree) -> str:
-    count = len(values(tree, "rolling/time"))
-    stretches = min(COLUMNS, count)
+    stretches = min(COLUMNS, len(values(tree, TIME)))
     return (
         f"Lowest and highest force in each of {stretches} stretches of the run, compression positive. "
         "Marks along the bottom: stretches with loss of contact. A linear law beside the main one has an "
@@ -262,7 +251,7 @@ def _envelope_caption(tree: DataTree) -> str:
 
 
 def _cut_off_of_those_that_let_go(tree: DataTree) -> str:
-    forces = _forces(tree, slice(None))
+    forces = _forces(tree)
     main = next(iter(forces))
     shared = {law: force for law, force in forces.items() if law == main or not is_bilateral(law)}
     return beyond_limits(shared, main_limits(forces), "N")
@@ -271,17 +260,16 @@ def _cut_off_of_those_that_let_go(tree: DataTree) -> str:
 FORCE_PIECE = Part(
     "force_piece",
     "Contact force, a short piece",
-    (FORCE, "rolling/time"),
-    piece_figure,
-    piece_columns,
+    (CONTACT_FORCE, TIME),
+    piece_data,
+    forces_figure,
     _piece_caption,
 )
 FORCE_ENVELOPE = Part(
     "force_envelope",
     "Contact force, the whole run",
-    (FORCE, "rolling/time"),
+    (CONTACT_FORCE, TIME),
+    envelope_data,
     envelope_figure,
-    envelope_columns,
     _envelope_caption,
 )
-TIME = (FORCE_PIECE, FORCE_ENVELOPE)

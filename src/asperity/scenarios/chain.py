@@ -33,6 +33,10 @@ class Run(Protocol):
         """Times, s, shape (n,)."""
 
     @property
+    def position(self) -> NDArray:
+        """Positions of the contact, m, shape (n,)."""
+
+    @property
     def contact_force(self) -> NDArray:
         """Contact force, N, shape (n,)."""
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
+
+from asperity.schema import contact, provenance, rolling, spectra, surface
 
 if TYPE_CHECKING:
     import warnings
@@ -18,6 +21,9 @@ if TYPE_CHECKING:
     from asperity.scenarios.geometry import Geometry
     from asperity.scenarios.preparing import Prepared
     from asperity.scenarios.textures import Textures
+
+SHARED = (provenance, surface, contact, rolling, spectra)
+"""What the results of all kinds hold."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,7 @@ class Kind:
         compiling  ``compile_kernels(progress)``, of all that is stepped
         compute    ``compute(prepared, progress)``, from textures to runs
         result     ``layout(computed, caught)``, the tree of a run
+        schema     what its result holds beside what all results hold
         chapters   ``CHAPTERS`` of its report
         plan       ``rows(case)``, what will be computed, in words; ``seconds(prepared, progress, pace)`` by
                    part of the work, s; ``step_seconds(prepared)``; ``records(case)``; ``REPORT``, s
@@ -104,6 +111,11 @@ class Kind:
         computed = self._part("compute").compute(prepared, progress)
         found: xarray.DataTree = self._part("result").layout(computed, caught)
         return found
+
+    @property
+    def schema(self) -> tuple[ModuleType, ...]:
+        """Modules with the entries of its result, its own the last."""
+        return (*SHARED, self._part("schema"))
 
     @property
     def chapters(self) -> tuple[Chapter, ...]:

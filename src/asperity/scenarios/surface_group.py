@@ -12,9 +12,9 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity.errors import InhomogeneousWarning, ShortRecordWarning
-from asperity.results import variable
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.textures import Textures
+from asperity.schema import Entry, attributes, surface, variables
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.homogeneity import SIGNIFICANCE, TILES, homogeneity, more_than_chance
@@ -48,39 +48,38 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
         statistics.
     """
     textures, dx = chain.textures, chain.shape.spacing[0]
-    variables: dict[str, xarray.Variable] = {}
+    laid_out: dict[Entry, Any] = {}
     statistics: list[dict[str, Any]] = []
     if textures.maps:
         first = textures.maps[0]
-        variables |= {
-            "x": variable("x", np.arange(first.shape[0]) * dx, "m", "rolling direction"),
-            "y": variable("y", np.arange(first.shape[1]) * dx, "m", "across"),
-            "sample_heights": variable(("x", "y"), first.heights, "m", "height of the first sample"),
+        laid_out |= {
+            surface.X: np.arange(first.shape[0]) * dx,
+            surface.Y: np.arange(first.shape[1]) * dx,
+            surface.SAMPLE_HEIGHTS: first.heights,
         }
         statistics += _areal(first) if textures.areal else []
     recorded = textures.recorded
     if textures.path is not None:
         piece = textures.surface.rows(recorded.start, min(recorded.stop, recorded.start + PATH_ROWS))
-        variables |= {
-            "path_x": variable("path_x", np.arange(len(piece)) * dx, "m", "rolling direction"),
-            "path_y": variable("path_y", np.arange(piece.shape[1]) * dx, "m", "across"),
-            "path_heights": variable(("path_x", "path_y"), piece, "m", "height of the path"),
+        laid_out |= {
+            surface.PATH_X: np.arange(len(piece)) * dx,
+            surface.PATH_Y: np.arange(piece.shape[1]) * dx,
+            surface.PATH_HEIGHTS: piece,
         }
     if chain.case.surface.file is not None and textures.maps is not textures.strips:
-        variables |= _homogeneity(textures.maps)
+        laid_out |= _homogeneity(textures.maps)
     line = textures.followed[recorded]
-    variables["distance"] = variable("distance", np.arange(len(line)) * dx, "m", "distance along the path")
-    variables["line"] = variable("distance", line, "m", "height along the middle of the path")
+    laid_out |= {surface.DISTANCE: np.arange(len(line)) * dx, surface.LINE: line}
     path = _path(chain)
-    variables |= _distribution(path) | _spectra(chain, path)
+    laid_out |= _distribution(path) | _spectra(chain, path)
     statistics += path.statistics + _of_lines(textures)
-    attrs = {
-        "statistics": json.dumps(statistics, ensure_ascii=False),
-        "source": textures.origin,
-        "missing_share": textures.missing_share,
-        "across": "areal" if textures.areal else "lines",
+    facts = {
+        surface.STATISTICS: json.dumps(statistics, ensure_ascii=False),
+        surface.SOURCE: textures.origin,
+        surface.MISSING_SHARE: textures.missing_share,
+        surface.ACROSS: "areal" if textures.areal else "lines",
     }
-    return xarray.Dataset(variables, attrs=attrs)
+    return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +135,7 @@ def _areal(surface: HeightMap) -> list[dict[str, Any]]:
     return _listed(_without_bounds(found, caught), "first sample")
 
 
-def _homogeneity(maps: tuple[HeightMap, ...]) -> dict[str, xarray.Variable]:
+def _homogeneity(maps: tuple[HeightMap, ...]) -> dict[Entry, Any]:
     """Test measured maps for being the same everywhere; synthesised ones are."""
     if any(min(m.shape) < 2 * max(TILES) or not np.ptp(m.heights) for m in maps):
         return {}
@@ -153,18 +152,11 @@ def _homogeneity(maps: tuple[HeightMap, ...]) -> dict[str, xarray.Variable]:
             InhomogeneousWarning,
             stacklevel=2,
         )
-    tiles = ("sample", "tile_x", "tile_y")
     return {
-        "homogeneity_p": variable(
-            "sample", p_values, "1", "share of stationary textures whose tiles vary as much as those of a map"
-        ),
-        "tile_variation": variable(
-            "sample", [f.variation for f in found], "1", "coefficient of variation of the tiles' mean squares"
-        ),
-        "tile_variation_expected": variable(
-            "sample", [f.expected for f in found], "1", "the same of stationary textures, median"
-        ),
-        "tile_rms": variable(tiles, np.stack([f.tile_rms for f in found]), "m", "rms height of the tiles"),
+        surface.HOMOGENEITY_P: surface.HOMOGENEITY_P.variable(p_values, significance=SIGNIFICANCE),
+        surface.TILE_VARIATION: [f.variation for f in found],
+        surface.TILE_VARIATION_EXPECTED: [f.expected for f in found],
+        surface.TILE_RMS: np.stack([f.tile_rms for f in found]),
     }
 
 
@@ -186,16 +178,11 @@ def _of_lines(textures: Textures) -> list[dict[str, Any]]:
     ]
 
 
-def _distribution(path: _Path) -> dict[str, xarray.Variable]:
+def _distribution(path: _Path) -> dict[Entry, Any]:
     if not path.density.any():
         return {}
     middle = 0.5 * (path.edges[1:] + path.edges[:-1])
-    return {
-        "path_height": variable("path_height", middle, "m", "height of the path about its mean"),
-        "path_height_density": variable(
-            "path_height", path.density, "1/m", "probability density of the heights of the path"
-        ),
-    }
+    return {surface.PATH_HEIGHT: middle, surface.PATH_HEIGHT_DENSITY: path.density}
 
 
 def _listed(statistics: list[Statistic], where: str) -> list[dict[str, Any]]:
@@ -218,17 +205,13 @@ def _length(metres: float) -> str:
     return f"{metres * 1e3:.3g} mm" if metres >= 1e-3 else f"{metres * 1e6:.3g} µm"
 
 
-def _spectra(chain: Chain[Any], path: _Path) -> dict[str, xarray.Variable]:
+def _spectra(chain: Chain[Any], path: _Path) -> dict[Entry, Any]:
     """Spectra of samples and path in the rolling direction, on the samples' wavenumbers."""
-    textures, dims, units = chain.textures, "surface_wavenumber", "m3"
-    result: dict[str, xarray.Variable] = {}
-    wavenumber = path.wavenumber
-    if textures.maps:
-        spectra = [psd_1d(m)[1] for m in textures.maps]
-        wavenumber = psd_1d(textures.maps[0])[0]
-        sampled = np.mean([s[1:] for s in spectra if s.shape == spectra[0].shape], axis=0)
-        result["psd_sample"] = variable(dims, sampled, units, "PSD of the samples along the path, one-sided")
+    maps, wavenumber = chain.textures.maps, path.wavenumber
+    found: dict[Entry, Any] = {}
+    if maps:
+        spectra = [psd_1d(m)[1] for m in maps]
+        wavenumber = psd_1d(maps[0])[0]
+        found[surface.PSD_SAMPLE] = np.mean([s[1:] for s in spectra if s.shape == spectra[0].shape], axis=0)
     along = np.interp(wavenumber[1:], path.wavenumber[1:], path.spectrum[1:], left=np.nan)
-    result["psd_path"] = variable(dims, along, units, "PSD of the path along it, one-sided")
-    result[dims] = variable(dims, wavenumber[1:], "1/m", "wavenumber, cycles per metre")
-    return result
+    return found | {surface.PSD_PATH: along, surface.SURFACE_WAVENUMBER: wavenumber[1:]}

@@ -16,9 +16,9 @@ from asperity import __version__
 from asperity.contact.device import find_device
 from asperity.errors import Grade, PhysicsWarning
 from asperity.laws import LAWS
-from asperity.results import BASELINES, checked, difference_name, variable
+from asperity.results import checked
 from asperity.scenarios.chain import Chain
-from asperity.scenarios.missing import marked
+from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
 from asperity.spectra import LEAST_PRODUCT, band_product
 
 SEGMENT = (0.025, 0.2)
@@ -65,27 +65,28 @@ def assembled(
         The result.
     """
     case = chain.case
-    scenario = xarray.Dataset(
-        attrs={
-            "kind": case.kind,
-            "parameters": json.dumps(case.parameters(), ensure_ascii=False),
-            "numerics": json.dumps(_listed(chain, numerics), ensure_ascii=False),
-            "laws": json.dumps({n: _meaning(n) for n in chain.laws}, ensure_ascii=False),
+    scenario = attributes(
+        {
+            provenance.KIND: case.kind,
+            provenance.PARAMETERS: json.dumps(case.parameters(), ensure_ascii=False),
+            provenance.NUMERICS: json.dumps(_listed(chain, numerics), ensure_ascii=False),
+            provenance.LAWS: json.dumps({n: _meaning(n) for n in chain.laws}, ensure_ascii=False),
         }
     )
-    tree = xarray.DataTree.from_dict(
-        {"/scenario": scenario, **{path: marked(group) for path, group in groups.items()}}
+    tree = xarray.DataTree.from_dict({"/scenario": xarray.Dataset(attrs=scenario), **groups})
+    tree.attrs = attributes(
+        {
+            provenance.TITLE: title,
+            provenance.ASPERITY_VERSION: __version__,
+            provenance.SCHEMA_VERSION: VERSION,
+            provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
+            provenance.CASE: case.text,
+            provenance.SEED: case.seed,
+            provenance.CITATIONS: json.dumps(CITATIONS + citations, ensure_ascii=False),
+            provenance.VERDICT: verdict,
+            provenance.WARNINGS: json.dumps(_collected(caught), ensure_ascii=False),
+        }
     )
-    tree.attrs = {
-        "title": title,
-        "asperity_version": __version__,
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "case": case.text,
-        "seed": case.seed,
-        "citations": json.dumps(CITATIONS + citations, ensure_ascii=False),
-        "verdict": verdict,
-        "warnings": json.dumps(_collected(caught), ensure_ascii=False),
-    }
     return checked(tree)
 
 
@@ -142,43 +143,36 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
         yield f"time steps not converged, {name}", f"{run.unconverged_steps}"
 
 
-def law_coordinate(chain: Chain[Any]) -> xarray.Variable:
-    """Names of the laws as a coordinate.
+def rolling_group(chain: Chain[Any], own: Mapping[Entry, Any]) -> xarray.Dataset:
+    """Lay out what was recorded in time.
 
     Parameters
     ----------
     chain : Chain
         What was computed.
+    own : mapping of Entry
+        Values of what the kind of case records beside force, approach and losses of contact.
 
     Returns
     -------
-    xarray.Variable
-        In the order of the case.
+    xarray.Dataset
+        All of it.
     """
-    return variable("law", np.array(list(chain.runs)), "1", "contact law")
-
-
-def loss_variables(chain: Chain[Any]) -> dict[str, xarray.Variable]:
-    """Lay out how much and how often contact was lost.
-
-    Parameters
-    ----------
-    chain : Chain
-        What was computed.
-
-    Returns
-    -------
-    dict of str to Variable
-        Share, number and longest duration, by law.
-    """
-    events = np.array([len(run.contact_loss) for run in chain.runs.values()])
-    return {
-        "contact_loss_share": variable(
-            "law", chain.stacked("contact_loss_share"), "1", "share of the time without contact"
-        ),
-        "contact_loss_events": variable("law", events, "1", "losses of contact"),
-        "longest_loss": variable("law", chain.stacked("longest_loss"), "s", "longest time without contact"),
-    }
+    run, stack = next(iter(chain.runs.values())), chain.stacked
+    found = variables(
+        {
+            rolling.LAW: list(chain.runs),
+            rolling.TIME: run.time,
+            rolling.POSITION: run.position,
+            rolling.CONTACT_FORCE: stack("contact_force"),
+            rolling.RELATIVE_DISPLACEMENT: stack("relative_displacement"),
+            rolling.CONTACT_LOSS_SHARE: stack("contact_loss_share"),
+            rolling.CONTACT_LOSS_EVENTS: [len(run.contact_loss) for run in chain.runs.values()],
+            rolling.LONGEST_LOSS: stack("longest_loss"),
+        }
+        | dict(own)
+    )
+    return xarray.Dataset(found, attrs=attributes({rolling.SPEED: chain.case.speed}))
 
 
 def spectrum_segment(samples: int, step: float) -> int:
@@ -188,34 +182,6 @@ def spectrum_segment(samples: int, step: float) -> int:
     """
     shortest, longest = (round(length / step) for length in SEGMENT)
     return min(max(samples // 4, shortest), longest, samples)
-
-
-def product_variable(name: str, centres: np.ndarray, time: float, what: str = "time") -> xarray.Variable:
-    """Lay out the product B T of bands, from which one sees which levels say little.
-
-    Parameters
-    ----------
-    name : str
-        Dimension of the bands.
-    centres : ndarray, shape (b,)
-        Band centres, Hz or cycles per metre.
-    time : float
-        Averaging time, s, or length, m.
-    what : str
-        Which of the two.
-
-    Returns
-    -------
-    xarray.Variable
-        By band; the least product of a level that says something is in its attributes.
-    """
-    return variable(
-        name,
-        band_product(centres, time),
-        "1",
-        f"bandwidth times averaging {what}; a level has a standard deviation of 4.34/sqrt of it, dB",
-        least=LEAST_PRODUCT,
-    )
 
 
 def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xarray.Variable]:
@@ -233,17 +199,31 @@ def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xar
     dict of str to Variable
         Differences in dB, by law and band.
     """
-    compared = {difference_name(name): name for name in BASELINES if name in laws}
+    compared = {entry: law for law, entry in spectra.FORCE_LEVEL_DIFFERENCES.items() if law in laws}
     reference = next((name for name in ("direct", "table") if name in laws), None)
     if reference is not None:
-        compared["force_level_difference_to_reference"] = reference
+        compared[spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = reference
     return {
-        name: variable(
-            ("law", "band"),
-            force_level - force_level[laws.index(law)],
-            "dB",
-            f"force level over that of {law}",
-            reference=law,
-        )
-        for name, law in compared.items()
+        entry.name: entry.variable(force_level - force_level[laws.index(law)], reference=law)
+        for entry, law in compared.items()
     }
+
+
+def product_of_bands(entry: Entry, centres: np.ndarray, time: float) -> xarray.Variable:
+    """Lay out the product B T of bands, from which one sees which levels say little.
+
+    Parameters
+    ----------
+    entry : Entry
+        Which product.
+    centres : ndarray, shape (b,)
+        Band centres, Hz or cycles per metre.
+    time : float
+        Averaging time, s, or length, m.
+
+    Returns
+    -------
+    xarray.Variable
+        By band; the least product of a level that says something is in its attributes.
+    """
+    return entry.variable(band_product(centres, time), least=LEAST_PRODUCT)

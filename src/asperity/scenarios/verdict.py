@@ -9,16 +9,27 @@ import numpy as np
 import xarray
 
 from asperity.errors import Grade
-from asperity.results import BASELINES, difference_name
 from asperity.scenarios.chain import Chain, Run
 from asperity.scenarios.validity import SCANNED, Finding
+from asperity.schema.spectra import (
+    BAND,
+    BAND_TIME_PRODUCT,
+    FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
+    FORCE_LEVEL_DIFFERENCES,
+)
 from asperity.spectra import LEAST_PRODUCT, nominal_frequency
 
 COMPARED = (100.0, 5000.0)
 """Band centres between which laws are compared, Hz."""
 
 
-def verdict(chain: Chain[Any], spectra: xarray.Dataset, found: Sequence[Finding], body: str) -> str:
+def verdict(
+    chain: Chain[Any],
+    spectra: xarray.Dataset,
+    found: Sequence[Finding],
+    body: str,
+    sound_power: xarray.DataArray | None = None,
+) -> str:
     """Say in a few words how the main law's contact went, and how far it is from the others.
 
     Parameters
@@ -31,6 +42,8 @@ def verdict(chain: Chain[Any], spectra: xarray.Dataset, found: Sequence[Finding]
         What holds the case to the range of its laws.
     body : str
         What rolls: "ball" or "wheel".
+    sound_power : DataArray, shape (laws,), optional
+        A-weighted, dB.
 
     Returns
     -------
@@ -42,15 +55,17 @@ def verdict(chain: Chain[Any], spectra: xarray.Dataset, found: Sequence[Finding]
     sentences = list(_doubts(chain, found))
     sentences += [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
     secant = " (linear with the stiffness F/r)" if chain.case.contact.linearise == "secant" else ""
-    baselines = [name for name in BASELINES if difference_name(name) in spectra and name != main]
+    baselines = [
+        law for law, entry in FORCE_LEVEL_DIFFERENCES.items() if entry.name in spectra and law != main
+    ]
     shown = _shown(spectra)
     if not shown.any():
         sentences.append("The record is too short to compare its one-third octaves with those of other laws")
     elif compared := list(_compared(spectra.isel(band=shown), main, baselines)):
         sentences.append(f"Per one-third octave {main} is {' and '.join(compared)}{secant}")
-    if "sound_power_level_a" in spectra and baselines:
-        level = spectra["sound_power_level_a"].sel(source="total")
-        changes = [f"{_signed(level.sel(law=main) - level.sel(law=name))} over {name}" for name in baselines]
+    if sound_power is not None and baselines:
+        own = sound_power.sel(law=main)
+        changes = [f"{_signed(own - sound_power.sel(law=name))} over {name}" for name in baselines]
         sentences.append(f"Its A-weighted sound power is {' and '.join(changes)}{secant}")
     return ". ".join(sentences) + "."
 
@@ -73,15 +88,16 @@ def _doubts(chain: Chain[Any], found: Sequence[Finding]) -> Iterator[str]:
 def _shown(spectra: xarray.Dataset) -> np.ndarray:
     """Bands in which laws are compared: those that are averaged enough."""
     low, high = COMPARED
-    inside = (spectra["band"] >= low * 0.9) & (spectra["band"] <= high * 1.1)
-    return np.asarray((inside & (spectra["band_time_product"] >= LEAST_PRODUCT)).values)
+    band = spectra[BAND.name]
+    inside = (band >= low * 0.9) & (band <= high * 1.1)
+    return np.asarray((inside & (spectra[BAND_TIME_PRODUCT.name] >= LEAST_PRODUCT)).values)
 
 
 def _compared(bands: xarray.Dataset, main: str, baselines: list[str]) -> Iterator[str]:
     """Distance to the linear laws, the one of practice first, and to the reference."""
     for name in baselines:
-        yield f"{_range(bands[difference_name(name)].sel(law=main))} over {name}"
-    to_reference = bands.get("force_level_difference_to_reference")
+        yield f"{_range(bands[FORCE_LEVEL_DIFFERENCES[name].name].sel(law=main))} over {name}"
+    to_reference = bands.get(FORCE_LEVEL_DIFFERENCE_TO_REFERENCE.name)
     if to_reference is not None and to_reference.attrs["reference"] != main:
         distance = float(abs(to_reference.sel(law=main)).max())
         yield f"at most {distance:.1f} dB from {to_reference.attrs['reference']}"

@@ -34,8 +34,8 @@ from asperity.config.keys import (
 )
 from asperity.config.sections import ContactCase, Numerics, Surface
 from asperity.errors import InputError
-from asperity.results import BASELINES
 from asperity.scenarios.kind import Words
+from asperity.schema.spectra import BASELINES
 
 NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
 NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line

@@ -5,26 +5,23 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable
 
-import numpy as np
 import xarray
 
+from asperity.kinds.ball_on_beam import schema
 from asperity.kinds.ball_on_beam.compute import Computed
-from asperity.results import variable
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import (
     assembled,
-    law_coordinate,
     level_differences,
-    loss_variables,
-    product_variable,
+    product_of_bands,
+    rolling_group,
     spectrum_segment,
 )
 from asperity.scenarios.validity import findings, warn_of
 from asperity.scenarios.verdict import verdict
+from asperity.schema import spectra, variables
 from asperity.spectra import averaging_time, band_levels, psd
-
-ACCELERATION_REFERENCE = 1e-6
 
 
 def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
@@ -42,21 +39,21 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     xarray.DataTree
         Groups scenario, surface, contact, rolling, spectra.
     """
-    spectra = _spectra(computed)
+    over_frequency = _spectra(computed)
     found = findings(computed.chain)
     warn_of(found)
     groups = {
         "/surface": surface_group(computed.chain),
         "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),
-        "/spectra": spectra,
+        "/spectra": over_frequency,
     }
     return assembled(
         computed.chain,
         groups,
         caught,
         title=_title(computed.case.ball.material.name, computed.case.beam.material.name),
-        verdict=verdict(computed.chain, spectra, found, "ball"),
+        verdict=verdict(computed.chain, over_frequency, found, "ball"),
         numerics=_numerics(computed),
     )
 
@@ -74,50 +71,18 @@ def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:
 
 def _rolling(computed: Computed) -> xarray.Dataset:
     runs, stack = list(computed.chain.runs.values()), computed.chain.stacked
-    sensors = np.array(computed.case.beam.sensor_positions)
     terms = list(runs[0].energy.terms())
-    energy = np.array([[run.energy.terms()[t] for t in terms] for run in runs])
-    return xarray.Dataset(
+    return rolling_group(
+        computed.chain,
         {
-            "law": law_coordinate(computed.chain),
-            "sensor": variable("sensor", sensors, "m", "position of the accelerometer on the beam"),
-            "time": variable("time", runs[0].time, "s", "time since the run-in"),
-            "position": variable("time", runs[0].position, "m", "position of the contact on the beam"),
-            "contact_force": variable(("law", "time"), stack("contact_force"), "N", "contact force"),
-            "relative_displacement": variable(
-                ("law", "time"),
-                stack("relative_displacement"),
-                "m",
-                "approach of the mean surfaces, positive closing",
-            ),
-            "acceleration": variable(
-                ("law", "sensor", "time"),
-                stack("acceleration"),
-                "m/s2",
-                "acceleration of the beam, positive downwards",
-            ),
-            "ball_displacement": variable(
-                ("law", "time"),
-                stack("ball_displacement"),
-                "m",
-                "displacement of the ball, positive downwards",
-            ),
-            "beam_displacement": variable(
-                ("law", "time"),
-                stack("beam_displacement"),
-                "m",
-                "displacement of the beam under the ball, positive downwards",
-            ),
-            "energy_term": variable("energy_term", np.array(terms), "1", "term of the energy balance"),
-            "energy": variable(("law", "energy_term"), energy, "J", "energy since the start of the run-in"),
-            "energy_residual": variable(
-                "law",
-                np.array([run.energy.residual for run in runs]),
-                "1",
-                "what the energy balance leaves open, relative to the throughput",
-            ),
-        }
-        | loss_variables(computed.chain)
+            schema.ROLLING_SENSOR: computed.case.beam.sensor_positions,
+            schema.ACCELERATION: stack("acceleration"),
+            schema.BALL_DISPLACEMENT: stack("ball_displacement"),
+            schema.BEAM_DISPLACEMENT: stack("beam_displacement"),
+            schema.ENERGY_TERM: terms,
+            schema.ENERGY: [[run.energy.terms()[t] for t in terms] for run in runs],
+            schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
+        },
     )
 
 
@@ -126,27 +91,23 @@ def _spectra(computed: Computed) -> xarray.Dataset:
     laws, stack = list(computed.chain.runs), computed.chain.stacked
     samples = len(computed.chain.runs[laws[0]].time)
     segment = spectrum_segment(samples, step)
+    time = averaging_time(samples, step, segment=segment)
     frequency, force = psd(stack("contact_force"), step, segment=segment)
     _, acceleration = psd(stack("acceleration"), step, segment=segment)
     band, force_level = band_levels(frequency, force, high=highest)
-    _, acceleration_level = band_levels(frequency, acceleration, ACCELERATION_REFERENCE, high=highest)
+    _, acceleration_level = band_levels(frequency, acceleration, schema.ACCELERATION_REFERENCE, high=highest)
     shown = (frequency > 0.0) & (frequency <= 1.13 * highest)
-    by_law, by_sensor = ("law", "frequency"), ("law", "sensor", "frequency")
-    variables = {
-        "law": law_coordinate(computed.chain),
-        "sensor": variable(
-            "sensor", np.array(computed.case.beam.sensor_positions), "m", "position of the accelerometer"
-        ),
-        "frequency": variable("frequency", frequency[shown], "Hz", "frequency"),
-        "band": variable("band", band, "Hz", "one-third-octave band centre"),
-        "band_time_product": product_variable("band", band, averaging_time(samples, step, segment=segment)),
-        "force_psd": variable(by_law, force[:, shown], "N2/Hz", "PSD of the contact force, one-sided"),
-        "force_level": variable(("law", "band"), force_level, "dB re 1 N", "contact force level"),
-        "acceleration_psd": variable(
-            by_sensor, acceleration[..., shown], "(m/s2)2/Hz", "PSD of the beam acceleration, one-sided"
-        ),
-        "acceleration_level": variable(
-            ("law", "sensor", "band"), acceleration_level, "dB re 1e-6 m/s2", "acceleration level"
-        ),
-    }
-    return xarray.Dataset(variables | level_differences(laws, force_level))
+    found = variables(
+        {
+            spectra.LAW: laws,
+            schema.SPECTRA_SENSOR: computed.case.beam.sensor_positions,
+            spectra.FREQUENCY: frequency[shown],
+            spectra.BAND: band,
+            spectra.BAND_TIME_PRODUCT: product_of_bands(spectra.BAND_TIME_PRODUCT, band, time),
+            spectra.FORCE_PSD: force[:, shown],
+            spectra.FORCE_LEVEL: force_level,
+            schema.ACCELERATION_PSD: acceleration[..., shown],
+            schema.ACCELERATION_LEVEL: acceleration_level,
+        }
+    )
+    return xarray.Dataset(found | level_differences(laws, force_level))

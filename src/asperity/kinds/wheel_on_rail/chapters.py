@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from asperity.kinds.wheel_on_rail.figures.force import FORCE_PEAK, FORCE_PSD
+from asperity.kinds.wheel_on_rail.figures.force import FORCE_BANDS, FORCE_PEAK, FORCE_SPECTRUM
 from asperity.kinds.wheel_on_rail.figures.loss_factors import LOSS_FACTORS
 from asperity.kinds.wheel_on_rail.figures.motion import MOTION
-from asperity.kinds.wheel_on_rail.figures.noise import NOISE
+from asperity.kinds.wheel_on_rail.figures.noise import NOISE, sound_power_table
 from asperity.kinds.wheel_on_rail.figures.roughness import ROUGHNESS_LEVELS
 from asperity.kinds.wheel_on_rail.figures.track import TRACK
 from asperity.reporting.chapter import CONTACT, Chapter
-from asperity.reporting.spectrum_figures import FORCE_BANDS
 from asperity.reporting.tables import (
     homogeneity_table,
     loss_table,
     reference_table,
-    sound_power_table,
     statistics_table,
 )
 from asperity.reporting.texture import TEXTURE
@@ -27,7 +25,7 @@ CHAPTERS = (
     Chapter(
         "force",
         "Contact force",
-        (FORCE_ENVELOPE, FORCE_PEAK, FORCE_PSD, FORCE_BANDS),
+        (FORCE_ENVELOPE, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS),
         (reference_table, loss_table),
     ),
     Chapter("noise", "Rolling noise", NOISE, (sound_power_table,)),

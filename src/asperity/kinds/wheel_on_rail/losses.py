@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
-import xarray
 
 from asperity.errors import PhysicsWarning
+from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.bodies import wheel_of
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.geometry import geometry_of
 from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, loss_factor_error, signed
-from asperity.results import variable
 from asperity.scenarios.laws import working_point
+from asperity.schema import Entry
 from asperity.spectra import nominal_frequency
 from asperity.structures.causal_track import causal_track
 
@@ -39,7 +40,7 @@ def expected_error_of_losses(case: WheelOnRail) -> LossFactorError:
     return loss_factor_error(case.track_model(), wheel, stiffness, case.numerics.highest_frequency)
 
 
-def loss_variables(error: LossFactorError) -> dict[str, xarray.Variable]:
+def relaxed(error: LossFactorError) -> dict[Entry, Any]:
     """Lay out the stiffnesses that relax, and the errors in bands.
 
     Parameters
@@ -49,40 +50,24 @@ def loss_variables(error: LossFactorError) -> dict[str, xarray.Variable]:
 
     Returns
     -------
-    dict of str to Variable
+    dict of Entry
         None where the track has no loss factors.
     """
     track = causal_track(error.track)
-    relaxed = {name: getattr(track.relaxations, name, None) for name in ("rail", "pad", "ballast")}
-    layers = {
-        name: found.at(2.0 * np.pi * error.bands) for name, found in relaxed.items() if found is not None
-    }
+    parts = {name: getattr(track.relaxations, name, None) for name in ("rail", "pad", "ballast")}
+    layers = {name: found.at(2.0 * np.pi * error.bands) for name, found in parts.items() if found is not None}
     if not layers:
         return {}
     stiffness = np.array(list(layers.values()))
     factors = [getattr(error.track, f"{name}_loss_factor") for name in layers]
     return {
-        "band": variable("band", error.bands, "Hz", "one-third-octave band centre"),
-        "layer": variable("layer", np.array(list(layers)), "1", "part of the track with a loss factor"),
-        "loss_factor_force_error": variable(
-            "band",
-            error.force,
-            "dB",
-            "level of the linear contact force in time over that of constant loss factors",
-        ),
-        "loss_factor_rail_error": variable(
-            "band",
-            error.rail,
-            "dB",
-            "level of the rail's receptance in time over that of constant loss factors",
-        ),
-        "loss_factor": variable("layer", np.array(factors), "1", "constant loss factor"),
-        "relaxed_stiffness": variable(
-            ("layer", "band"), stiffness.real, "1", "stiffness in time over the nominal one"
-        ),
-        "relaxed_loss_factor": variable(
-            ("layer", "band"), stiffness.imag / stiffness.real, "1", "loss factor in time"
-        ),
+        schema.TRACK_BAND: error.bands,
+        schema.LAYER: list(layers),
+        schema.LOSS_FACTOR_FORCE_ERROR: error.force,
+        schema.LOSS_FACTOR_RAIL_ERROR: error.rail,
+        schema.LOSS_FACTOR: factors,
+        schema.RELAXED_STIFFNESS: stiffness.real,
+        schema.RELAXED_LOSS_FACTOR: stiffness.imag / stiffness.real,
     }
 
 

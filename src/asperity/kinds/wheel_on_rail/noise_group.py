@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
-import xarray
 from numpy.typing import NDArray
 
+from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.sound_power import SOURCES, SoundPower, rolling_sound_power
 from asperity.reference import cnossos
-from asperity.results import variable
+from asperity.schema import Entry
 from asperity.spectra import HALF_BAND
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
 
+BASELINE = "linear"
+"""Law whose sound power is that of the bare roughness; all others add their difference to it."""
 EMPTY = -200.0
 """Level of a band without texture, dB re 1 µm."""
 
 
-def noise_variables(
+def noise(
     computed: Computed, band: NDArray[np.float64], force_level: NDArray[np.float64]
-) -> dict[str, xarray.Variable]:
+) -> dict[Entry, Any]:
     """Sound power of each law: that of the linear contact, changed in each band by as much as the force.
 
     Parameters
@@ -34,7 +38,7 @@ def noise_variables(
 
     Returns
     -------
-    dict of str to Variable
+    dict of Entry
         Nothing without the linear law or without roughness.
 
     Notes
@@ -44,33 +48,19 @@ def noise_variables(
     force is not computed are left out of all totals.
     """
     laws = list(computed.chain.runs)
-    if "linear" not in laws or not np.ptp(computed.chain.textures.line):
+    if BASELINE not in laws or not np.ptp(computed.chain.textures.line):
         return {}
     linear, filtered = (_within(_linear(computed, name), band) for name in (None, _filter_of(computed)))
-    difference = force_level - force_level[laws.index("linear")]
+    difference = force_level - force_level[laws.index(BASELINE)]
     powers = [linear.with_difference(band, np.where(np.isfinite(d), d, np.nan)) for d in difference]
+    levels = np.stack([power.levels for power in powers])
+    standard = schema.CNOSSOS_SOUND_POWER_LEVEL_A
     return {
-        "source": variable("source", np.array(SOURCES), "1", "what radiates"),
-        "noise_band": variable("noise_band", linear.band, "Hz", "one-third-octave band centre"),
-        "sound_power_level": variable(
-            ("law", "source", "noise_band"),
-            np.stack([power.levels for power in powers]),
-            "dB re 1 pW",
-            "sound power level of rolling",
-        ),
-        "sound_power_level_a": variable(
-            ("law", "source"),
-            np.stack([power.a_weighted for power in powers]),
-            "dB(A) re 1 pW",
-            "A-weighted sound power level of rolling, over the bands computed",
-        ),
-        "cnossos_sound_power_level_a": variable(
-            "source",
-            filtered.a_weighted,
-            "dB(A) re 1 pW",
-            "A-weighted sound power level by CNOSSOS-EU with its contact filter, over the bands computed",
-            contact_filter=_filter_of(computed),
-        ),
+        schema.SOURCE: SOURCES,
+        schema.NOISE_BAND: linear.band,
+        schema.SOUND_POWER_LEVEL: schema.SOUND_POWER_LEVEL.variable(levels, reference=BASELINE),
+        schema.SOUND_POWER_LEVEL_A: np.stack([power.a_weighted for power in powers]),
+        standard: standard.variable(filtered.a_weighted, contact_filter=_filter_of(computed)),
     }
 
 

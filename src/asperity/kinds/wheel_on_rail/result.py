@@ -7,16 +7,16 @@ from collections.abc import Iterable
 
 import xarray
 
+from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, error_of_losses
-from asperity.kinds.wheel_on_rail.spectra import point_coordinate, spectra_group
+from asperity.kinds.wheel_on_rail.spectra import spectra_group
 from asperity.kinds.wheel_on_rail.track_group import track_group
 from asperity.reference.cnossos import CITATION
-from asperity.results import variable
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
-from asperity.scenarios.tree import assembled, law_coordinate, loss_variables
+from asperity.scenarios.tree import assembled, rolling_group
 from asperity.scenarios.validity import findings, warn_of
 from asperity.scenarios.verdict import verdict
 from asperity.structures.rail_poles import RailPoles
@@ -53,7 +53,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         groups,
         caught,
         title=f"Wheel on rail at {computed.case.speed:.3g} m/s",
-        verdict=verdict(computed.chain, spectra, found, "wheel"),
+        verdict=verdict(computed.chain, spectra, found, "wheel", _sound_power(spectra)),
         numerics=_numerics(computed, losses),
         citations=(*computed.track.sources, CITATION),
     )
@@ -71,31 +71,21 @@ def _numerics(computed: Computed, losses: LossFactorError) -> Iterable[tuple[str
     yield from described_losses(losses, computed.case.wheel.load)
 
 
+def _sound_power(spectra: xarray.Dataset) -> xarray.DataArray | None:
+    level = spectra.get(schema.SOUND_POWER_LEVEL_A.name)
+    return None if level is None else level.sel(source="total")
+
+
 def _rolling(computed: Computed) -> xarray.Dataset:
-    chain, stack = computed.chain, computed.chain.stacked
-    run = next(iter(chain.runs.values()))
-    by_time, by_point = ("law", "time"), ("law", "point", "time")
+    stack = computed.chain.stacked
     moved, velocity = computed.points
-    variables = {
-        "law": law_coordinate(chain),
-        "point": point_coordinate(computed),
-        "time": variable("time", run.time, "s", "time since the run-in"),
-        "position": variable("time", run.position, "m", "position of the contact, from a sleeper"),
-        "contact_force": variable(by_time, stack("contact_force"), "N", "contact force"),
-        "relative_displacement": variable(
-            by_time, stack("relative_displacement"), "m", "approach of the mean surfaces, positive closing"
-        ),
-        "rail_displacement": variable(
-            by_time, stack("rail_displacement"), "m", "displacement of the rail under the wheel, downwards"
-        ),
-        "wheel_displacement": variable(
-            by_time, stack("wheel_displacement"), "m", "displacement of the wheel, positive downwards"
-        ),
-        "point_displacement": variable(
-            by_point, moved, "m", "displacement of the rail at a point passed by, positive downwards"
-        ),
-        "point_velocity": variable(
-            by_point, velocity, "m/s", "velocity of the rail at a point passed by, positive downwards"
-        ),
-    }
-    return xarray.Dataset(variables | loss_variables(chain))
+    return rolling_group(
+        computed.chain,
+        {
+            schema.ROLLING_POINT: computed.case.point_positions,
+            schema.RAIL_DISPLACEMENT: stack("rail_displacement"),
+            schema.WHEEL_DISPLACEMENT: stack("wheel_displacement"),
+            schema.POINT_DISPLACEMENT: moved,
+            schema.POINT_VELOCITY: velocity,
+        },
+    )

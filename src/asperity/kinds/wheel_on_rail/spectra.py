@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray
 from numpy.typing import NDArray
 
+from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
-from asperity.kinds.wheel_on_rail.noise_group import noise_variables
-from asperity.results import variable
+from asperity.kinds.wheel_on_rail.noise_group import noise
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.tree import (
-    law_coordinate,
-    level_differences,
-    product_variable,
-    spectrum_segment,
-)
+from asperity.scenarios.tree import level_differences, product_of_bands, spectrum_segment
+from asperity.schema import Attribute, Entry, attributes, spectra, variables
 from asperity.spectra import averaging_time, band_levels, psd
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
-
-VELOCITY_REFERENCE = 1e-9
 
 
 def spectra_group(computed: Computed) -> xarray.Dataset:
@@ -49,34 +44,25 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
     shown = (frequency > 0.0) & (frequency <= 1.13 * highest)
     reference, texture = linear_reference(computed, frequency, segment)
     _, reference_level = band_levels(frequency, reference, high=highest)
-    variables = {
-        "law": law_coordinate(computed.chain),
-        "frequency": variable("frequency", frequency[shown], "Hz", "frequency"),
-        "band": variable("band", band, "Hz", "one-third-octave band centre"),
-        "band_time_product": product_variable("band", band, time),
-        "force_psd": variable(
-            ("law", "frequency"), force[:, shown], "N2/Hz", "PSD of the contact force, one-sided"
-        ),
-        "force_level": variable(("law", "band"), force_level, "dB re 1 N", "contact force level"),
-        "texture_psd": variable(
-            "frequency", texture[shown], "m2/Hz", "PSD of the texture passed by, one-sided"
-        ),
-        "linear_reference_psd": variable(
-            "frequency",
-            reference[shown],
-            "N2/Hz",
-            "PSD of the contact force, linear, by frequency, with constant loss factors",
-        ),
-        "linear_reference_level": variable(
-            "band", reference_level, "dB re 1 N", "contact force level, linear, in the frequency domain"
-        ),
+    found: dict[Entry, Any] = {
+        spectra.LAW: laws,
+        spectra.FREQUENCY: frequency[shown],
+        spectra.BAND: band,
+        spectra.BAND_TIME_PRODUCT: product_of_bands(spectra.BAND_TIME_PRODUCT, band, time),
+        spectra.FORCE_PSD: force[:, shown],
+        spectra.FORCE_LEVEL: force_level,
+        schema.TEXTURE_PSD: texture[shown],
+        schema.LINEAR_REFERENCE_PSD: reference[shown],
+        schema.LINEAR_REFERENCE_LEVEL: reference_level,
     }
-    variables |= level_differences(laws, force_level) | _points(computed, segment)
-    variables |= _roughness(computed) | noise_variables(computed, band, force_level)
-    if "noise_band" in variables:
-        centres = variables["noise_band"].values
-        variables["noise_band_time_product"] = product_variable("noise_band", centres, time)
-    return xarray.Dataset(variables, attrs=_attributes(computed))
+    found |= _points(computed, segment) | _roughness(computed) | noise(computed, band, force_level)
+    if schema.NOISE_BAND in found:
+        centres = found[schema.NOISE_BAND]
+        product = product_of_bands(schema.NOISE_BAND_TIME_PRODUCT, centres, time)
+        found[schema.NOISE_BAND_TIME_PRODUCT] = product
+    return xarray.Dataset(
+        variables(found) | level_differences(laws, force_level), attrs=attributes(_facts(computed))
+    )
 
 
 def linear_reference(
@@ -102,70 +88,42 @@ def linear_reference(
     return force, texture
 
 
-def _points(computed: Computed, segment: int) -> dict[str, xarray.Variable]:
+def _points(computed: Computed, segment: int) -> dict[Entry, Any]:
     step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
     _, velocity = computed.points
     frequency, density = psd(velocity, step, segment=segment)
     shown = (frequency > 0.0) & (frequency <= 1.13 * highest)
-    _, level = band_levels(frequency, density, VELOCITY_REFERENCE, high=highest)
+    _, level = band_levels(frequency, density, schema.VELOCITY_REFERENCE, high=highest)
     return {
-        "point": point_coordinate(computed),
-        "point_velocity_psd": variable(
-            ("law", "point", "frequency"),
-            density[..., shown],
-            "(m/s)2/Hz",
-            "PSD of the rail's velocity at a point passed by, one-sided",
-        ),
-        "point_velocity_level": variable(
-            ("law", "point", "band"), level, "dB re 1 nm/s", "velocity level of the rail at a point passed by"
-        ),
+        schema.SPECTRA_POINT: computed.case.point_positions,
+        schema.POINT_VELOCITY_PSD: density[..., shown],
+        schema.POINT_VELOCITY_LEVEL: level,
     }
 
 
-def point_coordinate(computed: Computed) -> xarray.Variable:
-    """Positions of the points that are passed, as a coordinate.
-
-    Parameters
-    ----------
-    computed : Computed
-        What was computed.
-
-    Returns
-    -------
-    xarray.Variable
-        m from a sleeper.
-    """
-    return variable("point", np.array(computed.case.point_positions), "m", "point on the rail passed by")
-
-
-def _roughness(computed: Computed) -> dict[str, xarray.Variable]:
+def _roughness(computed: Computed) -> dict[Entry, Any]:
     """Band levels of rail and wheel over wavelength, without flat and joint."""
     textures, spacing = computed.chain.textures, computed.case.contact.spacing
     lines = {**textures.parts, "combined": textures.line}
     found = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
     wavelength = found["combined"][0]
-    levels = np.stack([level for _, level in found.values()])
     averaged = averaging_time(len(textures.line), spacing)
+    product = product_of_bands(schema.SURFACE_BAND_LENGTH_PRODUCT, 1.0 / wavelength, averaged)
     return {
-        "part": variable("part", np.array(list(found)), "1", "what bears the texture"),
-        "surface_band": variable("surface_band", wavelength, "m", "wavelength of the one-third octave"),
-        "surface_band_length_product": product_variable("surface_band", 1.0 / wavelength, averaged, "length"),
-        "roughness_level": variable(
-            ("part", "surface_band"),
-            np.where(np.isfinite(levels), levels, np.nan),
-            "dB re 1 um",
-            "roughness level of the line rolled over",
-        ),
+        schema.PART: list(found),
+        schema.SURFACE_BAND: wavelength,
+        schema.SURFACE_BAND_LENGTH_PRODUCT: product,
+        schema.ROUGHNESS_LEVEL: np.stack([level for _, level in found.values()]),
     }
 
 
-def _attributes(computed: Computed) -> dict[str, float]:
+def _facts(computed: Computed) -> dict[Attribute, float]:
     case, track = computed.case, computed.track
     half = 0.5 * case.speed / track.sleeper_spacing
     pinned = track.pinned_pinned_frequency
     return {
-        "sleeper_passing_frequency": 2.0 * half,
-        "pinned_pinned_low": pinned - half,
-        "pinned_pinned_high": pinned + half,
-        "wheel_revolution_frequency": case.speed / (2.0 * math.pi * case.wheel.radius),
+        schema.SLEEPER_PASSING_FREQUENCY: 2.0 * half,
+        schema.PINNED_PINNED_LOW: pinned - half,
+        schema.PINNED_PINNED_HIGH: pinned + half,
+        schema.WHEEL_REVOLUTION_FREQUENCY: case.speed / (2.0 * math.pi * case.wheel.radius),
     }

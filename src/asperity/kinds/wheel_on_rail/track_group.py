@@ -6,12 +6,13 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
+from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError
-from asperity.kinds.wheel_on_rail.losses import loss_variables
+from asperity.kinds.wheel_on_rail.losses import relaxed
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
-from asperity.results import variable
 from asperity.scenarios.laws import working_point
+from asperity.schema import Attribute, Entry, attributes, variables
 from asperity.structures.decay_rate import decay_rate, decay_rate_en15461
 from asperity.structures.rail_poles import RailPoles
 
@@ -41,33 +42,25 @@ def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
     half = 0.5 * track.sleeper_spacing
     midspan, support = track.receptance(frequency, half, half), track.receptance(frequency, 0.0, 0.0)
-    wheel = np.abs(computed.wheel.receptance(frequency))
     _, stiffness = working_point(case.contact, computed.chain.shape, computed.chain.reduction)
 
-    def over(values: NDArray, units: str, name: str) -> xarray.Variable:
-        return variable("frequency", values, units, name)
-
-    variables = {
-        "frequency": over(frequency, "Hz", "frequency"),
-        "receptance_midspan": over(np.abs(midspan), "m/N", "receptance of the rail at mid-span"),
-        "receptance_midspan_phase": over(np.angle(midspan), "rad", "its phase"),
-        "receptance_support": over(np.abs(support), "m/N", "receptance of the rail over a sleeper"),
-        "receptance_support_phase": over(np.angle(support), "rad", "its phase"),
-        "wheel_receptance": over(wheel, "m/N", "receptance of the wheel"),
-        "contact_receptance": over(
-            np.full(FREQUENCIES, 1.0 / stiffness), "m/N", "receptance of the contact spring at the load"
-        ),
-        "decay_rate": over(decay_rate(track, frequency), "dB/m", "decay rate, eigenvalue"),
-        "decay_rate_en15461": over(
-            decay_rate_en15461(track, frequency), "dB/m", "decay rate as measured by EN 15461"
-        ),
-        "decay_rate_limit": over(iso_3095_decay_rate(frequency), "dB/m", "lower limit, ISO 3095:2013"),
+    found = {
+        schema.TRACK_FREQUENCY: frequency,
+        schema.RECEPTANCE_MIDSPAN: np.abs(midspan),
+        schema.RECEPTANCE_MIDSPAN_PHASE: np.angle(midspan),
+        schema.RECEPTANCE_SUPPORT: np.abs(support),
+        schema.RECEPTANCE_SUPPORT_PHASE: np.angle(support),
+        schema.WHEEL_RECEPTANCE: np.abs(computed.wheel.receptance(frequency)),
+        schema.CONTACT_RECEPTANCE: np.full(FREQUENCIES, 1.0 / stiffness),
+        schema.DECAY_RATE: decay_rate(track, frequency),
+        schema.DECAY_RATE_EN15461: decay_rate_en15461(track, frequency),
+        schema.DECAY_RATE_LIMIT: iso_3095_decay_rate(frequency),
     }
-    variables |= _kernel(computed) | loss_variables(losses)
-    return xarray.Dataset(variables, attrs=_attributes(computed))
+    found |= _kernel(computed) | relaxed(losses)
+    return xarray.Dataset(variables(found), attrs=attributes(_facts(computed)))
 
 
-def _kernel(computed: Computed) -> dict[str, xarray.Variable]:
+def _kernel(computed: Computed) -> dict[Entry, NDArray[np.float64]]:
     kernel = computed.kernel
     positions, taps = kernel.weights.shape
     rows = np.arange(0, positions, max(1, positions // KERNEL_STARTS))
@@ -75,28 +68,26 @@ def _kernel(computed: Computed) -> dict[str, xarray.Variable]:
     responses = kernel.weights[rows, kept] / kernel.time_step
     starts = rows * computed.track.sleeper_spacing / positions
     return {
-        "start_position": variable("start_position", starts, "m", "place of the impulse, from a sleeper"),
-        "lag": variable("lag", kernel.lag[kept], "s", "time since the impulse"),
-        "moving_kernel": variable(
-            ("start_position", "lag"), responses, "m/(N s)", "displacement of the rail under the wheel"
-        ),
+        schema.START_POSITION: starts,
+        schema.LAG: kernel.lag[kept],
+        schema.MOVING_KERNEL: responses,
     }
 
 
-def _attributes(computed: Computed) -> dict[str, float | int | str]:
-    track, case = computed.track, computed.case
-    attrs: dict[str, float | int | str] = {
-        "name": track.name,
-        "pinned_pinned_frequency": track.pinned_pinned_frequency,
-        "cut_on_frequency": track.cut_on_frequency,
-        "antiresonance_frequency": track.antiresonance_frequency,
-        "critical_speed": track.critical_speed,
-        "static_deflection": track.static_deflection(case.wheel.load, 0.5 * track.sleeper_spacing),
-        "static_deflection_in_time": computed.kernel.track.static_deflection(
-            case.wheel.load, 0.5 * track.sleeper_spacing
-        ),
-        "kernel_method": "poles" if isinstance(computed.rail, RailPoles) else "scatter",
+def _facts(computed: Computed) -> dict[Attribute, float | int | str]:
+    track, load, rail = computed.track, computed.case.wheel.load, computed.rail
+    half = 0.5 * track.sleeper_spacing
+    facts: dict[Attribute, float | int | str] = {
+        schema.NAME: track.name,
+        schema.SLEEPER_SPACING: track.sleeper_spacing,
+        schema.PINNED_PINNED_FREQUENCY: track.pinned_pinned_frequency,
+        schema.CUT_ON_FREQUENCY: track.cut_on_frequency,
+        schema.ANTIRESONANCE_FREQUENCY: track.antiresonance_frequency,
+        schema.CRITICAL_SPEED: track.critical_speed,
+        schema.STATIC_DEFLECTION: track.static_deflection(load, half),
+        schema.STATIC_DEFLECTION_IN_TIME: computed.kernel.track.static_deflection(load, half),
+        schema.KERNEL_METHOD: "poles" if isinstance(rail, RailPoles) else "scatter",
     }
-    if isinstance(computed.rail, RailPoles):
-        attrs |= {"kernel_fit_error": computed.rail.fit_error, "kernel_poles": computed.rail.count}
-    return attrs
+    if isinstance(rail, RailPoles):
+        facts |= {schema.KERNEL_FIT_ERROR: rail.fit_error, schema.KERNEL_POLES: rail.count}
+    return facts

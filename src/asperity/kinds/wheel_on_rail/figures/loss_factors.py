@@ -2,54 +2,60 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import engineering, number, present, values, variable
-from asperity.reporting.part import Columns, Part
+from asperity.kinds.wheel_on_rail import schema
+from asperity.reporting.data import engineering, number, values, variable
+from asperity.reporting.part import Data, Part, Series, present_series, series
 from asperity.reporting.style import INK, LAW_STYLES, MUTED, frequency_axis, legend_above, new_figure, styled
 
-BAND, FORCE, RAIL = "track/band", "track/loss_factor_force_error", "track/loss_factor_rail_error"
-CONSTANT, STIFFNESS, LOSS = "track/loss_factor", "track/relaxed_stiffness", "track/relaxed_loss_factor"
+BAND, FORCE, RAIL = schema.TRACK_BAND, schema.LOSS_FACTOR_FORCE_ERROR, schema.LOSS_FACTOR_RAIL_ERROR
+CONSTANT, STIFFNESS, LOSS = schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR
 _COLOURS = tuple(LAW_STYLES[law].colour for law in ("areal", "shifted", "table"))
 _DOTS = (0, (1.5, 1.5))
 EDGE = 10**0.05
 """From the centre of a one-third octave to its upper edge."""
 
 
-class _Layer(NamedTuple):
-    """A part of the track: its constant loss factor, and its stiffness and loss factor in time per band."""
-
-    name: str
-    constant: float
-    stiffness: NDArray[np.float64]
-    loss: NDArray[np.float64]
-
-
-def _layers(tree: DataTree) -> list[_Layer]:
+def _layers(tree: DataTree) -> list[str]:
+    """Parts of the track that have a loss factor."""
     found = variable(tree, CONSTANT)
-    names = [] if found is None else [str(name) for name in found["layer"].values]
-    bands = (values(tree, path, "layer", "band") for path in (STIFFNESS, LOSS))
-    return [_Layer(*row) for row in zip(names, values(tree, CONSTANT), *bands, strict=True)]
+    return [] if found is None else [str(name) for name in found["layer"].values]
+
+
+def loss_data(tree: DataTree) -> Data:
+    """Errors per band, and stiffness and loss factor of each part at its centre."""
+    band = series(tree, BAND, "band centre")
+    lines = present_series(tree, {FORCE: "contact force, error", RAIL: "receptance of the rail, error"})
+    constant = np.broadcast_to(values(tree, CONSTANT)[:, None], (len(_layers(tree)), len(band.values)))
+    for row, layer in enumerate(_layers(tree)):
+        for entry, name, rows in (
+            (STIFFNESS, "stiffness over nominal", values(tree, STIFFNESS, *STIFFNESS.dims)),
+            (LOSS, "loss factor", values(tree, LOSS, *LOSS.dims)),
+            (CONSTANT, "constant loss factor", constant),
+        ):
+            lines[entry, layer] = Series(f"{layer}, {name}", entry.units, rows[row])
+    return Data(band, lines)
 
 
 @styled()
-def loss_figure(tree: DataTree) -> Figure:
+def loss_figure(tree: DataTree, data: Data) -> Figure:
     """Errors of force and receptance per one-third octave; stiffness and loss factor of each part."""
     figure = new_figure(6.6)
     errors, stiffness, loss = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 1, 1])
-    bands = values(tree, BAND)
-    _draw_errors(errors, tree, bands)
+    bands = data.at
+    _draw_errors(errors, data)
     for colour, layer in zip(_COLOURS, _layers(tree), strict=False):
-        stiffness.plot(bands, layer.stiffness, color=colour, label=layer.name)
-        loss.plot(bands, layer.loss, color=colour)
-        loss.axhline(layer.constant, color=colour, linestyle=_DOTS, linewidth=1.0)
+        stiffness.plot(bands, data.lines[STIFFNESS, layer].values, color=colour, label=layer)
+        loss.plot(bands, data.lines[LOSS, layer].values, color=colour)
+        constant = data.lines[CONSTANT, layer].values[0]
+        loss.axhline(constant, color=colour, linestyle=_DOTS, linewidth=1.0)
     stiffness.axhline(1, color=MUTED, linestyle=_DOTS, linewidth=1.0)
     stiffness.set_ylabel("stiffness / nominal")
     loss.set_ylabel("loss factor")
@@ -65,34 +71,22 @@ def loss_figure(tree: DataTree) -> Figure:
     return figure
 
 
-def _draw_errors(axes: Axes, tree: DataTree, bands: NDArray[np.float64]) -> None:
+def _draw_errors(axes: Axes, data: Data) -> None:
+    bands = data.at
     axes.bar(
-        bands / EDGE, values(tree, FORCE), (EDGE - 1 / EDGE) * bands, align="edge",
+        bands / EDGE, data.lines[FORCE].values, (EDGE - 1 / EDGE) * bands, align="edge",
         color=_COLOURS[0], linewidth=0, label="contact force",
     )  # fmt: skip
-    if present(tree, RAIL):
-        label = "receptance of the rail"
-        axes.plot(bands, values(tree, RAIL), color=MUTED, linestyle=(0, (6, 1.5)), linewidth=1.2, label=label)
+    if RAIL in data.lines:
+        look: dict[str, Any] = {"color": MUTED, "linestyle": (0, (6, 1.5)), "linewidth": 1.2}
+        axes.plot(bands, data.lines[RAIL].values, label="receptance of the rail", **look)
     axes.axhline(0, color=INK, linewidth=0.8)
     axes.set_ylabel("error / dB")
 
 
-def loss_columns(tree: DataTree) -> Columns:
-    """Errors per band, and stiffness and loss factor of each part at its centre."""
-    bands = values(tree, BAND)
-    columns: Columns = {"band centre [Hz]": bands, "contact force, error [dB]": values(tree, FORCE)}
-    if present(tree, RAIL):
-        columns["receptance of the rail, error [dB]"] = values(tree, RAIL)
-    for layer in _layers(tree):
-        columns[f"{layer.name}, stiffness over nominal [1]"] = layer.stiffness
-        columns[f"{layer.name}, loss factor [1]"] = layer.loss
-        columns[f"{layer.name}, constant loss factor [1]"] = np.full(len(bands), layer.constant)
-    return columns
-
-
 def _loss_caption(tree: DataTree) -> str:
-    names = ("static_deflection_in_time", "static_deflection")
-    rest, nominal = (number(tree, "track", name) for name in names)
+    rest = number(tree, schema.STATIC_DEFLECTION_IN_TIME)
+    nominal = number(tree, schema.STATIC_DEFLECTION)
     softer = ""
     if rest and nominal:
         softer = (
@@ -113,7 +107,7 @@ LOSS_FACTORS = Part(
     "loss_factors",
     "Loss factors in time",
     (BAND, FORCE, CONSTANT, STIFFNESS, LOSS),
+    loss_data,
     loss_figure,
-    loss_columns,
     _loss_caption,
 )

@@ -9,8 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from xarray import DataTree
 
+from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.data import number, present, values
 from asperity.reporting.style import INK, MUTED
+from asperity.schema.rolling import POSITION, SPEED, TIME
 
 LINE: dict[str, Any] = {"color": MUTED, "linewidth": 0.9, "linestyle": (0, (1, 1.5)), "zorder": 1}
 
@@ -26,11 +28,11 @@ class Mark:
 def natural_frequencies(tree: DataTree) -> list[Mark]:
     """Frequencies of the resting track that the results state, low to high."""
     named = (
-        ("antiresonance_frequency", "anti-resonance"),
-        ("cut_on_frequency", "cut-on"),
-        ("pinned_pinned_frequency", "pinned–pinned"),
+        (schema.ANTIRESONANCE_FREQUENCY, "anti-resonance"),
+        (schema.CUT_ON_FREQUENCY, "cut-on"),
+        (schema.PINNED_PINNED_FREQUENCY, "pinned–pinned"),
     )
-    found = [(number(tree, "track", name), label) for name, label in named]
+    found = [(number(tree, attribute), label) for attribute, label in named]
     return sorted((Mark(f, label) for f, label in found if f), key=lambda mark: mark.frequency)
 
 
@@ -51,7 +53,7 @@ def draw_marks(axes: Axes, marks: list[Mark], labelled: bool = True, height: flo
 
 def pinned_pinned_split(tree: DataTree) -> tuple[float, float] | None:
     """The two frequencies f_pp ∓ v/2L that a moving load feels instead of f_pp, in Hz."""
-    low, high = (number(tree, "spectra", f"pinned_pinned_{end}") for end in ("low", "high"))
+    low, high = number(tree, schema.PINNED_PINNED_LOW), number(tree, schema.PINNED_PINNED_HIGH)
     return (low, high) if low and high else None
 
 
@@ -70,7 +72,7 @@ def draw_split(axes: Axes, tree: DataTree) -> None:
 
 def draw_sleeper_tones(axes: Axes, tree: DataTree) -> None:
     """Ticks along the bottom at n v/L, inside the axes."""
-    tone = number(tree, "spectra", "sleeper_passing_frequency")
+    tone = number(tree, schema.SLEEPER_PASSING_FREQUENCY)
     if not tone:
         return
     low, high = axes.get_xlim()
@@ -80,13 +82,13 @@ def draw_sleeper_tones(axes: Axes, tree: DataTree) -> None:
 
 def draw_sleepers(axes: Axes, tree: DataTree, start: float, end: float, unit: float) -> None:
     """Ticks along the bottom where the wheel passes sleepers between two times, on an axis in `unit` s."""
-    spacing, pace = sleeper_spacing(tree), speed(tree)
-    if spacing is None or pace is None:
+    spacing, speed = number(tree, schema.SLEEPER_SPACING), number(tree, SPEED)
+    if not spacing or not speed or not present(tree, POSITION):
         return
-    time, position = values(tree, "rolling/time"), values(tree, "rolling/position")
+    time, position = values(tree, TIME), values(tree, POSITION)
     first, last = np.interp([start, end], time, position)
     sleepers = spacing * np.arange(np.ceil(first / spacing), np.floor(last / spacing) + 1)
-    _ticks(axes, (time[0] + (sleepers - position[0]) / pace) / unit)
+    _ticks(axes, (time[0] + (sleepers - position[0]) / speed) / unit)
 
 
 def _ticks(axes: Axes, places: np.ndarray) -> None:
@@ -95,17 +97,3 @@ def _ticks(axes: Axes, places: np.ndarray) -> None:
         markersize=6, markeredgewidth=0.8, clip_on=False, zorder=5, label="_ticks",
     )  # fmt: skip
     ticks.set_in_layout(False)
-
-
-def speed(tree: DataTree) -> float | None:
-    """Speed of the wheel in m/s, from its positions."""
-    if not present(tree, "rolling/position", "rolling/time"):
-        return None
-    time, position = values(tree, "rolling/time"), values(tree, "rolling/position")
-    return float((position[-1] - position[0]) / (time[-1] - time[0])) if len(time) > 1 else None
-
-
-def sleeper_spacing(tree: DataTree) -> float | None:
-    """Distance of the sleepers in m: the speed over the sleeper-passing frequency."""
-    tone, pace = number(tree, "spectra", "sleeper_passing_frequency"), speed(tree)
-    return pace / tone if tone and pace else None

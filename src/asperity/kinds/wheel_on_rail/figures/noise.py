@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,9 +11,10 @@ from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import doubtful, laws, of_law, values, variable
-from asperity.reporting.part import Columns, Part
-from asperity.reporting.spectrum_figures import doubtful_words, product_columns
+from asperity.kinds.wheel_on_rail import schema
+from asperity.reporting.data import baselines, doubtful, laws, of_law, variable
+from asperity.reporting.part import Data, Part, Series, series
+from asperity.reporting.spectrum_figures import doubtful_words, product_series
 from asperity.reporting.style import (
     INK,
     LAW_STYLES,
@@ -25,39 +28,50 @@ from asperity.reporting.style import (
     shade_doubtful,
     styled,
 )
+from asperity.reporting.tables import Cell, Table, signed, text_cell
+from asperity.schema import Entry
 from asperity.spectra import a_weighting
 
-POWER, POWER_A = "spectra/sound_power_level", "spectra/sound_power_level_a"
-BAND = "spectra/noise_band"
+POWER, POWER_A, BAND = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A, schema.NOISE_BAND
+PRODUCT = schema.NOISE_BAND_TIME_PRODUCT
 _SHARES = {"track": (0, (1.5, 1.5)), "wheel": (0, (6, 1.5, 1.5, 1.5))}
 
 
-def sources(tree: DataTree, path: str) -> list[str]:
-    """Sources of the levels at `path`, as ``["track", "wheel", "total"]``."""
-    found = variable(tree, path)
+def sources(tree: DataTree, entry: Entry) -> list[str]:
+    """Sources of the levels of an entry, as ``["track", "wheel", "total"]``."""
+    found = variable(tree, entry)
     return [] if found is None else [str(name) for name in found["source"].values]
 
 
-def _weighted(tree: DataTree, law: str, source: str) -> NDArray[np.float64]:
-    level = of_law(tree, POWER, law, "source", "noise_band")[sources(tree, POWER).index(source)]
-    return level + a_weighting(values(tree, BAND))
-
-
 def _share_law(tree: DataTree) -> str:
-    names = laws(tree, POWER)
-    return "linear" if "linear" in names else names[0]
+    """Law of which the shares of track and wheel are drawn: that of the bare roughness."""
+    found = variable(tree, POWER)
+    assert found is not None
+    return str(found.attrs.get("reference") or laws(tree, POWER)[0])
+
+
+def band_data(tree: DataTree) -> Data:
+    """Sound power per band, law and source, unweighted, beside the A-weighting."""
+    band = series(tree, BAND, "band centre")
+    lines: dict[Any, Series] = {"A": Series("A-weighting", "dB", a_weighting(band.values))}
+    lines |= product_series(tree, PRODUCT)
+    for law in laws(tree, POWER):
+        rows = of_law(tree, POWER, law, "source", "noise_band")
+        for source, row in zip(sources(tree, POWER), rows, strict=True):
+            lines[law, source] = Series(f"{source}, {law}", POWER.units, row)
+    return Data(band, lines)
 
 
 @styled()
-def band_figure(tree: DataTree) -> Figure:
+def band_figure(tree: DataTree, data: Data) -> Figure:
     """A-weighted sound power per one-third octave: the total by each law, track and wheel of linear."""
     figure = new_figure(4.4)
     axes = figure.subplots()
-    names, found, bands = laws(tree, POWER), sources(tree, POWER), values(tree, BAND)
-    whole = "total" if "total" in found else found[-1]
+    names, found, bands = laws(tree, POWER), sources(tree, POWER), data.at
+    whole, weighting = "total" if "total" in found else found[-1], data.lines["A"].values
     levels = []
     for law in names:
-        level = _weighted(tree, law, whole)
+        level = data.lines[law, whole].values + weighting
         axes.plot(
             bands, level, label=f"{whole}, {law}", marker=law_marker(law), markeredgewidth=0,
             **law_style(law, names[0]),
@@ -65,29 +79,15 @@ def band_figure(tree: DataTree) -> Figure:
         levels.append(level)
     share = _share_law(tree)
     for source, dashes in _SHARES.items():
-        if source in found:
-            level = _weighted(tree, share, source)
+        if (share, source) in data.lines:
+            level = data.lines[share, source].values + weighting
             axes.plot(bands, level, color=MUTED, linestyle=dashes, label=f"{source}, {share}", linewidth=1.2)
     level_limits(axes, levels, span=60.0)
     band_axis(axes, bands)
-    shade_doubtful(axes, bands, doubtful(tree, "noise_band"))
+    shade_doubtful(axes, bands, doubtful(tree, PRODUCT))
     axes.set_ylabel("sound power level / dB(A) re 1 pW")
     legend_above(axes, columns=6)
     return figure
-
-
-def band_columns(tree: DataTree) -> Columns:
-    """Sound power per band, law and source, unweighted, beside the A-weighting."""
-    bands = values(tree, BAND)
-    columns: Columns = {"band centre [Hz]": bands, "A-weighting [dB]": a_weighting(bands)}
-    columns |= product_columns(tree, "noise_band")
-    for law in laws(tree, POWER):
-        rows = of_law(tree, POWER, law, "source", "noise_band")
-        columns |= {
-            f"{source}, {law} [dB re 1 pW]": row
-            for source, row in zip(sources(tree, POWER), rows, strict=True)
-        }
-    return columns
 
 
 def _band_caption(tree: DataTree) -> str:
@@ -97,17 +97,27 @@ def _band_caption(tree: DataTree) -> str:
         "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare texture. "
         "The other laws add their difference of the contact force level to linear, band by band, which holds "
         "what the contact filters. "
-        f"Grey: the shares of track and wheel by {share}.{doubtful_words(tree, 'noise_band')}"
+        f"Grey: the shares of track and wheel by {share}.{doubtful_words(tree, PRODUCT)}"
     )
 
 
+def total_data(tree: DataTree) -> Data:
+    """A-weighted sound power: one row, one column per source and law."""
+    lines: dict[Any, Series] = {}
+    for law in laws(tree, POWER_A):
+        levels = of_law(tree, POWER_A, law, "source")
+        for source, level in zip(sources(tree, POWER_A), levels, strict=True):
+            lines[law, source] = Series(f"{source}, {law}", POWER_A.units, np.array([level]))
+    return Data(None, lines)
+
+
 @styled()
-def total_figure(tree: DataTree) -> Figure:
+def total_figure(tree: DataTree, data: Data) -> Figure:
     """A-weighted sound power as bars, by source and law."""
     names, found = laws(tree, POWER_A), sources(tree, POWER_A)
     figure = new_figure(0.7 + len(found) * (0.3 + 0.2 * len(names)))
     axes = figure.subplots()
-    levels = np.array([of_law(tree, POWER_A, law, "source") for law in names])
+    levels = np.array([[data.lines[law, source].values[0] for source in found] for law in names])
     base = 5 * np.floor((np.nanmin(levels) - 5) / 5)
     thickness = 0.82 / len(names)
     for row, (law, level) in enumerate(zip(names, levels, strict=True)):
@@ -138,16 +148,34 @@ def _write(axes: Axes, levels: NDArray[np.float64], places: NDArray[np.floating]
             )  # fmt: skip
 
 
-def total_columns(tree: DataTree) -> Columns:
-    """A-weighted sound power: one row, one column per source and law."""
-    columns: Columns = {}
-    for law in laws(tree, POWER_A):
-        levels = of_law(tree, POWER_A, law, "source")
-        columns |= {
-            f"{source}, {law} [dB(A) re 1 pW]": np.array([level])
-            for source, level in zip(sources(tree, POWER_A), levels, strict=True)
-        }
-    return columns
+def sound_power_table(tree: DataTree) -> Table | None:
+    """A-weighted sound power per law and source, and its differences to the linear laws."""
+    names, radiating = laws(tree, POWER_A), sources(tree, POWER_A)
+    if not names:
+        return None
+    levels = {law: of_law(tree, POWER_A, law, "source") for law in names}
+    compared = baselines(names)
+    head = ["law", *(f"{source} / dB(A)" for source in radiating)]
+    head += [f"{source} − {name} / dB" for name in compared for source in radiating]
+
+    def row(label: str, level: NDArray[np.float64]) -> list[Cell]:
+        cells = [text_cell(label), *(Cell(_told(value), "number") for value in level)]
+        for name in compared:
+            cells += [Cell(signed(d) if label != name else "–", "number") for d in level - levels[name]]
+        return cells
+
+    rows = [row(law, level) for law, level in levels.items()]
+    note = "Re 1 pW, over the bands that were computed. Positive differences: linear contact underestimates."
+    standard = variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
+    if standard is not None:
+        rows.append(row("CNOSSOS-EU", standard.sel(source=radiating).values))
+        name = standard.attrs.get("contact_filter", "")
+        note += f" CNOSSOS-EU: the same roughness with its own contact filter ({name})."
+    return Table("sound_power_table", "A-weighted sound power", head, rows, note)
+
+
+def _told(value: float) -> str:
+    return f"{value:.1f}" if np.isfinite(value) else "–"
 
 
 NOISE = (
@@ -155,8 +183,8 @@ NOISE = (
         "sound_power",
         "A-weighted sound power",
         (POWER_A,),
+        total_data,
         total_figure,
-        total_columns,
         lambda _: (
             "Sum of the A-weighted bands below. The axis does not start at zero: compare the ends of the "
             "bars, not their lengths."
@@ -166,8 +194,8 @@ NOISE = (
         "sound_power_bands",
         "Sound power in one-third octaves",
         (POWER, BAND),
+        band_data,
         band_figure,
-        band_columns,
         _band_caption,
     ),
 )

@@ -9,10 +9,10 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.kinds.wheel_on_rail.figures.marks import speed
-from asperity.reporting.data import doubtful, engineering, nominal_band, number, values, variable
-from asperity.reporting.part import Columns, Part
-from asperity.reporting.spectrum_figures import doubtful_words, product_columns
+from asperity.kinds.wheel_on_rail import schema
+from asperity.reporting.data import doubtful, engineering, nominal_band, number, variable
+from asperity.reporting.part import Data, Part, Series, series
+from asperity.reporting.spectrum_figures import doubtful_words, product_series
 from asperity.reporting.style import (
     INK,
     LAW_STYLES,
@@ -22,8 +22,10 @@ from asperity.reporting.style import (
     shade_doubtful,
     styled,
 )
+from asperity.schema.contact import HERTZ_RADIUS
+from asperity.schema.rolling import SPEED
 
-ROUGHNESS, BAND = "spectra/roughness_level", "spectra/surface_band"
+ROUGHNESS, BAND, PRODUCT = schema.ROUGHNESS_LEVEL, schema.SURFACE_BAND, schema.SURFACE_BAND_LENGTH_PRODUCT
 SPAN = 60.0
 """Levels, dB, that are drawn below the highest: a texture without waves leaves rounding errors."""
 _LOOK = {
@@ -33,30 +35,40 @@ _LOOK = {
 }
 
 
-def _parts(tree: DataTree) -> dict[str, NDArray[np.float64]]:
-    """Levels in dB re 1 µm by part; a part without any level is left out."""
+def _parts(tree: DataTree) -> dict[str, Series]:
+    """Levels by part; a part without any level is left out."""
     found = variable(tree, ROUGHNESS)
     assert found is not None
     names = [str(name) for name in found["part"].values]
-    rows = np.asarray(found.transpose("part", "surface_band").values, dtype=float)
-    return {name: row for name, row in zip(names, rows, strict=True) if np.isfinite(row).any()}
+    rows = np.asarray(found.transpose(*ROUGHNESS.dims).values, dtype=float)
+    return {
+        name: Series(name, ROUGHNESS.units, row)
+        for name, row in zip(names, rows, strict=True)
+        if np.isfinite(row).any()
+    }
 
 
-def _drawn(tree: DataTree) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
-    """Wavelengths and levels that are drawn: bands in which some part reaches into the span."""
-    levels = _parts(tree)
+def roughness_data(tree: DataTree) -> Data:
+    """Roughness levels per wavelength band and part."""
+    return Data(series(tree, BAND, "wavelength"), product_series(tree, PRODUCT) | _parts(tree))
+
+
+def _drawn(data: Data) -> tuple[NDArray[np.bool_], dict[str, NDArray[np.float64]]]:
+    """Bands in which some part reaches into the span, and the levels there."""
+    levels = {line.name: line.values for line in data.lines.values() if line.units == ROUGHNESS.units}
     lowest = max(np.nanmax(level) for level in levels.values()) - SPAN
     drawn = {name: np.where(level >= lowest, level, np.nan) for name, level in levels.items()}
     kept = np.isfinite(np.stack(list(drawn.values()))).any(axis=0)
-    return values(tree, BAND)[kept], {name: level[kept] for name, level in drawn.items()}
+    return kept, {name: level[kept] for name, level in drawn.items()}
 
 
 @styled()
-def roughness_figure(tree: DataTree) -> Figure:
+def roughness_figure(tree: DataTree, data: Data) -> Figure:
     """Roughness levels per one-third octave of wavelength, long waves on the left."""
     figure = new_figure(4.2)
     axes = figure.subplots()
-    wavelength, levels = _drawn(tree)
+    kept, levels = _drawn(data)
+    wavelength = data.at[kept]
     for name, level in levels.items():
         colour, dashes, marker = _LOOK.get(name, (MUTED, "-", "^"))
         thick = 1.8 if name == "combined" else 1.4
@@ -68,12 +80,11 @@ def roughness_figure(tree: DataTree) -> Figure:
     axes.set_ylim(low, high + 0.1 * (high - low))  # room for a note
     axes.set_ylabel("roughness level / dB re 1 µm")
     _wavelength_axis(axes, wavelength)
-    pace = speed(tree)
-    if pace:
-        _frequency_on_top(axes, wavelength, pace)
+    speed = number(tree, SPEED)
+    if speed:
+        _frequency_on_top(axes, wavelength, speed)
     _mark_contact(axes, tree)
-    kept = np.isin(values(tree, BAND), wavelength)
-    shade_doubtful(axes, wavelength, doubtful(tree, "surface_band")[kept])
+    shade_doubtful(axes, wavelength, doubtful(tree, PRODUCT)[kept])
     axes.legend(loc="best")
     return figure
 
@@ -94,21 +105,21 @@ def _millimetres(wavelength: float) -> str:
     return f"{float(nominal_band(wavelength)) * 1e3:g}" if wavelength < 900 else f"{1e3 * wavelength:g}"
 
 
-def _frequency_on_top(axes: Axes, wavelength: NDArray[np.float64], pace: float) -> None:
+def _frequency_on_top(axes: Axes, wavelength: NDArray[np.float64], speed: float) -> None:
     top = axes.twiny()
     top.set_xscale("log")
     top.set_xlim(axes.get_xlim())
     top.grid(visible=False)
     octaves = 1000 * 10 ** (np.arange(-30, 22, 3) / 10)
-    shown = [f for f in octaves if wavelength.min() <= pace / f <= wavelength.max()]
-    top.xaxis.set_major_locator(FixedLocator([pace / f for f in shown]))
-    top.xaxis.set_major_formatter(FuncFormatter(lambda w, _: nominal_band(pace / w)))
+    shown = [f for f in octaves if wavelength.min() <= speed / f <= wavelength.max()]
+    top.xaxis.set_major_locator(FixedLocator([speed / f for f in shown]))
+    top.xaxis.set_major_formatter(FuncFormatter(lambda w, _: nominal_band(speed / w)))
     top.xaxis.set_minor_locator(NullLocator())
-    top.set_xlabel(f"frequency v/λ / Hz, at v = {pace:.3g} m/s")
+    top.set_xlabel(f"frequency v/λ / Hz, at v = {speed:.3g} m/s")
 
 
 def _mark_contact(axes: Axes, tree: DataTree) -> None:
-    radius = number(tree, "contact", "hertz_radius")
+    radius = number(tree, HERTZ_RADIUS)
     if not radius or not axes.get_xlim()[1] < 2 * radius < axes.get_xlim()[0]:
         return
     axes.axvline(2 * radius, color=INK, linewidth=0.9, linestyle=":")
@@ -119,19 +130,13 @@ def _mark_contact(axes: Axes, tree: DataTree) -> None:
     )  # fmt: skip
 
 
-def roughness_columns(tree: DataTree) -> Columns:
-    """Roughness levels per wavelength band and part."""
-    columns: Columns = {"wavelength [m]": values(tree, BAND)} | product_columns(tree, "surface_band")
-    return columns | {f"{name} [dB re 1 µm]": level for name, level in _parts(tree).items()}
-
-
 def _caption(tree: DataTree) -> str:
     combined = " Combined: rail and wheel as they meet in the contact." if "combined" in _parts(tree) else ""
     return (
         "Roughness levels per one-third octave of wavelength, re 1 µm, of the textures that were rolled, "
         f"before any contact filter.{combined} Left out: bands that the texture "
         f"does not hold, and levels more than {SPAN:.0f} dB below the highest."
-        + doubtful_words(tree, "surface_band").replace("time B T", "length B T")
+        + doubtful_words(tree, PRODUCT).replace("time B T", "length B T")
     )
 
 
@@ -139,7 +144,7 @@ ROUGHNESS_LEVELS = Part(
     "roughness",
     "Roughness of rail and wheel",
     (ROUGHNESS, BAND),
+    roughness_data,
     roughness_figure,
-    roughness_columns,
     _caption,
 )

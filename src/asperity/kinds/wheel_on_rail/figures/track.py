@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,9 +11,10 @@ from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
 from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.marks import draw_marks, natural_frequencies
-from asperity.reporting.data import engineering, group_attrs, number, plain, present, values
-from asperity.reporting.part import Columns, Part
+from asperity.reporting.data import engineering, number, plain, present, stated, values
+from asperity.reporting.part import Data, Part, Series, present_series, series
 from asperity.reporting.style import (
     INK,
     LAW_STYLES,
@@ -26,43 +29,51 @@ from asperity.reporting.style import (
 )
 
 _BLUE, _ORANGE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "shifted", "table"))
-FREQUENCY = "track/frequency"
+FREQUENCY = schema.TRACK_FREQUENCY
 _RECEPTANCES = {
-    "receptance_midspan": ("rail, mid-span", _BLUE, "-"),
-    "receptance_support": ("rail, over a sleeper", _ORANGE, (0, (6, 1.5))),
-    "wheel_receptance": ("wheel", _GREEN, (0, (6, 1.5, 1.5, 1.5))),
-    "contact_receptance": ("contact spring", MUTED, (0, (1.5, 1.5))),
+    schema.RECEPTANCE_MIDSPAN: ("rail, mid-span", _BLUE, "-"),
+    schema.RECEPTANCE_SUPPORT: ("rail, over a sleeper", _ORANGE, (0, (6, 1.5))),
+    schema.WHEEL_RECEPTANCE: ("wheel", _GREEN, (0, (6, 1.5, 1.5, 1.5))),
+    schema.CONTACT_RECEPTANCE: ("contact spring", MUTED, (0, (1.5, 1.5))),
+}
+_PHASES = {
+    schema.RECEPTANCE_MIDSPAN: schema.RECEPTANCE_MIDSPAN_PHASE,
+    schema.RECEPTANCE_SUPPORT: schema.RECEPTANCE_SUPPORT_PHASE,
 }
 _RATES = {
-    "decay_rate": ("eigenvalue", _BLUE, "-", 1.6),
-    "decay_rate_en15461": ("EN 15461, sum over distances", _ORANGE, (0, (6, 1.5)), 1.2),
-    "decay_rate_limit": ("lower limit, ISO 3095", INK, (0, (4, 2)), 1.4),
+    schema.DECAY_RATE: ("eigenvalue", _BLUE, "-", 1.6),
+    schema.DECAY_RATE_EN15461: ("EN 15461, sum over distances", _ORANGE, (0, (6, 1.5)), 1.2),
+    schema.DECAY_RATE_LIMIT: ("lower limit, ISO 3095", INK, (0, (4, 2)), 1.4),
 }
 KERNELS = 6
 """Start positions of the moving kernel that are drawn, at most."""
 
 
-def _with_phase(tree: DataTree) -> list[str]:
-    return [name for name in _RECEPTANCES if present(tree, f"track/{name}_phase")]
+def receptance_data(tree: DataTree) -> Data:
+    """Magnitude and phase of the receptances."""
+    named = {}
+    for entry in _RECEPTANCES:
+        named[entry] = entry.name
+        if entry in _PHASES:
+            named[_PHASES[entry]] = f"{entry.name} phase"
+    return Data(series(tree, FREQUENCY), present_series(tree, named))
 
 
 @styled()
-def receptance_figure(tree: DataTree) -> Figure:
+def receptance_figure(tree: DataTree, data: Data) -> Figure:
     """Magnitude of the receptances, and below it their phase."""
-    phases = _with_phase(tree)
+    phases = {entry: phase for entry, phase in _PHASES.items() if phase in data.lines}
     figure = new_figure(6.2 if phases else 4.2)
-    panels = figure.subplots(
-        2 if phases else 1, 1, sharex=True, squeeze=False, height_ratios=[1.9, 1][: 2 if phases else 1]
-    )[:, 0]
-    frequency = values(tree, FREQUENCY)
-    for name, (label, colour, dashes) in _RECEPTANCES.items():
-        if present(tree, f"track/{name}"):
-            panels[0].plot(
-                frequency, values(tree, f"track/{name}"), color=colour, linestyle=dashes, label=label
-            )
-        if name in phases:
-            degrees = np.degrees(values(tree, f"track/{name}_phase"))
-            panels[-1].plot(frequency, (degrees + 180) % 360 - 180, color=colour, linestyle=dashes)
+    rows = [1.9, 1] if phases else [1.9]
+    panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False, height_ratios=rows)[:, 0]
+    frequency = data.at
+    for entry, (label, colour, dashes) in _RECEPTANCES.items():
+        look = {"color": colour, "linestyle": dashes}
+        if entry in data.lines:
+            panels[0].plot(frequency, data.lines[entry].values, label=label, **look)
+        if entry in phases:
+            degrees = np.degrees(data.lines[phases[entry]].values)
+            panels[-1].plot(frequency, (degrees + 180) % 360 - 180, **look)
     panels[0].set_yscale("log")
     power_axis(panels[0].yaxis)
     _decades(panels[0])
@@ -84,23 +95,12 @@ def _decades(axes: Axes) -> None:
     axes.yaxis.set_major_locator(FixedLocator(decades.tolist()))
 
 
-def receptance_columns(tree: DataTree) -> Columns:
-    """Magnitude and phase of the receptances."""
-    columns: Columns = {"frequency [Hz]": values(tree, FREQUENCY)}
-    for name in _RECEPTANCES:
-        if present(tree, f"track/{name}"):
-            columns[f"{name} [m/N]"] = values(tree, f"track/{name}")
-        if present(tree, f"track/{name}_phase"):
-            columns[f"{name} phase [rad]"] = values(tree, f"track/{name}_phase")
-    return columns
-
-
 def _receptance_caption(tree: DataTree) -> str:
     facts = []
-    speed = number(tree, "track", "critical_speed")
+    speed = number(tree, schema.CRITICAL_SPEED)
     if speed:
         facts.append(f"critical speed {plain(speed)} m/s")
-    deflection = number(tree, "track", "static_deflection")
+    deflection = number(tree, schema.STATIC_DEFLECTION)
     if deflection:
         facts.append(f"static deflection of the rail under the wheel {engineering(deflection, 'm')}")
     stated = f" Of this track: {'; '.join(facts)}." if facts else ""
@@ -111,15 +111,20 @@ def _receptance_caption(tree: DataTree) -> str:
     )
 
 
+def decay_data(tree: DataTree) -> Data:
+    """Decay rates against frequency."""
+    return Data(series(tree, FREQUENCY), present_series(tree, {entry: entry.name for entry in _RATES}))
+
+
 @styled()
-def decay_figure(tree: DataTree) -> Figure:
+def decay_figure(tree: DataTree, data: Data) -> Figure:
     """Decay rate along the rail against frequency, with the limit that tests of vehicles ask for."""
     figure = new_figure(3.9)
     axes = figure.subplots()
-    frequency = values(tree, FREQUENCY)
-    for name, (label, colour, dashes, width) in _RATES.items():
-        if present(tree, f"track/{name}"):
-            rate = values(tree, f"track/{name}")
+    frequency = data.at
+    for entry, (label, colour, dashes, width) in _RATES.items():
+        if entry in data.lines:
+            rate = data.lines[entry].values
             rate = np.where(rate > 0, rate, np.nan)
             axes.plot(frequency, rate, color=colour, linestyle=dashes, linewidth=width, label=label)
     axes.set_yscale("log")
@@ -135,18 +140,10 @@ def decay_figure(tree: DataTree) -> Figure:
     return figure
 
 
-def decay_columns(tree: DataTree) -> Columns:
-    """Decay rates against frequency."""
-    columns: Columns = {"frequency [Hz]": values(tree, FREQUENCY)}
-    return columns | {
-        f"{name} [dB/m]": values(tree, f"track/{name}") for name in _RATES if present(tree, f"track/{name}")
-    }
-
-
 def _decay_caption(tree: DataTree) -> str:
     limit = (
         " Dashed: the lowest decay that ISO 3095 allows the track of a vehicle's noise test, vertical."
-        if present(tree, "track/decay_rate_limit")
+        if present(tree, schema.DECAY_RATE_LIMIT)
         else ""
     )
     return (
@@ -157,7 +154,7 @@ def _decay_caption(tree: DataTree) -> str:
 
 def _starts(tree: DataTree) -> list[int]:
     """Start positions that are drawn, spread over the bay."""
-    count = len(values(tree, "track/start_position"))
+    count = len(values(tree, schema.START_POSITION))
     return np.unique(np.linspace(0, count, min(KERNELS, count), endpoint=False).astype(int)).tolist()
 
 
@@ -167,20 +164,28 @@ def _until_quiet(lag: NDArray[np.float64], kernel: NDArray[np.float64]) -> float
     return float(lag[min(np.flatnonzero(size > size.max() / 100)[-1] + 1, len(lag) - 1)])
 
 
+def kernel_data(tree: DataTree) -> Data:
+    """Moving kernel against lag, one line per drawn start position."""
+    entry, position = schema.MOVING_KERNEL, values(tree, schema.START_POSITION)
+    kernel = values(tree, entry, *entry.dims)
+    lines: dict[Any, Series] = {
+        position[start]: Series(f"kernel(start={position[start]:.9g} m)", entry.units, kernel[start])
+        for start in _starts(tree)
+    }
+    return Data(series(tree, schema.LAG), lines)
+
+
 @styled()
-def kernel_figure(tree: DataTree) -> Figure:
+def kernel_figure(tree: DataTree, data: Data) -> Figure:
     """Response under the load to an impulse at some start positions: at first, and until it is quiet."""
     figure, panels = side_by_side(3.9, (1, 1.25))
-    lag = values(tree, "track/lag")
-    kernel = values(tree, "track/moving_kernel", "start_position", "lag") * 1e6
-    position = values(tree, "track/start_position")
-    starts = _starts(tree)
-    quiet = _until_quiet(lag, kernel)
+    lag = data.at
+    quiet = _until_quiet(lag, data.field.T)
     for axes, end in zip(panels, (min(6e-3, quiet), quiet), strict=True):
         shown = lag <= end
-        for start, colour in zip(starts, sequence(len(starts)), strict=True):
-            label = f"{position[start]:.2f} m"
-            axes.plot(lag[shown] * 1e3, kernel[start, shown], color=colour, label=label, linewidth=1.2)
+        for (start, line), colour in zip(data.lines.items(), sequence(len(data.lines)), strict=True):
+            kernel = line.values[shown] * 1e6
+            axes.plot(lag[shown] * 1e3, kernel, color=colour, label=f"{start:.2f} m", linewidth=1.2)
         axes.axhline(0, color=MUTED, linewidth=0.8)
         axes.set_xlim(0, 1e3 * end)
         axes.set_xlabel("time since the impulse / ms")
@@ -191,17 +196,9 @@ def kernel_figure(tree: DataTree) -> Figure:
     return figure
 
 
-def kernel_columns(tree: DataTree) -> Columns:
-    """Moving kernel against lag, one column per drawn start position."""
-    kernel = values(tree, "track/moving_kernel", "start_position", "lag")
-    position = values(tree, "track/start_position")
-    columns: Columns = {"lag [s]": values(tree, "track/lag")}
-    return columns | {f"kernel(start={position[s]:.9g} m) [m/(N s)]": kernel[s] for s in _starts(tree)}
-
-
 def _kernel_caption(tree: DataTree) -> str:
-    method = group_attrs(tree, "track").get("kernel_method")
-    poles, error = (number(tree, "track", f"kernel_{name}") for name in ("poles", "fit_error"))
+    method = stated(tree, schema.KERNEL_METHOD)
+    poles, error = number(tree, schema.KERNEL_POLES), number(tree, schema.KERNEL_FIT_ERROR)
     used = " The run used the kernel itself." if method else ""
     if method == "poles" and poles:
         fitted = "" if error is None else f", fitted with a relative error of {error:.1e}"
@@ -217,26 +214,26 @@ TRACK = (
         "receptance",
         "Receptance of rail, wheel and contact",
         (FREQUENCY,),
+        receptance_data,
         receptance_figure,
-        receptance_columns,
         _receptance_caption,
-        tuple(f"track/{name}" for name in _RECEPTANCES),
+        tuple(_RECEPTANCES),
     ),
     Part(
         "decay_rate",
         "Decay rate of the track",
         (FREQUENCY,),
+        decay_data,
         decay_figure,
-        decay_columns,
         _decay_caption,
-        ("track/decay_rate", "track/decay_rate_en15461"),
+        (schema.DECAY_RATE, schema.DECAY_RATE_EN15461),
     ),
     Part(
         "moving_kernel",
         "Response of the rail under the moving wheel",
-        ("track/moving_kernel", "track/start_position", "track/lag"),
+        (schema.MOVING_KERNEL, schema.START_POSITION, schema.LAG),
+        kernel_data,
         kernel_figure,
-        kernel_columns,
         _kernel_caption,
     ),
 )

@@ -1,0 +1,1 @@
+"""Figures and tables of the report that only a ball on a beam has."""

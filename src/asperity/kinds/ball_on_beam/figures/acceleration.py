@@ -1,0 +1,124 @@
+"""Figures of the beam's acceleration over frequency."""
+
+from __future__ import annotations
+
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from asperity.kinds.ball_on_beam.schema import ACCELERATION_LEVEL, ACCELERATION_REFERENCE
+from asperity.kinds.ball_on_beam.schema import ACCELERATION_PSD as PSD
+from asperity.reporting.data import laws, missing, of_law, variable
+from asperity.reporting.part import Data, Part, Series, series
+from asperity.reporting.spectrum_figures import (
+    DRAWN,
+    draw_laws,
+    finish_spectrum,
+    narrow_level,
+    shaded_words,
+)
+from asperity.reporting.style import new_figure, sequence, styled
+from asperity.schema.spectra import FREQUENCY
+
+_DASHES = ("-", (0, (6, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (3, 1.5)), (0, (1.5, 1.5)), "-")
+_AXIS = "acceleration PSD / dB re (1 µm/s²)²/Hz"
+
+
+def sensor_label(tree: DataTree, sensor: int) -> str:
+    """Name of a sensor: its position."""
+    found = variable(tree, PSD)
+    assert found is not None
+    return f"x = {float(found['sensor'][sensor]):g} m"
+
+
+def _sensors(tree: DataTree) -> list[int]:
+    """Sensors that have a signal."""
+    found = variable(tree, PSD)
+    assert found is not None
+    others = [dim for dim in found.dims if dim != "sensor"]
+    return [int(i) for i in np.flatnonzero(found.notnull().any(others).values)]
+
+
+def _spectrum(tree: DataTree, law: str, sensor: int) -> Series:
+    psd = of_law(tree, PSD, law, "sensor", "frequency")[sensor]
+    return Series(f"{law}, {sensor_label(tree, sensor)}", PSD.units, psd)
+
+
+def sensors_data(tree: DataTree) -> Data:
+    """Power spectral density of the acceleration at each sensor, by the main law."""
+    main = laws(tree, PSD)[0]
+    lines: dict[Any, Series] = {
+        sensor_label(tree, sensor): _spectrum(tree, main, sensor) for sensor in _sensors(tree)
+    }
+    return Data(series(tree, FREQUENCY), lines)
+
+
+@styled()
+def sensors_figure(tree: DataTree, data: Data) -> Figure:
+    """Power spectral densities of the acceleration at all sensors, by the main law."""
+    figure = new_figure(4.2)
+    axes = figure.subplots()
+    reference = ACCELERATION_REFERENCE**2
+    spectra = [narrow_level(tree, psd.values, reference) for psd in data.lines.values()]
+    looks = zip(data.lines, spectra, sequence(len(spectra)), cycle(_DASHES), strict=False)
+    for label, spectrum, colour, dashes in looks:
+        axes.plot(*spectrum, color=colour, linestyle=dashes, label=label)
+    finish_spectrum(axes, tree, spectra)
+    axes.set_ylabel(_AXIS)
+    return figure
+
+
+def _middle_sensor(tree: DataTree) -> int:
+    sensors = _sensors(tree)
+    return sensors[len(sensors) // 2]
+
+
+def laws_data(tree: DataTree) -> Data:
+    """Power spectral density of the acceleration at one sensor, by each law."""
+    sensor = _middle_sensor(tree)
+    lines: dict[Any, Series] = {law: _spectrum(tree, law, sensor) for law in laws(tree, PSD)}
+    return Data(series(tree, FREQUENCY), lines)
+
+
+@styled()
+def laws_figure(tree: DataTree, data: Data) -> Figure:
+    """Power spectral densities of the acceleration at one sensor, by all laws."""
+    figure = new_figure(4.2)
+    axes = figure.subplots()
+    draw_laws(axes, tree, data.lines, ACCELERATION_REFERENCE**2)
+    axes.set_ylabel(_AXIS)
+    return figure
+
+
+def _sensors_caption(tree: DataTree) -> str:
+    main = laws(tree, PSD)[0]
+    text = f"Acceleration at all sensors by the main law, {main}, positive downwards; {DRAWN}."
+    return f"{text}{shaded_words(tree)} {missing(tree, ACCELERATION_LEVEL)}".strip()
+
+
+def _laws_caption(tree: DataTree) -> str:
+    label = sensor_label(tree, _middle_sensor(tree))
+    return f"Acceleration at {label} by all laws; {DRAWN}.{shaded_words(tree)}"
+
+
+ACCELERATION = (
+    Part(
+        "acceleration_sensors",
+        "Acceleration at the sensors",
+        (PSD, FREQUENCY),
+        sensors_data,
+        sensors_figure,
+        _sensors_caption,
+    ),
+    Part(
+        "acceleration_laws",
+        "Acceleration by law",
+        (PSD, FREQUENCY),
+        laws_data,
+        laws_figure,
+        _laws_caption,
+    ),
+)

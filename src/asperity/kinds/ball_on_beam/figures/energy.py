@@ -1,0 +1,38 @@
+"""Table of the energy balance."""
+
+from __future__ import annotations
+
+from xarray import DataTree
+
+from asperity.kinds.ball_on_beam.schema import ENERGY, ENERGY_RESIDUAL
+from asperity.reporting.data import engineering, laws, of_law, variable
+from asperity.reporting.tables import Cell, Table, text_cell
+
+
+def energy_table(tree: DataTree) -> Table | None:
+    """Energy balance per law, and what is left of it."""
+    names = laws(tree, ENERGY)
+    if not names:
+        return None
+    found = variable(tree, ENERGY)
+    assert found is not None
+    terms = [str(term) for term in found["energy_term"].values]
+    residual = variable(tree, ENERGY_RESIDUAL)
+    rows = []
+    for law in names:
+        energies = of_law(tree, ENERGY, law, "energy_term")
+        row = [text_cell(law), *(Cell(engineering(energy, "J"), "number") for energy in energies)]
+        if residual is not None:
+            row.append(Cell(f"{float(of_law(tree, ENERGY_RESIDUAL, law)):.1e}", "number"))
+        rows.append(row)
+    note = "Energies from the start of the run-in to the end of the run."
+    if residual is not None:
+        note += f" Residual: {ENERGY_RESIDUAL.long_name}."
+    head = ["law", *terms, *(["relative residual"] if residual is not None else [])]
+    return Table(
+        "energy_balance",
+        "Energy balance of the run",
+        head,
+        rows,
+        note,
+    )

@@ -1,0 +1,205 @@
+"""What the result of a wheel on a rail holds beside what all results hold."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from asperity.schema import Attribute, Entry
+from asperity.schema.spectra import BAND_TIME_PRODUCT, NO_SIGNAL
+
+VELOCITY_REFERENCE = 1e-9
+"""Of velocity levels, m/s."""
+
+_rolling = partial(Entry, "rolling")
+_track = partial(Entry, "track")
+_spectra = partial(Entry, "spectra")
+_track_attribute = partial(Attribute, "track")
+_POINT = "point on the rail passed by"
+_BAND = "one-third-octave band centre"
+_LOSSES = "where the track has loss factors"
+_NOISE = "where the law linear rolled over a roughness"
+
+ROLLING_POINT = _rolling("point", ("point",), "m", _POINT)
+RAIL_DISPLACEMENT = _rolling(
+    "rail_displacement", ("law", "time"), "m", "displacement of the rail under the wheel, positive downwards"
+)
+WHEEL_DISPLACEMENT = _rolling(
+    "wheel_displacement", ("law", "time"), "m", "displacement of the wheel, positive downwards"
+)
+POINT_DISPLACEMENT = _rolling(
+    "point_displacement",
+    ("law", "point", "time"),
+    "m",
+    "displacement of the rail at a point passed by, positive downwards",
+)
+POINT_VELOCITY = _rolling(
+    "point_velocity",
+    ("law", "point", "time"),
+    "m/s",
+    "velocity of the rail at a point passed by, positive downwards",
+)
+
+# --- the track
+
+
+def _over_frequency(name: str, units: str, long_name: str, missing: str = "") -> Entry:
+    return _track(name, ("frequency",), units, long_name, missing=missing)
+
+
+TRACK_FREQUENCY = _over_frequency("frequency", "Hz", "frequency")
+RECEPTANCE_MIDSPAN = _over_frequency("receptance_midspan", "m/N", "receptance of the rail at mid-span")
+RECEPTANCE_MIDSPAN_PHASE = _over_frequency("receptance_midspan_phase", "rad", "its phase")
+RECEPTANCE_SUPPORT = _over_frequency("receptance_support", "m/N", "receptance of the rail over a sleeper")
+RECEPTANCE_SUPPORT_PHASE = _over_frequency("receptance_support_phase", "rad", "its phase")
+WHEEL_RECEPTANCE = _over_frequency("wheel_receptance", "m/N", "receptance of the wheel")
+CONTACT_RECEPTANCE = _over_frequency(
+    "contact_receptance", "m/N", "receptance of the contact spring at the load"
+)
+DECAY_RATE = _over_frequency("decay_rate", "dB/m", "decay rate, eigenvalue")
+DECAY_RATE_EN15461 = _over_frequency("decay_rate_en15461", "dB/m", "decay rate as measured by EN 15461")
+DECAY_RATE_LIMIT = _over_frequency(
+    "decay_rate_limit",
+    "dB/m",
+    "lower limit, ISO 3095:2013",
+    "the standard sets no limit at these frequencies",
+)
+START_POSITION = _track("start_position", ("start_position",), "m", "place of the impulse, from a sleeper")
+LAG = _track("lag", ("lag",), "s", "time since the impulse")
+MOVING_KERNEL = _track(
+    "moving_kernel", ("start_position", "lag"), "m/(N s)", "displacement of the rail under the wheel"
+)
+TRACK_BAND = _track("band", ("band",), "Hz", _BAND, _LOSSES)
+LAYER = _track("layer", ("layer",), "1", "part of the track with a loss factor", _LOSSES)
+LOSS_FACTOR_FORCE_ERROR = _track(
+    "loss_factor_force_error",
+    ("band",),
+    "dB",
+    "level of the linear contact force in time over that of constant loss factors",
+    _LOSSES,
+)
+LOSS_FACTOR_RAIL_ERROR = _track(
+    "loss_factor_rail_error",
+    ("band",),
+    "dB",
+    "level of the rail's receptance in time over that of constant loss factors",
+    _LOSSES,
+)
+LOSS_FACTOR = _track("loss_factor", ("layer",), "1", "constant loss factor", _LOSSES)
+RELAXED_STIFFNESS = _track(
+    "relaxed_stiffness", ("layer", "band"), "1", "stiffness in time over the nominal one", _LOSSES
+)
+RELAXED_LOSS_FACTOR = _track("relaxed_loss_factor", ("layer", "band"), "1", "loss factor in time", _LOSSES)
+
+NAME = _track_attribute("name", "text", "of the set of parameters")
+SLEEPER_SPACING = _track_attribute("sleeper_spacing", "m", "distance of the sleepers")
+PINNED_PINNED_FREQUENCY = _track_attribute(
+    "pinned_pinned_frequency", "Hz", "at which half a bending wave fits between two sleepers"
+)
+CUT_ON_FREQUENCY = _track_attribute(
+    "cut_on_frequency", "Hz", "above which waves run along the rail on its pads"
+)
+ANTIRESONANCE_FREQUENCY = _track_attribute(
+    "antiresonance_frequency", "Hz", "at which the sleepers hold the rail still"
+)
+CRITICAL_SPEED = _track_attribute(
+    "critical_speed", "m/s", "of the rail with its sleepers on a continuous foundation"
+)
+STATIC_DEFLECTION = _track_attribute(
+    "static_deflection", "m", "of the rail at mid-span under the wheel's load, nominal stiffnesses"
+)
+STATIC_DEFLECTION_IN_TIME = _track_attribute(
+    "static_deflection_in_time", "m", "the same, with what stands for the loss factors in time"
+)
+KERNEL_METHOD = _track_attribute("kernel_method", "text", "how the rail was carried on: poles or scatter")
+KERNEL_POLES = _track_attribute("kernel_poles", "1", "poles of the moving kernel", "where poles were used")
+KERNEL_FIT_ERROR = _track_attribute(
+    "kernel_fit_error", "1", "relative error of the poles", "where poles were used"
+)
+
+# --- spectra
+
+
+def _product(dim: str, what: str, condition: str = "") -> Entry:
+    long_name = BAND_TIME_PRODUCT.long_name.replace("time", what)
+    name = f"{dim}_{what}_product"
+    return _spectra(name, (dim,), "1", long_name, condition, attributes=BAND_TIME_PRODUCT.attributes)
+
+
+SPECTRA_POINT = _spectra("point", ("point",), "m", _POINT)
+TEXTURE_PSD = _spectra("texture_psd", ("frequency",), "m2/Hz", "PSD of the texture passed by, one-sided")
+LINEAR_REFERENCE_PSD = _spectra(
+    "linear_reference_psd",
+    ("frequency",),
+    "N2/Hz",
+    "PSD of the contact force, linear, by frequency, with constant loss factors",
+)
+LINEAR_REFERENCE_LEVEL = _spectra(
+    "linear_reference_level",
+    ("band",),
+    "dB re 1 N",
+    "contact force level, linear, in the frequency domain",
+    missing=NO_SIGNAL,
+)
+POINT_VELOCITY_PSD = _spectra(
+    "point_velocity_psd",
+    ("law", "point", "frequency"),
+    "(m/s)2/Hz",
+    "PSD of the rail's velocity at a point passed by, one-sided",
+)
+POINT_VELOCITY_LEVEL = _spectra(
+    "point_velocity_level",
+    ("law", "point", "band"),
+    "dB re 1 nm/s",
+    "velocity level of the rail at a point passed by",
+    missing=NO_SIGNAL,
+)
+PART = _spectra("part", ("part",), "1", "what bears the texture")
+SURFACE_BAND = _spectra("surface_band", ("surface_band",), "m", "wavelength of the one-third octave")
+SURFACE_BAND_LENGTH_PRODUCT = _product("surface_band", "length")
+ROUGHNESS_LEVEL = _spectra(
+    "roughness_level",
+    ("part", "surface_band"),
+    "dB re 1 um",
+    "roughness level of the line rolled over",
+    missing="this part has no roughness of these wavelengths",
+)
+SOURCE = _spectra("source", ("source",), "1", "what radiates", _NOISE)
+NOISE_BAND = _spectra("noise_band", ("noise_band",), "Hz", _BAND, _NOISE)
+NOISE_BAND_TIME_PRODUCT = _product("noise_band", "time", _NOISE)
+SOUND_POWER_LEVEL = _spectra(
+    "sound_power_level",
+    ("law", "source", "noise_band"),
+    "dB re 1 pW",
+    "sound power level of rolling",
+    _NOISE,
+    "this source radiates nothing in these bands, or its method does not reach them",
+    ("reference",),
+)
+SOUND_POWER_LEVEL_A = _spectra(
+    "sound_power_level_a",
+    ("law", "source"),
+    "dB(A) re 1 pW",
+    "A-weighted sound power level of rolling, over the bands computed",
+    _NOISE,
+    NO_SIGNAL,
+)
+CNOSSOS_SOUND_POWER_LEVEL_A = _spectra(
+    "cnossos_sound_power_level_a",
+    ("source",),
+    "dB(A) re 1 pW",
+    "A-weighted sound power level by CNOSSOS-EU with its contact filter, over the bands computed",
+    _NOISE,
+    NO_SIGNAL,
+    ("contact_filter",),
+)
+
+SLEEPER_PASSING_FREQUENCY = Attribute(
+    "spectra", "sleeper_passing_frequency", "Hz", "speed over the distance of the sleepers"
+)
+PINNED_PINNED_LOW = Attribute(
+    "spectra", "pinned_pinned_low", "Hz", "pinned–pinned frequency as a moving wheel meets it, the lower"
+)
+PINNED_PINNED_HIGH = Attribute("spectra", "pinned_pinned_high", "Hz", "the higher")
+WHEEL_REVOLUTION_FREQUENCY = Attribute(
+    "spectra", "wheel_revolution_frequency", "Hz", "turns of the wheel per second"
+)

@@ -1,0 +1,25 @@
+"""What was computed, by what and how: attributes of the root and of the group scenario."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from asperity.schema.entry import Attribute
+
+_root = partial(Attribute, "")
+_scenario = partial(Attribute, "scenario")
+
+SCHEMA_VERSION = _root("schema_version", "1", "version of the names in the file")
+ASPERITY_VERSION = _root("asperity_version", "text", "version of the program that wrote the file")
+TITLE = _root("title", "text", "what was rolled")
+CREATED = _root("created", "text", "when the run ended, ISO 8601")
+CASE = _root("case", "text", "the case, in TOML")
+SEED = _root("seed", "1", "of all that was drawn at random")
+CITATIONS = _root("citations", "JSON", "sources of methods and data")
+VERDICT = _root("verdict", "text", "what the run says, in a few sentences")
+WARNINGS = _root("warnings", "JSON", "warnings on the physics: category, message, grade, count")
+
+KIND = _scenario("kind", "text", "kind of case")
+PARAMETERS = _scenario("parameters", "JSON", "every key of the case, with its value and default")
+NUMERICS = _scenario("numerics", "JSON", "numbers of the computation: name, value")
+LAWS = _scenario("laws", "JSON", "meaning of each contact law")

@@ -1,0 +1,39 @@
+"""The run over frequency: force by law, and how far the laws are from each other."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from asperity.schema.entry import Entry
+
+_entry = partial(Entry, "spectra")
+NO_SIGNAL = "there is no signal in these bands, and nothing has no level"
+
+LAW = _entry("law", ("law",), "1", "contact law")
+FREQUENCY = _entry("frequency", ("frequency",), "Hz", "frequency")
+BAND = _entry("band", ("band",), "Hz", "one-third-octave band centre")
+BAND_TIME_PRODUCT = _entry(
+    "band_time_product",
+    ("band",),
+    "1",
+    "bandwidth times averaging time; a level has a standard deviation of 4.34/sqrt of it, dB",
+    attributes=("least",),
+)
+FORCE_PSD = _entry("force_psd", ("law", "frequency"), "N2/Hz", "PSD of the contact force, one-sided")
+FORCE_LEVEL = _entry("force_level", ("law", "band"), "dB re 1 N", "contact force level", missing=NO_SIGNAL)
+
+
+def _difference(to: str, law: str, condition: str) -> Entry:
+    name, long_name = f"force_level_difference_to_{to}", f"force level over that of {law}"
+    return _entry(name, ("law", "band"), "dB", long_name, condition, NO_SIGNAL, ("reference",))
+
+
+FORCE_LEVEL_DIFFERENCES = {
+    law: _difference(law.replace("-", "_"), law, f"where the law {law} was rolled")
+    for law in ("linear-filtered", "linear")
+}
+"""By the law that all others are compared with; first that of practice, as in CNOSSOS-EU and TWINS."""
+BASELINES = tuple(FORCE_LEVEL_DIFFERENCES)
+FORCE_LEVEL_DIFFERENCE_TO_REFERENCE = _difference(
+    "reference", "the law that solves or scans the whole contact", "where such a law was rolled"
+)

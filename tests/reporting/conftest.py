@@ -1,0 +1,21 @@
+"""Real runs, made once for all tests of results and reports."""
+
+import pytest
+from real_runs import CASES
+
+import asperity
+from asperity.kinds import KINDS
+
+
+@pytest.fixture(scope="session")
+def real_runs(tmp_path_factory):
+    """Results by kind of case."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
+        return {kind: asperity.run(CASES[kind]) for kind in KINDS}
+
+
+@pytest.fixture(scope="session", params=list(KINDS))
+def real_run(request, real_runs):
+    """Result of one kind of case after the other."""
+    return real_runs[request.param]

@@ -1,0 +1,26 @@
+"""A small real run of each kind of case, as small as the chain goes."""
+
+from __future__ import annotations
+
+BALL = {
+    "kind": "ball-on-beam",
+    "laws": ["areal", "printed", "table", "linear-filtered", "linear"],
+    "start": "0.45 m",
+    "duration": "20 ms",
+    "settling": "0 s",
+    "surface": {"rms": "0.04 um", "longest": "0.4 mm", "shortest": "60 um"},
+    "contact": {"spacing": "20 um", "window": "0.66 mm", "samples": 2, "sample_length": "1.4 mm"},
+    "ball": {"load": "30 N"},
+    "numerics": {"highest_frequency": "2 kHz"},
+}
+WHEEL = {
+    "kind": "wheel-on-rail",
+    "laws": ["areal", "printed", "linear-filtered", "linear"],
+    "duration": "40 ms",
+    "settling": "20 ms",
+    "surface": {"spectrum": "iso3095"},
+    "wheel": {"roughness": "disc"},
+    "contact": {"spacing": "1 mm", "samples": 2, "sample_length": "60 mm"},
+    "numerics": {"highest_frequency": "4 kHz", "poles": 60},
+}
+CASES = {case["kind"]: case for case in (BALL, WHEEL)}

@@ -1,0 +1,51 @@
+"""Writes docs/result_file.md from the schema: ``python tests/reporting/schema_page.py``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from asperity.kinds import KINDS
+from asperity.scenarios.kind import SHARED
+from asperity.schema import VERSION, listed
+
+PAGE = Path(__file__).parents[2] / "docs" / "result_file.md"
+HEAD = f"""# What `run.nc` holds
+
+Version {VERSION} of the schema: the attribute `schema_version` of a file names its own. A file of another
+version is refused, with what to do. Every variable has `units` and `long_name`; where values are missing
+(NaN), `missing` says why. "Not in all" says which results have what not all have.
+"""
+
+
+def table(entries, attributes):
+    lines = []
+    if attributes:
+        lines += ["| attribute | unit | what | not in all |", "|---|---|---|---|"]
+        for item in attributes:
+            place = f"{item.group or '/'}: {item.name}"
+            lines.append(f"| `{place}` | {item.units} | {item.meaning} | {item.condition} |")
+        lines.append("")
+    lines += ["| variable | dimensions | unit | what | not in all |", "|---|---|---|---|---|"]
+    for entry in entries:
+        more = (
+            f"; attribute {', '.join(f'`{name}`' for name in entry.attributes)}" if entry.attributes else ""
+        )
+        lines.append(
+            f"| `{entry.path}` | {', '.join(entry.dims)} | {entry.units} | {entry.long_name}{more} "
+            f"| {entry.condition} |"
+        )
+    return "\n".join(lines)
+
+
+def page():
+    """Text of the page."""
+    parts = [HEAD, "## All kinds of case\n", table(*listed(*SHARED)), ""]
+    shared = [item for items in listed(*SHARED) for item in items]
+    for name, kind in KINDS.items():
+        own = ([item for item in items if item not in shared] for items in listed(*kind.schema))
+        parts += [f"## {name}, beside these\n", table(*own), ""]
+    return "\n".join(parts)
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

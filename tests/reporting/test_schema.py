@@ -1,0 +1,115 @@
+"""The schema is what is written and what is drawn: no name more, no name less, on either side."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+from schema_page import PAGE, page
+
+import asperity
+from asperity.kinds import KINDS
+from asperity.schema import VERSION, listed
+from asperity.schema.entry import UNKNOWN
+
+SOURCE = Path(asperity.__file__).parent
+GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track")
+
+
+def schema_of(tree):
+    return listed(*KINDS[tree["scenario"].attrs["kind"]].schema)
+
+
+def written(tree):
+    """Variables of a result, by path."""
+    return {
+        f"{node.name}/{name}": values
+        for node in tree.subtree
+        for name, values in node.to_dataset(inherit=False).variables.items()
+    }
+
+
+def test_what_is_written_is_what_the_schema_says(real_run):
+    entries = {entry.path: entry for entry in schema_of(real_run)[0]}
+    found = written(real_run)
+    assert set(found) <= set(entries)
+    assert {path for path, entry in entries.items() if not entry.condition} <= set(found)
+    for path, values in found.items():
+        entry = entries[path]
+        assert values.dims == entry.dims, path
+        assert values.attrs["units"] == entry.units, path
+        assert values.attrs["long_name"] == entry.long_name, path
+        assert set(values.attrs) - {"units", "long_name", "missing"} == set(entry.attributes), path
+        assert values.attrs.get("missing") != UNKNOWN, path
+
+
+def test_attributes_are_those_of_the_schema(real_run):
+    known = {(item.group, item.name): item for item in schema_of(real_run)[1]}
+    found = {
+        (node.name or "", name): value for node in real_run.subtree for name, value in node.attrs.items()
+    }
+    assert set(found) <= set(known)
+    assert {place for place, item in known.items() if not item.condition} <= set(found)
+    for place, value in found.items():
+        assert isinstance(value, str) == (known[place].units in ("text", "JSON")), place
+
+
+def test_conditions_of_small_runs_cover_the_schema(real_runs):
+    """What is not in a small run is named here, so that nothing is optional without a reason."""
+    absent = {
+        kind: {entry.path for entry in schema_of(tree)[0]} - set(written(tree))
+        for kind, tree in real_runs.items()
+    }
+    homogeneity = {f"surface/{name}" for name in ("homogeneity_p", "tile_rms", "tile_variation")}
+    homogeneity |= {"surface/tile_variation_expected"}  # of measured maps
+    assert absent["ball-on-beam"] == homogeneity
+    assert absent["wheel-on-rail"] == homogeneity | {"spectra/force_level_difference_to_reference"}
+
+
+def test_result_states_speed_and_sleepers(real_runs):
+    for tree in real_runs.values():
+        rolling = tree["rolling"].to_dataset()
+        path, time = rolling["position"].values, rolling["time"].values
+        assert rolling.attrs["speed"] == pytest.approx((path[-1] - path[0]) / (time[-1] - time[0]), rel=1e-9)
+    wheel = real_runs["wheel-on-rail"]
+    passing = wheel["rolling"].attrs["speed"] / wheel["track"].attrs["sleeper_spacing"]
+    assert wheel["spectra"].attrs["sleeper_passing_frequency"] == pytest.approx(passing, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", list(KINDS))
+def test_names_stand_once(kind):
+    entries, attributes = listed(*KINDS[kind].schema)
+    for items in (entries, attributes):
+        places = [(item.group, item.name) for item in items]
+        assert len(places) == len(set(places))
+
+
+def test_no_drawing_and_no_writing_goes_by_a_string():
+    """A path or a name in quotes would go on quietly after the schema has changed."""
+    paths = tuple(f"{group}/" for group in GROUPS)
+    for module in SOURCE.rglob("*.py"):
+        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                docstring = " " in node.value or "\n" in node.value
+                assert docstring or not node.value.startswith(paths), f"{module}: {node.value}"
+
+
+def test_every_figure_of_a_real_run_is_drawn(real_run):
+    for chapter in KINDS[real_run["scenario"].attrs["kind"]].chapters:
+        for part in chapter.parts:
+            assert part.drawable(real_run), part.name
+
+
+def test_needs_of_figures_are_in_the_schema():
+    for kind in KINDS.values():
+        entries, _ = listed(*kind.schema)
+        for chapter in kind.chapters:
+            for part in chapter.parts:
+                assert set(part.needs) | set(part.any_of) <= set(entries), part.name
+
+
+def test_the_page_lists_the_schema():
+    """Whoever changes the schema raises its version, and runs tests/reporting/schema_page.py."""
+    assert PAGE.read_text(encoding="utf-8") == page()
+    assert f"Version {VERSION}" in page()
