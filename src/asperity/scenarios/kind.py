@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from asperity.schema import contact, provenance, rolling, spectra, surface
+from asperity.schema import Entry, contact, provenance, rolling, spectra, surface
 
 if TYPE_CHECKING:
     import warnings
@@ -53,7 +53,8 @@ class Kind:
         compiling  ``compile_kernels(progress)``, of all that is stepped
         compute    ``compute(prepared, progress)``, from textures to runs
         result     ``layout(computed, caught)``, the tree of a run
-        schema     what its result holds beside what all results hold
+        schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
+                   entries, each with the place on its dimensions if not all of it
         chapters   ``CHAPTERS`` of its report
         plan       ``rows(case)``, what will be computed, in words; ``seconds(prepared, progress, pace)`` by
                    part of the work, s; ``step_seconds(prepared)``; ``records(case)``; ``REPORT``, s
@@ -116,6 +117,12 @@ class Kind:
     def schema(self) -> tuple[ModuleType, ...]:
         """Modules with the entries of its result, its own the last."""
         return (*SHARED, self._part("schema"))
+
+    @property
+    def kept(self) -> Mapping[Entry, Mapping[str, str]]:
+        """What a study keeps of its results beside what it keeps of all, and where of it."""
+        found: Mapping[Entry, Mapping[str, str]] = self._part("schema").KEPT
+        return found
 
     @property
     def chapters(self) -> tuple[Chapter, ...]:

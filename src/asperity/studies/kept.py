@@ -10,22 +10,21 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
+from asperity.kinds import KINDS
 from asperity.results import variable
+from asperity.schema import contact, provenance, rolling, spectra
+from asperity.schema.provenance import KIND
 
-KEPT = {
-    "force_level": "spectra",
-    "band_time_product": "spectra",
-    "force_level_difference_to_linear_filtered": "spectra",
-    "force_level_difference_to_linear": "spectra",
-    "force_level_difference_to_reference": "spectra",
-    "acceleration_level": "spectra",
-    "point_velocity_level": "spectra",
-    "sound_power_level": "spectra",
-    "contact_loss_share": "rolling",
-    "contact_loss_events": "rolling",
-    "longest_loss": "rolling",
-}
-"""Variables of a result that are kept as they are, and their groups."""
+KEPT = (
+    spectra.FORCE_LEVEL,
+    spectra.BAND_TIME_PRODUCT,
+    *spectra.FORCE_LEVEL_DIFFERENCES.values(),
+    spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
+    rolling.CONTACT_LOSS_SHARE,
+    rolling.CONTACT_LOSS_EVENTS,
+    rolling.LONGEST_LOSS,
+)
+"""What is kept of the results of all kinds; what is kept beside it stands in the schema of a kind."""
 PLACES = ("sensor", "point")
 """Dimensions whose positions may differ between members: they are numbered, from 1."""
 
@@ -35,20 +34,23 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
 
     With citations and warnings as attributes.
     """
-    found = {name: tree[group][name] for name, group in KEPT.items() if name in tree[group]}
-    force = tree["rolling"].to_dataset()["contact_force"]
+    own = KINDS[tree[KIND.group].attrs[KIND.name]].kept
+    found = {
+        entry.name: tree[entry.path].sel(own.get(entry, {}), drop=True)
+        for entry in (*KEPT, *own)
+        if entry.name in tree[entry.group]
+    }
+    force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name]
     found["mean_force"] = _described(force.mean("time"), "N", "mean contact force")
     found["rms_force"] = _described(force.std("time"), "N", "rms of the contact force about its mean")
-    if "sound_power_level_a" in tree["spectra"]:
-        total = tree["spectra/sound_power_level_a"]
-        found["sound_power_level_a"] = total.sel(source="total", drop=True)
     table = xarray.Dataset(found).drop_attrs(deep=False)
     for place in set(PLACES) & set(map(str, table.dims)):
         table = _numbered(table, place)
-    table["working_approach"] = variable(
-        (), tree["contact"].attrs["working_approach"], "m", "approach under the static load"
-    )
-    return table.assign_attrs({name: tree.attrs[name] for name in ("citations", "warnings")})
+    approach = contact.WORKING_APPROACH
+    value = tree[approach.group].attrs[approach.name]
+    table[approach.name] = variable((), value, approach.units, approach.meaning)
+    told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
+    return table.assign_attrs({name: tree.attrs[name] for name in told})
 
 
 def _described(values: xarray.DataArray, units: str, long_name: str) -> xarray.DataArray:

@@ -53,3 +53,6 @@ ACCELERATION_LEVEL = Entry(
     "acceleration level",
     missing=NO_SIGNAL,
 )
+
+KEPT: dict[Entry, dict[str, str]] = {ACCELERATION_LEVEL: {}}
+"""What a study keeps."""

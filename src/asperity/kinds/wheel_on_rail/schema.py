@@ -203,3 +203,10 @@ PINNED_PINNED_HIGH = Attribute("spectra", "pinned_pinned_high", "Hz", "the highe
 WHEEL_REVOLUTION_FREQUENCY = Attribute(
     "spectra", "wheel_revolution_frequency", "Hz", "turns of the wheel per second"
 )
+
+KEPT: dict[Entry, dict[str, str]] = {
+    POINT_VELOCITY_LEVEL: {},
+    SOUND_POWER_LEVEL: {},
+    SOUND_POWER_LEVEL_A: {"source": "total"},
+}
+"""What a study keeps, and where of it."""
