@@ -28,24 +28,12 @@ SMALLEST_BOX = 8
 
 @dataclass(frozen=True, eq=False)
 class SolvedContacts:
-    """Contacts by approach and position, all of shape (n_approaches, n_positions).
+    """Contacts by approach and position, all of shape (n_approaches, n_positions)."""
 
-    Attributes
-    ----------
-    force : ndarray
-        Resultants, N; zero without contact.
-    iterations : ndarray of int
-        Conjugate-gradient iterations.
-    converged : ndarray of bool
-        Whether the tolerance was met; true without contact.
-    edge_share : ndarray
-        Share of the force on the window's outermost cells.
-    """
-
-    force: NDArray[np.float64]
-    iterations: NDArray[np.int64]
-    converged: NDArray[np.bool_]
-    edge_share: NDArray[np.float64]
+    force: NDArray[np.float64]  # N; zero without contact
+    iterations: NDArray[np.int64]  # of conjugate gradients
+    converged: NDArray[np.bool_]  # whether the tolerance was met; true without contact
+    edge_share: NDArray[np.float64]  # share of the force on the window's outermost cells
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,36 +53,12 @@ def solve_batched(
     rtol: float,
     device: Device,
 ) -> SolvedContacts:
-    """Solve many contacts at increasing approaches, each from the pressure at the approach before.
+    """Solve many contacts at increasing approaches (k,), m, each from the pressure at the approach before.
 
-    Parameters
-    ----------
-    half_space : HalfSpace
-        Grid, modulus and hardness.
-    gaps : callable
-        ``gaps(first, last)`` gives the gaps at zero approach of these positions, on the device, m,
-        shape (last − first, nx, ny).
-    count : int
-        Number of positions.
-    approaches : ndarray, shape (k,)
-        Increasing approaches, m.
-    rtol : float
-        Tolerance of each solution, as in `HalfSpace.solve`.
-    device : Device
-        Where to solve.
+    ``gaps(first, last)`` gives the gaps at zero approach of these of the `count` positions, on the device, m,
+    shape (last − first, nx, ny); `rtol` is as in `HalfSpace.solve`. A `ComputationError` comes if a single
+    contact does not fit into the device's memory.
 
-    Returns
-    -------
-    SolvedContacts
-        Forces, and how well the solutions went.
-
-    Raises
-    ------
-    ComputationError
-        If a single contact does not fit into the device's memory.
-
-    Notes
-    -----
     All positions share the size of the box they are solved on, the largest of them; as nothing outside of
     an overlap can carry pressure, the solution does not depend on it, nor on how many fit into a batch.
     """

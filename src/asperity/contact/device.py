@@ -21,61 +21,23 @@ CHOSEN = "ASPERITY_DEVICE"
 
 @dataclass(frozen=True, eq=False)
 class Device:
-    """An array module and what batches need to know of its memory.
+    """An array module and what batches need to know of its memory."""
 
-    Attributes
-    ----------
-    name : str
-        What it is, in words.
-    xp : module
-        numpy or CuPy.
-    free_memory : callable
-        Bytes that a batch may take.
-    to_host : callable
-        Array on the device to a numpy array.
-    release : callable
-        Gives memory that is kept for reuse back.
-    exhausted : tuple of exception classes
-        What an allocation raises when memory has run out.
-    """
-
-    name: str
-    xp: Any
-    free_memory: Callable[[], int]
-    to_host: Callable[[Any], NDArray]
-    release: Callable[[], None]
-    exhausted: tuple[type[Exception], ...]
+    name: str  # what it is, in words
+    xp: Any  # numpy or CuPy
+    free_memory: Callable[[], int]  # bytes that a batch may take
+    to_host: Callable[[Any], NDArray]  # array on the device to a numpy array
+    release: Callable[[], None]  # gives memory that is kept for reuse back
+    exhausted: tuple[type[Exception], ...]  # what an allocation raises when memory has run out
 
 
 def processor(memory: int = 2**28) -> Device:
-    """Make a device of the processor: batches in numpy, for checks of the batched solver.
-
-    Parameters
-    ----------
-    memory : int
-        Bytes that a batch may take.
-
-    Returns
-    -------
-    Device
-        numpy.
-    """
+    """Make a device of the processor: batches in numpy of so many bytes, for checks of the batched solver."""
     return Device("processor, numpy", np, lambda: memory, np.asarray, lambda: None, (MemoryError,))
 
 
 def gpu() -> Device:
-    """Find the current CUDA device, and try it.
-
-    Returns
-    -------
-    Device
-        CuPy on that device.
-
-    Raises
-    ------
-    InputError
-        If CuPy is not installed, or finds no device or no CUDA libraries.
-    """
+    """Find the current CUDA device and try it; an `InputError` tells what is missing."""
     allowed = "a CUDA device and CuPy"
     try:
         import cupy
@@ -111,22 +73,9 @@ def _cuda_device(cupy: Any, name: str) -> Device:
 
 
 def find_device(name: str | None = None) -> Device | None:
-    """Find a device by its name.
+    """Find the device for batches; None for ``"cpu"``, where contacts are solved one by one.
 
-    Parameters
-    ----------
-    name : str, optional
-        ``"cpu"`` or ``"gpu"``; by default what ``$ASPERITY_DEVICE`` says, else ``"cpu"``.
-
-    Returns
-    -------
-    Device or None
-        The device for batches; None for ``"cpu"``, where contacts are solved one by one.
-
-    Raises
-    ------
-    InputError
-        If there is no such name, or no such device.
+    The name is ``"cpu"`` or ``"gpu"``; by default what ``$ASPERITY_DEVICE`` says, else ``"cpu"``.
     """
     what = "device" if name is not None else f"${CHOSEN}"
     name = (os.environ.get(CHOSEN) or "cpu") if name is None else name
@@ -136,17 +85,6 @@ def find_device(name: str | None = None) -> Device | None:
 
 
 def choose_device(name: str) -> None:
-    """Choose the device of all scans of this process, and of those that it starts.
-
-    Parameters
-    ----------
-    name : str
-        ``"cpu"`` or ``"gpu"``.
-
-    Raises
-    ------
-    InputError
-        If there is no such name, or no such device.
-    """
+    """Choose the device of all scans of this process, and of those that it starts."""
     find_device(name)
     os.environ[CHOSEN] = name

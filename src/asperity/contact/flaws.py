@@ -14,24 +14,12 @@ from asperity.kernels.scanning import TRUNCATED
 
 
 class Counts(NamedTuple):
-    """Contact solutions, and how they went.
+    """Contact solutions, and how they went."""
 
-    Attributes
-    ----------
-    solved : int
-        Solutions in contact.
-    iterations : int
-        Conjugate-gradient iterations of all solutions.
-    unconverged : int
-        Solutions that missed the tolerance.
-    truncated : int
-        Solutions with a noticeable share of the force on the window's edge.
-    """
-
-    solved: int = 0
-    iterations: int = 0
-    unconverged: int = 0
-    truncated: int = 0
+    solved: int = 0  # in contact
+    iterations: int = 0  # of conjugate gradients, all solutions together
+    unconverged: int = 0  # missed the tolerance
+    truncated: int = 0  # with a noticeable share of the force on the window's edge
 
 
 def total(counts: Iterable[Counts]) -> Counts:
@@ -42,16 +30,8 @@ def total(counts: Iterable[Counts]) -> Counts:
 def warn_of_flaws(counts: Counts, what: str, tolerance: str, remedy: str = "Enlarge the window.") -> None:
     """Warn of contact solutions that did not converge or were cut off, graded by their share.
 
-    Parameters
-    ----------
-    counts : Counts
-        How the solutions went.
-    what : str
-        What they were made for, as ``"the scan"``.
-    tolerance : str
-        The key or argument that says how tightly they are solved.
-    remedy : str
-        What to do about contacts that are cut off.
+    They were made for `what`, as ``"the scan"``; `tolerance` is the key or argument that says how tightly
+    they are solved, `remedy` what to do about contacts that are cut off.
     """
     solved, _, unconverged, truncated = counts
     if unconverged:
@@ -86,21 +66,10 @@ _MEANING = {
 
 
 def window_for(body: NDArray[np.float64], spacing: tuple[float, float], overlap: float) -> float:
-    """Side of a square window, m, that holds a contact.
+    """Side of a square window, m, that holds the contact of a body (nx, ny), m, which goes on as a parabola.
 
-    Parameters
-    ----------
-    body : ndarray, shape (nx, ny)
-        Shape of the body, m, zero at its lowest point; it goes on outwards as a parabola.
-    spacing : tuple of float
-        (dx, dy), m.
-    overlap : float
-        Largest overlap of the undeformed bodies, with the highest peak, m.
-
-    Returns
-    -------
-    float
-        Hertz's patch of smooth bodies at that overlap, and a tenth more for peaks beyond it, m.
+    Hertz's patch of smooth bodies at the largest overlap, m, of the undeformed ones, with the highest peak,
+    and a tenth more for peaks beyond it.
     """
     middle = [n // 2 for n in body.shape]
     edges = min(body[0, middle[1]], body[-1, middle[1]]), min(body[middle[0], 0], body[middle[0], -1])

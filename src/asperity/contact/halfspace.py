@@ -350,18 +350,7 @@ class HalfSpace:
     def at_approach(
         self, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64] | None, rtol: float
     ) -> Contact:
-        """Solve at a prescribed approach, unchecked and silent: for sweeps that count outcomes themselves.
-
-        Parameters
-        ----------
-        gap, approach, start, rtol
-            As in `solve`; arrays contiguous float64 of the right shape, `start` within the bounds.
-
-        Returns
-        -------
-        Contact
-            The solution; look at `converged`.
-        """
+        """Solve at a prescribed approach as `solve` does, unchecked and silent: look at `converged`."""
         return self._single_contact(gap, approach, start, rtol)
 
     def _single_contact(
@@ -396,25 +385,10 @@ class HalfSpace:
         single: bool = False,
         load: float = -1.0,
     ) -> Block:
-        """Solve at positions of a body on a surface, unchecked and silent.
+        """Solve at positions of a body on a surface, unchecked and silent; arguments as in `scanning.Block`.
 
-        Parameters
-        ----------
-        rows, body, planes, approaches, stride
-            As in `asperity.kernels.scanning.Block`.
-        rtol : float
-            As in `solve`.
-        start : ndarray, shape (nx, ny), optional
-            Pressure to start from at the first position and approach, Pa.
-        single : bool
-            Whether to iterate in single precision: half again as fast, down to a tolerance of about 1e-6.
-        load : float
-            As in `asperity.kernels.scanning.Block`.
-
-        Returns
-        -------
-        Block
-            With forces per cell area, residuals and counts.
+        `start` (nx, ny), Pa, is the pressure at the first position and approach to start from. In single
+        precision the iteration is half again as fast, down to a tolerance of about 1e-6.
         """
         rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
         k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))

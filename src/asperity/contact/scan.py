@@ -36,36 +36,17 @@ BLOCK_BYTES = 1200
 
 @dataclass(frozen=True, eq=False)
 class ScanJob:
-    """A body to be moved along a surface, and how its contacts are solved: all that the forces depend on.
+    """A body to be moved along a surface, and how its contacts are solved: all that the forces depend on."""
 
-    Attributes
-    ----------
-    half_space : HalfSpace
-        The window's grid of (nx, ny) cells, modulus and hardness.
-    surface : Strip, shape (n, ny)
-        Heights, m, peaks positive.
-    body : ndarray, shape (nx, ny)
-        Shape of the smooth body, m, zero at its lowest point.
-    approaches : ndarray, shape (k,)
-        Approaches from the planes, m, increasing.
-    stride : int
-        Rows between positions: the first rows under the body are 0, stride, 2 stride, …
-    rtol : float
-        Tolerance of each solution, as in `HalfSpace.solve`.
-    planes : ndarray, shape (positions,), or float
-        Height of the plane from which approaches count at each position, m.
-    device : Device or None
-        Where contacts are solved in batches; None for the processor, which solves them one by one.
-    """
-
-    half_space: HalfSpace
-    surface: Strip
-    body: NDArray[np.float64]
-    approaches: NDArray[np.float64]
-    stride: int = 1
-    rtol: float = 1e-6
-    planes: NDArray[np.float64] | float = 0.0
+    half_space: HalfSpace  # grid of the window, (nx, ny) cells; modulus and hardness
+    surface: Strip  # (n, ny) heights, m, peaks positive
+    body: NDArray[np.float64]  # (nx, ny), shape of the smooth body, m, zero at its lowest point
+    approaches: NDArray[np.float64]  # (k,), from the planes, m, increasing
+    stride: int = 1  # rows between positions: the body stands on rows from 0, stride, 2 stride, … on
+    rtol: float = 1e-6  # tolerance of each solution, as in `HalfSpace.solve`
+    planes: NDArray[np.float64] | float = 0.0  # (positions,), from which approaches count, m
     device: Device | None = field(default_factory=find_device)
+    """Where contacts are solved in batches; None for the processor, which solves them one by one."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "body", np.ascontiguousarray(self.body, dtype=np.float64))
@@ -76,7 +57,10 @@ class ScanJob:
         (n, width), cells, approaches = self.surface.shape, self.half_space.shape, self.approaches
         if self.body.shape != cells or not np.isfinite(self.body).all():
             allowed = f"a finite array of the half-space's shape {cells}"
-            raise InputError("body of the scan", f"shape {self.body.shape}", allowed)
+            received = (
+                f"shape {self.body.shape}" if self.body.shape != cells else "values that are not finite"
+            )
+            raise InputError("body of the scan", received, allowed)
         if width != cells[1] or n < cells[0]:
             raise InputError(
                 "window of the scan",
@@ -162,30 +146,20 @@ class ScanJob:
 
 @dataclass(frozen=True, eq=False)
 class SolvedBlock:
-    """Solutions at the positions of a block: name in the store, forces (k, positions) in N, and counts."""
+    """Solutions at the positions of a block."""
 
-    key: str
-    forces: NDArray[np.float64]
+    key: str  # name in the store
+    forces: NDArray[np.float64]  # (k, positions), N
     counts: Counts
 
 
 @dataclass(frozen=True, eq=False)
 class ScannedForces(Generic[F]):
-    """Forces of a scan, with how well the solutions went.
+    """Forces of a scan, with how well the solutions went."""
 
-    Attributes
-    ----------
-    forces : ndarray, or StoredForces, shape (n_approaches, n_positions)
-        F_c(x_m, r_i), N.
-    counts : Counts
-        How the solutions went.
-    single : bool
-        Whether the iteration was in single precision.
-    """
-
-    forces: F
+    forces: F  # F_c(x_m, r_i), N, shape (n_approaches, n_positions): an array, or StoredForces
     counts: Counts
-    single: bool
+    single: bool  # whether the iteration was in single precision
 
 
 def solved_blocks(

@@ -20,25 +20,14 @@ from asperity.threads import in_order
 
 @dataclass(frozen=True, eq=False)
 class StiffnessEnsemble:
-    """Loading curves of N samples at common approaches.
+    """Loading curves of N samples at common approaches."""
 
-    Attributes
-    ----------
-    approaches : ndarray, shape (k,)
-        Approaches from the samples' patch planes, m, positive closing.
-    forces : ndarray, shape (N, k)
-        Contact force of each sample, N.
-    datum : float
-        d0, m: the state is r = approach + d0, one offset for all samples, no less than the highest
-        first touch, so that F(r = 0) = 0 for each of them.
-    held : int
-        Number of states, from the lowest, in which the window holds the contacts of all samples.
-    """
-
-    approaches: NDArray[np.float64]
-    forces: NDArray[np.float64]
+    approaches: NDArray[np.float64]  # (k,), from the samples' patch planes, m, positive closing
+    forces: NDArray[np.float64]  # (N, k), N
     datum: float
-    held: int
+    """d0, m: the state is r = approach + d0, one offset for all samples, no less than the highest first
+    touch, so that F(r = 0) = 0 for each of them."""
+    held: int  # states, from the lowest, in which the window holds the contacts of all samples
 
     @property
     def mean_force(self) -> NDArray[np.float64]:
@@ -69,29 +58,11 @@ def patches(
     count: int,
     weights: NDArray[np.float64],
 ) -> list[NDArray[np.float64]]:
-    """Cut samples out of measured maps, each levelled to the plane that the nominal patch feels.
+    """Cut at least so many samples of (nx, ny) cells out of maps, each levelled to the plane its patch feels.
 
-    Parameters
-    ----------
-    maps : sequence of ndarray, shape (≥ nx, ≥ ny)
-        Heights, m.
-    shape : tuple of int
-        (nx, ny) cells of a sample.
-    count : int
-        Number of samples; at least one from each map, evenly spread over it, overlapping if need be.
-    weights : ndarray
-        From `punch_weights` at the working load: wavelengths longer than the patch, which the texture of
-        the path carries, must not be counted a second time inside the samples.
-
-    Returns
-    -------
-    list of ndarray, shape (nx, ny)
-        Heights from each sample's own patch plane, m.
-
-    Raises
-    ------
-    InputError
-        If a map is smaller than a sample.
+    Samples are spread evenly over the maps, at least one from each, overlapping if need be; heights in m.
+    The weights are from `punch_weights` at the working load: wavelengths longer than the patch, which the
+    texture of the path carries, must not be counted a second time inside the samples.
     """
     result = []
     for index, heights in enumerate(maps):
@@ -119,20 +90,7 @@ def _spread(spare: tuple[int, int], count: int) -> list[tuple[int, int]]:
 
 
 def weighted_mean(heights: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
-    """Mean height under a patch at the middle of a sample.
-
-    Parameters
-    ----------
-    heights : ndarray, shape (nx, ny)
-        Heights, m; nx and ny odd.
-    weights : ndarray, shape (odd, odd)
-        From `punch_weights`.
-
-    Returns
-    -------
-    float
-        Mean, m.
-    """
+    """Mean height, m, under a patch at the middle of a sample of odd sides, by its `punch_weights`."""
     mx, my = (min(w, h) // 2 for w, h in zip(weights.shape, heights.shape, strict=True))
     cx, cy = heights.shape[0] // 2, heights.shape[1] // 2
     wx, wy = weights.shape[0] // 2, weights.shape[1] // 2
@@ -153,27 +111,10 @@ def stiffness_ensemble(
     tolerance: str = "rtol",
     remedy: str = "Enlarge the window.",
 ) -> StiffnessEnsemble:
-    """Press the body on each sample, stepping the approach up.
+    """Press the body on each of the samples (nx, ny) from `patches`, stepping the approach (k,) up.
 
-    Parameters
-    ----------
-    samples : sequence of ndarray, shape (nx, ny)
-        Heights, m, from `patches`.
-    half_space, body, rtol
-        As in `asperity.contact.scan.ScanJob`.
-    approaches : ndarray, shape (k,)
-        Approaches, m, increasing.
-    datum : float
-        d0, m.
-    workers, progress
-        As in `asperity.contact.scan.solved_blocks`.
-    tolerance, remedy : str
-        As in `asperity.contact.flaws.warn_of_flaws`.
-
-    Returns
-    -------
-    StiffnessEnsemble
-        One loading curve a sample.
+    Half-space, body and `rtol` are as in `ScanJob`, `datum` is d0 in m; `tolerance` and `remedy` say what to
+    do about contacts that do not converge or are cut off, as in `warn_of_flaws`.
     """
 
     def load(sample: NDArray[np.float64]) -> ScannedForces[NDArray[np.float64]]:

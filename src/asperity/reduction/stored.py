@@ -16,43 +16,15 @@ from asperity.store import Cache
 
 @dataclass(frozen=True, eq=False)
 class StoredForces:
-    """Forces of a scan, block by block in a cache.
-
-    Attributes
-    ----------
-    cache : Cache
-        Holds the blocks.
-    keys : tuple of str
-        Name of each block in the cache.
-    block : int
-        Positions in a block; the last may have fewer.
-    shape : tuple of int
-        Number of states and positions.
-    """
+    """Forces of a scan, block by block in a cache."""
 
     cache: Cache
-    keys: tuple[str, ...]
-    block: int
-    shape: tuple[int, ...]
+    keys: tuple[str, ...]  # name of each block in the cache
+    block: int  # positions in a block; the last may have fewer
+    shape: tuple[int, ...]  # (states, positions)
 
     def columns(self, first: int, stop: int) -> NDArray[np.float64]:
-        """Forces at some positions.
-
-        Parameters
-        ----------
-        first, stop : int
-            The positions first … stop − 1.
-
-        Returns
-        -------
-        ndarray, shape (states, stop − first)
-            Forces, N.
-
-        Raises
-        ------
-        ComputationError
-            If a block is no longer in the cache.
-        """
+        """Forces at the positions first … stop − 1, N, shape (states, stop − first)."""
         stop = min(stop, self.shape[1])
         blocks = range(first // self.block, (stop - 1) // self.block + 1) if stop > first else range(0)
         parts = [np.empty((self.shape[0], 0)), *(self._forces(i) for i in blocks)]
@@ -90,18 +62,5 @@ def scan_into(
 
 
 def columns(forces: NDArray[np.float64] | StoredForces, first: int, stop: int) -> NDArray[np.float64]:
-    """Forces at some positions, in memory or stored.
-
-    Parameters
-    ----------
-    forces : ndarray (states, positions), or StoredForces
-        Forces, N.
-    first, stop : int
-        The positions first … stop − 1.
-
-    Returns
-    -------
-    ndarray, shape (states, stop − first)
-        Forces, N.
-    """
+    """Forces at the positions first … stop − 1, N, shape (states, stop − first), in memory or stored."""
     return forces[:, first:stop] if isinstance(forces, np.ndarray) else forces.columns(first, stop)
