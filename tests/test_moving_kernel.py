@@ -175,3 +175,15 @@ def test_a_kernel_that_does_not_die_away_is_warned_of(monkeypatch):
     monkeypatch.setattr("asperity.structures.moving_kernel.SHORTEST", 0.05)
     with pytest.warns(CoarseSamplingWarning, match="what comes later is cut off"):
         moving_kernel(VISCOUS, 56.0, 2e-4)
+
+
+def test_what_is_advised_lets_a_kernel_die_away(monkeypatch):
+    """Light ballast lets the sleepers swing for long; a rail of its own losses does not help."""
+    monkeypatch.setattr("asperity.structures.moving_kernel.LONGEST", 0.3)
+    monkeypatch.setattr("asperity.structures.moving_kernel.SHORTEST", 0.3)
+    light = {"pad_damping": 30e3, "ballast_damping": 1e3}
+    with pytest.warns(CoarseSamplingWarning, match="Raise ballast_damping or ballast_loss_factor"):
+        moving_kernel(Track(**NORDBORG, **light), 28.0, 2e-4, positions=2)
+    with pytest.warns(CoarseSamplingWarning, match="what comes later is cut off"):
+        moving_kernel(Track(**NORDBORG, **light, rail_loss_factor=0.05), 28.0, 2e-4, positions=2)
+    moving_kernel(Track(**NORDBORG, **{**light, "ballast_damping": 60e3}), 28.0, 2e-4, positions=2)  # silent

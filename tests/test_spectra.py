@@ -71,19 +71,10 @@ def test_exact_base_ten_bands():
     assert_allclose([low[10], high[10]], [891.250938, 1122.018454], rtol=1e-9)
 
 
-def test_wavelength_bands_are_wavenumber_bands_read_backwards():
-    wavelengths, short, long = spectra.wavelength_bands(0.01, 0.1)
-    assert_allclose(wavelengths[[0, 1, -1]], [0.1, 0.0794328, 0.01], rtol=1e-6)
-    assert (short < wavelengths).all()
-    assert_allclose(short[:-1], long[1:])
-
-
 @pytest.mark.parametrize("limits", [(0.0, 1.0), (2.0, 1.0), (1.0, np.inf)])
 def test_band_limits_must_rise(limits):
     with pytest.raises(InputError, match="band limits"):
         spectra.third_octave_bands(*limits)
-    with pytest.raises(InputError, match="wavelengths"):
-        spectra.wavelength_bands(*limits)
 
 
 @settings(max_examples=50)

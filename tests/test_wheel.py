@@ -60,6 +60,12 @@ class TwoMasses:
         return Wheel.from_modes(total, LOAD, [omega / (2 * np.pi)], [ratio], [self.m1 * total / self.m2])
 
 
+def impulse_response(wheel, time):
+    """What poles and residues say of the displacement after a unit impulse: t/M + 2 Re Σ r e^{st}."""
+    t = np.maximum(np.asarray(time, dtype=float), 0.0)
+    return t / wheel.mass + 2.0 * (wheel.residues * np.exp(wheel.poles * t[..., None])).real.sum(axis=-1)
+
+
 def test_receptance_is_the_sum_of_the_modes():
     f = np.geomspace(1.0, 20e3, 400)
     omega, natural = 2 * np.pi * f, 2 * np.pi * FREQUENCIES[:, None]
@@ -70,7 +76,7 @@ def test_receptance_is_the_sum_of_the_modes():
 def test_rigid_wheel_is_a_mass():
     wheel = Wheel.rigid(MASS, LOAD)
     assert_allclose(wheel.receptance(1000.0), -1.0 / (MASS * (2000.0 * np.pi) ** 2))
-    assert_allclose(wheel.impulse_response([-1.0, 0.0, 0.5]), [0.0, 0.0, 0.5 / MASS])
+    assert_allclose(impulse_response(wheel, [-1.0, 0.0, 0.5]), [0.0, 0.0, 0.5 / MASS])
     assert wheel.natural_frequencies.size == 0
 
 
@@ -81,7 +87,7 @@ def test_two_masses_in_frequency_and_time():
     assert_allclose(wheel.receptance(f), system.receptance(f), rtol=1e-9)
     time = np.linspace(0.0, 0.02, 80)
     exact = system.impulse_response(time)
-    assert_allclose(wheel.impulse_response(time), exact, atol=1e-10 * exact.max())
+    assert_allclose(impulse_response(wheel, time), exact, atol=1e-10 * exact.max())
 
 
 def test_impulse_response_is_that_of_each_mode():
@@ -90,7 +96,7 @@ def test_impulse_response_is_that_of_each_mode():
     damped = omega * np.sqrt(1 - RATIOS**2)
     decay = np.exp(-np.outer(t, RATIOS * omega))
     exact = t / MASS + (decay * np.sin(np.outer(t, damped)) / (MASSES * damped)).sum(axis=1)
-    assert_allclose(wheel.impulse_response(t), exact, atol=1e-12 * exact.max())
+    assert_allclose(impulse_response(wheel, t), exact, atol=1e-12 * exact.max())
 
 
 def test_frequencies_and_damping_come_back_from_the_poles():
@@ -112,7 +118,7 @@ def test_fit_of_two_masses_gives_back_the_impulse_response():
     system, f, time = TwoMasses(), np.arange(20.0, 3001.0, 5.0), np.linspace(0.0, 0.02, 80)
     wheel = Wheel.from_receptance(system.m1 + system.m2, LOAD, f, system.receptance(f))
     exact = system.impulse_response(time)
-    assert_allclose(wheel.impulse_response(time), exact, atol=1e-4 * exact.max())
+    assert_allclose(impulse_response(wheel, time), exact, atol=1e-4 * exact.max())
 
 
 def test_fit_up_to_a_frequency_keeps_what_lies_below():
@@ -155,10 +161,10 @@ def test_any_modal_wheel_takes_energy_and_starts_at_rest(modes):
     omega = 2.0 * np.pi * np.geomspace(1.0, 20e3, 200)
     alpha = wheel.receptance(omega / (2.0 * np.pi))
     assert (alpha.imag <= 1e-12 * np.abs(alpha)).all()
-    assert wheel.impulse_response(0.0) == pytest.approx(0.0, abs=1e-15)
+    assert impulse_response(wheel, 0.0) == pytest.approx(0.0, abs=1e-15)
     # the first instant moves 1/M and every modal mass freely
     short = 1e-9
-    assert wheel.impulse_response(short) / short == pytest.approx(
+    assert impulse_response(wheel, short) / short == pytest.approx(
         1 / MASS + sum(1 / m for *_, m in modes), rel=1e-3
     )
 

@@ -126,19 +126,6 @@ def third_octave_bands(
     return centres, centres / HALF_BAND, centres * HALF_BAND
 
 
-def wavelength_bands(
-    shortest: float, longest: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """One-third octaves of base 10 in wavelength, from that of the longest to that of the shortest.
-
-    Centres 10^(n/10) m and their short and long edges, (b,), m, falling, so that their wavenumbers rise.
-    """
-    if not 0.0 < shortest <= longest < np.inf:
-        raise InputError("wavelengths", f"{shortest} to {longest}", "0 < shortest <= longest, finite")
-    centres, low, high = third_octave_bands(1.0 / longest, 1.0 / shortest)
-    return 1.0 / centres, 1.0 / high, 1.0 / low
-
-
 def band_energies(
     frequency: ArrayLike, psd: ArrayLike, edges_low: ArrayLike, edges_high: ArrayLike
 ) -> NDArray[np.float64]:

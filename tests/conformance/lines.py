@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.spectra import a_weighting, band_levels, energy_sum, psd, third_octave_bands, wavelength_bands
+from asperity.spectra import a_weighting, band_levels, energy_sum, psd, third_octave_bands
 from asperity.units import quantity
 
 A_WEIGHTING = {
@@ -61,7 +61,7 @@ def bands():
         1e-12,
         "Hz",
     )
-    lengths = wavelength_bands(3e-3, 0.3)[0]
+    lengths = 1.0 / third_octave_bands(1 / 0.3, 1 / 3e-3)[0]
     nearest = lengths[np.argmin(np.abs(lengths - 0.05))]
     yield Check(
         "wavelength band called 50 mm: centre",

@@ -6,10 +6,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import CoarseSamplingWarning, InputError, MissingPointsWarning
 from asperity.reference import cnossos
-from asperity.surfaces.en15610 import process, remove_spikes, roll_over, roughness_spectrum, trim
+from asperity.spectra import energy_sum
+from asperity.surfaces.en15610 import process, remove_spikes, roll_over, trim
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.levels import check_levels
-from asperity.surfaces.synthesis import from_bands
+from asperity.surfaces.levels import band_levels_of, check_levels
 
 MM, UM = 1e-3, 1e-6
 WHEELS = Path(__file__).parents[3] / "shared" / "data" / "wheel_lines_um_1mm.npz"
@@ -96,47 +96,6 @@ def test_larger_circles_rise_higher():
     assert (large >= small).all()
 
 
-def test_levels_by_method_a():
-    wavelengths, levels = (v[7:29] for v in cnossos.rail_roughness("iso3095"))
-    records = [from_bands(n, 0.5 * MM, wavelengths, levels, seed=n) for n in (30000, 60000)]
-    found_at, found = roughness_spectrum(records)
-    assert found_at[0] < 0.25
-    inside = (found_at < 0.14) & (found_at > 3 * MM)  # bands of two lines and more
-    expected = np.interp(np.log(found_at[inside]), np.log(wavelengths[::-1]), levels[::-1])
-    assert_allclose(found[inside], expected, atol=0.8)
-
-
-def test_longest_wavelength_is_a_quarter_of_the_record():
-    line = from_bands(1200, MM, [0.1, 0.05], [0.0, 0.0], seed=1)
-    assert roughness_spectrum(line)[0].max() <= 0.3
-    long = from_bands(8000, MM, [0.1, 0.05], [0.0, 0.0], seed=1)
-    assert 1.0 < roughness_spectrum(long, segment=8.0)[0].max() <= 2.0
-
-
-def test_mean_power_of_records():
-    line = from_bands(4000, MM, [0.1, 0.05], [0.0, 0.0], seed=1)
-    louder = Profile(3 * line.heights, MM)
-    one, both = (roughness_spectrum(r, segment=1.0)[1] for r in (line, [line, louder]))
-    filled = one > one.max() - 60  # below lies what the window leaks
-    assert filled.sum() >= 2
-    assert_allclose(both[filled] - one[filled], 10 * np.log10(5.0))
-
-
-@pytest.mark.parametrize(
-    ("lengths", "spacings", "segment", "text"),
-    [
-        ((500,), (MM,), 1.0, "from 1 m to the shortest record, 0.5 m"),
-        ((3000,), (MM,), 0.5, "segment: received 0.5 m"),
-        ((3000, 3000), (MM, 2 * MM), 1.0, "one spacing"),
-        ((), (), 1.0, "one record or more"),
-    ],
-)
-def test_spectrum_says_what_is_wrong(lengths, spacings, segment, text):
-    records = [Profile(np.zeros(n), d) for n, d in zip(lengths, spacings, strict=True)]
-    with pytest.raises(InputError, match=text):
-        roughness_spectrum(records, segment=segment)
-
-
 def test_every_switch_is_recorded_with_what_it_did():
     heights = 2 * UM * np.random.default_rng(5).standard_normal(1000)
     heights[300] += 80 * UM
@@ -178,7 +137,7 @@ def test_coarse_spacing_is_doubted():
         process(Profile(np.zeros(100), 2 * MM))
 
 
-@pytest.mark.parametrize("function", [remove_spikes, roll_over, roughness_spectrum])
+@pytest.mark.parametrize("function", [remove_spikes, roll_over])
 def test_missing_points_are_refused(function):
     heights = np.zeros(2000)
     heights[5] = np.nan
@@ -204,7 +163,8 @@ def test_measured_wheel_lines_keep_their_flat_and_plausible_levels(name, depth):
     deepest = -min(line.heights.min() for line in lines)
     assert 0.4 * depth * MM < deepest < 2.5 * depth * MM
     check_levels(lines, name)
-    wavelength, level = roughness_spectrum(lines)
+    found = [band_levels_of(line, segment=1.0) for line in lines]
+    wavelength, level = found[0][0], energy_sum([one for _, one in found], axis=0) - 10 * np.log10(len(found))
     smooth = cnossos.wheel_roughness("disc")[1][-10]  # -10 dB at 6.3 mm
     short = level[(wavelength < 12 * MM) & (wavelength > 3 * MM)]
     assert ((short > smooth - 25) & (short < smooth + 25)).all()

@@ -4,7 +4,8 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.homogeneity import anisotropy, homogeneity, more_than_chance
+from asperity.surfaces.homogeneity import homogeneity, more_than_chance
+from asperity.surfaces.statistics import areal_statistics
 from asperity.surfaces.synthesis import self_affine
 
 UM = 1e-6
@@ -56,16 +57,19 @@ def test_direction_of_a_ridged_texture(degrees):
     ridges = sum(np.sin(2 * np.pi * across / w + rng.uniform(0, 6)) for w in np.linspace(4, 12, 20) * UM)
     blurred = ridges + 3 * rng.standard_normal(x.shape)
     with pytest.warns(UserWarning, match="upper bound"):
-        found = anisotropy(HeightMap(blurred, (UM, UM)))
-    difference = (np.degrees(found.direction) - degrees + 90) % 180 - 90
+        found = {one.symbol: one.value for one in areal_statistics(HeightMap(blurred, (UM, UM)))}
+    difference = (np.degrees(found["Std"]) - degrees + 90) % 180 - 90
     assert abs(difference) <= 2.0
 
 
 def test_aspect_ratio_of_stretched_and_isotropic_texture():
-    assert anisotropy(texture(3)).aspect_ratio > 0.75
-    stretched = anisotropy(texture(3, anisotropy=4.0, longest=40 * UM))
-    assert stretched.aspect_ratio < 0.4
-    assert abs(np.degrees(stretched.direction) - 90.0) < 12.0
+    def found(surface):
+        return {one.symbol: one.value for one in areal_statistics(surface)}
+
+    assert found(texture(3))["Str"] > 0.75
+    stretched = found(texture(3, anisotropy=4.0, longest=40 * UM))
+    assert stretched["Str"] < 0.4
+    assert abs(np.degrees(stretched["Std"]) - 90.0) < 12.0
 
 
 def test_large_maps_are_tested_on_fewer_points():

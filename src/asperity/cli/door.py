@@ -86,7 +86,7 @@ def _outcome(error: Exception) -> tuple[str, int]:
     if isinstance(error, AsperityError):
         return str(error), error.exit_code
     if isinstance(error, MemoryError):
-        remedy = "a smaller window, a shorter duration or a coarser spacing"
+        remedy = "a smaller contact.window, a shorter duration or a coarser contact.spacing"
         return f"the memory of this machine is too small. Try: {remedy}.", FAILED
     what = printable(f"the program failed with {type(error).__name__}: {error}")
     return f"{what}. Try: asperity --debug …, which shows where.", FAILED

@@ -12,6 +12,7 @@ from asperity.config.describing import parameters
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Section, Speed, key
 from asperity.config.sections import ContactCase, Index, Numerics, Surface
 from asperity.errors import InputError
+from asperity.units import written
 
 LAWS = (
     "areal",
@@ -127,7 +128,7 @@ def problems_of_sampling(case: Case) -> Iterator[InputError]:
     coarsest = case.speed / (SAMPLING * highest)
     spacing, surface = case.contact.spacing, case.surface
     if spacing > coarsest:
-        received = f"{spacing * 1e6:g} um at {case.speed:g} m/s and {highest:g} Hz"
+        received = f"{written(spacing, 'm', 'um')} at {case.speed:g} m/s and {highest:g} Hz"
         allowed = f"at most speed / ({SAMPLING} highest_frequency) = {coarsest * 1e6:.4g} um"
         yield InputError("contact.spacing", received, allowed, "Refine spacing, or lower highest_frequency.")
     if case.time_step > 1 / (SAMPLING * highest):
@@ -135,7 +136,7 @@ def problems_of_sampling(case: Case) -> Iterator[InputError]:
         yield InputError("numerics.time_step", f"{case.time_step * 1e6:g} us", allowed)
     shortest = surface.band[1]
     if shortest is not None and shortest < 2 * spacing * (1 - 1e-9):
-        received = f"{shortest * 1e6:g} um on a spacing of {spacing * 1e6:g} um"
+        received = f"{written(shortest, 'm', 'um')} on a spacing of {written(spacing, 'm', 'um')}"
         yield InputError("surface.shortest", received, f"at least two spacings, {2e6 * spacing:g} um")
 
 

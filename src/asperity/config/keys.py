@@ -15,7 +15,7 @@ from pydantic.fields import FieldInfo
 from asperity.arguments import no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
-from asperity.units import factor, quantity
+from asperity.units import factor, quantity, written
 
 _WORDS = {
     "m": ("a length", "25 mm"),
@@ -414,7 +414,8 @@ def _outside_of(
     unit = kind.dimension if isinstance(kind, Quantity) else ""
     least, most = (quantity(limit, unit) if isinstance(limit, str) else limit for limit in (low, high))
     if not least <= value <= most:
-        yield InputError(name, f"{value:.4g} {unit}".strip(), f"{low} to {high}", _sentence(reason))
+        received = written(value, unit, str(low).partition(" ")[2]) if unit else f"{value:.4g}"
+        yield InputError(name, received, f"{low} to {high}", _sentence(reason))
 
 
 def _sentence(words: str) -> str:

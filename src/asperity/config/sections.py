@@ -27,6 +27,7 @@ from asperity.config.keys import (
     key,
 )
 from asperity.errors import InputError
+from asperity.units import written
 
 MOST_CELLS = 2048  # along one side of the window
 
@@ -185,7 +186,7 @@ class Surface(MeasuredLine, MeasuredMap):
             )
         longest, shortest = self.band
         if longest is not None and shortest is not None and longest <= shortest:
-            received = f"{longest * 1e6:g} um with shortest {shortest * 1e6:g} um"
+            received = f"{written(longest, 'm', 'um')} with shortest {written(shortest, 'm', 'um')}"
             yield InputError("longest", received, "a wavelength greater than shortest")
 
 
@@ -271,7 +272,8 @@ class ContactCase(Section):
     def problems(self) -> Iterator[InputError]:
         """The window holds a sensible number of cells; approaches increase; the filter order is even."""
         if not 8 <= self.cells <= MOST_CELLS:
-            received = f"{self.window * 1e6:g} um, {self.cells} cells of {self.spacing * 1e6:g} um"
+            window, spacing = (written(length, "m", "um") for length in (self.window, self.spacing))
+            received = f"{window}, {self.cells} cells of {spacing}"
             remedy = "Change window or spacing."
             yield InputError("window", received, f"8 to {MOST_CELLS} cells of the spacing", remedy)
         if self.approaches is not None and len(self.approaches) < 2:
@@ -279,14 +281,14 @@ class ContactCase(Section):
                 "approaches", f"{len(self.approaches)} values", "at least 2", "Or remove the key."
             )
         if any(later <= earlier for earlier, later in pairwise(self.approaches or ())):
-            received = ", ".join(f"{value * 1e6:g} um" for value in self.approaches or ())
+            received = ", ".join(written(value, "m", "um") for value in self.approaches or ())
             yield InputError("approaches", received, "increasing values", "Sort them, each once.")
         if self.filter_taps is not None and self.filter_taps % 2:
             remedy = "An odd order would shift the texture by half a step."
             yield InputError("filter_taps", self.filter_taps, "an even number", remedy)
         if self.sample_length is not None and self.sample_length < 2 * self.window:
             allowed = f"at least two windows, {2e6 * self.window:g} um"
-            yield InputError("sample_length", f"{self.sample_length * 1e6:g} um", allowed)
+            yield InputError("sample_length", written(self.sample_length, "m", "um"), allowed)
 
 
 class Numerics(Section):

@@ -66,7 +66,7 @@ def areal_texture(
             "width of the texture strip",
             f"{ny * spacing[1]:.3g} m",
             f"at least the width of the widest patch, {2 * axes[:, 1].max():.3g} m",
-            "Enlarge the window.",
+            "Enlarge contact.window.",
         )
     middle = ny // 2
     halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]

@@ -72,7 +72,7 @@ def patches(
                 "window of the contact",
                 f"{shape[0]} × {shape[1]} cells",
                 f"no more than the map's {heights.shape[0]} × {heights.shape[1]} cells at this spacing",
-                "Choose a smaller window or provide larger maps.",
+                "Choose a smaller contact.window or provide larger maps.",
             )
         share = count // len(maps) + (index < count % len(maps))
         for i, j in _spread(spare, max(share, 1)):

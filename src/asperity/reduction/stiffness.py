@@ -139,7 +139,7 @@ def _check_samples(approach: NDArray, force: NDArray) -> None:
     positive = force > 0.0
     if np.any(force < 0.0) or positive.sum() < 2:
         received = f"{positive.sum()} positive and {np.sum(force < 0.0)} negative forces"
-        remedy = "Choose approaches that reach into the contact."
+        remedy = "Choose contact.approaches that reach into the contact."
         raise InputError(
             "forces of the force curve", received, "at least two positive, none negative", remedy
         )
@@ -148,5 +148,5 @@ def _check_samples(approach: NDArray, force: NDArray) -> None:
             "forces of the force curve",
             "forces that fall or stay while the approach grows",
             "strictly increasing forces once in contact (N)",
-            "Average more samples or tighten the contact solver.",
+            "Raise contact.samples, or lower numerics.force_accuracy.",
         )

@@ -77,7 +77,9 @@ def _check_forces(forces: NDArray | StoredForces, approaches: NDArray, spacing: 
         lowest, largest = min(lowest, piece.min()), max(largest, piece.max())
         fall = min(fall, np.diff(piece, axis=0).min(initial=0.0))
     if len(approaches) < 2:
-        raise InputError("force table", "one state", "at least two states", "Scan at more approaches.")
+        raise InputError(
+            "force table", "one state", "at least two states", "Give contact.approaches two or more."
+        )
     if lowest < 0.0:
         raise InputError("force table (N)", lowest, "forces of zero or more")
     if fall < -FALL * largest:

@@ -19,6 +19,7 @@ from asperity.scenarios.scan_sizes import problem_of_disk, scan_sizes
 from asperity.scenarios.textures import Textures
 from asperity.store import Store
 from asperity.threads import one_thread_in_linear_algebra, thread_count
+from asperity.units import written
 
 T = TypeVar("T")
 
@@ -85,8 +86,8 @@ def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[Input
     smallest = min((min(sample.shape) for sample in textures.maps), default=nx)
     if smallest < nx:
         allowed = f"at most the measured map, {smallest * contact.spacing * 1e6:.4g} um"
-        received = f"{contact.window * 1e6:g} um"
-        yield InputError("contact.window", received, allowed, "Choose a smaller window.")
+        received = written(contact.window, "m", "um")
+        yield InputError("contact.window", received, allowed, "Choose a smaller contact.window.")
         return
     if textures.strips and any(strip.heights.any() for strip in textures.strips):
         rows, stride = min(strip.shape[0] for strip in textures.strips), filter_stride(shape)

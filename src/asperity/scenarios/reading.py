@@ -68,5 +68,5 @@ def read_section(path: Path, key: str) -> Profile:
     if not isinstance(measured, Profile):
         raise InputError(key, "a map of heights", "one line across the path")
     if measured.missing_share > 0.0:
-        raise InputError(key, "points without a height", "a complete line", "Fill it first.")
+        raise InputError(key, "points without a height", "a complete line", "Interpolate them in the file.")
     return measured

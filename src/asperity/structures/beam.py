@@ -78,7 +78,7 @@ class Beam:
                 "highest frequency of the beam (Hz)",
                 self.highest_frequency,
                 "above the first natural frequency of bending",
-                "Raise it, or take a longer or softer beam.",
+                "Raise it, in a case numerics.highest_frequency, or take a longer or softer beam.",
             )
 
     @classmethod

@@ -98,7 +98,8 @@ def moving_kernel(
     if duration is None and left > DIED_AWAY:
         warnings.warn(
             f"the moving kernel still has {100 * left:.2g} % of its largest value after {LONGEST:g} s, more "
-            f"than {100 * DIED_AWAY:g} %: what comes later is cut off. Give the rail more damping.",
+            f"than {100 * DIED_AWAY:g} %: what comes later is cut off. Raise ballast_damping or "
+            "ballast_loss_factor, then those of the pads.",
             CoarseSamplingWarning,
             stacklevel=2,
         )

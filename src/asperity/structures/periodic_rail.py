@@ -72,7 +72,7 @@ def periodic_waves(
             "decay of a rail wave over one bay (neper)",
             f"{np.abs(phase.imag).max():.4g}",
             f"at most {_LARGEST_EXPONENT:g}",
-            "Lower the highest frequency.",
+            "Lower the highest frequency, in a case numerics.highest_frequency.",
         )
     sine, cosine = np.sin(phase), np.cos(phase)
     unit = 1j * amplitudes * sine  # a_i per support stiffness

@@ -259,31 +259,6 @@ class Track:
         )
         return force * compliance
 
-    def winkler_deflection(self, force: float, speed: float = 0.0) -> float:
-        """Deflection under a force that moves over a continuous foundation of the same stiffness.
-
-        Parameters
-        ----------
-        force : float
-            N.
-        speed : float
-            m/s, below the critical speed.
-
-        Returns
-        -------
-        float
-            F beta/(2 s)/sqrt(1 - (v/v_cr)^2), beta = (s/4B)^(1/4), m.
-
-        Raises
-        ------
-        InputError
-            If the speed is not below the critical speed.
-        """
-        self.refuse_speed(speed)
-        stiffness = self.foundation_stiffness
-        beta = (stiffness / (4.0 * self.bending_stiffness)) ** 0.25
-        return force * beta / (2.0 * stiffness) / np.sqrt(1.0 - (speed / self.critical_speed) ** 2)
-
     @property
     def critical_speed(self) -> float:
         """Critical speed of the continuous foundation (4 s B/m^2)^(1/4), m/s.

@@ -243,23 +243,6 @@ class Wheel:
         pairs = self.residues / (point - self.poles) + self.residues.conj() / (point - self.poles.conj())
         return np.asarray(rigid + pairs.sum(axis=-1))
 
-    def impulse_response(self, time: ArrayLike) -> NDArray[np.float64]:
-        """Displacement after a unit impulse at the contact point.
-
-        Parameters
-        ----------
-        time : array_like
-            Time since the impulse, s; zero response before it.
-
-        Returns
-        -------
-        ndarray
-            t/M + 2 Re Σ r e^{st}, m/(N s), of the shape of `time`.
-        """
-        t = np.maximum(np.asarray(time, dtype=float), 0.0)
-        flexible = 2.0 * (self.residues * np.exp(t[..., None] * self.poles)).sum(axis=-1).real
-        return np.asarray(np.where(np.asarray(time) >= 0.0, t / self.mass + flexible, 0.0))
-
 
 def _check_receptance(frequency: NDArray, receptance: NDArray) -> None:
     what = "receptance of the wheel"

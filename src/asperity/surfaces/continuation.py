@@ -48,7 +48,7 @@ def extend(
         allowed = f"at least the run with its margins, {rows * spacing:.4g} m"
         if start:
             allowed += f", from {start * spacing:.4g} m on"
-        remedy = "Set continuation to 'mirror' or 'repeat', or shorten the run."
+        remedy = "Set surface.continuation to 'mirror' or 'repeat', or shorten the run."
         raise InputError(f"length of the {what}", received, allowed, remedy)
     return np.asarray(values[start : start + rows])
 

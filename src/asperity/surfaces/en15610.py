@@ -1,4 +1,4 @@
-"""Processing of measured roughness lines after EN 15610:2009: spikes, curvature, one-third-octave levels.
+"""Processing of measured roughness lines after EN 15610:2009: spikes and curvature.
 
 Later editions of the standard have not been compared.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,10 +14,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.spectra import band_levels, psd
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import fill
-from asperity.surfaces.levels import MICROMETRE
 
 ROLLED_RADIUS = 0.375
 """Radius of the circle that is rolled over a line, m."""
@@ -30,9 +27,6 @@ SPIKE_SCALE = 3.0
 """A spike is higher than its width squared over this, m; 8 · 0.375 m: the circle does not fit it."""
 
 COARSEST_SPACING = 1e-3
-"""m."""
-
-SHORTEST_SEGMENT = 1.0
 """m."""
 
 
@@ -162,29 +156,3 @@ def _complete(profile: Profile) -> NDArray[np.float64]:
         received = f"{profile.missing_share:.2%} missing points"
         raise InputError("measured line", received, "complete heights", "Trim and fill it first.")
     return profile.heights
-
-
-def roughness_spectrum(
-    profiles: Profile | Sequence[Profile], *, segment: float = SHORTEST_SEGMENT
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """One-third-octave levels, dB re 1 µm, of measured lines, method A of the standard, after wavelengths, m.
-
-    Records are complete and processed, m; the mean of each is removed. Segments, m, at least 1 m long, are
-    Hann-windowed with 50 % overlap. The exact band centres fall; the longest is at most a quarter of the
-    shortest record, and its band at least as wide as the step 1/segment. Levels are of the mean power of all
-    segments, weighted by the lengths of the records; lines that straddle an edge are shared in proportion.
-    """
-    records = [profiles] if isinstance(profiles, Profile) else list(profiles)
-    if not records or any(not math.isclose(r.spacing, records[0].spacing, rel_tol=1e-6) for r in records):
-        received = sorted({r.spacing for r in records})
-        raise InputError("records", f"spacings {received} m", "one record or more with one spacing")
-    shortest = min(record.size for record in records)
-    if not SHORTEST_SEGMENT * (1.0 - 1e-9) <= segment <= shortest * (1.0 + 1e-9):
-        allowed = f"from {SHORTEST_SEGMENT:g} m to the shortest record, {shortest:.4g} m"
-        raise InputError("segment", f"{segment:.4g} m", allowed, "Measure at least 1 m.")
-    spacing, points = records[0].spacing, round(segment / records[0].spacing)
-    found = [psd(_complete(record), spacing, segment=min(points, len(record.heights))) for record in records]
-    density = np.average([one for _, one in found], axis=0, weights=[r.size for r in records])
-    centres, levels = band_levels(found[0][0], density, MICROMETRE)
-    kept = 1.0 / centres <= shortest / 4.0
-    return 1.0 / centres[kept], levels[kept]

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from scipy.stats import binom
 
 from asperity.errors import InputError
-from asperity.surfaces.areal_psd import texture_direction
-from asperity.surfaces.correlation import autocorrelation_lengths
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.synthesis import from_map
@@ -87,24 +85,6 @@ def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> NDArray[np
     px, py = (n // k for n, k in zip(surface.shape, tiles, strict=True))
     kept = surface.heights[: px * tiles[0], : py * tiles[1]]
     return np.mean(kept.reshape(tiles[0], px, tiles[1], py) ** 2, axis=(1, 3))
-
-
-@dataclass(frozen=True)
-class Anisotropy:
-    """Strength and direction of a texture; the latter is meaningless for an isotropic one."""
-
-    aspect_ratio: float  # Str: shortest over longest correlation length; 1 is isotropic
-    # Std: angle from x in which the texture varies most, rad, 0 to π; the lay is at right angles
-    direction: float
-
-
-def anisotropy(surface: HeightMap) -> Anisotropy:
-    """Texture aspect ratio Str and direction Std, ISO 25178-2:2021, of complete, levelled heights.
-
-    Warns of a short record if the autocorrelation does not fall to 0.2 inside the map.
-    """
-    shortest, longest = autocorrelation_lengths(surface)
-    return Anisotropy(shortest / longest, texture_direction(surface))
 
 
 def more_than_chance(p_values: Sequence[float]) -> bool:

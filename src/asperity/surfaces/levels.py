@@ -69,5 +69,5 @@ def check_levels(surfaces: Sequence[Profile | HeightMap], what: str = "heights")
                 at = wavelength[inside][np.argmin(np.abs(level[inside] - extreme))]
                 received = f"{extreme:.0f} dB re 1 µm at a wavelength of {1e3 * at:.3g} mm"
                 allowed = f"levels between {LIKELY_LEVELS[0]:g} and {LIKELY_LEVELS[1]:+g} dB"
-                remedy = "Is the unit of the heights right? Give it, or accept the levels as they are."
+                remedy = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
                 raise InputError(f"levels of the {what}", received, allowed, remedy)

@@ -36,6 +36,7 @@ from asperity.config.sections import ContactCase, Numerics, Surface
 from asperity.errors import InputError
 from asperity.scenarios.kind import Words
 from asperity.schema.spectra import BASELINES
+from asperity.units import written
 
 NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
 NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line
@@ -215,7 +216,7 @@ class BallOnBeam(Case):
         yield from _problems_of_path(self)
         if self.contact.window > 2 * self.ball.radius:
             allowed = f"at most the ball's diameter, {2e3 * self.ball.radius:g} mm"
-            yield InputError("contact.window", f"{self.contact.window * 1e3:g} mm", allowed)
+            yield InputError("contact.window", written(self.contact.window, "m", "mm"), allowed)
 
 
 def _problems_of_laws(case: BallOnBeam) -> Iterator[InputError]:

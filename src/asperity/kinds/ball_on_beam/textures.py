@@ -90,7 +90,9 @@ def _line(case: BallOnBeam, rows: int, least: int, lead: int, seed: int) -> tupl
         remedy = "Give a map as surface.file."
         raise InputError("surface.line", "a map of heights", "a line of heights", remedy)
     if measured.missing_share > 0.0:
-        raise InputError("surface.line", "points without a height", "a complete line", "Fill it first.")
+        raise InputError(
+            "surface.line", "points without a height", "a complete line", "Interpolate them in the file."
+        )
     profile = level(resample(level(measured), spacing))
     length = profile.heights.size * spacing
     if case.duration is None:

@@ -25,6 +25,7 @@ from asperity.kinds.wheel_on_rail.tables import check_levels, read_levels
 from asperity.kinds.wheel_on_rail.track_keys import OVERRIDES, NoiseCase, RailContact, RailNumerics, TrackCase
 from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
 from asperity.scenarios.kind import Words
+from asperity.units import written
 
 if TYPE_CHECKING:
     from asperity.structures.track import Track
@@ -140,8 +141,8 @@ class WheelOnRail(Case):
         yield from _problems_of_path(self)
         widest = 2 * min(self.wheel.radius, self.track.rail_head_radius)
         if self.contact.window > widest:
-            allowed = f"at most the smaller diameter of wheel and rail head, {1e3 * widest:g} mm"
-            yield InputError("contact.window", f"{self.contact.window * 1e3:g} mm", allowed)
+            allowed = f"at most the smaller diameter of wheel and rail head, {written(widest, 'm', 'mm')}"
+            yield InputError("contact.window", written(self.contact.window, "m", "mm"), allowed)
 
 
 def _problems_of_texture(case: WheelOnRail) -> Iterator[InputError]:
@@ -150,7 +151,8 @@ def _problems_of_texture(case: WheelOnRail) -> Iterator[InputError]:
         allowed = "file, rms, line, spectrum or a defect in [surface]; roughness, line or a flat in [wheel]"
         yield InputError("surface", "no texture", allowed, "For a smooth rail, set smooth = true.")
     if surface.corrugation_wavelength is not None and surface.corrugation_wavelength < 2 * spacing:
-        received = f"{surface.corrugation_wavelength * 1e3:g} mm on a spacing of {spacing * 1e3:g} mm"
+        wave, step = (written(length, "m", "mm") for length in (surface.corrugation_wavelength, spacing))
+        received = f"{wave} on a spacing of {step}"
         allowed = f"at least two spacings, {2e3 * spacing:g} mm"
         yield InputError("surface.corrugation_wavelength", received, allowed)
 
@@ -206,9 +208,9 @@ def _problems_of_path(case: WheelOnRail) -> Iterator[InputError]:
     filters = (contact.filter_taps or 0) * contact.spacing
     if length < max(contact.window, filters):
         received = f"{case.duration:g} s, in which {length * 1e3:.4g} mm are rolled"
-        allowed = f"at least contact.window, {contact.window * 1e3:g} mm"
+        allowed = f"at least contact.window, {written(contact.window, 'm', 'mm')}"
         if filters > contact.window:
-            allowed = f"at least contact.filter_taps spacings, {filters * 1e3:g} mm"
+            allowed = f"at least contact.filter_taps spacings, {written(filters, 'm', 'mm')}"
         yield InputError("duration", received, allowed, "A path must be longer than window and filters.")
     (first, last), joint = case.rolled_range, case.surface.joint_position
     if joint is not None and not first <= joint <= last:

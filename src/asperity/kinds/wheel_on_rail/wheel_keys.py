@@ -26,6 +26,7 @@ from asperity.config.keys import (
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import TABLE_OF_LEVELS, MeasuredLines, problems_of_table
 from asperity.kinds.wheel_on_rail.tables import read_levels, read_modes, read_receptance
+from asperity.units import written
 
 WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")
 DEEPEST_FLAT = 0.01  # of the wheel's radius
@@ -149,14 +150,14 @@ class WheelCase(MeasuredLines, WheelBody):
         if self.flat is None:
             return
         deepest = DEEPEST_FLAT * self.radius
-        allowed = f"at most {DEEPEST_FLAT:g} of the radius, {deepest * 1e3:g} mm"
+        allowed = f"at most {DEEPEST_FLAT:g} of the radius, {written(deepest, 'm', 'mm')}"
         if self.flat_depth is None:
             longest = math.sqrt(8.0 * self.radius * deepest)
             if self.flat[1] > longest:
                 allowed = f"at most {longest * 1e3:.4g} mm, where the depth of its chord is {allowed}"
-                yield InputError("flat_length", f"{self.flat[1] * 1e3:g} mm", allowed)
+                yield InputError("flat_length", written(self.flat[1], "m", "mm"), allowed)
         elif self.flat_depth > deepest:
-            yield InputError("flat_depth", f"{self.flat_depth * 1e3:g} mm", allowed)
+            yield InputError("flat_depth", written(self.flat_depth, "m", "mm"), allowed)
         elif self.flat_length is not None:
             yield from self._problem_of_both(self.flat_depth, self.flat_length)
         if self.flat_position >= self.circumference:
@@ -176,5 +177,5 @@ class WheelCase(MeasuredLines, WheelBody):
             allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), to the wheel's radius"
         elif length > chord:
             remedy += ' A worn flat may be longer: flat_shape = "worn".'
-        received = f"{length * 1e3:g} mm beside a depth of {depth * 1e3:g} mm"
+        received = f"{written(length, 'm', 'mm')} beside a depth of {written(depth, 'm', 'mm')}"
         yield InputError("flat_length", received, allowed, remedy)
