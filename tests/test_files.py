@@ -11,7 +11,7 @@ import pytest
 
 from asperity import files
 from asperity.errors import ComputationError, InputError
-from asperity.files import alone_in, atomic_write, is_sealed, left_overs, sweep, write_bytes
+from asperity.files import alone_in, atomic_write, is_sealed, left_overs, remove_left_overs, write_bytes
 from asperity.store import Store, content_key
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="open files cannot be removed there")
@@ -87,7 +87,7 @@ def test_a_part_that_is_being_written_is_no_left_over(tmp_path):
 
     def write(file):
         found.append(left_overs(tmp_path))
-        assert sweep(tmp_path) == 0
+        assert remove_left_overs(tmp_path) == 0
         file.write(b"whole")
 
     path = atomic_write(tmp_path / "run.nc", write)

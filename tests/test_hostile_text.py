@@ -13,7 +13,7 @@ import xarray as xr
 
 from asperity.arguments import listed, no_file, shown
 from asperity.config.describing import entries
-from asperity.config.keys import Quantity, kind_of
+from asperity.config.keys import Quantity, value_kind
 from asperity.config.parsing import read_toml
 from asperity.decoding import number_in
 from asperity.errors import CaseError, ComputationError, InputError
@@ -176,7 +176,7 @@ def test_any_value_of_any_key_is_right_or_a_clear_error(kind):
     """In a case, and swept by a study."""
     base = {"kind": kind, "surface": {"rms": "1 um"}}
     for entry in entries(KINDS[kind].case):
-        found = kind_of(entry.field.annotation, entry.field.metadata)
+        found = value_kind(entry.field.annotation, entry.field.metadata)
         unit = found.dimension if isinstance(found, Quantity) else "m"
         section, _, name = entry.dotted.rpartition(".")
         for value in HOSTILE:

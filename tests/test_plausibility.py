@@ -5,7 +5,7 @@ import math
 import pytest
 
 from asperity.config.describing import entries
-from asperity.config.keys import Number, Quantity, extra_of, kind_of
+from asperity.config.keys import Number, Quantity, extra_of, value_kind
 from asperity.errors import CaseError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of
@@ -15,13 +15,13 @@ NUMBERS = [
     pytest.param(kind, entry, id=f"{kind} {entry.dotted}")
     for kind, model in ((name, kind.case) for name, kind in KINDS.items())
     for entry in entries(model)
-    if isinstance(kind_of(entry.field.annotation, entry.field.metadata), Quantity | Number)
+    if isinstance(value_kind(entry.field.annotation, entry.field.metadata), Quantity | Number)
 ]
 
 
 def limits(entry):
     """Least and largest value in SI, and the unit; those of the kind, where it has both."""
-    kind = kind_of(entry.field.annotation, entry.field.metadata)
+    kind = value_kind(entry.field.annotation, entry.field.metadata)
     unit = kind.dimension if isinstance(kind, Quantity) else ""
     if "within" in extra_of(entry.field):
         low, high, reason = extra_of(entry.field)["within"]

@@ -197,7 +197,7 @@ def _is_held(part: Path) -> bool:
     return False
 
 
-def sweep(folder: Path) -> int:
+def remove_left_overs(folder: Path) -> int:
     """Remove the left-overs of a folder; return how many there were."""
     count = 0
     for part in left_overs(folder):
@@ -211,7 +211,7 @@ def _sweep_once(folder: Path) -> None:
     """Remove the left-overs of a folder when this process first writes into it."""
     if folder not in _swept:
         _swept.add(folder)
-        sweep(folder)
+        remove_left_overs(folder)
 
 
 @contextmanager

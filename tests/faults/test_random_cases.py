@@ -10,7 +10,7 @@ from program import LONG
 
 import asperity
 from asperity.config.describing import entries
-from asperity.config.keys import Choice, Number, Quantity, extra_of, kind_of
+from asperity.config.keys import Choice, Number, Quantity, extra_of, value_kind
 from asperity.errors import AsperityError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of
@@ -38,7 +38,7 @@ LEFT = ("duration", "settling", "laws", "kind", "seed", "samples", "window", "sp
 
 def drawn(entry, source):
     """A value of a key: near its default mostly, at a limit of what is plausible now and then; or None."""
-    kind, default = kind_of(entry.field.annotation, entry.field.metadata), entry.default
+    kind, default = value_kind(entry.field.annotation, entry.field.metadata), entry.default
     if isinstance(kind, Choice):
         return source.choice(kind.words)
     if isinstance(kind, Number) and not kind.whole and isinstance(default, int | float):

@@ -14,7 +14,7 @@ from asperity.contact.flaws import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.kinds.cases import parse_case
 from asperity.running import prepare, run
-from asperity.scenarios.expecting import Work, expected_area_ratio
+from asperity.scenarios.expecting import Work, expect_area_ratio
 from asperity.scenarios.validity import SLOPE
 from asperity.surfaces.levelling import band_limit
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for
@@ -110,20 +110,20 @@ class TestArea:
         )
         case = prepare(parse_case(text))
         found = run(case)["contact"].attrs["contact_area_ratio"]
-        assert expected_area_ratio(case) == pytest.approx(found, abs=0.08)
+        assert expect_area_ratio(case) == pytest.approx(found, abs=0.08)
         told = dict(plan(case, NO_WORK))["real contact"]
-        assert f"about {100 * expected_area_ratio(case):.0f} % of the area" in told
-        assert ("areal are out of range; take table" in told) == (expected_area_ratio(case) < 0.9)
+        assert f"about {100 * expect_area_ratio(case):.0f} % of the area" in told
+        assert ("areal are out of range; take table" in told) == (expect_area_ratio(case) < 0.9)
 
     def test_check_expects_it_on_a_rail_too(self):
         case = prepare(parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'))
-        assert 0.9 < expected_area_ratio(case) <= 1.0
+        assert 0.9 < expect_area_ratio(case) <= 1.0
         rough = parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\nlevel = "+20 dB"\n')
-        assert expected_area_ratio(prepare(rough)) < 0.8
+        assert expect_area_ratio(prepare(rough)) < 0.8
 
     def test_a_line_without_samples_has_no_real_contact(self):
         case = prepare(parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n'))
-        assert expected_area_ratio(case) is None
+        assert expect_area_ratio(case) is None
         assert "real contact" not in dict(plan(case, NO_WORK))
 
 

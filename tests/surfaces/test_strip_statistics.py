@@ -10,7 +10,7 @@ from asperity.spectra import psd
 from asperity.surfaces import strip_statistics
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.statistics import areal_statistics
-from asperity.surfaces.strip_statistics import survey
+from asperity.surfaces.strip_statistics import survey_strip
 from asperity.surfaces.synthesis import long_self_affine, self_affine
 
 SPACING = (2e-6, 3e-6)
@@ -45,7 +45,7 @@ class Watched:
 
 
 def test_one_piece_has_the_statistics_of_a_map(surface):
-    found, expected = values(survey(surface, 500).statistics), values(areal_statistics(surface))
+    found, expected = values(survey_strip(surface, 500).statistics), values(areal_statistics(surface))
     assert [*found, "Std"] == list(expected)  # a direction is not found piece by piece
     del expected["Std"]
     for symbol, value in expected.items():
@@ -54,7 +54,7 @@ def test_one_piece_has_the_statistics_of_a_map(surface):
 
 @pytest.mark.usefixtures("small_pieces")
 def test_pieces_change_nothing_but_the_correlation(surface):
-    found, expected = values(survey(surface, 200).statistics), values(areal_statistics(surface))
+    found, expected = values(survey_strip(surface, 200).statistics), values(areal_statistics(surface))
     for symbol in ("Sq", "Sa", "Ssk", "Sku", "Sz", "Sdq", "Sdr"):
         assert found[symbol] == pytest.approx(expected[symbol], rel=1e-9), symbol
     for symbol in ("Sal", "Str"):  # pairs across the ends of eight pieces are missing
@@ -64,7 +64,7 @@ def test_pieces_change_nothing_but_the_correlation(surface):
 @pytest.mark.usefixtures("small_pieces")
 def test_every_row_is_read_and_no_long_piece_at_once(surface):
     watched = Watched(surface)
-    survey(watched, 200, 100, 3900)
+    survey_strip(watched, 200, 100, 3900)
     assert min(first for first, _ in watched.asked) == 100
     assert max(stop for _, stop in watched.asked) == 3900
     assert max(stop - first for first, stop in watched.asked) <= 500 + 6
@@ -78,7 +78,7 @@ def test_one_deep_place_far_along_the_strip_is_seen():
     heights[40_000:40_100] = -248e-6
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = values(survey(HeightMap(heights, (1e-3, 1e-3)), 1000).statistics)
+        found = values(survey_strip(HeightMap(heights, (1e-3, 1e-3)), 1000).statistics)
     share = 100 / 50_000
     skewness = (2 * share - 1) / np.sqrt(share * (1 - share))
     assert found["Sz"] == pytest.approx(248e-6)
@@ -90,7 +90,7 @@ def test_one_deep_place_far_along_the_strip_is_seen():
 
 @pytest.mark.usefixtures("small_pieces")
 def test_distribution_holds_all_points_and_has_their_variance(surface):
-    found = survey(surface, 200)
+    found = survey_strip(surface, 200)
     middle, width = (found.edges[1:] + found.edges[:-1]) / 2, np.diff(found.edges)
     assert np.sum(found.density * width) == pytest.approx(1.0)
     assert np.sum(middle * found.density * width) == pytest.approx(0.0, abs=0.02e-6)
@@ -100,7 +100,7 @@ def test_distribution_holds_all_points_and_has_their_variance(surface):
 
 @pytest.mark.usefixtures("small_pieces")
 def test_spectrum_is_that_of_the_whole_strip(surface):
-    found = survey(surface, 200)
+    found = survey_strip(surface, 200)
     wavenumber, density = psd(np.ascontiguousarray(surface.heights.T), SPACING[0], segment=200)
     np.testing.assert_allclose(found.wavenumber, wavenumber)
     strong = density.mean(axis=0) > 1e-3 * density.mean(axis=0).max()
@@ -112,17 +112,17 @@ def test_a_generated_strip_has_the_roughness_it_was_made_with():
     strip = long_self_affine(
         (100_000, 31), (10e-6, 10e-6), rms=0.5e-6, hurst=0.8, longest=0.2e-3, shortest=40e-6, seed=1
     )
-    found = values(survey(strip, 1000).statistics)
+    found = values(survey_strip(strip, 1000).statistics)
     assert found["Sq"] == pytest.approx(0.5e-6, rel=0.01)
     assert found["Sku"] == pytest.approx(3.0, abs=0.05)
 
 
 def test_a_flat_strip_has_no_statistics():
-    found = survey(HeightMap(np.full((300, 11), 1e-6), SPACING), 100)
+    found = survey_strip(HeightMap(np.full((300, 11), 1e-6), SPACING), 100)
     assert found.statistics == []
     assert not found.spectrum.any()
 
 
 def test_a_strip_shorter_than_a_segment_is_refused(surface):
     with pytest.raises(InputError, match="strip to survey: received 100 rows; allowed: at least 500 rows"):
-        survey(surface, 500, 0, 100)
+        survey_strip(surface, 500, 0, 100)

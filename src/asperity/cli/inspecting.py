@@ -47,7 +47,7 @@ def inspect(
     if picture.resolve() == file.resolve():
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
     with spelled(on_command_line):
-        surfaces = read(file, index, array=array, **hints)
+        surfaces = read_measured(file, index, array=array, **hints)
     title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
     if side_by_side := _as_lines(surfaces, lines):
         _inspect_lines(side_by_side, title, picture, told=lines is not None)
@@ -93,7 +93,7 @@ def _inspect_lines(lines: tuple[Profile, ...], title: str, picture: Path, *, tol
     say(f"Picture: {_saved(figure, picture).resolve()}")
 
 
-def read(file: Path, index: int | None = None, **hints: Any) -> list[HeightMap | Profile]:
+def read_measured(file: Path, index: int | None = None, **hints: Any) -> list[HeightMap | Profile]:
     """Read the map, the line, or all maps of an ensemble; hints are as `read_surface` takes them."""
     from asperity.surfaces.readers import read_surface, read_surfaces
 

@@ -16,7 +16,7 @@ _PLAIN = {
 }  # fmt: skip
 
 
-def plain(text: str) -> str:
+def ascii_text(text: str) -> str:
     """Write text in ASCII: ``-`` for a minus sign, ``u`` for micro; ``?`` for what has no likeness."""
     return "".join(character if character.isascii() else _alike(character) for character in text)
 
@@ -29,7 +29,7 @@ def _alike(character: str) -> str:
 def _stand_in(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return plain(error.object[error.start : error.end]), error.end
+    return ascii_text(error.object[error.start : error.end]), error.end
 
 
 codecs.register_error(NAME, _stand_in)

@@ -88,10 +88,10 @@ def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
 
 def _real_contact(prepared: Prepared) -> list[tuple[str, str]]:
     """Expected real contact, and which laws it takes out of their range."""
-    from asperity.scenarios.expecting import expected_area_ratio
+    from asperity.scenarios.expecting import expect_area_ratio
     from asperity.scenarios.validity import AREA, SCANNED
 
-    ratio = expected_area_ratio(prepared)
+    ratio = expect_area_ratio(prepared)
     if ratio is None:
         return []
     text = f"about {100 * ratio:.0f} % of the area of smooth bodies"

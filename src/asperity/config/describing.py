@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from asperity.config.keys import Quantity, allowed_in, extra_of, is_active, kind_of
+from asperity.config.keys import Quantity, allowed_in, extra_of, is_active, value_kind
 from asperity.units import factor
 
 
@@ -80,7 +80,7 @@ def with_unit(value: float, field: FieldInfo) -> str:
     str
         As ``"300 MN/m"``, or the number alone where the key has no unit.
     """
-    kind = kind_of(field.annotation, field.metadata)
+    kind = value_kind(field.annotation, field.metadata)
     example = str(extra_of(field)["example"]).strip('"')
     if not isinstance(kind, Quantity):
         return f"{value:.6g}"
@@ -152,7 +152,7 @@ def entries(model: type[BaseModel], title: str = "") -> Iterator[Entry]:
 
 
 def _is_default(entry: Entry, value: object) -> bool:
-    kind = kind_of(entry.field.annotation, entry.field.metadata)
+    kind = value_kind(entry.field.annotation, entry.field.metadata)
     if entry.default is None or kind is None:
         return False
     if isinstance(entry.default, tuple):

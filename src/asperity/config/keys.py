@@ -305,13 +305,13 @@ def _own_material(given: Mapping[Any, Any]) -> Material:
 Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File | ChoiceOrFile | MaterialOrName
 
 
-def kind_of(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:
+def value_kind(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:
     """Find the kind inside an annotation such as ``tuple[Length, ...] | None``."""
     for item in metadata:
         if isinstance(item, BeforeValidator) and isinstance(item.func, Kind):
             return item.func
     for inner in get_args(annotation):
-        found = kind_of(inner, getattr(annotation, "__metadata__", ()))
+        found = value_kind(inner, getattr(annotation, "__metadata__", ()))
         if found is not None:
             return found
     return None
@@ -319,7 +319,7 @@ def kind_of(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind
 
 def allowed_in(field: FieldInfo) -> str:
     """What may stand behind a key, in words."""
-    kind = kind_of(field.annotation, field.metadata)
+    kind = value_kind(field.annotation, field.metadata)
     if kind is None:
         return "a section"
     several = "tuple" in str(field.annotation)
@@ -399,7 +399,7 @@ def is_active(section: BaseModel, name: str) -> bool:
 def _implausible(section: BaseModel) -> Iterator[InputError]:
     """Errors about numbers that no case of this field has."""
     for name, field in type(section).model_fields.items():
-        given, kind = getattr(section, name), kind_of(field.annotation, field.metadata)
+        given, kind = getattr(section, name), value_kind(field.annotation, field.metadata)
         for value in given if isinstance(given, tuple) else (given,):
             yield from _outside_of(name, value, kind, extra_of(field).get("within"))
 

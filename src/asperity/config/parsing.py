@@ -32,20 +32,20 @@ _MANY_PARTS = re.compile(
 )
 
 
-def plain(value: Any, depth: int = 0) -> Any:
+def plain_data(value: Any, depth: int = 0) -> Any:
     """Keys and values as TOML would give them: numbers of Python, lists, and paths as text."""
     if depth > DEEPEST:
         raise _too_deep("case")
     if isinstance(value, Mapping):
-        return {str(name): plain(item, depth + 1) for name, item in value.items()}
+        return {str(name): plain_data(item, depth + 1) for name, item in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(item, depth + 1) for item in value]
+        return [plain_data(item, depth + 1) for item in value]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value.item() if isinstance(value, np.generic) else value
 
 
-def read_text(path: str | os.PathLike[str], what: str, remedy: str) -> str:
+def read_definition(path: str | os.PathLike[str], what: str, remedy: str) -> str:
     """Read a case or a study that a person has written.
 
     Parameters

@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 from asperity.arguments import shown
 from asperity.config.case import Case
 from asperity.config.describing import Entry, entries
-from asperity.config.keys import Number, Quantity, allowed_in, kind_of, nearest
+from asperity.config.keys import Number, Quantity, allowed_in, nearest, value_kind
 from asperity.errors import InputError
 
 
@@ -81,7 +81,7 @@ def reader_of(entry: Entry, source: str | os.PathLike[str]) -> Callable[[object]
 
 def unit_of(entry: Entry) -> str | None:
     """SI unit of a key whose values are single numbers; None of any other key."""
-    kind = kind_of(entry.field.annotation, entry.field.metadata)
+    kind = value_kind(entry.field.annotation, entry.field.metadata)
     if "tuple" in str(entry.field.annotation):
         return None
     if isinstance(kind, Quantity):

@@ -11,7 +11,7 @@ from asperity.arguments import file_path, shown
 from asperity.config.case import Case
 from asperity.config.describing import commented
 from asperity.config.keys import nearest
-from asperity.config.parsing import plain, read_text, read_toml, refuse_vast, validated
+from asperity.config.parsing import plain_data, read_definition, read_toml, refuse_vast, validated
 from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.kinds import KINDS
@@ -46,7 +46,7 @@ def load_case(path: str | os.PathLike[str]) -> Case:
         With all errors at once, if the keys are wrong.
     """
     remedy = f"Check the path, or write a case with 'asperity new {next(iter(KINDS))} > case.toml'."
-    return parse_case(read_text(path, "case", remedy), path)
+    return parse_case(read_definition(path, "case", remedy), path)
 
 
 def as_case(case: object) -> Case:
@@ -73,7 +73,7 @@ def as_case(case: object) -> Case:
     if isinstance(case, Case):
         return case
     if isinstance(case, Mapping):
-        data = plain(case)
+        data = plain_data(case)
         return case_of(data, toml_text(data), "case")
     allowed = "the path of a case file, its keys as a mapping, or a case object"
     return load_case(file_path("case", case, allowed))

@@ -21,7 +21,7 @@ from asperity.threads import processors
 MESSAGE = "compiled functions (the first run compiles them, some 10 s)"
 
 
-def compile_kernels(progress: Progress, stepping: Any, rolling: Callable[[], None]) -> None:
+def call_kernels(progress: Progress, stepping: Any, rolling: Callable[[], None]) -> None:
     """Call every kernel of a kind of case once on next to nothing: it is compiled now, or loaded from disk.
 
     `stepping` is the one whose compilation takes longest; `rolling`, a function of a module, rolls a few
@@ -35,7 +35,7 @@ def compile_kernels(progress: Progress, stepping: Any, rolling: Callable[[], Non
             HalfSpace((9, 9), (1.0, 1.0), 1.0).solve(np.add.outer(x, x), approach=5.0)
         progress(1, 2, MESSAGE)
         rolling()
-        indent()
+        press_and_displace()
         progress(2, 2, MESSAGE)
 
 
@@ -49,7 +49,10 @@ def _beside(stepping: Any, rolling: Callable[[], None]) -> Iterator[None]:
         yield
         return
     name = rolling.__name__
-    code = f"from {rolling.__module__} import {name}; {name}(); from {__name__} import indent; indent()"
+    pressing = press_and_displace.__name__
+    code = (
+        f"from {rolling.__module__} import {name}; {name}(); from {__name__} import {pressing}; {pressing}()"
+    )
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     with subprocess.Popen([sys.executable, "-W", "ignore", "-c", code], env=environment, **quiet) as other:
@@ -60,7 +63,7 @@ def _beside(stepping: Any, rolling: Callable[[], None]) -> Iterator[None]:
             raise
 
 
-def indent() -> None:
+def press_and_displace() -> None:
     """Find the stiffness of a contact, and what a pressure displaces."""
     half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0)
     half_space.tangent_stiffness(np.ones((9, 9)))

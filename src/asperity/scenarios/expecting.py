@@ -9,7 +9,7 @@ import numpy as np
 
 from asperity.config.case import Case
 from asperity.progress import Progress
-from asperity.reduction.real_contact import expected_area_ratio as expected_area_ratio_of
+from asperity.reduction.real_contact import expected_area_ratio
 from asperity.scenarios.preparing import Prepared
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.scan_sizes import Expected, scan_sizes
@@ -87,7 +87,7 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
     return Work(scans, seconds)
 
 
-def expected_area_ratio(prepared: Prepared) -> float | None:
+def expect_area_ratio(prepared: Prepared) -> float | None:
     """Expect the real contact area under the working load over that of smooth bodies, from slopes.
 
     About what `asperity.scenarios.reducing.Reduction.area_ratio` will be; None without samples.
@@ -97,7 +97,7 @@ def expected_area_ratio(prepared: Prepared) -> float | None:
         return None
     slope = float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in samples])))
     peak = 1.5 * shape.load / (np.pi * math.prod(shape.semi_axes))
-    return expected_area_ratio_of(slope, peak, shape.modulus)
+    return expected_area_ratio(slope, peak, shape.modulus)
 
 
 def expected_path_scan(prepared: Prepared, progress: Progress) -> Expected:

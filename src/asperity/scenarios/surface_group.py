@@ -25,7 +25,7 @@ from asperity.surfaces.statistics import (
     profile_statistics,
     psd_1d,
 )
-from asperity.surfaces.strip_statistics import BINS, survey
+from asperity.surfaces.strip_statistics import BINS, survey_strip
 
 PATH_ROWS = 2000
 """Rows of a path, at most, that are kept to be looked at from above."""
@@ -101,11 +101,11 @@ def _path(chain: Chain[Any]) -> _Path:
         return _along_line(textures, chain.shape.spacing[0], segment)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ShortRecordWarning)
-        found = survey(textures.surface, segment, recorded.start, recorded.stop)
+        found = survey_strip(textures.surface, segment, recorded.start, recorded.stop)
         rough = (
             found
             if textures.defects is None
-            else survey(textures.path, segment, recorded.start, recorded.stop)
+            else survey_strip(textures.path, segment, recorded.start, recorded.stop)
         )
     statistics = _without_bounds(found.statistics, caught)
     return _Path(_listed(statistics, "path"), found.edges, found.density, rough.wavenumber, rough.spectrum)

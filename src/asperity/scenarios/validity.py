@@ -58,7 +58,7 @@ def findings(chain: Chain[Any]) -> list[Finding]:
     )
 
 
-def warn_of(found: list[Finding]) -> None:
+def warn_of_findings(found: list[Finding]) -> None:
     """Warn of what is outside its range; cut-off contacts have been warned of where they were solved."""
     for finding in found:
         if finding.grade is not None and not finding.quantity.startswith(_CUT_OFF):

@@ -18,7 +18,7 @@ from asperity import __version__
 from asperity.arguments import file_path, shown
 from asperity.config.case import Case
 from asperity.config.describing import Entry
-from asperity.config.parsing import plain, read_text, read_toml
+from asperity.config.parsing import plain_data, read_definition, read_toml
 from asperity.config.single_keys import entry_of, reader_of, unit_of
 from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
@@ -129,7 +129,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     All errors of keys and values are reported at once.
     """
     remedy = "Check the path, or write a study with 'asperity new study > study.toml'."
-    data = read_toml(read_text(path, "study", remedy), "study", path)
+    data = read_toml(read_definition(path, "study", remedy), "study", path)
     errors = [
         str(InputError(name, "an unknown key", "case and [sweep]"))
         for name in data.keys() - {"case", "sweep"}
@@ -173,7 +173,7 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Map
     if isinstance(case, Case):
         return _checked(case.given, case.text, Path(case.source), sweep, "study")
     if isinstance(case, Mapping):
-        data = plain(case)
+        data = plain_data(case)
         return _checked(data, toml_text(data), Path("case"), sweep, "study")
     allowed = "the path of a case file, its keys as a mapping, or a case object"
     return _checked(*_read_case(file_path("case", case, allowed)), sweep, "study")
@@ -191,7 +191,7 @@ def written_out(value: object) -> str:
 
 
 def _read_case(path: Path) -> tuple[dict[str, Any], str, Path]:
-    text = read_text(path, "case", "Check the path.")
+    text = read_definition(path, "case", "Check the path.")
     return read_toml(text, "case", path), text, path
 
 

@@ -36,7 +36,7 @@ class StripSurvey:
     spectrum: NDArray[np.float64]  # (f,), one-sided PSD along the strip, mean over its lines, m³
 
 
-def survey(strip: Strip, segment: int, first: int = 0, stop: int | None = None) -> StripSurvey:
+def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = None) -> StripSurvey:
     """Survey all rows of a strip, reading it twice and never holding more than a piece.
 
     Complete heights, m; their mean is removed here. Segments of the spectrum have `segment` rows. Pairs of

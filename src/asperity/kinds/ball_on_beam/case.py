@@ -47,7 +47,7 @@ SETTLING_SHARE = 0.25
 """Share of the beam that a chosen run-in takes at most, where the record lasts until its end."""
 
 
-class Ball(Section):
+class BallCase(Section):
     """The ball that rolls: a rigid mass with its weight, or a given load."""
 
     radius: Length = key("25 mm", "radius", within=("10 um", "10 m", "balls that roll on beams lie between"))
@@ -68,7 +68,7 @@ class Ball(Section):
     )
 
 
-class Beam(Section):
+class BeamCase(Section):
     """The beam that is rolled over: finite, Euler–Bernoulli."""
 
     length: Length = key("1 m", "length, along the path", within=("1 mm", "1 km", "beams lie between"))
@@ -153,8 +153,8 @@ class BallOnBeam(Case):
         within=("1 us", "1 h", "records lie between"),
     )
     surface: Surface = key({}, "what is rolled over: a measured map, or synthesised roughness")
-    ball: Ball = key({}, "the ball that rolls")
-    beam: Beam = key({}, "the beam that is rolled over")
+    ball: BallCase = key({}, "the ball that rolls")
+    beam: BeamCase = key({}, "the beam that is rolled over")
     contact: ContactCase = key({}, "how the rough contact is solved and reduced")
     numerics: Numerics = key({}, "how finely time is resolved")
 

@@ -17,7 +17,7 @@ from asperity.structures.beam import Beam
 
 def compile_kernels(progress: Progress) -> None:
     """Call every kernel once on next to nothing, see `asperity.scenarios.compiling`."""
-    compiling.compile_kernels(progress, modal.roll_beam, roll_a_ball)
+    compiling.call_kernels(progress, modal.roll_beam, roll_a_ball)
 
 
 def roll_a_ball() -> None:

@@ -18,7 +18,7 @@ from asperity.scenarios.tree import (
     rolling_group,
     spectrum_segment,
 )
-from asperity.scenarios.validity import findings, warn_of
+from asperity.scenarios.validity import findings, warn_of_findings
 from asperity.scenarios.verdict import verdict
 from asperity.schema import spectra, variables
 from asperity.spectra import averaging_time, band_levels, psd
@@ -41,7 +41,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     """
     over_frequency = _spectra(computed)
     found = findings(computed.chain)
-    warn_of(found)
+    warn_of_findings(found)
     groups = {
         "/surface": surface_group(computed.chain),
         "/contact": contact_group(computed.chain, found),

@@ -21,7 +21,7 @@ from asperity.config.describing import with_unit
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed, key
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import RailSurface
-from asperity.kinds.wheel_on_rail.tables import check_levels, read_levels
+from asperity.kinds.wheel_on_rail.tables import check_band_levels, read_levels
 from asperity.kinds.wheel_on_rail.track_keys import OVERRIDES, NoiseCase, RailContact, RailNumerics, TrackCase
 from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
 from asperity.scenarios.kind import Words
@@ -168,7 +168,7 @@ def _problems_of_levels(case: WheelOnRail) -> Iterator[InputError]:
         levels = read_levels(table)[1] if isinstance(table, Path) else np.zeros(1)
         if table is not None:
             try:
-                check_levels(levels + level, name)
+                check_band_levels(levels + level, name)
             except InputError as error:
                 yield error
 

@@ -17,7 +17,7 @@ from asperity.reference.cnossos import CITATION
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import assembled, rolling_group
-from asperity.scenarios.validity import findings, warn_of
+from asperity.scenarios.validity import findings, warn_of_findings
 from asperity.scenarios.verdict import verdict
 from asperity.structures.rail_poles import RailPoles
 
@@ -39,7 +39,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     """
     spectra, losses = spectra_group(computed), error_of_losses(computed)
     found = findings(computed.chain)
-    warn_of(found)
+    warn_of_findings(found)
     warn_of_loss_factors(losses)
     groups = {
         "/surface": surface_group(computed.chain),

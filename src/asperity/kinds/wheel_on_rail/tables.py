@@ -83,7 +83,7 @@ def read_receptance(path: Path) -> tuple[NDArray[np.float64], NDArray[np.complex
     return frequency, real + 1j * imaginary
 
 
-def check_levels(levels: NDArray[np.float64], name: str) -> None:
+def check_band_levels(levels: NDArray[np.float64], name: str) -> None:
     """Ask for the unit where levels, dB re 1 µm, are those of no wheel or rail: beyond 60 dB."""
     worst = levels[np.argmax(np.abs(levels))]
     if abs(worst) > LARGEST_LEVEL:

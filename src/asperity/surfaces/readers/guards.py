@@ -71,7 +71,7 @@ def check_claim(source: str, shape: Sequence[int], item_bytes: float, available:
     return points
 
 
-def number(source: str, name: str, text: str | None) -> float:
+def header_number(source: str, name: str, text: str | None) -> float:
     """Parse a field of a header that must be one finite number."""
     try:
         value = number_in(text if text is not None else "nan")
@@ -84,8 +84,8 @@ def number(source: str, name: str, text: str | None) -> float:
 
 
 def count(source: str, name: str, text: str | None) -> int:
-    """Parse one number of points of a header, see `number`."""
-    value = number(source, name, text)
+    """Parse one number of points of a header, see `header_number`."""
+    value = header_number(source, name, text)
     if value != int(value) or not 1 <= value <= 1e12:
         raise InputError(f"{name} in {source}", value, "a whole number above zero", "Export the file again.")
     return int(value)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from asperity.decoding import number_in
 from asperity.errors import InputError
-from asperity.surfaces.readers.guards import check_claim, count, hostile, number
+from asperity.surfaces.readers.guards import check_claim, count, header_number, hostile
 from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
 
 DATA_TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")  # by the code in the header
@@ -39,13 +39,13 @@ def read(path: Path, hints: Hints) -> list[Surface]:
         else:
             header, raw = _read_ascii(data, path.name)
         kind = DATA_TYPES[_data_type(header, path.name)]
-        unit = number(path.name, "Zscale", header.get("zscale"))
+        unit = header_number(path.name, "Zscale", header.get("zscale"))
         if unit == 0:
             raise InputError(f"Zscale in {path.name}", unit, "the height of one unit in m", "Export it.")
         heights = scaled(raw, unit, path.name)
         if kind in MISSING:
             heights[raw == MISSING[kind]] = np.nan
-        spacing = tuple(number(path.name, f"{a}scale", header.get(f"{a.lower()}scale")) for a in "XY")
+        spacing = tuple(header_number(path.name, f"{a}scale", header.get(f"{a.lower()}scale")) for a in "XY")
         return surfaces_of(heights.T, (spacing[0], spacing[1]), path.name)
 
 
@@ -83,9 +83,9 @@ def _shape(header: dict[str, str], source: str) -> tuple[int, int]:
 
 
 def _data_type(header: dict[str, str], source: str) -> int:
-    if number(source, "Compression", header.get("compression", "0")) != 0:
+    if header_number(source, "Compression", header.get("compression", "0")) != 0:
         raise InputError(source, "compressed data", "Compression = 0", "Export it uncompressed.")
-    code = number(source, "DataType", header.get("datatype"))
+    code = header_number(source, "DataType", header.get("datatype"))
     if code not in range(len(DATA_TYPES)):
         raise InputError(f"DataType in {source}", code, "0 to 7", "Export the file again.")
     return int(code)

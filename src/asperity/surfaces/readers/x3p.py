@@ -20,9 +20,9 @@ from asperity.surfaces.readers.guards import (
     archive,
     check_claim,
     count,
+    header_number,
     hostile,
     member_bytes,
-    number,
     parse_xml,
 )
 from asperity.surfaces.readers.hints import Hints, Surface, surfaces_of
@@ -31,7 +31,7 @@ DATA_TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 
 
 @dataclass(frozen=True)
-class Axis:
+class _Axis:
     """One axis of an X3P record: coordinate = stored number (or index) times increment plus offset, in m."""
 
     name: str
@@ -67,7 +67,7 @@ def _text(root: Element, tag: str) -> str | None:
     return text.strip() if text and text.strip() else None
 
 
-def _axis(root: Element, name: str, source: str) -> Axis:
+def _axis(root: Element, name: str, source: str) -> _Axis:
     base = f"Record1/Axes/{name}"
     kind = _text(root, f"{base}/DataType") or "D"
     absolute = _text(root, f"{base}/AxisType") != "I"
@@ -77,12 +77,12 @@ def _axis(root: Element, name: str, source: str) -> Axis:
         )
     # a coordinate stored with the points is in m; a single profile may state no increment across it
     default = "1" if absolute else "0" if name == "CY" else None
-    increment = number(source, f"increment of {name}", _text(root, f"{base}/Increment") or default)
-    offset = number(source, f"offset of {name}", _text(root, f"{base}/Offset") or "0")
+    increment = header_number(source, f"increment of {name}", _text(root, f"{base}/Increment") or default)
+    offset = header_number(source, f"offset of {name}", _text(root, f"{base}/Offset") or "0")
     if increment <= 0 and not (name == "CY" and increment == 0):
         allowed = "a length above zero"
         raise InputError(f"increment of {name} in {source}", increment, allowed, "Export it again.")
-    return Axis(name, absolute or name == "CZ", DATA_TYPES[kind], increment, offset)
+    return _Axis(name, absolute or name == "CZ", DATA_TYPES[kind], increment, offset)
 
 
 def _check_rotation(root: Element, source: str) -> None:
@@ -90,7 +90,9 @@ def _check_rotation(root: Element, source: str) -> None:
     if rotation is None or not len(rotation):
         return
     matrix = [
-        number(source, f"r{i}{j} of the rotation", _text(rotation, f"r{i}{j}")) for i in "123" for j in "123"
+        header_number(source, f"r{i}{j} of the rotation", _text(rotation, f"r{i}{j}"))
+        for i in "123"
+        for j in "123"
     ]
     if not np.allclose(np.reshape(matrix, (3, 3)), np.eye(3), atol=1e-6):
         raise InputError(f"axes of {source}", "a rotation", "no rotation of the axes", "Export it unrotated.")
@@ -105,7 +107,7 @@ def _shape(root: Element, source: str) -> tuple[int, int, int]:
 
 
 def _points(
-    opened: zipfile.ZipFile, root: Element, axes: list[Axis], shape: tuple[int, int, int], source: str
+    opened: zipfile.ZipFile, root: Element, axes: list[_Axis], shape: tuple[int, int, int], source: str
 ) -> dict[str, NDArray[np.float64]]:
     """Coordinates in m of all points along each stored axis, NaN where a point is not valid."""
     stored = np.dtype([(axis.name, axis.kind) for axis in axes if axis.absolute])
@@ -176,7 +178,7 @@ def _check_md5(data: bytes, stated: str | None, member: str, source: str) -> Non
 
 
 def _surfaces(
-    axes: list[Axis], shape: tuple[int, int, int], points: dict[str, NDArray[np.float64]], source: str
+    axes: list[_Axis], shape: tuple[int, int, int], points: dict[str, NDArray[np.float64]], source: str
 ) -> list[Surface]:
     z = points["CZ"]
     if "CX" not in points and "CY" not in points:
