@@ -25,17 +25,9 @@ class Progress(Protocol):
 def progress_bar(stream: TextIO | None = None) -> Iterator[Progress]:
     """Show progress while the body of the ``with`` statement runs.
 
-    Parameters
-    ----------
-    stream : text file, optional
-        Where to write; standard error by default. On a terminal every piece of work has a bar with its
-        share and the remaining time; elsewhere a plain line is written when a piece of work starts and
-        every 10 s.
-
-    Yields
-    ------
-    Progress
-        A callable ``progress(done, total, message)``; a new `message` starts a new piece of work.
+    It gives a callable ``progress(done, total, message)``, where a new `message` starts a new piece of work.
+    On a terminal every piece has a bar with its share and the remaining time; elsewhere a plain line is
+    written when it starts and every 10 s. By default on standard error.
     """
     stream = sys.stderr if stream is None else stream
     if stream is None or not stream.isatty():  # None: standard error is closed

@@ -27,24 +27,10 @@ LARGEST_FILE = 16 * 2**30  # bytes
 def variable(
     dims: str | Sequence[str], values: ArrayLike, units: str, long_name: str, **attrs: Any
 ) -> xarray.Variable:
-    """Make a variable of a result.
+    """Make a variable of a result, with its attributes.
 
-    Parameters
-    ----------
-    dims : str or sequence of str
-        Names of the dimensions of `values`.
-    values : array_like
-        The values, in `units`.
-    units : str
-        Their unit in SI, ``"1"`` for a pure number, ``"dB re 1 N"`` for a level.
-    long_name : str
-        What the variable is, in the words that a figure's axis carries.
-    **attrs
-        More attributes: strings and numbers.
-
-    Returns
-    -------
-    xarray.Variable
+    Units are in SI, ``"1"`` for a pure number, ``"dB re 1 N"`` for a level; `long_name` says what it is, in
+    the words that a figure's axis carries.
     """
     import xarray
 
@@ -54,20 +40,7 @@ def variable(
 def checked(tree: xarray.DataTree) -> xarray.DataTree:
     """Return `tree` itself, once every variable and coordinate in it has units and a long name.
 
-    Parameters
-    ----------
-    tree : xarray.DataTree
-        A result.
-
-    Returns
-    -------
-    xarray.DataTree
-        `tree`.
-
-    Raises
-    ------
-    ValueError
-        If any variable lacks ``units`` or ``long_name``: a fault of the program, not of its input.
+    A `ValueError` is a fault of the program, not of its input.
     """
     bare: list[Hashable] = [
         f"{node.path}/{name}".replace("//", "/")
@@ -123,23 +96,7 @@ def _storable(tree: xarray.DataTree) -> xarray.DataTree:
 
 
 def read_result(path: str | os.PathLike[str]) -> xarray.DataTree:
-    """Read a result that a run has written.
-
-    Parameters
-    ----------
-    path : path
-        A ``run.nc``, or the folder that holds one.
-
-    Returns
-    -------
-    xarray.DataTree
-        The result, in memory; the file is closed.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, damaged, too large or not a result of this program.
-    """
+    """Read a result that a run has written, a ``run.nc`` or the folder of one, to memory."""
     path = file_path("result", path, "the path of a run.nc, or of the folder that holds one")
     if no_file(path) == "a folder":
         path = path / "run.nc"
@@ -189,36 +146,12 @@ def _opened(path: Path) -> xarray.DataTree:
 
 
 def open_apart(path: str, answers: BinaryIO) -> None:
-    """Open a result whose origin is not known, to see that it can be.
-
-    Parameters
-    ----------
-    path : str
-        The file.
-    answers : binary file
-        Receives nothing.
-    """
+    """Open a result whose origin is not known, to see that it can be; nothing is answered."""
     _opened(Path(path))
 
 
 def case_text(path: str | os.PathLike[str]) -> str:
-    """Read the text of the case that a result belongs to, and nothing else of it.
-
-    Parameters
-    ----------
-    path : path
-        A ``run.nc``.
-
-    Returns
-    -------
-    str
-        The case in TOML.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged or not a result of this program.
-    """
+    """Read the case, in TOML, that a ``run.nc`` belongs to, and nothing else of it."""
     import h5netcdf
 
     try:

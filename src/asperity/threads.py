@@ -50,20 +50,10 @@ def one_thread_in_linear_algebra() -> Iterator[None]:
 def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = None) -> Generator[R]:
     """Run a task on each item, on threads, and yield the results in the order of the items.
 
-    Parameters
-    ----------
-    task : callable
-        Independent of the other items; compiled kernels in it release the interpreter.
-    items : iterable
-        What it is called with; taken one by one.
-    workers : int, optional
-        Threads; by default `thread_count`. One worker is the caller's own thread.
-
-    Yields
-    ------
-    object
-        Results. However many items there are, few results are held. If the consumer stops, tasks that run
-        are finished and the others are not begun.
+    The task is independent of the other items; compiled kernels in it release the interpreter. Items are
+    taken one by one. There are `thread_count` threads by default; one worker is the caller's own thread.
+    However many items there are, few results are held. If the consumer stops, tasks that run are finished and
+    the others are not begun.
     """
     count = workers or thread_count()
     if count == 1:

@@ -92,23 +92,11 @@ def quantity(text: str, dimension: str) -> float:
 
 
 def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -> str:
-    """Write a quantity with its unit, as `quantity` reads it.
+    """Write a quantity in SI with its unit, as `quantity` reads it: ``"25 mm"``; infinity is ``"inf"``.
 
-    Parameters
-    ----------
-    value : float
-        In SI.
-    dimension : str
-        The SI unit of the value.
-    unit : str
-        The unit that is preferred; another prefix is taken where its number would be far from one.
-    exactly : bool
-        Whether the text has to be read as the very same number; it has six digits otherwise.
-
-    Returns
-    -------
-    str
-        As ``"25 mm"``; infinity is ``"inf"``.
+    `dimension` is the SI unit, `unit` the preferred one; another prefix is taken where its number would be
+    far from one. `exactly` says that the text has to be read as the very same number; it has six digits
+    otherwise.
     """
     if math.isinf(value):
         return "inf" if value > 0 else "-inf"

@@ -153,19 +153,9 @@ def problem_of_steps(case: Case, time: float) -> Iterator[InputError]:
 
 
 def time_step_on_grid(wanted: float, per_cell: float) -> float:
-    """Time step near the one wanted, with positions on the grid of the contact solution.
+    """Time step, s, near the one wanted, with positions on the grid of the contact solution.
 
-    Parameters
-    ----------
-    wanted : float
-        Time step in s.
-    per_cell : float
-        Time in s in which one cell is rolled over.
-
-    Returns
-    -------
-    float
-        A whole multiple, rounded down, or a whole fraction of `per_cell`.
+    A whole multiple, rounded down, or a whole fraction of the time, s, in which one cell is rolled over.
     """
     if wanted >= per_cell:
         return per_cell * math.floor(wanted / per_cell * (1 + 1e-9))

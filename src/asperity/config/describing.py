@@ -89,20 +89,9 @@ def with_unit(value: float, field: FieldInfo) -> str:
 
 
 def commented(model: type[BaseModel], written_out: Mapping[str, str]) -> str:
-    """Write a case with a comment on every key.
+    """Write a case in TOML: one line for each key with its value, meaning, what is allowed and default.
 
-    Parameters
-    ----------
-    model : pydantic model class
-        The kind of case.
-    written_out : mapping of str to str
-        Values, in TOML, of keys that have no default and shall stand in the case.
-
-    Returns
-    -------
-    str
-        TOML: one line for each key with its value, its meaning, what is allowed and its default. Keys
-        without a fixed default are commented out.
+    Keys without a fixed default are commented out, but for those that are `written_out`.
     """
     lines: list[str] = []
     title = ""

@@ -337,24 +337,10 @@ def key(
 ) -> Any:
     """Describe a key of a case.
 
-    Parameters
-    ----------
-    default : object
-        The default, as it would be written in TOML; None if there is no fixed one.
-    meaning : str
-        What the key is.
-    otherwise : str
-        What happens without the key, where `default` is None.
-    example : str
-        How the key is written in TOML, where `default` is None.
-    goes_with : str
-        The key, ``key=value``, or keys with " or " between them, without which this one has no meaning.
-    within : tuple, optional
-        Least and largest plausible value, as they are written in TOML, and the reason.
-
-    Returns
-    -------
-    pydantic field
+    The default is as it would be written in TOML; without a fixed one it is None, `otherwise` says what
+    happens without the key, and `example` how it is written. `goes_with` is the key, ``key=value``, or keys
+    with " or " between them, without which this one has no meaning. `within` holds the least and the largest
+    plausible value, as they are written in TOML, and the reason.
     """
     extra = {"otherwise": otherwise, "example": example, "goes_with": goes_with, "default": default}
     if within is not None:

@@ -46,53 +46,16 @@ def plain_data(value: Any, depth: int = 0) -> Any:
 
 
 def read_definition(path: str | os.PathLike[str], what: str, remedy: str) -> str:
-    """Read a case or a study that a person has written.
+    """Read the text of a case or a study that a person has written.
 
-    Parameters
-    ----------
-    path : path
-        The file.
-    what : str
-        What it holds, for messages.
-    remedy : str
-        What to do if it is missing.
-
-    Returns
-    -------
-    str
-        The text.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, no regular file, too large or no text.
+    `what` it holds, and the remedy if it is missing, are for messages.
     """
     allowed = f"the path of a {what} file (TOML)"
     return decoding.read_text(Path(path), str(path), allowed, largest=LARGEST_CASE, remedy=remedy)
 
 
 def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str, Any]:
-    """Read TOML.
-
-    Parameters
-    ----------
-    text : str
-        The text.
-    what : str
-        What it is, for messages.
-    source : str or path
-        Where it comes from, for messages.
-
-    Returns
-    -------
-    dict
-        Keys and values.
-
-    Raises
-    ------
-    InputError
-        If the text is no TOML.
-    """
+    """Read TOML; what the text is, and where it comes from, are for messages."""
     allowed = f"a {what} in TOML"
     text = text.replace("\r\n", "\n")
     if _MANY_PARTS.search(text):

@@ -17,25 +17,7 @@ from asperity.errors import InputError
 
 
 def entry_of(model: type[Case], dotted: str) -> Entry:
-    """Find a key of a kind of case.
-
-    Parameters
-    ----------
-    model : class of cases
-        The kind.
-    dotted : str
-        The key with its section, as ``"contact.spacing"``.
-
-    Returns
-    -------
-    Entry
-        What the key is.
-
-    Raises
-    ------
-    InputError
-        If it has no such key.
-    """
+    """Find a key of a kind of case by its name with its section, as ``"contact.spacing"``."""
     found = {entry.dotted: entry for entry in entries(model)}
     if dotted in found:
         return found[dotted]

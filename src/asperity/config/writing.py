@@ -8,18 +8,7 @@ from typing import Any
 
 
 def toml_text(data: Mapping[str, Any]) -> str:
-    """Write keys and values as TOML.
-
-    Parameters
-    ----------
-    data : mapping
-        Keys with texts, numbers, truth values, lists of these, and sections as mappings.
-
-    Returns
-    -------
-    str
-        TOML that reads as the same keys and values: those at the top, then one table for each section.
-    """
+    """Write keys and values as TOML that reads as the same; those at the top come before the sections."""
     sections = {name: value for name, value in data.items() if isinstance(value, Mapping)}
     lines = _lines({name: value for name, value in data.items() if name not in sections})
     for name, section in sections.items():

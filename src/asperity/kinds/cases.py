@@ -26,25 +26,7 @@ _HEAD = """\
 
 
 def load_case(path: str | os.PathLike[str]) -> Case:
-    """Read a case from a TOML file.
-
-    Parameters
-    ----------
-    path : path
-        The case file.
-
-    Returns
-    -------
-    Case
-        Of the class of its kind, in SI.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, too large, no text or no TOML.
-    CaseError
-        With all errors at once, if the keys are wrong.
-    """
+    """Read a case from a TOML file; all errors in its keys are reported at once."""
     remedy = f"Check the path, or write a case with 'asperity new {next(iter(KINDS))} > case.toml'."
     return parse_case(read_definition(path, "case", remedy), path)
 
@@ -173,23 +155,7 @@ def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
 
 
 def template(kind: str) -> str:
-    """Write a commented case: every key with its value, what it is, what is allowed and its default.
-
-    Parameters
-    ----------
-    kind : str
-        What rolls on what: one of `KINDS`.
-
-    Returns
-    -------
-    str
-        A valid case in TOML.
-
-    Raises
-    ------
-    InputError
-        If there is no such kind.
-    """
+    """Write a commented case of a kind: each key with its value, meaning, what is allowed and default."""
     found = kind_named(kind)
     head = _HEAD.format(title=found.words.title, source=found.words.sources)
     return head + commented(found.case, found.words.written_out)

@@ -36,18 +36,10 @@ class Series:
 
 @dataclass(frozen=True, eq=False)
 class Data:
-    """Numbers of a figure, collected once: it is drawn from them, and its CSV file holds them.
+    """Numbers of a figure, collected once: it is drawn from them, and its CSV file holds them."""
 
-    Attributes
-    ----------
-    x : Series or None
-        What they stand over.
-    lines : mapping of Series
-        The numbers, by law, by entry of the schema, or by both.
-    """
-
-    x: Series | None
-    lines: Mapping[Any, Series]
+    x: Series | None  # what they stand over
+    lines: Mapping[Any, Series]  # by law, by entry of the schema, or by both
 
     @property
     def field(self) -> NDArray[np.float64]:
@@ -97,35 +89,16 @@ def by_law(tree: DataTree, entry: Entry, name: str = "{}") -> dict[str, Series]:
 
 @dataclass(frozen=True)
 class Part:
-    """One figure of the report.
+    """One figure of the report."""
 
-    Parameters
-    ----------
-    name : str
-        Name of its CSV file and of its place in the page.
-    title : str
-        Its heading.
-    needs : tuple of Entry
-        Variables without which it is left out.
-    collect : callable
-        Takes its numbers from a result tree.
-    plot : callable
-        Draws them; what is said beside them stands in the tree.
-    caption : callable
-        Says, from a result tree, what is drawn and with which conventions.
-    any_of : tuple of Entry, optional
-        Variables of which it needs at least one.
-    worth : callable, optional
-        Whether these variables have anything to show: a smooth surface has no spectrum.
-    """
-
-    name: str
-    title: str
-    needs: tuple[Entry, ...]
-    collect: Callable[[DataTree], Data]
-    plot: Callable[[DataTree, Data], Figure]
-    caption: Callable[[DataTree], str]
-    any_of: tuple[Entry, ...] = ()
+    name: str  # of its CSV file and of its place in the page
+    title: str  # its heading
+    needs: tuple[Entry, ...]  # variables without which it is left out
+    collect: Callable[[DataTree], Data]  # takes its numbers from a result
+    plot: Callable[[DataTree, Data], Figure]  # draws them; what is said beside them stands in the result
+    caption: Callable[[DataTree], str]  # says what is drawn and with which conventions
+    any_of: tuple[Entry, ...] = ()  # variables of which it needs at least one
+    # whether these variables have anything to show: a smooth surface has no spectrum
     worth: Callable[[DataTree], bool] = lambda _: True
 
     def drawable(self, tree: DataTree) -> bool:

@@ -102,20 +102,10 @@ class ShapesAlong:
 
 
 def beam_step(beam: Beam, time_step: float) -> NDArray:
-    """Exact step of a beam's modes, as `asperity.kernels.modal.modal_coefficients` has it.
+    """Exact step of a beam's modes, (8, modes), as `asperity.kernels.modal.modal_coefficients` has it.
 
-    Parameters
-    ----------
-    beam : Beam
-        Its natural frequencies and damping.
-    time_step : float
-        s.
-
-    Returns
-    -------
-    ndarray (8, modes)
-        Of modes that turn by more than RESOLVED in a step only the static answer to the force at its end:
-        sampled, they would seem slow, and move the wrong way.
+    Time step in s. Of modes that turn by more than RESOLVED in a step only the static answer to the force at
+    its end: sampled, they would seem slow, and move the wrong way.
     """
     natural = 2.0 * np.pi * beam.natural_frequencies
     return resolved_step(natural, np.full(natural.shape, beam.damping_ratio), time_step)
@@ -141,13 +131,7 @@ def modal_alternating_compliance(coefficients: NDArray, shapes: NDArray) -> floa
 
 
 def refuse_off_the_beam(beam: Beam, path: Path) -> None:
-    """Refuse a path that leaves the beam.
-
-    Raises
-    ------
-    InputError
-        If it does.
-    """
+    """Refuse a path that leaves the beam."""
     start, first, end = (float(path.positions[i]) for i in (path.settled, 0, -1))
     if not (first >= -1e-9 * beam.length and end <= beam.length * (1.0 + 1e-9)):
         longest = (beam.length - start) / path.speed

@@ -75,10 +75,7 @@ class RolledOver(Protocol):
     def laid(self, path: Path, load: float) -> Side:
         """Let it carry a load, N, at the start of the path, at rest or as under a load that has long rolled.
 
-        Raises
-        ------
-        InputError
-            If the path leaves it, or it was made for another speed or time step.
+        Refused are a path that leaves it, and one of another speed or time step than it was made for.
         """
         ...
 

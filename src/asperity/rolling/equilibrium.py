@@ -16,26 +16,10 @@ LARGEST_STEP = 1.0  # m
 def static_approach(
     evaluate: Callable[[float], tuple[float, float]], load: float, relative: float = 1e-9
 ) -> tuple[float, float]:
-    """Approach at which a law carries the load.
+    """Approach, m, at which a law carries the load, N, and the stiffness there, N/m.
 
-    Parameters
-    ----------
-    evaluate : callable
-        Force, N, and stiffness, N/m, of an approach, m.
-    load : float
-        N.
-    relative : float
-        Tolerance on the force, relative to the load.
-
-    Returns
-    -------
-    approach, stiffness : float
-        m, N/m.
-
-    Raises
-    ------
-    ComputationError
-        If no approach up to a metre carries the load.
+    `evaluate` gives force, N, and stiffness, N/m, of an approach, m; `relative` is the tolerance on the
+    force, relative to the load. A `ComputationError` says that no approach up to a metre carries it.
     """
     low, high = -np.inf, np.inf
     approach, step = 0.0, FIRST_STEP

@@ -10,35 +10,14 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class ContactLoss:
-    """One flight.
+    """One flight."""
 
-    Parameters
-    ----------
-    start : float
-        Time of the first sample out of contact, s.
-    duration : float
-        Number of samples out of contact times the time step, s.
-    """
-
-    start: float
-    duration: float
+    start: float  # time of the first sample out of contact, s
+    duration: float  # samples out of contact times the time step, s
 
 
 def contact_losses(flying: NDArray, time_step: float) -> list[ContactLoss]:
-    """Flights in a record.
-
-    Parameters
-    ----------
-    flying : ndarray (n,) of bool
-        Whether the bodies are apart at each time step.
-    time_step : float
-        s.
-
-    Returns
-    -------
-    list of ContactLoss
-        In order of time.
-    """
+    """Flights in a record, in order of time; `flying` (n,) says whether bodies are apart; time step in s."""
     edges = np.diff(np.concatenate([[False], np.asarray(flying, dtype=bool), [False]]).astype(np.int8))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return [

@@ -16,20 +16,7 @@ STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itsel
 
 
 def evaluation(prepared: Prepared | SteppedLaw, step: int) -> Callable[[float], tuple[float, float]]:
-    """Force and stiffness of a law at a step, as a function of the approach.
-
-    Parameters
-    ----------
-    prepared : Prepared or SteppedLaw
-        The law on the path.
-    step : int
-        Step of the path.
-
-    Returns
-    -------
-    callable
-        From approach, m, to N and N/m.
-    """
+    """Force, N, and stiffness, N/m, of a law at a step, as a function of the approach, m."""
     if isinstance(prepared, Prepared):
         return lambda approach: evaluate(prepared, step, float(approach))
     return lambda approach: prepared.evaluate(step, float(approach))
@@ -38,18 +25,9 @@ def evaluation(prepared: Prepared | SteppedLaw, step: int) -> Callable[[float], 
 def flying(
     prepared: Prepared | SteppedLaw, force: NDArray[np.float64], approach: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """Whether the bodies are apart at each step; never for a contact that can pull.
+    """Whether the bodies are apart at each step, by force, N, and approach, m, (n,) each.
 
-    Parameters
-    ----------
-    prepared : Prepared or SteppedLaw
-        The law on the path.
-    force, approach : ndarray (n,)
-        Contact force, N, and approach, m, at every step.
-
-    Returns
-    -------
-    ndarray (n,) of bool
+    Never for a contact that can pull.
     """
     if not isinstance(prepared, Prepared):
         return np.asarray(force <= 0.0)
@@ -63,23 +41,9 @@ def flying(
 def warn_after(
     name: str, counts: NDArray, prepared: Prepared | SteppedLaw, approach: NDArray[np.float64]
 ) -> None:
-    """Warn of what went wrong on the way.
+    """Warn of forces that missed the tolerance, and of a law that was continued beyond its data.
 
-    Parameters
-    ----------
-    name : str
-        Of the law.
-    counts : ndarray (3,) of int
-        Steps done, steps not converged, evaluations.
-    prepared : Prepared or SteppedLaw
-        The law on the path.
-    approach : ndarray (n,)
-        Approach at every step, m.
-
-    Warns
-    -----
-    UnconvergedWarning, ExtrapolationWarning
-        If contact forces missed the tolerance, or the law was continued beyond its data.
+    `counts` holds steps done, steps not converged and evaluations; approach (n,) at every step, m.
     """
     steps = max(int(counts[0]), 1)
     if counts[1]:

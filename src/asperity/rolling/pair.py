@@ -41,16 +41,11 @@ class PairRecord(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RolledPair(Rolled):
-    """One body has rolled over another, both of any kind.
+    """One body has rolled over another, both of any kind."""
 
-    Parameters
-    ----------
-    over_displacement, rolling_displacement : ndarray (n,)
-        Of what is rolled over, and of what rolls, at the contact, m, positive downwards.
-    """
-
+    # (n,), of what is rolled over, at the contact, m, positive downwards
     over_displacement: NDArray[np.float64]
-    rolling_displacement: NDArray[np.float64]
+    rolling_displacement: NDArray[np.float64]  # (n,), of what rolls, at the contact, m, positive downwards
 
 
 def roll_pair(
@@ -67,50 +62,16 @@ def roll_pair(
     progress: Progress | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> RolledPair:
-    """Roll one body over another at constant speed, and keep what follows the run-in.
+    """Roll one body over another at constant speed, m/s, and keep what follows the run-in.
+
+    The contact is at `start` at time zero, after the run-in, m; the law reads its texture at its position.
+    Times in s. The time step is checked against the highest frequency of interest, Hz. A checkpoint keeps the
+    state about every 10 s, at the end and when interrupted, to go on from there.
 
     Both are advanced exactly, or as exactly as they know, for a contact force that varies linearly over a
     step; the force at the end of each step solves the contact law implicitly. A step that is too long to be
     stable is kept so by a softened contact, with a warning (`asperity.rolling.stability`). Bodies are stepped
-    from Python, some 50 µs a step.
-
-    Parameters
-    ----------
-    over, rolls
-        What is rolled over, and what rolls.
-    law : Law
-        The contact between them. It reads its texture at the position of the contact.
-    speed : float
-        m/s.
-    start : float
-        Position of the contact at time zero, after the run-in, m.
-    duration, time_step : float
-        s.
-    settling : float, optional
-        Run-in before time zero, s; not kept.
-    highest_frequency : float, optional
-        Highest frequency of interest, Hz, checked against the time step.
-    progress : callable, optional
-        Called with steps done, steps in all, and a message.
-    checkpoint : Checkpoint, optional
-        Where to keep the state about every 10 s, at the end and when interrupted, and to go on from.
-
-    Returns
-    -------
-    RolledPair
-        Time histories and losses of contact.
-
-    Raises
-    ------
-    InputError
-        If a number is not positive, the path leaves a body, or the checkpoint is of another run.
-    ComputationError
-        If the load cannot be carried, or the motion runs away.
-
-    Warns
-    -----
-    CoarseSamplingWarning, ExtrapolationWarning, UnconvergedWarning
-        As in `asperity.rolling.rolled.roll_along`.
+    from Python, some 50 µs a step. Warned of is what `asperity.rolling.rolled.roll_along` warns of.
     """
     path = Path.laid(start, speed, time_step, duration, settling)
     below = over.laid(path, rolls.load)
@@ -145,20 +106,10 @@ def roll_pair(
 
 
 class Pair:
-    """Two bodies behind the protocol of `asperity.rolling.stepping.Stepper`.
+    """Two bodies, from rest, behind the protocol of `asperity.rolling.stepping.Stepper`.
 
-    Parameters
-    ----------
-    path : Path
-        Where the contact is.
-    load : float
-        Static force, N.
-    below, above : Side
-        What is rolled over, and what rolls, at rest.
-    approach : float
-        Under the load, as the law sees it, m.
-    softening : float
-        Compliance in series with the contact, m/N.
+    Under the load, N, the approach is as the law sees it, m; `softening` is a compliance in series with the
+    contact, m/N.
     """
 
     def __init__(

@@ -12,35 +12,16 @@ from asperity.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """Positions of a contact that moves at constant speed.
+    """Positions of a contact that moves at constant speed."""
 
-    Parameters
-    ----------
-    positions : ndarray (n,)
-        At every time step of run-in and record, m.
-    speed : float
-        m/s.
-    time_step : float
-        s.
-    settled : int
-        Steps of the run-in; the record starts behind them.
-    """
-
-    positions: NDArray[np.float64]
-    speed: float
-    time_step: float
-    settled: int = 0
+    positions: NDArray[np.float64]  # (n,), at every time step of run-in and record, m
+    speed: float  # m/s
+    time_step: float  # s
+    settled: int = 0  # steps of the run-in; the record starts behind them
 
     @classmethod
     def laid(cls, start: float, speed: float, time_step: float, duration: float, settling: float) -> Path:
-        """Lay out a run-in of `settling`, s, and from `start`, m, on a record of `duration`, s.
-
-        Raises
-        ------
-        InputError
-            If speed, time step or duration is not positive, settling negative, or the record shorter than a
-            time step.
-        """
+        """Lay out a run-in of `settling`, s, and from `start`, m, on a record of `duration`, s."""
         for what, value in (("speed (m/s)", speed), ("duration (s)", duration), ("time step (s)", time_step)):
             if not (np.isfinite(value) and value > 0.0):
                 raise InputError(what, value, "a finite positive number")
@@ -64,13 +45,7 @@ class Path:
 
 
 def count_steps(duration: float, settling: float, time_step: float) -> tuple[int, int]:
-    """Whole time steps in the record and in the run-in before it, both in s.
-
-    Raises
-    ------
-    InputError
-        If there is no step to record, or settling is negative.
-    """
+    """Whole time steps in the record and in the run-in before it, both in s; one at least to record."""
     if not (np.isfinite(duration) and duration > 0.0):
         raise InputError("duration (s)", duration, "a finite positive number")
     if not (np.isfinite(settling) and settling >= 0.0):

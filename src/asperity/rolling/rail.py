@@ -19,13 +19,7 @@ PRELOAD = 2.0
 
 @dataclass(frozen=True, eq=False)
 class RolledRail:
-    """A rail behind the protocol of `asperity.rolling.bodies.RolledOver`.
-
-    Parameters
-    ----------
-    rail : RailPoles or MovingKernel
-        The track for one speed and time step, as poles, or scattered.
-    """
+    """A rail, as poles or scattered, behind the protocol of `asperity.rolling.bodies.RolledOver`."""
 
     rail: RailPoles | MovingKernel
 

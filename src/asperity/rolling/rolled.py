@@ -29,37 +29,17 @@ Limit = tuple[str, float, float]
 
 @dataclass(frozen=True, eq=False)
 class Rolled:
-    """One body has rolled over another.
+    """One body has rolled over another."""
 
-    Parameters
-    ----------
-    time : ndarray (n,)
-        s, uniform from zero, after the run-in.
-    position : ndarray (n,)
-        Of the contact, m.
-    contact_force : ndarray (n,)
-        N, compression positive.
-    relative_displacement : ndarray (n,)
-        Approach of the mean surfaces, m, positive closing.
-    in_contact : ndarray (n,) of bool
-        Whether the bodies touch.
-    contact_loss : list of ContactLoss
-        Flights.
-    evaluations, unconverged_steps : int
-        Evaluations of the law, and time steps whose contact force missed the tolerance, of run-in and run.
-    outcome : Outcome
-        Whether all steps converged.
-    """
-
-    time: NDArray[np.float64]
-    position: NDArray[np.float64]
-    contact_force: NDArray[np.float64]
-    relative_displacement: NDArray[np.float64]
-    in_contact: NDArray[np.bool_]
-    contact_loss: list[ContactLoss]
-    evaluations: int
-    unconverged_steps: int
-    outcome: Outcome
+    time: NDArray[np.float64]  # (n,), s, uniform from zero, after the run-in
+    position: NDArray[np.float64]  # (n,), of the contact, m
+    contact_force: NDArray[np.float64]  # (n,), N, compression positive
+    relative_displacement: NDArray[np.float64]  # (n,), approach of the mean surfaces, m, positive closing
+    in_contact: NDArray[np.bool_]  # (n,), whether the bodies touch
+    contact_loss: list[ContactLoss]  # flights
+    evaluations: int  # of the law, in run-in and run
+    unconverged_steps: int  # time steps whose contact force missed the tolerance, of run-in and run
+    outcome: Outcome  # whether all steps converged
 
     @property
     def contact_loss_share(self) -> float:

@@ -114,18 +114,5 @@ def softening(compliance: float, stiffness: float, damping: float, at_rest: floa
 
 
 def largest_force(load: float, force: float) -> float:
-    """Contact force that makes no sense any more.
-
-    Parameters
-    ----------
-    load : float
-        Static load, N.
-    force : float
-        Largest force that the law was made for, N.
-
-    Returns
-    -------
-    float
-        N.
-    """
+    """Contact force, N, that makes no sense any more, by the load and the largest force of the law, N."""
     return RUNAWAY * max(load, force)

@@ -199,22 +199,7 @@ def _histories(stepper: Stepper, held: dict[str, NDArray]) -> dict[str, NDArray]
 
 
 def restore(checkpoint: Checkpoint | None, stepper: Stepper, prepared: Prepared | SteppedLaw) -> None:
-    """Take a run up where it was saved, if it was.
-
-    Parameters
-    ----------
-    checkpoint : Checkpoint or None
-        Where the state is kept.
-    stepper : Stepper
-        The bodies at the start; their state and histories are overwritten.
-    prepared : Prepared or SteppedLaw
-        The law on the path; a `SteppedLaw` is restored too.
-
-    Raises
-    ------
-    InputError
-        If what was saved is of another run.
-    """
+    """Take a run up where it was saved, if it was: state, histories, and what a `SteppedLaw` holds."""
     arrays = checkpoint.load() if checkpoint is not None else None
     if arrays is None:
         return

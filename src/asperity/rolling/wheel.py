@@ -85,20 +85,10 @@ def _displaced(states: NDArray[np.complex128]) -> float:
 
 
 def wheel_step(wheel: Wheel, time_step: float) -> tuple[NDArray, NDArray, NDArray]:
-    """Exact step of a wheel's resonances for a force that is linear over it: q' = s q + r F.
+    """Exact step, s, of a wheel's resonances for a force that is linear over it: q' = s q + r F.
 
-    Parameters
-    ----------
-    wheel : Wheel
-        Its poles s and residues r.
-    time_step : float
-        s.
-
-    Returns
-    -------
-    decay, before, now : ndarray of complex
-        Factors of the states, and of the forces at start and end of the step, m/N. Fast ones as in
-        `asperity.rolling.beam.beam_step`.
+    Returns factors of the states, and of the forces at start and end of the step, m/N. Fast ones are as in
+    `asperity.rolling.beam.beam_step`.
     """
     phase = wheel.poles * time_step
     growth = np.expm1(phase)

@@ -22,19 +22,9 @@ SMOOTH = "smooth bodies have one filter, that of the working load"
 
 
 def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset:
-    """Lay out the reduced contact of a case.
+    """Lay out forces, stiffness and filters of all states, Hertz's where there are no samples.
 
-    Parameters
-    ----------
-    chain : Chain
-        What was computed.
-    found : sequence of Finding
-        What holds it to the range of its laws.
-
-    Returns
-    -------
-    xarray.Dataset
-        Forces, stiffness and filters of all states; Hertz's where there are no samples.
+    With the findings that hold the contact to the range of its laws.
     """
     shape, reduction = chain.shape, chain.reduction
     facts: dict[Attribute, Any] = {

@@ -101,18 +101,7 @@ def expect_area_ratio(prepared: Prepared) -> float | None:
 
 
 def expected_path_scan(prepared: Prepared, progress: Progress) -> Expected:
-    """Expect the scan of a path alone.
-
-    Parameters
-    ----------
-    prepared, progress
-        As in `expect`, of a case that has one.
-
-    Returns
-    -------
-    Expected
-        Its size and time.
-    """
+    """Expect the size and time of the scan of a path alone, of a case that has one."""
     case = prepared.case
     with one_thread_in_linear_algebra():
         prepared.kind.compile_kernels(progress)

@@ -96,31 +96,10 @@ def line_filters(
     cache: Cache | None,
     progress: Progress,
 ) -> tuple[LineFilters, list[ScannedForces]]:
-    """Scan the strips, and design a filter for every normalisation.
+    """Scan the strips, and design a filter for every normalisation that is needed; return them and the scans.
 
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of the case.
-    textures : Textures
-        Strips and path.
-    shape : Geometry
-        The gap on the grid.
-    ensemble : StiffnessEnsemble
-        Loading curves.
-    lightest : float
-        Least mean force of a state that has a filter, N.
-    needed : iterable of str
-        Normalisations.
-    rtol, cache, progress
-        As in `asperity.contact.scan`.
-
-    Returns
-    -------
-    filters : mapping of str to LineFilter
-        By normalisation. Those of bodies without texture are sin q/q in closed form.
-    scans : list of ScannedForces
-        What was scanned for them.
+    States whose mean force is below `lightest`, N, have no filter. Filters of bodies without texture are sin
+    q/q in closed form.
     """
     dx, loaded = shape.spacing[0], ensemble.mean_force >= lightest
     approaches, curve = ensemble.approaches[loaded], ensemble.curve

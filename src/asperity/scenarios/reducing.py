@@ -37,46 +37,22 @@ LEAST_DATUM = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Reduction:
-    """State functions of a case.
+    """State functions of a case."""
 
-    Attributes
-    ----------
-    approaches : ndarray, shape (k,)
-        States, m: approaches from the plane that the nominal patch feels.
-    ensemble : StiffnessEnsemble
-        Loading curves.
-    datums : dict of str to float
-        d0 by what it may be counted from, m: ``"samples"``, or ``"path"`` with strips and path as well.
-    semi_axes : ndarray, shape (k, 2)
-        Semi-axes of the nominal patch at the mean force of each state, m.
-    filters : mapping of str to LineFilter
-        Filters of the states that carry load, on their own approaches, by normalisation.
-    working : Contact
-        First sample under the working load.
-    working_approach : float
-        Mean approach of the samples under the working load, m.
-    area_ratio : float
-        Contact area of the samples under the working load over that of smooth bodies, mean.
-    isolated_share : float
-        Share of that load on cells that touch alone, mean.
-    touches : ndarray, shape (positions,), or None
-        Approach of first touch along the path, before defects are put on it, at every row on which the
-        window may begin, m; None where the path is a line.
-    counts : Counts
-        Contact solutions done for the filters.
-    """
-
-    approaches: NDArray[np.float64]
-    ensemble: StiffnessEnsemble
+    approaches: NDArray[np.float64]  # (k,), of the states from the plane that the nominal patch feels, m
+    ensemble: StiffnessEnsemble  # loading curves
+    # d0, m, by what it counts from: ``"samples"``, or ``"path"`` with strips and path as well
     datums: dict[str, float]
-    semi_axes: NDArray[np.float64]
-    filters: LineFilters
-    working: Contact
-    working_approach: float
-    area_ratio: float
-    isolated_share: float
+    semi_axes: NDArray[np.float64]  # (k, 2), of the nominal patch at the mean force of each state, m
+    filters: LineFilters  # of the states that carry load, on their own approaches, by normalisation
+    working: Contact  # first sample under the working load
+    working_approach: float  # mean of the samples under the working load, m
+    area_ratio: float  # contact area under the working load over that of smooth bodies, mean
+    isolated_share: float  # of that load on cells that touch alone, mean
+    # (positions,), first touch along the path, before defects are put on it, at every row on which the window
+    # may begin, m; None where the path is a line
     touches: NDArray[np.float64] | None
-    counts: Counts
+    counts: Counts  # contact solutions done for the filters
 
 
 def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
@@ -97,31 +73,10 @@ def reduce(
     cache: Cache | None,
     progress: Progress,
 ) -> Reduction:
-    """Press and move the body on the samples, and reduce the forces to state functions.
+    """Press and move the body on the samples, and reduce the forces to stiffness and filters.
 
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of the case.
-    numerics : Numerics
-        The numerics section of the case: how accurately contacts are solved.
-    textures : Textures
-        Samples, strips and path.
-    shape : Geometry
-        The gap on the grid.
-    planes : ndarray, shape (rows,), optional
-        From `patch_planes` for the path, where it is areal.
-    needed : iterable of str
-        Normalisations of the filters that the laws use.
-    cache : Cache, optional
-        Keeps finished scans.
-    progress : Progress
-        Called while scanning.
-
-    Returns
-    -------
-    Reduction
-        Stiffness and filters.
+    `planes` (rows,), m, are from `patch_planes` for the path, where it is areal; `needed` are the
+    normalisations of the filters that the laws use. The cache keeps finished scans.
     """
     weights = punch_weights(shape.spacing, shape.semi_axes)
     cells = (shape.body.shape[0], shape.body.shape[1])

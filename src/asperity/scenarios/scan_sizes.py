@@ -25,31 +25,15 @@ from asperity.surfaces.strip import Strip
 
 @dataclass(frozen=True)
 class Expected:
-    """What a scan will take.
-
-    Attributes
-    ----------
-    positions, states : int
-        Size of the scan.
-    step : float
-        Distance of the positions, m.
-    bytes : int
-        Size on disk.
-    single : bool
-        Whether the iteration will be in single precision.
-    blocks : int
-        Blocks that threads may solve beside each other.
-    seconds : float
-        Time on all threads, nothing of it found in the cache; NaN before it was tried.
-    """
+    """What a scan will take."""
 
     positions: int
     states: int
-    step: float
-    bytes: int
-    single: bool
-    blocks: int
-    seconds: float = math.nan
+    step: float  # distance of the positions, m
+    bytes: int  # on disk
+    single: bool  # whether the iteration will be in single precision
+    blocks: int  # that threads may solve beside each other
+    seconds: float = math.nan  # on all threads, nothing of it found in the cache; NaN before it was tried
 
     @property
     def solutions(self) -> int:

@@ -34,18 +34,9 @@ FEWEST_POINTS = 16
 
 
 def surface_group(chain: Chain[Any]) -> xarray.Dataset:
-    """Lay out the textures of a case.
+    """Lay out the textures of a case: first sample, a piece of the path, its line.
 
-    Parameters
-    ----------
-    chain : Chain
-        What was computed.
-
-    Returns
-    -------
-    xarray.Dataset
-        First sample, a piece of the path, its line, and of the whole path distribution, spectrum and
-        statistics.
+    And of the whole path distribution, spectrum and statistics.
     """
     textures, dx = chain.textures, chain.shape.spacing[0]
     laid_out: dict[Entry, Any] = {}

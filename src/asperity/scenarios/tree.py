@@ -144,20 +144,7 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
 
 
 def rolling_group(chain: Chain[Any], own: Mapping[Entry, Any]) -> xarray.Dataset:
-    """Lay out what was recorded in time.
-
-    Parameters
-    ----------
-    chain : Chain
-        What was computed.
-    own : mapping of Entry
-        Values of what the kind of case records beside force, approach and losses of contact.
-
-    Returns
-    -------
-    xarray.Dataset
-        All of it.
-    """
+    """Lay out what was recorded in time: force, approach, losses of contact, and what the kind adds."""
     run, stack = next(iter(chain.runs.values())), chain.stacked
     found = variables(
         {
@@ -212,18 +199,7 @@ def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xar
 def product_of_bands(entry: Entry, centres: np.ndarray, time: float) -> xarray.Variable:
     """Lay out the product B T of bands, from which one sees which levels say little.
 
-    Parameters
-    ----------
-    entry : Entry
-        Which product.
-    centres : ndarray, shape (b,)
-        Band centres, Hz or cycles per metre.
-    time : float
-        Averaging time, s, or length, m.
-
-    Returns
-    -------
-    xarray.Variable
-        By band; the least product of a level that says something is in its attributes.
+    Centres (b,), Hz or cycles per metre; averaging time, s, or length, m. The least product of a level that
+    says something is in its attributes.
     """
     return entry.variable(band_product(centres, time), least=LEAST_PRODUCT)

@@ -20,34 +20,16 @@ UNKNOWN = "no reason is known"
 
 @dataclass(frozen=True)
 class Entry:
-    """A variable of a result file.
+    """A variable of a result file."""
 
-    Attributes
-    ----------
-    group, name : str
-        Where it stands, and what it is called there.
-    dims : tuple of str
-        Its dimensions; those of a coordinate are its own name.
-    units : str
-        In SI; ``"1"`` for a pure number, ``"dB re 1 N"`` for a level.
-    long_name : str
-        What it is.
-    condition : str
-        Which results have it, where not all have.
-    missing : str
-        Why values may be missing (NaN).
-    attributes : tuple of str
-        What else is said of it.
-    """
-
-    group: str
-    name: str
-    dims: tuple[str, ...]
-    units: str
-    long_name: str
-    condition: str = ""
-    missing: str = ""
-    attributes: tuple[str, ...] = ()
+    group: str  # where it stands
+    name: str  # what it is called there
+    dims: tuple[str, ...]  # its dimensions; those of a coordinate are its own name
+    units: str  # in SI; ``"1"`` for a pure number, ``"dB re 1 N"`` for a level
+    long_name: str  # what it is
+    condition: str = ""  # which results have it, where not all have
+    missing: str = ""  # why values may be missing (NaN)
+    attributes: tuple[str, ...] = ()  # what else is said of it
 
     @property
     def path(self) -> str:
@@ -72,25 +54,13 @@ class Entry:
 
 @dataclass(frozen=True)
 class Attribute:
-    """An attribute of a group of a result file, or of its root.
+    """An attribute of a group of a result file, or of its root."""
 
-    Attributes
-    ----------
-    group, name : str
-        Where it stands (``""``: at the root), and what it is called there.
-    units : str
-        In SI; ``"text"``, or ``"JSON"`` for what is laid out as that.
-    meaning : str
-        What it is.
-    condition : str
-        Which results have it, where not all have.
-    """
-
-    group: str
-    name: str
-    units: str
-    meaning: str
-    condition: str = ""
+    group: str  # where it stands; ``""`` at the root
+    name: str  # what it is called there
+    units: str  # in SI; ``"text"``, or ``"JSON"`` for what is laid out as that
+    meaning: str  # what it is
+    condition: str = ""  # which results have it, where not all have
 
 
 def variables(values: Mapping[Entry, Any]) -> dict[str, xarray.Variable]:

@@ -25,7 +25,7 @@ class PeriodicWaves:
     """
 
     multipliers: NDArray  # (2, f), lambda_j, the change of wave j over one bay, |lambda_j| < 1
-    coefficients: NDArray  # (2, f), c_j, N/m times the square of the scale that the shapes carry
+    coefficients: NDArray  # (2, f), C_j, N/m times the square of the scale that the shapes carry
     wavenumbers: NDArray  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
     weights: NDArray  # (2, 2, f), share of the free wave i in wave j, axes (i, j, f)
     spacing: float  # distance of the supports L, m

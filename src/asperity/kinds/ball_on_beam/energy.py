@@ -58,17 +58,7 @@ def beam_energy(system: System, motion: BeamMotion) -> float:
 def balance(system: System, motion: BeamMotion, at_rest: tuple[float, float]) -> EnergyBalance:
     """Balance of a run that started with the ball at rest.
 
-    Parameters
-    ----------
-    system, motion
-        Constants, and the state at the end.
-    at_rest : tuple of float
-        Displacement of the ball, m, and energy of the beam, J, at the start.
-
-    Returns
-    -------
-    EnergyBalance
-        The terms.
+    `at_rest` holds the displacement of the ball, m, and the energy of the beam, J, at the start.
     """
     displacement, energy = at_rest
     return EnergyBalance(

@@ -17,27 +17,10 @@ def geometry_of(case: BallOnBeam) -> Geometry:
 
 
 def ball_geometry(case: BallOnBeam, load: float, modulus: float) -> Geometry:
-    """Lay out the ball of a case on the contact grid.
+    """Lay out the ball of a case on the contact grid, under a load, N, with a contact modulus E*, Pa.
 
-    Parameters
-    ----------
-    case : BallOnBeam
-        The case.
-    load : float
-        Working load, N.
-    modulus : float
-        Contact modulus E*, Pa.
-
-    Returns
-    -------
-    Geometry
-        Shape of the ball.
-
-    Raises
-    ------
-    InputError
-        If the contact is not small against the ball, wider than the beam's section, or not held by the
-        window.
+    Refused is a contact that is not small against the ball, wider than the beam's section, or not held by the
+    window.
     """
     radius, contact = case.ball.radius, case.contact
     hertz = Hertz(modulus, radius, radius)

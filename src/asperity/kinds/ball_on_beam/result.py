@@ -25,19 +25,10 @@ from asperity.spectra import averaging_time, band_levels, psd
 
 
 def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
-    """Lay out what was computed, with units and provenance.
+    """Lay out what was computed, as scenario, surface, contact, rolling and spectra.
 
-    Parameters
-    ----------
-    computed : Computed
-        Textures, reduction and runs.
-    caught : list of WarningMessage
-        Warnings met on the way; those of laying out may still be added to it.
-
-    Returns
-    -------
-    xarray.DataTree
-        Groups scenario, surface, contact, rolling, spectra.
+    With units and provenance. `caught` are the warnings met on the way; those of laying out may still be
+    added to it.
     """
     over_frequency = _spectra(computed)
     found = findings(computed.chain)

@@ -29,22 +29,12 @@ LARGEST_DEFLECTION = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Rolling(Rolled):
-    """A ball has rolled over a beam.
+    """A ball has rolled over a beam."""
 
-    Parameters
-    ----------
-    ball_displacement, beam_displacement : ndarray (n,)
-        Of the ball, and of the beam under it, m, positive downwards.
-    acceleration : ndarray (sensors, n)
-        Of the beam at the sensors, m/s^2, positive downwards.
-    energy : EnergyBalance
-        Where the work of the load went, in run-in and run.
-    """
-
-    ball_displacement: NDArray
-    beam_displacement: NDArray
-    acceleration: NDArray
-    energy: EnergyBalance
+    ball_displacement: NDArray  # (n,), m, positive downwards
+    beam_displacement: NDArray  # (n,), under the ball, m, positive downwards
+    acceleration: NDArray  # (sensors, n), of the beam, m/s², positive downwards
+    energy: EnergyBalance  # where the work of the load went, in run-in and run
 
 
 def roll(

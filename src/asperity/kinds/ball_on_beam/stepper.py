@@ -21,21 +21,9 @@ from asperity.structures.beam import Beam
 
 
 class BeamStepper:
-    """Ball and beam behind the protocol of `asperity.rolling.stepping.Stepper`.
+    """Ball and beam, from rest, behind the protocol of `asperity.rolling.stepping.Stepper`.
 
-    Parameters
-    ----------
-    system, motion, record
-        Constants, state and histories, at rest.
-    beam : Beam
-        Gives the mode shapes under the contact.
-    path : Path
-        Where the contact is.
-
-    Attributes
-    ----------
-    at_rest : tuple of float
-        Displacement of the ball, m, and energy of the beam, J, at the start.
+    `at_rest` holds the displacement of the ball, m, and the energy of the beam, J, at the start.
     """
 
     def __init__(

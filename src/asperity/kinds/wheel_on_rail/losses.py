@@ -41,18 +41,7 @@ def expected_error_of_losses(case: WheelOnRail) -> LossFactorError:
 
 
 def relaxed(error: LossFactorError) -> dict[Entry, Any]:
-    """Lay out the stiffnesses that relax, and the errors in bands.
-
-    Parameters
-    ----------
-    error : LossFactorError
-        Of the track of a case.
-
-    Returns
-    -------
-    dict of Entry
-        None where the track has no loss factors.
-    """
+    """Lay out the stiffnesses that relax, and the errors in bands; nothing without loss factors."""
     track = causal_track(error.track)
     parts = {name: getattr(track.relaxations, name, None) for name in ("rail", "pad", "ballast")}
     layers = {name: found.at(2.0 * np.pi * error.bands) for name, found in parts.items() if found is not None}

@@ -23,19 +23,10 @@ from asperity.structures.rail_poles import RailPoles
 
 
 def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
-    """Lay out what was computed, with units and provenance.
+    """Lay out what was computed, as scenario, surface, track, contact, rolling and spectra.
 
-    Parameters
-    ----------
-    computed : Computed
-        Textures, track, reduction and runs.
-    caught : list of WarningMessage
-        Warnings met on the way; those of laying out may still be added to it.
-
-    Returns
-    -------
-    xarray.DataTree
-        Groups scenario, surface, track, contact, rolling, spectra.
+    With units and provenance. `caught` are the warnings met on the way; those of laying out may still be
+    added to it.
     """
     spectra, losses = spectra_group(computed), error_of_losses(computed)
     found = findings(computed.chain)

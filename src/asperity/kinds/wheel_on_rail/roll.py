@@ -24,22 +24,12 @@ from asperity.structures.wheel import Wheel
 
 @dataclass(frozen=True, eq=False)
 class WheelRolling(Rolled):
-    """A wheel has rolled along a track; positions count from the sleeper at zero.
+    """A wheel has rolled along a track; positions count from the sleeper at zero."""
 
-    Parameters
-    ----------
-    wheel_displacement, rail_displacement : ndarray (n,)
-        At the contact, m, positive downwards.
-    history : ndarray (m,)
-        Contact force of run-in and run, N.
-    history_start : float
-        Position of the first value of `history`, m.
-    """
-
-    wheel_displacement: NDArray[np.float64]
-    rail_displacement: NDArray[np.float64]
-    history: NDArray[np.float64]
-    history_start: float
+    wheel_displacement: NDArray[np.float64]  # (n,), at the contact, m, positive downwards
+    rail_displacement: NDArray[np.float64]  # (n,), at the contact, m, positive downwards
+    history: NDArray[np.float64]  # (m,), contact force of run-in and run, N
+    history_start: float  # position of its first value, m
 
 
 def roll(

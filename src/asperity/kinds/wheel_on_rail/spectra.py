@@ -22,18 +22,7 @@ from asperity.surfaces.levels import band_levels_of
 
 
 def spectra_group(computed: Computed) -> xarray.Dataset:
-    """Lay out the spectra of a run.
-
-    Parameters
-    ----------
-    computed : Computed
-        What was computed.
-
-    Returns
-    -------
-    xarray.Dataset
-        PSDs, one-third octaves, differences to the linear law, and their consequence for sound power.
-    """
+    """Lay out PSDs, one-third octaves, differences to the linear law, and what follows for sound power."""
     step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
     laws = list(computed.chain.runs)
     samples = len(computed.chain.runs[laws[0]].time)

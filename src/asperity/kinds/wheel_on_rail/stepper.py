@@ -20,15 +20,7 @@ CHUNK = 16384  # steps between reports of progress
 
 
 class RailStepper:
-    """Wheel and rail behind the protocol of `asperity.rolling.stepping.Stepper`.
-
-    Parameters
-    ----------
-    vehicle, motion, record
-        Constants, state and histories.
-    path : Path
-        Where the contact is.
-    """
+    """Wheel and rail behind the protocol of `asperity.rolling.stepping.Stepper`."""
 
     def __init__(self, vehicle: Vehicle, motion: RailMotion, record: RailRecord, path: Path) -> None:
         self.vehicle, self.motion, self.record, self.path = vehicle, motion, record, path

@@ -24,19 +24,9 @@ KERNEL_LAG = 0.25
 
 
 def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
-    """Lay out what the wheel rolls on.
+    """Lay out what the wheel rolls on: receptances, decay rates, moving kernel, loss factors and numbers.
 
-    Parameters
-    ----------
-    computed : Computed
-        What was computed.
-    losses : LossFactorError
-        How far the force is off for loss factors.
-
-    Returns
-    -------
-    xarray.Dataset
-        Receptances over frequency, decay rates, moving kernel, loss factors and characteristic numbers.
+    `losses` says how far the force is off for loss factors.
     """
     track, case = computed.track, computed.case
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
