@@ -1,7 +1,6 @@
 """Measured lines of rail and wheel on the path of a case."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +12,8 @@ from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
 from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.running import prepare, run
 from asperity.scenarios.laws import working_point
+from like_measured import either, wheel_lines, where_measured
 
-MEASURED = Path(__file__).parents[3] / "shared" / "data" / "wheel_lines_um_1mm.npz"
 CASE = """
 kind = "wheel-on-rail"
 laws = ["areal", "linear"]
@@ -138,10 +137,11 @@ class TestWheel:
         np.testing.assert_allclose(np.ptp(inside, axis=1), 0.0, atol=1e-7)
 
 
-@pytest.mark.skipif(not MEASURED.is_file(), reason="no measured wheel lines in shared/data")
-def test_flat_of_a_measured_wheel_is_found(folder):
+@either
+def test_flat_of_a_measured_wheel_is_found(folder, measured):
+    np.savez(folder / "wheels.npz", flat=wheel_lines(0.6, measured=measured), other=np.zeros((10, 2880)))
     wheel = (
-        f'radius = "0.459 m"\nline = "{MEASURED}"\nline_array = "flat0p6mm"\nline_unit = "um"\n'
+        'radius = "0.459 m"\nline = "wheels.npz"\nline_array = "flat"\nline_unit = "um"\n'
         'line_spacing = "1 mm"\nline_distance = "5 mm"\nprocessing = ["curvature"]'
     )
     found = run(case(folder, wheel=wheel, duration="0.11 s"))
@@ -155,13 +155,15 @@ def test_flat_of_a_measured_wheel_is_found(folder):
     assert json.loads(found.attrs["warnings"])
 
 
-@pytest.mark.skipif(not MEASURED.is_file(), reason="no measured wheel lines in shared/data")
-@pytest.mark.parametrize("speed", [20, 56, 80])
-def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, speed):
+@pytest.mark.parametrize(
+    ("measured", "speed"), [(False, 56), *(pytest.param(True, v, marks=where_measured) for v in (20, 80))]
+)
+def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, measured, speed):
+    np.savez(folder / "wheels.npz", flat=wheel_lines(0.4, measured=measured))
     text = CASE.replace("56 m/s", f"{speed} m/s").replace('"areal", "linear"', '"linear"')
     text = text.replace("1 mm", "0.5 mm").replace("samples = 2", "samples = 1").format(
         surface="smooth = true", duration=f"{3.2 / speed:g} s",
-        wheel=f'line = "{MEASURED}"\nline_array = "flat0p4mm"\nline_unit = "um"\nline_spacing = "1 mm"\n'
+        wheel='line = "wheels.npz"\nline_array = "flat"\nline_unit = "um"\nline_spacing = "1 mm"\n'
         'line_distance = "5 mm"\nprocessing = ["curvature"]',
     )  # fmt: skip
     computed = compute(prepare(parse_case(text, folder / "case.toml")), lambda done, total, message: None)

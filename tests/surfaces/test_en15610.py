@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -10,9 +8,9 @@ from asperity.spectra import energy_sum
 from asperity.surfaces.en15610 import process, remove_spikes, roll_over, trim
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of, check_levels
+from like_measured import either, wheel_lines
 
 MM, UM = 1e-3, 1e-6
-WHEELS = Path(__file__).parents[3] / "shared" / "data" / "wheel_lines_um_1mm.npz"
 
 
 def spike(height, width, points=401, spacing=MM):
@@ -150,11 +148,10 @@ def test_radius_of_the_circle_is_checked():
         roll_over(Profile(np.zeros(10), MM), 0.0)
 
 
-@pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
-@pytest.mark.parametrize(("name", "depth"), [("flat0p2mm", 0.2), ("flat0p4mm", 0.4), ("flat0p6mm", 0.6)])
-def test_measured_wheel_lines_keep_their_flat_and_plausible_levels(name, depth):
-    with np.load(WHEELS) as archive:
-        raw = np.asarray(archive[name], float) * UM
+@either
+@pytest.mark.parametrize("depth", [0.2, 0.4, 0.6])
+def test_measured_wheel_lines_keep_their_flat_and_plausible_levels(measured, depth):
+    raw = wheel_lines(depth, measured=measured) * UM
     lines, records = zip(*(process(Profile(z, MM)) for z in raw), strict=True)
     assert all(
         r.trimmed[0] == 0 and sum(r.trimmed) + line.shape[0] == raw.shape[1]
@@ -162,7 +159,7 @@ def test_measured_wheel_lines_keep_their_flat_and_plausible_levels(name, depth):
     )
     deepest = -min(line.heights.min() for line in lines)
     assert 0.4 * depth * MM < deepest < 2.5 * depth * MM
-    check_levels(lines, name)
+    check_levels(lines, "wheel")
     found = [band_levels_of(line, segment=1.0) for line in lines]
     wavelength, level = found[0][0], energy_sum([one for _, one in found], axis=0) - 10 * np.log10(len(found))
     smooth = cnossos.wheel_roughness("disc")[1][-10]  # -10 dB at 6.3 mm

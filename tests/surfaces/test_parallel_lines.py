@@ -1,5 +1,3 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -10,9 +8,9 @@ from asperity.surfaces.en15610 import process, trim
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.parallel_lines import common_length, register, strip_from_lines
 from asperity.surfaces.synthesis import strip_from_bands
+from like_measured import either, wheel_lines
 
 MM, UM = 1e-3, 1e-6
-WHEELS = Path(__file__).parents[3] / "shared" / "data" / "wheel_lines_um_1mm.npz"
 
 
 def wheel_strip(lines=6):
@@ -73,14 +71,13 @@ def test_one_line_is_laid_out_constant_across():
     assert_array_equal(strip_from_lines([line], MM, MM, 3, MM), np.repeat(line[:, None], 3, axis=1))
 
 
-def measured_wheel(name):
-    with np.load(WHEELS) as archive:
-        return [trim(Profile(z * UM, MM))[0] for z in np.asarray(archive[name], float)]
+def wheel(depth, measured):
+    return [trim(Profile(z * UM, MM))[0] for z in wheel_lines(depth, measured=measured)]
 
 
-@pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
-def test_flats_of_measured_wheels_come_to_lie_beside_each_other():
-    found = register(measured_wheel("flat0p2mm"))
+@either
+def test_flats_of_measured_wheels_come_to_lie_beside_each_other(measured):
+    found = register(wheel(0.2, measured))
     assert found.reversed[:7] == (False, True, False, True, False, True, False)
     assert np.ptp(np.argmin(found.lines[:7], axis=1)) <= 5  # the flat covers seven of the ten lines
     strip = strip_from_lines(found.lines, MM, 5 * MM, 91, 0.5 * MM)
@@ -88,18 +85,18 @@ def test_flats_of_measured_wheels_come_to_lie_beside_each_other():
     assert np.isfinite(strip).all()
 
 
-@pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
-def test_lines_that_were_rolled_over_keep_to_and_fro_apart():
+@either
+def test_lines_that_were_rolled_over_keep_to_and_fro_apart(measured):
     # the circle takes the short waves that tell the directions apart; the starts still lie close together
-    found = register([process(profile, curvature=True)[0] for profile in measured_wheel("flat0p2mm")])
+    found = register([process(profile, curvature=True)[0] for profile in wheel(0.2, measured)])
     assert found.reversed == 5 * (False, True)
     assert np.ptp(np.argmin(found.lines[:5], axis=1)) <= 5
 
 
-@pytest.mark.skipif(not WHEELS.exists(), reason="measured wheel lines are not beside the checkout")
-def test_a_short_line_of_a_measured_wheel_does_not_spoil_the_others():
+@either
+def test_a_short_line_of_a_measured_wheel_does_not_spoil_the_others(measured):
     with pytest.warns(ShortRecordWarning, match="1 of 10"):
-        found = register(measured_wheel("flat0p6mm"))
+        found = register(wheel(0.6, measured))
     assert found.replaced == (4,)
     assert np.ptp(np.argmin(found.lines[:9], axis=1)) <= 10
     assert min(found.correlations[:9]) > 0.75
