@@ -15,8 +15,6 @@ from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
 from asperity.kinds.wheel_on_rail.figures.motion import point_labels
 from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
 from asperity.reporting import style
-from asperity.reporting.csv_files import csv_text
-from asperity.results import read_result, save
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import report_tree
 from report_wheel_tree import LAWS, PINNED, SLEEPERS, SPEED, wheel_tree
@@ -68,21 +66,6 @@ def ticks_of(axes):
     return ticks
 
 
-def test_page_is_whole_and_loads_nothing(text, folder):
-    reader = Reader(text)
-    names = reader.all("id")
-    assert not reader.open
-    assert len(names) == len(set(names))
-    assert not {"script", "link", "iframe"} & {tag for tag, _ in reader.tags}
-    assert "http:" not in text
-    assert "https:" not in text
-    for target in reader.all("href") + reader.all("xlink:href"):
-        assert target.startswith("data:") or target.removeprefix("#") in names or (folder / target).is_file()
-    assert set(PARTS) | {"contact_loss", "sound_power_table", "statistics", *OWN} <= set(names)
-    assert {p.stem for p in folder.glob("*.csv")} == set(PARTS)
-    assert len(text) < 3_000_000
-
-
 def test_kind_of_case_chooses_the_chapters(tree):
     assert chapters_of(tree) == WHEEL_ON_RAIL
     assert chapters_of(report_tree(["areal"], steps=500)) == BALL_ON_BEAM
@@ -94,55 +77,6 @@ def test_result_without_a_kind_is_known_by_its_track():
     tree = without_attrs()
     tree["scenario"].attrs = {}
     assert chapters_of(tree) == WHEEL_ON_RAIL
-
-
-@pytest.mark.parametrize("part", PARTS.values(), ids=lambda part: part.name)
-def test_figure_without_its_numbers_is_left_out(part):
-    assert part.drawable(small())
-    for need in part.needs:
-        assert not part.drawable(small(**{need.group: [need.name]}))
-
-
-@pytest.mark.parametrize("part", PARTS.values(), ids=lambda part: part.name)
-def test_attributes_may_be_missing(part):
-    tree = without_attrs()
-    assert part.draw(tree).axes
-    assert part.columns(tree)
-    assert part.caption(tree)
-
-
-@pytest.mark.parametrize(
-    ("name", "group", "missing"),
-    [
-        ("receptance", "track", ["receptance_midspan_phase", "receptance_support_phase"]),
-        ("receptance", "track", ["receptance_midspan", "wheel_receptance", "contact_receptance"]),
-        ("decay_rate", "track", ["decay_rate_limit", "decay_rate_en15461"]),
-        ("loss_factors", "track", ["loss_factor_rail_error"]),
-        ("roughness", "rolling", ["position"]),
-        ("force_envelope", "rolling", ["contact_loss_share"]),
-        ("force_peak", "rolling", ["position", "contact_loss_share"]),
-        ("force_psd", "spectra", ["linear_reference_psd", "band"]),
-        ("force_bands", "spectra", ["linear_reference_level", "force_level_difference_to_linear"]),
-        ("displacement", "rolling", ["wheel_displacement", "position"]),
-        ("displacement", "rolling", ["contact_force", "relative_displacement"]),
-        ("rail_velocity", "rolling", ["position"]),
-        ("rail_velocity_psd", "spectra", ["band"]),
-        ("contact_force", "contact", ["force_std"]),
-    ],
-)
-def test_optional_numbers_may_be_missing(name, group, missing):
-    tree = small(**{group: missing})
-    assert PARTS[name].draw(tree).axes
-    assert PARTS[name].columns(tree)
-    assert PARTS[name].caption(tree)
-
-
-@pytest.mark.parametrize("group", ["scenario", "surface", "track", "contact", "rolling", "spectra"])
-def test_one_group_alone_makes_a_page(group):
-    tree = small()
-    for other in set(tree.children) - {group}:
-        del tree[other]
-    assert "</html>" in page(tree)
 
 
 @pytest.mark.parametrize("laws", [["linear"], ["table"], ["direct", "hertz-filtered", "linear"]])
@@ -190,23 +124,6 @@ def test_numbers_survive_the_csv_files_to_the_last_bit(tree, folder):
 
 UNITS = r"m|1/m|m\^3|m/N|rad|m/\(N s\)|Pa|N|N/m|1|s|Hz|m/s|N\^2/Hz|\(m/s\)\^2/Hz"
 LEVELS = r"dB|dB/m|dB re 1 N|dB re 1 µm|dB re 1 pW|dB\(A\) re 1 pW"
-
-
-def test_every_csv_column_has_a_unit(folder):
-    for path in folder.glob("*.csv"):
-        assert all(re.fullmatch(rf".+ \[({UNITS}|{LEVELS})\]", head) for head in read_csv(path))
-
-
-def test_result_read_back_from_its_file_gives_the_same_numbers(tmp_path):
-    tree = small()
-    for node in tree.subtree:  # a result that is saved has units and a long name everywhere
-        for name, values in node.to_dataset(inherit=False).variables.items():
-            known = {"units": "1", "long_name": str(name), "missing": "as drawn"}
-            node[name].attrs.update(known | values.attrs)
-    loaded = read_result(save(tree, tmp_path / "run.nc"))
-    assert parts_of(loaded) == list(PARTS.values())
-    for part in PARTS.values():
-        assert csv_text(part.columns(loaded)) == csv_text(part.columns(tree))
 
 
 def test_smooth_surface_has_no_map_and_no_spectrum():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 BALL = {
     "kind": "ball-on-beam",
-    "laws": ["areal", "printed", "table", "linear-filtered", "linear"],
+    "laws": ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
     "start": "0.45 m",
     "duration": "20 ms",
     "settling": "0 s",
@@ -15,7 +15,7 @@ BALL = {
 }
 WHEEL = {
     "kind": "wheel-on-rail",
-    "laws": ["areal", "printed", "linear-filtered", "linear"],
+    "laws": ["areal", "shifted", "printed", "linear-filtered", "linear"],
     "duration": "40 ms",
     "settling": "20 ms",
     "surface": {"spectrum": "iso3095"},
@@ -24,3 +24,10 @@ WHEEL = {
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
 }
 CASES = {case["kind"]: case for case in (BALL, WHEEL)}
+
+
+def without(tree, group, *names):
+    """The result without some variables of a group."""
+    tree = tree.copy()
+    tree[group] = tree[group].to_dataset().drop_vars(names)
+    return tree

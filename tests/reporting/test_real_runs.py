@@ -1,0 +1,186 @@
+"""The report of a real run of each kind: whole, by itself, its numbers exact, and what lacks left out."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from real_runs import without
+
+from asperity.kinds import KINDS
+from asperity.kinds.report import page, parts_of, report
+from asperity.reporting.csv_files import csv_text
+from asperity.reporting.style import narrow_page, styled
+from asperity.results import read_result, save
+from report_reading import Reader, read_csv
+
+PARTS = {
+    (kind, part.name): part for kind in KINDS for chapter in KINDS[kind].chapters for part in chapter.parts
+}
+each_part = pytest.mark.parametrize(("kind", "name"), PARTS, ids=lambda value: value)
+TABLES = {
+    "ball-on-beam": {"statistics", "validity", "reference", "contact_loss", "energy_balance"},
+    "wheel-on-rail": {"statistics", "validity", "contact_loss", "sound_power_table"},
+}
+UNITS = r"m|1/m|m\^3|m/N|rad|m/\(N s\)|Pa|N|N/m|1|s|Hz|m/s|N\^2/Hz|\(m/s\)\^2/Hz|\(m/s\^2\)\^2/Hz"
+LEVELS = r"dB|dB/m|dB re 1 N|dB re 1 µm|dB re 1 pW|dB\(A\) re 1 pW"
+
+
+def kind_of(tree):
+    return tree["scenario"].attrs["kind"]
+
+
+@pytest.fixture(scope="session")
+def reports(real_runs, tmp_path_factory):
+    """Folders of the reports, by kind."""
+    folder = tmp_path_factory.mktemp("reports")
+    return {kind: report(tree, folder / kind).parent for kind, tree in real_runs.items()}
+
+
+@pytest.fixture
+def folder(real_run, reports):
+    return reports[kind_of(real_run)]
+
+
+@pytest.fixture
+def text(folder):
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_page_loads_nothing(text):
+    reader = Reader(text)
+    assert not reader.open
+    assert not {"script", "link", "iframe", "object", "base"} & {tag for tag, _ in reader.tags}
+    for target in reader.all("src") + reader.all("href") + reader.all("xlink:href"):
+        assert target.startswith(("#", "data:image/png;base64,")) or re.fullmatch(r"[a-z_]+\.csv", target)
+    assert "http:" not in text
+    assert "https:" not in text
+    assert "@import" not in text
+    assert all(match.startswith("#") for match in re.findall(r"url\(([^)]*)\)", text))
+
+
+def test_links_lead_somewhere(text, folder):
+    reader = Reader(text)
+    names = reader.all("id")
+    assert len(names) == len(set(names))
+    for target in reader.all("href") + reader.all("xlink:href"):
+        assert target.startswith("data:") or target.removeprefix("#") in names or (folder / target).is_file()
+    for target in re.findall(r"url\(#([^)]*)\)", text):
+        assert target in names
+
+
+def test_all_figures_tables_and_numbers_are_there(real_run, text, folder):
+    kind, names = kind_of(real_run), set(Reader(text).all("id"))
+    parts = {name for known, name in PARTS if known == kind}
+    chapters = {chapter.name for chapter in KINDS[kind].chapters}
+    assert parts | chapters | TABLES[kind] | {"case", "provenance"} <= names
+    assert {path.name for path in folder.iterdir()} == {"report.html", *(f"{name}.csv" for name in parts)}
+
+
+def test_every_figure_is_drawn_for_a_phone_too(real_run, text):
+    """At 360 px, 4.5 inches are as wide as the page: their letters of 9 points are as high as on paper."""
+    count = len(parts_of(real_run))
+    boxes = [float(box.split()[2]) for box in re.findall(r'viewBox="([^"]*)"', text)]
+    assert sorted(boxes) == pytest.approx(sorted([72 * 9.6, 72 * 4.5] * count))
+    assert text.count('class="drawing wide"') == text.count('class="drawing narrow"') == count
+
+
+def test_what_the_run_says_is_shown(real_run, text):
+    shown = "".join(Reader(text).text).replace("\u00a0", " ")
+    assert real_run.attrs["verdict"] in shown
+    for warning in json.loads(real_run.attrs["warnings"]):
+        assert warning["message"] in shown
+    for citation in json.loads(real_run.attrs["citations"]):
+        assert citation in shown
+    for entry in json.loads(real_run["scenario"].attrs["numerics"]):
+        assert entry["value"] in shown
+    for parameter in json.loads(real_run["scenario"].attrs["parameters"]):
+        assert parameter["value"] in shown
+
+
+def test_every_csv_column_has_a_unit_and_a_number(folder):
+    for path in folder.glob("*.csv"):
+        table = read_csv(path)
+        assert all(re.fullmatch(rf".+ \[({UNITS}|{LEVELS})\]", head) for head in table), path
+        assert all(np.isfinite(column).any() for column in table.values()), path
+
+
+def test_numbers_survive_the_csv_files_to_the_last_bit(real_run, folder):
+    spectra, contact = real_run["spectra"].to_dataset(), real_run["contact"].to_dataset()
+    psd, bands = read_csv(folder / "force_psd.csv"), read_csv(folder / "force_bands.csv")
+    assert np.array_equal(psd["frequency [Hz]"], spectra["frequency"].values)
+    for law in spectra["law"].values:
+        assert np.array_equal(psd[f"{law} [N^2/Hz]"], spectra["force_psd"].sel(law=law).values)
+        assert np.array_equal(bands[f"{law} [dB re 1 N]"], spectra["force_level"].sel(law=law).values)
+    force = read_csv(folder / "contact_force.csv")
+    assert np.array_equal(force["stiffness [N/m]"], contact["stiffness"].values)
+    assert np.allclose(force["state r [m]"] - force["approach [m]"], contact.attrs["datum"], rtol=1e-12)
+    pressure = read_csv(folder / "contact_pressure.csv")
+    assert np.array_equal(np.array(list(pressure.values()))[1:].T, contact["pressure"].values)
+
+
+def test_result_read_back_from_its_file_has_the_same_numbers(real_run, tmp_path):
+    read = read_result(save(real_run, tmp_path / "run.nc"))
+    assert parts_of(read) == parts_of(real_run)
+    for part in parts_of(read):
+        assert csv_text(part.columns(read)) == csv_text(part.columns(real_run))
+
+
+def test_same_result_same_page(real_run, text):
+    assert page(real_run) == text
+
+
+@each_part
+def test_figure_without_its_numbers_is_left_out(real_runs, kind, name):
+    part, tree = PARTS[kind, name], real_runs[kind]
+    for need in part.needs:
+        assert not part.drawable(without(tree, need.group, need.name))
+
+
+@each_part
+def test_figure_goes_without_attributes(real_runs, kind, name):
+    part, tree = PARTS[kind, name], real_runs[kind].copy()
+    for group in tree.children:
+        tree[group].attrs = {}
+    assert part.draw(tree).axes
+    assert part.columns(tree)
+    assert part.caption(tree)
+
+
+@each_part
+def test_figure_goes_without_each_number_that_it_does_not_need(real_runs, kind, name):
+    """Drawn without everything else at once: what it needs is what it says."""
+    part, tree = PARTS[kind, name], real_runs[kind]
+    kept = {(entry.group, entry.name) for entry in (*part.needs, *part.any_of[:1])}
+    for group in tree.children:
+        others = [str(v) for v in tree[group].data_vars if (group, str(v)) not in kept]
+        tree = without(tree, group, *others)
+    assert part.drawable(tree)
+    assert part.draw(tree).axes
+    assert part.columns(tree)
+    assert part.caption(tree)
+
+
+@pytest.mark.parametrize("group", ["scenario", "surface", "track", "contact", "rolling", "spectra"])
+def test_one_group_alone_makes_a_page(real_run, group):
+    tree = real_run.copy()
+    for other in set(tree.children) - {group}:
+        del tree[other]
+    assert "</html>" in page(tree)
+
+
+@each_part
+def test_figures_for_a_phone_have_room_for_all_that_is_in_them(real_runs, kind, name):
+    with styled(), narrow_page():
+        figure = PARTS[kind, name].draw(real_runs[kind])
+        FigureCanvasAgg(figure)
+        figure.get_layout_engine().execute(figure)  # warns, and thereby fails, where there is none
+        width = figure.bbox.width
+        for axes in figure.axes:
+            assert axes.bbox.width > 0.35 * width or len(axes.get_xticklabels()) == 0 or axes.bbox.width < 20
+            box = axes.get_tightbbox()
+            assert box.x0 > -0.01 * width
+            assert box.x1 < 1.01 * width
