@@ -1,7 +1,7 @@
 """The command line of studies: study and sweep."""
 
 import csv
-import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,12 +10,28 @@ import xarray as xr
 from click.testing import CliRunner
 
 from asperity.cli import main
+from asperity.running import run
 from asperity.studies.definition import load_study
 
 BALL = 'kind = "ball-on-beam"\n[surface]\nrms = "0.5 um"\n'
 RAIL = 'kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'
-STUDY = 'case = "rail.toml"\n[sweep]\nspeed = ["20 m/s", "200 km/h"]\n"track.name" = ["x2000"]\n'
-FAILURE = {"error": "ComputationError", "message": "it failed.", "members": [f"seed = {n}" for n in range(8)]}
+SMALL = """
+kind = "ball-on-beam"
+laws = ["hertz", "linear", "hertz-filtered", "linear-filtered"]
+start = "0.45 m"
+duration = "20 ms"
+settling = "0 s"
+[surface]
+spectrum = "iso3095"
+level = "-20 dB"
+"""
+STUDY = """
+case = "small.toml"
+[sweep]
+seed = [1, 2, 3, 4, 5, 6, 7, 8]
+"ball.load" = ["5 N", "60 kN"]
+"""
+"""The heavy ball is refused: its contact is wider than the half-space allows."""
 
 
 @pytest.fixture(autouse=True)
@@ -32,107 +48,114 @@ def call(*arguments, code=0):
     return outcome
 
 
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory):
+    """Folder of a study of sixteen members of which eight fail, and what was said."""
+    folder = tmp_path_factory.mktemp("study")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.setenv("ASPERITY_CACHE", str(folder / "cache"))
+        Path("small.toml").write_text(SMALL)
+        Path("study.toml").write_text(STUDY)
+        outcome = call("study", "study.toml", "-o", "out", "--workers", "1")
+    return folder, outcome
+
+
 @pytest.fixture
-def computed(monkeypatch):
-    """Replace the computation; returns the sweeps and the workers that were asked for."""
-    asked = []
-
-    def study(definition, *, executor, workers, progress):
-        asked.append((definition.sweep, workers))
-        swept = [axis.name for axis in definition.axes]
-        axes = {
-            axis.name: (axis.name, axis.coordinate, {"units": axis.units, "long_name": axis.name})
-            for axis in definition.axes
-        }
-        axes["law"] = ("law", ["areal", "linear"], {"units": "1", "long_name": "law"})
-        axes["band"] = ("band", [500.0, 1000.0], {"units": "Hz", "long_name": "band"})
-        shape = (*definition.shape, 2)
-        share = np.arange(np.prod(shape), dtype=float).reshape(shape) / 10
-        share.flat[-1] = np.nan
-        warning = {"category": "Coarse", "message": "spacing is coarse", "members": 3}
-        attrs = {"case": definition.text, "sweep": json.dumps(definition.sweep)}
-        attrs |= {"warnings": json.dumps([warning]), "failures": json.dumps([FAILURE])}
-        variables = {
-            "completed": (swept, np.ones(definition.shape, np.int8), "1"),
-            "contact_loss_share": ([*swept, "law"], share, "1"),
-            "force_level": ([*swept, "law", "band"], np.full((*shape, 2), 30.5), "dB re 1 N"),
-            "table": ([*swept, "band", "other"], np.zeros((*definition.shape, 2, 3)), "m"),
-        }
-        found = {n: (d, v, {"units": u, "long_name": n}) for n, (d, v, u) in variables.items()}
-        return xr.Dataset(found, axes, attrs)
-
-    monkeypatch.setattr("asperity.studies.running.study", study)
-    return asked
+def out(computed, monkeypatch):
+    """The study and its results, in the working folder."""
+    for name in ("small.toml", "study.toml"):
+        shutil.copy(computed[0] / name, name)
+    shutil.copytree(computed[0] / "out", "out")
+    monkeypatch.setenv("ASPERITY_CACHE", str(computed[0] / "cache"))
+    return Path("out")
 
 
 def test_a_study_is_tabulated_and_written(computed):
-    Path("study.toml").write_text(STUDY)
-    outcome = call("study", "study.toml", "-o", "out", "--workers", "2")
-    assert computed == [({"speed": ["20 m/s", "200 km/h"], "track.name": ["x2000"]}, 2)]
-    assert "Study of 2 speed × 1 track.name" in outcome.stderr
-    for text in ("speed [m/s]", "contact_loss_share [1]", "x2000", "–"):
+    folder, outcome = computed
+    assert "Study of 8 seed × 2 ball.load" in outcome.stderr
+    for text in ("seed", "ball.load [N]", "contact_loss_share [1]", "hertz-filtered", "–"):
         assert text in outcome.stdout
     assert "force_level" not in outcome.stdout
-    assert str(Path("out/study.nc").resolve()) in outcome.stdout
-    with xr.open_dataset("out/study.nc", engine="h5netcdf") as found:
-        assert found["contact_loss_share"].dims == ("speed", "track.name", "law")
-    with open("out/study.csv", newline="") as file:
+    assert "… and 4 more rows, in study.csv" in outcome.stdout
+    assert str((folder / "out" / "study.nc").resolve()) in outcome.stdout
+    with (folder / "out" / "study.csv").open(newline="", encoding="utf-8") as file:
         heading, *rows = csv.reader(file)
-    assert heading == [
-        *("speed [m/s]", "track.name", "law", "completed [1]", "contact_loss_share [1]"),
-        *("force_level 500 Hz [dB re 1 N]", "force_level 1000 Hz [dB re 1 N]"),
-    ]
-    assert len(rows) == 4
-    assert rows[1] == ["20.0", "x2000", "linear", "1", "0.1", "30.5", "30.5"]
+    assert heading[:3] == ["seed [1]", "ball.load [N]", "law"]
+    assert len(rows) == 8 * 2 * 4
+    with xr.open_dataset(folder / "out" / "study.nc", engine="h5netcdf") as found:
+        share = found["contact_loss_share"]
+        assert share.dims == ("seed", "ball.load", "law")
+        assert found["completed"].values.tolist() == [[1, 0]] * 8
+        column = heading.index("contact_loss_share [1]")
+        for row in rows:
+            value = float(share.sel({"seed": int(row[0]), "ball.load": float(row[1]), "law": row[2]}))
+            assert (row[column] == "") == np.isnan(value)
+            assert row[column] == "" or float(row[column]) == value
 
 
-def test_names_in_a_table_are_no_formulas_and_no_markup(computed):
-    for name in ("=cmd|x.npy", "[red]a [um].npy"):
-        Path(name).write_bytes(b"1")
-    Path("study.toml").write_text(
-        '[case]\nkind = "ball-on-beam"\n[case.surface]\nheight_unit = "um"\n'
-        '[sweep]\n"surface.file" = ["=cmd|x.npy", "[red]a [um].npy"]\n'
-    )
-    outcome = call("study", "study.toml", "-o", "out")
-    assert "[red]a [um].npy" in outcome.stdout
-    with open("out/study.csv", newline="") as file:
-        _, *rows = csv.reader(file)
-    assert [row[0] for row in rows[::2]] == ["'=cmd|x.npy", "[red]a [um].npy"]
-    assert rows[0][2] == "1"  # numbers stay as they are
+def test_a_member_is_what_a_run_of_its_case_is(out):
+    keys = SMALL.replace('kind = "ball-on-beam"', 'kind = "ball-on-beam"\nseed = 3')
+    Path("one.toml").write_text(keys.replace("[surface]", '[ball]\nload = "5 N"\n[surface]'))
+    one = run("one.toml")["rolling"]
+    with xr.open_dataset(out / "study.nc", engine="h5netcdf") as found:
+        member = found.sel({"seed": 3, "ball.load": 5.0})
+        np.testing.assert_array_equal(member["contact_loss_share"], one["contact_loss_share"])
+        np.testing.assert_array_equal(member["rms_force"], one["contact_force"].std("time"))
 
 
 def test_what_members_met_is_said_once(computed):
-    said = call("sweep", "rail.toml", "--speed", "20 m/s").stderr
-    assert "Warning (3 of 1 members): spacing is coarse" in said
-    assert "Failed (8 of 1 members): it failed." in said
-    assert "  - seed = 5\n  - and 2 more\n" in said
+    said = computed[1].stderr
+    (warned,) = [line for line in said.splitlines() if "after rest" in line]
+    assert warned.startswith("Warning (8 of 16 members): the record starts 0 ms after rest")
+    (failed,) = [line for line in said.splitlines() if line.startswith("Failed")]
+    assert failed.startswith("Failed (8 of 16 members): ")
+    assert "  - seed = 6, ball.load = 60 kN\n  - and 2 more\n" in said
 
 
-def test_a_long_table_is_printed_in_part(computed):
-    speeds = ", ".join(f"{n} m/s" for n in range(1, 41))
-    assert "… and 20 more rows, in study.csv" in call("sweep", "rail.toml", "--speed", speeds).stdout
+def test_names_in_a_table_are_no_formulas_and_no_markup():
+    heights = 0.02 * np.random.default_rng(0).normal(size=(40, 40))
+    for name in ("=cmd|x.npy", "[red]a [um].npy"):
+        with open(name, "wb") as file:
+            np.save(file, heights)
+    Path("study.toml").write_text(
+        '[case]\nkind = "ball-on-beam"\nlaws = ["linear"]\nstart = "0.45 m"\nduration = "5 ms"\n'
+        'settling = "0 s"\n[case.surface]\nheight_unit = "um"\npixel = "20 um"\n'
+        '[case.contact]\nspacing = "20 um"\nsamples = 1\n'
+        '[sweep]\n"surface.file" = ["=cmd|x.npy", "[red]a [um].npy"]\n'
+    )
+    outcome = call("study", "study.toml", "-o", "out", "--workers", "1")
+    assert "[red]a [um].npy" in outcome.stdout
+    with open("out/study.csv", newline="", encoding="utf-8") as file:
+        heading, *rows = csv.reader(file)
+    assert [row[0] for row in rows] == ["'=cmd|x.npy", "[red]a [um].npy"]
+    assert rows[0][heading.index("completed [1]")] == "1"  # numbers stay as they are
 
 
-def test_speeds_and_loads_need_no_file(computed):
-    call("sweep", "rail.toml", "--speed", "20 m/s, 200 km/h", "--load", "50 kN,65 kN")
-    call("sweep", "ball.toml", "--load", "5 N")
-    assert [sweep for sweep, _ in computed] == [
-        {"speed": ["20 m/s", "200 km/h"], "wheel.load": ["50 kN", "65 kN"]},
-        {"ball.load": ["5 N"]},
-    ]
-    assert Path("runs/rail/study.csv").exists()
+def test_speeds_and_loads_need_no_file():
+    Path("small.toml").write_text(SMALL)
+    call("sweep", "small.toml", "--speed", "1 m/s, 7.2 km/h", "--load", "5 N,6 N", "--workers", "1")
+    with xr.open_dataset("runs/small/study.nc", engine="h5netcdf") as found:
+        assert found["speed"].values.tolist() == [1.0, 2.0]
+        assert found["ball.load"].values.tolist() == [5.0, 6.0]
+        assert found["completed"].values.all()
+        assert np.ptp(found["rms_force"].values[..., 0]) > 0.0
 
 
-def test_another_study_is_never_overwritten_unasked(computed):
-    call("sweep", "rail.toml", "--speed", "20 m/s", "-o", "out")
-    call("sweep", "rail.toml", "--speed", "20 m/s", "-o", "out")
-    other = ["sweep", "rail.toml", "--speed", "30 m/s", "-o", "out"]
-    assert "out: received the study.nc of another study" in call(*other, code=2).stderr
+def test_another_study_is_never_overwritten_unasked(out):
+    again = ["study", "study.toml", "-o", "out", "--workers", "1"]
+    before = (out / "study.nc").stat().st_mtime_ns
+    call(*again)
+    assert (out / "study.nc").stat().st_mtime_ns > before
+    Path("study.toml").write_text(STUDY.replace("[1, 2, 3, 4, 5, 6, 7, 8]", "[1, 2]"))
+    assert "out: received the study.nc of another study" in call(*again, code=2).stderr
     Path("out/study.nc").write_text("precious")
-    assert "out: received the study.nc of another study" in call(*other, code=2).stderr
-    call(*other, "--overwrite")
-    assert len(computed) == 3
-    assert "rail.toml is a file)" in call(*other[:-1], "rail.toml", code=2).stderr
+    assert "out: received the study.nc of another study" in call(*again, code=2).stderr
+    assert Path("out/study.nc").read_text() == "precious"
+    call(*again, "--overwrite")
+    with xr.open_dataset("out/study.nc", engine="h5netcdf") as found:
+        assert found.sizes["seed"] == 2
+    assert "rail.toml is a file)" in call("study", "study.toml", "-o", "rail.toml", code=2).stderr
 
 
 @pytest.mark.parametrize(
@@ -155,9 +178,9 @@ def test_another_study_is_never_overwritten_unasked(computed):
         ),
     ],
 )
-def test_wrong_input_is_explained(computed, arguments, message):
+def test_wrong_input_is_explained(arguments, message):
     assert message in call(*arguments, code=2).stderr
-    assert computed == []
+    assert not list(Path().glob("runs/*/study.nc"))
 
 
 def test_a_new_study_is_valid():
