@@ -12,7 +12,7 @@ from matplotlib.text import Text
 
 from asperity.errors import ComputationError
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
-from asperity.kinds.report import page, parts_of, report
+from asperity.kinds.report import page_of, parts_of, report
 from asperity.reporting import lines_picture, surface_picture
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
 from asperity.reporting.style import (
@@ -85,7 +85,7 @@ def test_verdict_warnings_and_provenance_are_shown(tree, text):
 def test_no_warnings_is_said():
     tree = contact_only()
     tree.attrs["warnings"] = "[]"
-    assert "No warnings on the physics." in page(tree)
+    assert "No warnings on the physics." in page_of(tree)
 
 
 def test_values_that_differ_from_the_default_are_marked(tree, text):
@@ -122,7 +122,7 @@ def test_hostile_text_stays_text():
     tree["surface"].attrs["statistics"] = json.dumps([statistic])
     for group in ("rolling", "spectra"):
         tree[group] = tree[group].to_dataset().assign_coords(law=[HOSTILE, "linear"])
-    reader = Reader(page(tree))
+    reader = Reader(page_of(tree))
     assert not reader.open
     assert not {"script", "img"} & {tag for tag, _ in reader.tags}
     assert not reader.all("onerror")
@@ -135,7 +135,7 @@ def test_damaged_or_missing_attributes_are_survived(attrs):
     tree.attrs = attrs
     for group in tree.children:
         tree[group].attrs = {}
-    assert "No verdict was stored" in page(tree)
+    assert "No verdict was stored" in page_of(tree)
 
 
 def test_numbers_that_are_all_missing_count_as_missing():
@@ -339,7 +339,9 @@ def test_the_page_is_made_for_paper(text, tree):
 def test_numbers_keep_their_units_on_the_line():
     tree = contact_only()
     tree.attrs["verdict"] = "It varies by 8.35 kN rms, −18.0 dB (3.15 kHz), 2.1 % of the time; 3 seconds"
-    assert "8.35\u00a0kN rms, −18.0\u00a0dB (3.15\u00a0kHz), 2.1\u00a0% of the time; 3 seconds" in page(tree)
+    assert "8.35\u00a0kN rms, −18.0\u00a0dB (3.15\u00a0kHz), 2.1\u00a0% of the time; 3 seconds" in page_of(
+        tree
+    )
 
 
 def test_the_datum_is_written_in_one_way(text, tree):
@@ -559,7 +561,7 @@ def graded():
 
 
 def test_warnings_are_shown_by_their_grade():
-    text = page(graded())
+    text = page_of(graded())
     assert "1 out of range, 2 warnings, 1 note on the physics" in "".join(Reader(text).text)
     rows = re.findall(r'<li class="(\w*)"><strong>(.*?): (\w+)</strong>', text)
     assert rows == [
@@ -577,4 +579,4 @@ def test_quantities_are_tabulated_with_their_range():
     assert [row[3].text for row in table.rows] == ["It is rough. Take `table`."] * 2 + ["in range"]
     assert [row[2].text for row in table.rows] == ["from 0.9 on"] * 3
     assert validity_table(small()) is None
-    assert 'id="validity"' in page(graded())
+    assert 'id="validity"' in page_of(graded())

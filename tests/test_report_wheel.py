@@ -9,7 +9,7 @@ import pytest
 from matplotlib.text import Text
 
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
-from asperity.kinds.report import chapters_of, page, parts_of, report
+from asperity.kinds.report import chapters_of, page_of, parts_of, report
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
 from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
 from asperity.kinds.wheel_on_rail.figures.motion import point_labels
@@ -95,7 +95,7 @@ def test_hostile_names_stay_text():
     tree["spectra"] = tree["spectra"].to_dataset().assign_coords(names)
     tree["track"].attrs["kernel_method"] = HOSTILE
     del tree["surface"], tree["contact"]
-    reader = Reader(page(tree))
+    reader = Reader(page_of(tree))
     assert not reader.open
     assert not {"script", "img"} & {tag for tag, _ in reader.tags}
     assert "".join(reader.text).count(HOSTILE) > 10

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from asperity.kinds import KINDS
 from asperity.scenarios.kind import SHARED
-from asperity.schema import VERSION, listed
+from asperity.schema import VERSION, contents_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "result_file.md"
 HEAD = f"""# What `run.nc` holds
@@ -39,10 +39,10 @@ def table(entries, attributes):
 
 def page():
     """Text of the page."""
-    parts = [HEAD, "## All kinds of case\n", table(*listed(*SHARED)), ""]
-    shared = [item for items in listed(*SHARED) for item in items]
+    parts = [HEAD, "## All kinds of case\n", table(*contents_of(*SHARED)), ""]
+    shared = [item for items in contents_of(*SHARED) for item in items]
     for name, kind in KINDS.items():
-        own = ([item for item in items if item not in shared] for items in listed(*kind.schema))
+        own = ([item for item in items if item not in shared] for items in contents_of(*kind.schema))
         parts += [f"## {name}, beside these\n", table(*own), ""]
     return "\n".join(parts)
 

@@ -11,8 +11,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from real_runs import without
 
 from asperity.kinds import KINDS
-from asperity.kinds.report import page, parts_of, report
-from asperity.reporting.csv_files import csv_text
+from asperity.kinds.report import page_of, parts_of, report
+from asperity.reporting.csv_files import columns_text
 from asperity.reporting.style import narrow_page, styled
 from asperity.results import read_result, save
 from report_reading import Reader, read_csv
@@ -126,11 +126,11 @@ def test_result_read_back_from_its_file_has_the_same_numbers(real_run, tmp_path)
     read = read_result(save(real_run, tmp_path / "run.nc"))
     assert parts_of(read) == parts_of(real_run)
     for part in parts_of(read):
-        assert csv_text(part.columns(read)) == csv_text(part.columns(real_run))
+        assert columns_text(part.columns(read)) == columns_text(part.columns(real_run))
 
 
 def test_same_result_same_page(real_run, text):
-    assert page(real_run) == text
+    assert page_of(real_run) == text
 
 
 @each_part
@@ -169,7 +169,7 @@ def test_one_group_alone_makes_a_page(real_run, group):
     tree = real_run.copy()
     for other in set(tree.children) - {group}:
         del tree[other]
-    assert "</html>" in page(tree)
+    assert "</html>" in page_of(tree)
 
 
 @each_part

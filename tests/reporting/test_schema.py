@@ -10,7 +10,7 @@ from schema_page import PAGE, page
 
 import asperity
 from asperity.kinds import KINDS
-from asperity.schema import VERSION, listed
+from asperity.schema import VERSION, contents_of
 from asperity.schema.entry import UNKNOWN
 
 SOURCE = Path(asperity.__file__).parent
@@ -18,7 +18,7 @@ GROUPS = ("scenario", "surface", "contact", "rolling", "spectra", "track")
 
 
 def schema_of(tree):
-    return listed(*KINDS[tree["scenario"].attrs["kind"]].schema)
+    return contents_of(*KINDS[tree["scenario"].attrs["kind"]].schema)
 
 
 def written(tree):
@@ -79,7 +79,7 @@ def test_result_states_speed_and_sleepers(real_runs):
 
 @pytest.mark.parametrize("kind", list(KINDS))
 def test_names_stand_once(kind):
-    entries, attributes = listed(*KINDS[kind].schema)
+    entries, attributes = contents_of(*KINDS[kind].schema)
     for items in (entries, attributes):
         places = [(item.group, item.name) for item in items]
         assert len(places) == len(set(places))
@@ -103,7 +103,7 @@ def test_every_figure_of_a_real_run_is_drawn(real_run):
 
 def test_needs_of_figures_are_in_the_schema():
     for kind in KINDS.values():
-        entries, _ = listed(*kind.schema)
+        entries, _ = contents_of(*kind.schema)
         for chapter in kind.chapters:
             for part in chapter.parts:
                 assert set(part.needs) | set(part.any_of) <= set(entries), part.name

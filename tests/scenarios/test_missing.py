@@ -6,7 +6,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import PhysicsWarning
-from asperity.kinds.report import page
+from asperity.kinds.report import page_of
 from asperity.schema import Entry
 from asperity.schema.entry import UNKNOWN
 from asperity.schema.spectra import NO_SIGNAL
@@ -86,4 +86,4 @@ def test_every_value_of_a_result_is_finite_or_marked(base, changed, tmp_path, mo
     missing = [v for v in tree["spectra"].data_vars.values() if "missing" in v.attrs]
     if "beam" in changed and "sensors" in changed["beam"]:
         assert [v.name for v in missing] == ["acceleration_level"]
-        assert "there is no signal in these bands, and nothing has no level" in page(tree)
+        assert "there is no signal in these bands, and nothing has no level" in page_of(tree)

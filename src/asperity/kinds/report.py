@@ -12,11 +12,10 @@ from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.kinds import KINDS
-from asperity.reporting import page as pages
 from asperity.reporting.chapter import Chapter
-from asperity.reporting.csv_files import write_csv
+from asperity.reporting.csv_files import write_columns
 from asperity.reporting.data import stated
-from asperity.reporting.page import drawable_parts
+from asperity.reporting.page import drawable_parts, page
 from asperity.reporting.part import Part
 from asperity.schema.provenance import KIND
 
@@ -36,9 +35,9 @@ def parts_of(tree: DataTree) -> list[Part]:
     return drawable_parts(tree, chapters_of(tree))
 
 
-def page(tree: DataTree) -> str:
+def page_of(tree: DataTree) -> str:
     """The whole page of a run, see `asperity.reporting.page.page`."""
-    return pages.page(tree, chapters_of(tree))
+    return page(tree, chapters_of(tree))
 
 
 def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
@@ -69,9 +68,9 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     target = file_path("report", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
         target /= "report.html"
-    text = page(result)
+    text = page_of(result)
     for part in parts_of(result):
-        write_csv(part.columns(result), target.parent / f"{part.name}.csv")
+        write_columns(part.columns(result), target.parent / f"{part.name}.csv")
     return write_bytes(target, text.encode("utf-8", errors="backslashreplace"))
 
 

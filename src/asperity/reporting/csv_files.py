@@ -6,22 +6,20 @@ from pathlib import Path
 
 import numpy as np
 
-from asperity import comma_separated
+from asperity.comma_separated import csv_text
+from asperity.files import write_bytes
 from asperity.reporting.part import Columns
 
 
-def csv_text(columns: Columns) -> str:
+def columns_text(columns: Columns) -> str:
     """Comma-separated text: a header ``quantity [unit]``, then one row per value, exact to the last bit.
 
     A missing number (NaN) is an empty field.
     """
-    return comma_separated.csv_text(list(columns), _rows(columns))
+    values = (np.asarray(column, dtype=float).tolist() for column in columns.values())
+    return csv_text(list(columns), zip(*values, strict=True))
 
 
-def _rows(columns: Columns) -> list[tuple[float, ...]]:
-    return list(zip(*(np.asarray(values, dtype=float).tolist() for values in columns.values()), strict=True))
-
-
-def write_csv(columns: Columns, path: Path) -> Path:
+def write_columns(columns: Columns, path: Path) -> Path:
     """Write `columns` to the file at `path`, completely or not at all."""
-    return comma_separated.write_csv(path, list(columns), _rows(columns))
+    return write_bytes(path, columns_text(columns).encode("utf-8"))

@@ -14,10 +14,10 @@ from asperity.schema.entry import Attribute, Entry, attributes, variables
 VERSION = 1
 """Of the schema, in every result. Raise it where a name, dimension, unit or meaning changes or goes."""
 
-__all__ = ["VERSION", "Attribute", "Entry", "attributes", "listed", "variables"]
+__all__ = ["VERSION", "Attribute", "Entry", "attributes", "contents_of", "variables"]
 
 
-def listed(*modules: ModuleType) -> tuple[list[Entry], list[Attribute]]:
+def contents_of(*modules: ModuleType) -> tuple[list[Entry], list[Attribute]]:
     """Entries and attributes that modules define, in their order."""
     found = list(dict.fromkeys(item for module in modules for item in _items(module)))
     entries = [item for item in found if isinstance(item, Entry)]

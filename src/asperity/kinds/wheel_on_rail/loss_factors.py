@@ -70,10 +70,10 @@ def warn_of_loss_factors(error: LossFactorError) -> None:
     layer, factor, remedy = _largest(error.track, error.bands[error.worst])
     bands = ", ".join(nominal_frequency(error.bands[i]) for i in off)
     warnings.warn(
-        f"the contact force in time is up to {signed(error.force[error.worst])} dB from that with constant "
-        f"loss factors, more than {DOUBTFUL:g} dB in the one-third octaves of {bands}: nothing that answers "
-        f"after a force only has the loss factor {factor:g} of the {layer} at all frequencies. Read these "
-        f"bands with their error, or {remedy}.",
+        f"the contact force in time is up to {signed_level(error.force[error.worst])} dB from that with "
+        f"constant loss factors, more than {DOUBTFUL:g} dB in the one-third octaves of {bands}: nothing "
+        f"that answers after a force only has the loss factor {factor:g} of the {layer} at all "
+        f"frequencies. Read these bands with their error, or {remedy}.",
         LossFactorWarning,
         stacklevel=2,
     )
@@ -97,6 +97,6 @@ def _largest(track: Track, frequency: float) -> tuple[str, float, str]:
     return layer, factor, remedy
 
 
-def signed(level: float) -> str:
+def signed_level(level: float) -> str:
     """Write a level difference with its sign, to 0.1 dB."""
     return f"{level:+.1f}".replace("-", "−")

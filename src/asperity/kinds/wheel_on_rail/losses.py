@@ -14,7 +14,7 @@ from asperity.kinds.wheel_on_rail.bodies import wheel_of
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.geometry import geometry_of
-from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, loss_factor_error, signed
+from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, loss_factor_error, signed_level
 from asperity.scenarios.laws import working_point
 from asperity.schema import Entry
 from asperity.spectra import nominal_frequency
@@ -69,7 +69,7 @@ def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str,
     if nominal.is_causal or track.relaxations is None:
         return
     off = [
-        f"{nominal_frequency(band)} {signed(level)}"
+        f"{nominal_frequency(band)} {signed_level(level)}"
         for band, level in zip(error.bands, error.force, strict=True)
         if abs(level) >= LEAST_SHOWN
     ]
