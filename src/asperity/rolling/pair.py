@@ -87,12 +87,13 @@ def roll_pair(
         yield "the contact resonance", np.sqrt(6.0 * stiffness * direct) / (2.0 * np.pi * time_step), 10.0
         yield "the highest frequency asked for", highest_frequency or 0.0, 10.0
 
+    alternating = over.alternating_compliance(path) + rolls.alternating_compliance(path)
     rolled, pair = roll_along(
         path,
         law,
         rolls.load,
         stand,
-        alternating=over.alternating_compliance(path) + rolls.alternating_compliance(path),
+        alternating=(alternating, alternating),
         limits=limits,
         progress=progress,
         checkpoint=checkpoint,

@@ -18,7 +18,12 @@ from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.events import ContactLoss, contact_losses
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
 from asperity.rolling.path import Path
-from asperity.rolling.stability import largest_force, largest_stiffness, softening
+from asperity.rolling.stability import (
+    largest_force,
+    largest_stiffness,
+    softening,
+    stiffness_in_impacts,
+)
 from asperity.rolling.stepping import Stepper, restore, run
 from asperity.store import Checkpoint
 
@@ -58,7 +63,7 @@ def roll_along(
     load: float,
     stand: Callable[[float, float], S],
     *,
-    alternating: float,
+    alternating: tuple[float, float],
     limits: Callable[[float], Iterable[Limit]],
     judge: Callable[[S], None] = lambda stepper: None,
     progress: Progress | None,
@@ -77,8 +82,9 @@ def roll_along(
     stand : callable
         From the approach as the law sees it under the load, m, and a compliance in series with the contact,
         m/N, to the bodies at rest.
-    alternating : float
-        Least alternating compliance of the bodies, m/N (`asperity.rolling.stability`).
+    alternating : tuple of float
+        Least alternating compliance of both bodies, and of what throws them apart, m/N
+        (`asperity.rolling.stability`).
     limits : callable
         From the contact stiffness at rest, N/m, to what the time step must resolve.
     judge : callable, optional
@@ -112,7 +118,8 @@ def roll_along(
     approach, stiffness = static_approach(evaluation(prepared, 0), load, relative)
     _warn_if_coarse(path.time_step, limits(stiffness))
     stiffest, strongest = largest_stiffness(prepared, (approach, stiffness))
-    softer = softening(alternating, stiffest, law.damping, stiffness, path.time_step)
+    stiff = stiffest, stiffness_in_impacts(prepared, stiffest, stiffness)
+    softer = softening(alternating, stiff, law.damping, stiffness, path.time_step)
     stepper = stand(approach, softer)
     restore(checkpoint, stepper, prepared)
     try:

@@ -5,16 +5,18 @@ meets their *alternating compliance*: inertia makes it negative, −h²/12m for 
 bodies and contact interlace on the unit circle, the coupled step is stable while 1/K + (alternating
 compliance) is positive, K being what the contact opposes to an alternating approach. Each body states its
 own (`asperity.rolling.bodies`); those of both add up. Where a strong damper on a light body violates that,
-the contact is softened by just this compliance in series: then the step is stable whatever K is. For a free
-mass that is Newmark's method with β = 1/4 instead of 1/6.
+the contact is softened by this compliance in series, and a tenth more, since on the bound itself nothing
+damps the alternation: then the step is stable whatever K is. For a free mass that is Newmark's method with
+β = 0.258 instead of 1/6.
 
 A contact that opens and closes asks for more. A free mass m under forces that are linear over steps h meets
 them as impulses hF between which it flies: with x + h²F/6m for its place x it moves by the leapfrog, on the
 stiffness k = 1/(1/K + h²/6m). Over an impact the leapfrog keeps v² − (k/m)|ab|, with a and b the places at
 the ends of the step in which the contact closes, or opens; |ab| is v²h²/4 at most. An impact may therefore
 return more energy than it receives, by a factor up to 1/(1 − kh²/4m): without bound where the step is barely
-stable, by 2 for kh² = 2m. A contact softened by h²/3m, four times the above, is never stiffer than that; a
-rigid one then returns what it receives.
+stable, by 2 for kh² = 2m. What makes a contact no stiffer than that is a compliance of h²/3m − 1/K, four
+times the alternating one less that of the contact; a rigid contact then returns what it receives. Modes are
+such masses; an endless rail carries impacts away.
 """
 
 from __future__ import annotations
@@ -29,10 +31,10 @@ from asperity.laws.base import SteppedLaw
 
 MARGIN = 0.5
 """Share of the bound up to which a step is taken as it is."""
-RETURNED = 0.25
-"""Share of the bound up to which an impact on the contact as it is returns twice its energy at most."""
-RIGID = 4.0
-"""Times the compliance that keeps a step stable: with it an impact on a rigid contact returns its energy."""
+STABLE = 1.1
+"""Alternating compliances with which a step is stable on a rigid contact."""
+ELASTIC = 4.0
+"""Alternating compliances with which an impact on a rigid contact returns its energy."""
 RESOLVED = 0.9 * np.pi
 """Angle by which a mode may turn in a step to be followed."""
 NEGLIGIBLE = 0.01
@@ -40,7 +42,7 @@ NEGLIGIBLE = 0.01
 RUNAWAY = 1e4
 """Times the load, or the largest force that the law was made for, that no contact force reaches."""
 RISE = 4.0
-"""How much stiffer than at rest a law without an end may become: Hertz's does under 64 times the load."""
+"""How much stiffer than at rest a contact may become: Hertz's does under 64 times the load."""
 
 
 def largest_stiffness(prepared: Prepared | SteppedLaw, at_rest: tuple[float, float]) -> tuple[float, float]:
@@ -61,21 +63,47 @@ def largest_stiffness(prepared: Prepared | SteppedLaw, at_rest: tuple[float, flo
     if not isinstance(prepared, Prepared):
         return RISE * at_rest[1], 0.0
     if not np.isfinite(prepared.upper):
-        return (1.0 if prepared.exponent == 1.0 else RISE) * at_rest[1], 0.0
+        return at_rest[1], 0.0
     height = prepared.values.max(axis=1) if not len(prepared.slopes) else 0.0
     force, stiffness = evaluate_all(prepared, prepared.planes + height + prepared.upper)
     return max(at_rest[1], float(stiffness.max())), float(force.max())
 
 
-def softening(compliance: float, stiffness: float, damping: float, at_rest: float, time_step: float) -> float:
-    """Compliance in series with the contact that keeps a time step stable.
+def stiffness_in_impacts(prepared: Prepared | SteppedLaw, largest: float, at_rest: float) -> float:
+    """Stiffness that a contact may have in impacts, N/m; zero if it never opens.
 
     Parameters
     ----------
-    compliance : float
-        Least alternating compliance of the bodies, m/N.
-    stiffness : float
-        Largest stiffness of the contact, N/m.
+    prepared : Prepared or SteppedLaw
+        The law on the path.
+    largest, at_rest : float
+        Stiffness within what the law was made for, and under the load, N/m.
+
+    Returns
+    -------
+    float
+        N/m.
+    """
+    if isinstance(prepared, Prepared) and prepared.bilateral:
+        return 0.0
+    return max(largest, RISE * at_rest)
+
+
+def softening(
+    alternating: tuple[float, float],
+    stiffness: tuple[float, float],
+    damping: float,
+    at_rest: float,
+    time_step: float,
+) -> float:
+    """Compliance in series with the contact that keeps a time step stable, and impacts elastic.
+
+    Parameters
+    ----------
+    alternating : tuple of float
+        Least alternating compliance of both bodies, and of what throws them apart, m/N.
+    stiffness : tuple of float
+        Largest stiffness of the contact, and that of impacts, N/m.
     damping : float
         Of the contact, N s/m.
     at_rest : float
@@ -93,20 +121,19 @@ def softening(compliance: float, stiffness: float, damping: float, at_rest: floa
     CoarseSamplingWarning
         If it is not, and the contact becomes softer by more than NEGLIGIBLE.
     """
-    lacking = -compliance
-    opposed = lacking * (stiffness + 4.0 * damping / time_step)
-    impact = lacking * stiffness > RETURNED
-    if opposed <= MARGIN and not impact:
-        return 0.0
-    softer = RIGID * lacking if impact else lacking
+    both, thrown = (-value for value in alternating)
+    opposed = both * (stiffness[0] + 4.0 * damping / time_step) / MARGIN
+    impact = ELASTIC * thrown * stiffness[1]
+    softer = max(
+        STABLE * both if opposed > 1.0 else 0.0, (impact - 1.0) / stiffness[1] if impact > 1.0 else 0.0
+    )
     if softer * at_rest < NEGLIGIBLE:
         return softer
-    shorter = opposed / MARGIN if damping > 0.0 else 1.0
-    enough = time_step / max(shorter, np.sqrt(lacking * stiffness / RETURNED))
+    shorter = max(opposed if damping > 0.0 else np.sqrt(max(opposed, 0.0)), np.sqrt(max(impact, 0.0)))
     warnings.warn(
         f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies as "
         f"light: it is kept stable by softening the contact by {100 * softer * at_rest:.2g} %, "
-        f"and motion near {0.5 / time_step:.2g} Hz is distorted; take at most {enough:.2g} s",
+        f"and motion near {0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s",
         CoarseSamplingWarning,
         stacklevel=3,
     )

@@ -121,12 +121,13 @@ def roll(
         yield "the highest mode of the beam", beam.natural_frequencies.max(), 4.0
         yield "the highest frequency asked for", highest_frequency or 0.0, 10.0
 
+    alternating = over.alternating_compliance(path) + rolls.alternating_compliance(path)
     rolled, stepper = roll_along(
         path,
         law,
         rolls.load,
         stand,
-        alternating=over.alternating_compliance(path) + rolls.alternating_compliance(path),
+        alternating=(alternating, alternating),
         limits=limits,
         judge=lambda stepper: _warn_if_bent(stepper.record.beam, beam),
         progress=progress,

@@ -109,12 +109,13 @@ def roll(
         yield "the passing of sleepers v/L", kernel.speed / kernel.spacing, 20.0
         yield "the contact resonance on a bay of rail", np.sqrt(stiffness / mass) / (2.0 * np.pi), 5.0
 
+    thrown = rolls.alternating_compliance(path)  # an endless rail carries impacts away
     rolled, stepper = roll_along(
         path,
         law,
         rolls.load,
         stand,
-        alternating=over.alternating_compliance(path) + rolls.alternating_compliance(path),
+        alternating=(over.alternating_compliance(path) + thrown, thrown),
         limits=limits,
         progress=progress,
         checkpoint=checkpoint,
