@@ -416,7 +416,7 @@ def test_resolved_run_warns_of_nothing():
 def test_continuation_beyond_the_data_is_named():
     s = np.linspace(0.0, 1.05 * WORKING, 6)
     law = Shifted(ForceCurve.from_samples(s, HERTZ.force(s)), rough_texture(0.1e-6))
-    with pytest.warns(ExtrapolationWarning, match="compute larger approaches"):
+    with pytest.warns(ExtrapolationWarning, match=r"let contact\.approaches reach higher"):
         roll(BEAM, BALL, law, **ROUGH)
 
 
@@ -442,7 +442,7 @@ class Failing(FromPython):
 
 def test_steps_that_do_not_converge_are_counted():
     law = Failing(Shifted(HERTZ, None))
-    with pytest.warns(UnconvergedWarning, match="take a smaller time step"):
+    with pytest.warns(UnconvergedWarning, match=r"take a smaller numerics\.time_step"):
         run = roll(BEAM, BALL, law, **ROUGH | {"duration": 2e-4})
     assert run.unconverged_steps > 0
     assert run.outcome is Outcome.STEPS_UNCONVERGED

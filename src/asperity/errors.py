@@ -172,7 +172,9 @@ class Outcome(Enum):
     ITERATION_LIMIT = "the iteration limit was reached; try a larger `rtol`, and check the gap for spikes"
     STALLED = "rounding allows no better solution; try a larger `rtol`, and check the gap for spikes"
     NO_CONTACT = "the bodies do not touch at this approach"
-    STEPS_UNCONVERGED = "the contact force did not converge in some time steps; try a smaller time step"
+    STEPS_UNCONVERGED = (
+        "the contact force missed its tolerance in some steps; try a smaller numerics.time_step"
+    )
 
     @property
     def ok(self) -> bool:

@@ -41,5 +41,5 @@ def static_approach(
     raise ComputationError(
         f"no approach carries the load of {load:.6g} N at the start of the path; "
         f"the last, {approach:.6g} m, gives {force:.6g} N",
-        "a smaller load, or states of the contact that reach higher forces",
+        "a smaller load, or contact.approaches that reach higher forces",
     )

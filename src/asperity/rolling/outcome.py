@@ -51,7 +51,7 @@ def warn_after(
         warnings.warn(
             UnconvergedWarning(
                 f"{name}: {counts[1]} of {steps} time steps ({percent(share)}) missed the tolerance on "
-                "the contact force: their force is uncertain; take a smaller time step",
+                "the contact force: their force is uncertain; take a smaller numerics.time_step",
                 Grade.of_share(share),
             ),
             stacklevel=4,
@@ -64,8 +64,8 @@ def warn_after(
         warnings.warn(
             ExtrapolationWarning(
                 f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
-                f"steps ({percent(beyond / steps)}): the force there is a continuation; compute larger "
-                "approaches",
+                f"steps ({percent(beyond / steps)}): the force there is a continuation; let "
+                "contact.approaches reach higher",
                 Grade.of_share(beyond / steps),
             ),
             stacklevel=4,

@@ -137,7 +137,7 @@ def run(
                 raise ComputationError(
                     f"the motion runs away: at step {step}, {stepper.where(step)}, the contact force is "
                     f"{motion.force[0]:.3g} N under a load of {stepper.load:.4g} N",
-                    "a smaller time step, and check masses, damping and the texture there",
+                    "a smaller numerics.time_step, and check masses, damping and the texture there",
                 )
             held = _state(stepper, prepared)
             if progress is not None:

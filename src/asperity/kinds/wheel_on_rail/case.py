@@ -199,7 +199,7 @@ def _problem_of_poles(case: WheelOnRail) -> Iterator[InputError]:
     most = most_poles(round(SHORTEST / case.time_step))
     if case.numerics.poles > most:
         allowed = f"an even number up to {most}, a tenth of the time steps that the track remembers"
-        remedy = "Take fewer poles, or a shorter time step."
+        remedy = "Take fewer numerics.poles, or a shorter numerics.time_step."
         yield InputError("numerics.poles", case.numerics.poles, allowed, remedy)
 
 
