@@ -68,7 +68,7 @@ def failing(monkeypatch):
             raise ZeroDivisionError("by nothing")
         return run(case)
 
-    monkeypatch.setattr("asperity.scenarios.run", fails)
+    monkeypatch.setattr("asperity.running.run", fails)
     return computed
 
 
@@ -227,7 +227,7 @@ class TestTable:
             tree.attrs["warnings"] = json.dumps(met if case.seed < 3 else [])
             return tree
 
-        monkeypatch.setattr("asperity.scenarios.run", warns)
+        monkeypatch.setattr("asperity.running.run", warns)
         table = asperity.study("ball.toml", {"seed": [1, 2, 3]}, executor=Here())
         expected = [{"category": "Coarse", "message": "0.1 mm is coarse", "members": 2}]
         assert json.loads(table.attrs["warnings"]) == expected
