@@ -7,6 +7,7 @@ import json
 import numpy as np
 import xarray as xr
 
+from asperity.laws import spec_of
 from asperity.schema import VERSION
 
 LAWS = ["areal", "shifted", "printed", "table", "linear-filtered", "linear"]
@@ -53,7 +54,7 @@ def root_attrs():
     }
 
 
-def scenario():
+def scenario(laws):
     def parameter(key, value, default, note=""):
         return {"key": key, "value": value, "default": default, "is_default": value == default, "note": note}
 
@@ -98,15 +99,7 @@ def scenario():
                     {"name": "run time: scan", "value": "21.4 s"},
                 ]
             ),
-            "laws": json.dumps(
-                {
-                    "areal": "f(r − h̃ₐ(r)): texture weighted with the flat-punch pressure",
-                    "shifted": "f(r − h̃(r)): the filtered line texture moves the force curve",
-                    "printed": "k_c(r)(r − h̃(r)) + c ṙ: the state-dependent law as printed",
-                    "table": "interpolation of the scanned three-dimensional contact force",
-                    "linear": "P + k_t(s − s₀): linearised at the static load",
-                }
-            ),
+            "laws": json.dumps([spec_of(law).entry() for law in laws]),
         }
     )
 
@@ -350,7 +343,7 @@ def report_tree(laws=None, steps=100_000, time_step=1e-5, seed=7):
     return xr.DataTree.from_dict(
         {
             "/": root,
-            "/scenario": scenario(),
+            "/scenario": scenario(laws),
             "/surface": surface(rng),
             "/contact": contact(rng),
             "/rolling": rolling(rng, laws, steps, time_step),

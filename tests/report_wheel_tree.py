@@ -241,8 +241,8 @@ def spectra(rng, laws, points, duration):
     )  # fmt: skip
 
 
-def rail_scenario():
-    made = scenario()
+def rail_scenario(laws):
+    made = scenario(laws)
     parameters = json.loads(made.attrs["parameters"])
     kept = [p for p in parameters if p["key"].partition(".")[0] not in ("ball", "beam")]
     given = {"kind": "wheel-on-rail", "speed": "56 m/s", "duration": "1 s", "laws": ", ".join(LAWS)}
@@ -312,7 +312,7 @@ def wheel_tree(laws=None, steps=40_000, time_step=2.5e-5, seed=7, flat=True):
     return xr.DataTree.from_dict(
         {
             "/": xr.Dataset(attrs=attrs),
-            "/scenario": rail_scenario(),
+            "/scenario": rail_scenario(laws),
             "/surface": rail_surface(rng),
             "/track": track(),
             "/contact": rail_contact(rng),

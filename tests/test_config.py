@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from asperity.config.case import LAWS
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import demo_case, load_case, parse_case, template
+from asperity.laws import names
 
 MINIMAL = 'kind = "ball-on-beam"\n[surface]\nrms = "0.5 um"\n'
 
@@ -420,7 +420,7 @@ def test_rough_linearisation_needs_samples():
         parse_case(text)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", names())
 def test_every_law_may_be_asked_for(law):
     assert parse_case(case_with(f'laws = ["{law}"]')).laws == (law,)
 

@@ -6,11 +6,11 @@ import tomllib
 import numpy as np
 import pytest
 
-from asperity.config.case import LAWS
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import load_case, parse_case, template
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.tables import MODES, read_levels, read_modes, read_receptance, read_table
+from asperity.laws import names
 
 INTERFACE = """
 kind = "wheel-on-rail"
@@ -130,7 +130,7 @@ def test_every_key_is_understood(folder):
     assert case.rolled_range[0] == 3.0
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", names())
 @pytest.mark.parametrize(
     "surface", ['spectrum = "iso3095"', 'rms = "1 um"', 'line = "lines.npz"', "smooth = true"]
 )

@@ -13,11 +13,11 @@ from matplotlib.text import Text
 from asperity.errors import ComputationError
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import page_of, parts_of, report
+from asperity.laws import spec_of
 from asperity.reporting import lines_picture, surface_picture
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
 from asperity.reporting.style import (
     COLOURS,
-    LAW_STYLES,
     envelope,
     smooth_on_log_axis,
 )
@@ -116,7 +116,7 @@ def test_hostile_text_stays_text():
         kind=HOSTILE,
         parameters=json.dumps([parameter]),
         numerics=json.dumps([{"name": HOSTILE, "value": HOSTILE}]),
-        laws=json.dumps({HOSTILE: HOSTILE}),
+        laws=json.dumps([dict.fromkeys(spec_of("linear").entry(), HOSTILE), {"name": "linear"}, HOSTILE]),
     )
     statistic = dict.fromkeys(("symbol", "unit", "bandwidth", "surface", "meaning"), HOSTILE) | {"value": 1.0}
     tree["surface"].attrs["statistics"] = json.dumps([statistic])
@@ -240,7 +240,7 @@ def test_differences_to_the_reference_law_are_printed(tree, text):
 
 def test_laws_keep_their_colours_in_all_figures(text):
     for law in LAWS:
-        colour = f"var(--c{list(COLOURS).index(LAW_STYLES[law.partition('-')[0]].colour)})"
+        colour = f"var(--c{list(COLOURS).index(spec_of(law).look.colour)})"
         for name in ("force_psd", "force_bands", "acceleration_laws", "force_piece", "force_envelope"):
             figure = text[text.index(f'<figure id="{name}"') :]
             assert colour in figure[: figure.index("</figure>")]

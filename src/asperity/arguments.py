@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import numbers
 import os
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from asperity.errors import InputError
 
 LONGEST = 60  # characters of a received value that a message repeats
+LONGEST_WORD = 100  # characters of a word for which one like it is sought
 MOST_NAMES = 10  # of what is in a file, that a message lists
 
 
@@ -36,6 +38,14 @@ def _written(value: object) -> str:
         return "a huge number"
     except RecursionError:
         return "lists or sections inside one another without end"
+
+
+def nearest(word: object, words: Sequence[str]) -> str:
+    """Sentence that names the nearest of `words`; empty if none is near."""
+    if len(str(word)) > LONGEST_WORD:
+        return ""
+    found = difflib.get_close_matches(str(word).lower(), words, n=1, cutoff=0.6)
+    return f'Did you mean "{found[0]}"?' if found else ""
 
 
 def real(

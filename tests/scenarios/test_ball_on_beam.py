@@ -13,7 +13,7 @@ from asperity.kinds.ball_on_beam import compute as ball_on_beam
 from asperity.kinds.ball_on_beam.geometry import ball_geometry
 from asperity.kinds.ball_on_beam.textures import gather
 from asperity.kinds.cases import parse_case
-from asperity.laws.base import force
+from asperity.laws.layout import force
 from asperity.reporting.tables import homogeneity_table
 from asperity.running import prepare, run
 from asperity.spectra import nominal_frequency

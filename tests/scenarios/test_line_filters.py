@@ -244,7 +244,7 @@ class TestLaws:
         np.testing.assert_allclose(shifted - level.sel(law="linear"), 0.0, atol=0.3)
 
     def test_result_says_what_an_unfiltered_law_is(self, tree):
-        meanings = json.loads(tree["scenario"].attrs["laws"])
+        meanings = {law["name"]: law["meaning"] for law in json.loads(tree["scenario"].attrs["laws"])}
         assert meanings["printed-unfiltered"].endswith("filtered line texture. Here without the filter.")
         assert meanings["hertz-filtered"].endswith("Here with the filtered line texture.")
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from asperity.config.case import Case
 from asperity.config.sections import MeasuredLine
 from asperity.errors import Grade, PhysicsWarning
+from asperity.laws import spec_of
 from asperity.progress import Progress, duration, progress_bar
 from asperity.terminal import say, say_table
 
@@ -68,8 +69,8 @@ def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
     steps = steps_of(case)
     run_in = f", and {settling:g} s before it" if settling else ""
     solves = {f"scan for the {name}": scan.solutions for name, scan in expected.scans.items()}
-    if "direct" in case.laws:
-        solves["direct"] = SOLUTIONS_PER_STEP * steps
+    solved = [law for law in case.laws if spec_of(law).solved_every_step]
+    solves |= dict.fromkeys(solved, SOLUTIONS_PER_STEP * steps)
     scanned = expected.scans.get("path")
     return [
         *_measured(case),
@@ -89,13 +90,13 @@ def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
 def _real_contact(prepared: Prepared) -> list[tuple[str, str]]:
     """Expected real contact, and which laws it takes out of their range."""
     from asperity.scenarios.expecting import expect_area_ratio
-    from asperity.scenarios.validity import AREA, SCANNED
+    from asperity.scenarios.validity import AREA
 
     ratio = expect_area_ratio(prepared)
     if ratio is None:
         return []
     text = f"about {100 * ratio:.0f} % of the area of smooth bodies"
-    averaged = [law for law in prepared.case.laws if law not in SCANNED]
+    averaged = [law for law in prepared.case.laws if not spec_of(law).sees_heights]
     if ratio < AREA[0] and averaged:
         text += f": below {100 * AREA[0]:.0f} % {', '.join(averaged)} are out of range; take table"
     return [("real contact", text)]

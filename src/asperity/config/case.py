@@ -12,27 +12,15 @@ from asperity.config.describing import parameters
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Section, Speed, key
 from asperity.config.sections import ContactCase, Index, Numerics, Surface
 from asperity.errors import InputError
+from asperity.laws import names
 from asperity.units import written
 
-LAWS = (
-    "areal",
-    "shifted",
-    "printed",
-    "table",
-    "direct",
-    "hertz",
-    "linear",
-    "hertz-filtered",
-    "linear-filtered",
-    "shifted-unfiltered",
-    "printed-unfiltered",
-)
 MOST_STEPS = 10**8
 SETTLED = 0.05
 """Run-in after which the force of a record varies as in a long run, within some per cent, s."""
 SAMPLING = 2.5  # points per period of the highest frequency, at least
 
-Law = Annotated[str, BeforeValidator(Choice(LAWS))]
+Law = Annotated[str, BeforeValidator(Choice(names))]
 
 
 class Case(Section):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import difflib
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, get_args
@@ -12,7 +11,7 @@ from typing import Annotated, Any, NoReturn, get_args
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
-from asperity.arguments import no_file, shown
+from asperity.arguments import nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import factor, quantity, written
@@ -37,7 +36,6 @@ _WORDS = {
 
 LEAST, MOST = 1e-30, 1e30
 """Numbers in SI lie between these: nothing in mechanics is outside, and ten multiplied are finite."""
-LONGEST_WORD = 100  # characters of a word for which one like it is sought
 
 BACKSLASH = (
     "In double quotes a backslash changes the letter after it: write Windows paths in single quotes, as in "
@@ -136,19 +134,24 @@ class Problems(ValueError):
 
 @dataclass(frozen=True)
 class Choice:
-    """One of a few words."""
+    """One of a few words, or of those that a registry holds when it is asked."""
 
-    words: tuple[str, ...]
+    words: tuple[str, ...] | Callable[[], tuple[str, ...]]
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        """The words."""
+        return self.words() if callable(self.words) else self.words
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
-        return ", ".join(f'"{word}"' for word in self.words)
+        return ", ".join(f'"{word}"' for word in self.known)
 
     def __call__(self, value: object) -> str:
         """Return the word."""
-        if not isinstance(value, str) or value not in self.words:
-            raise InputError("choice", shown(value), self.allowed, nearest(value, self.words))
+        if not isinstance(value, str) or value not in self.known:
+            raise InputError("choice", shown(value), self.allowed, nearest(value, self.known))
         return value
 
 
@@ -418,14 +421,6 @@ def _lonely(section: BaseModel) -> Iterator[InputError]:
 
 def _plain(value: object) -> object:
     return str(value) if isinstance(value, Path) else value
-
-
-def nearest(word: object, words: tuple[str, ...] | list[str]) -> str:
-    """Sentence that names the nearest of `words`; empty if none is near."""
-    if len(str(word)) > LONGEST_WORD:
-        return ""
-    found = difflib.get_close_matches(str(word).lower(), words, n=1, cutoff=0.6)
-    return f'Did you mean "{found[0]}"?' if found else ""
 
 
 def _is_text(value: str) -> bool:

@@ -13,9 +13,9 @@ import numpy as np
 from pydantic import BaseModel, ValidationError
 
 from asperity import decoding
-from asperity.arguments import shown
+from asperity.arguments import nearest, shown
 from asperity.config.case import Case
-from asperity.config.keys import BACKSLASH, Problems, allowed_in, nearest
+from asperity.config.keys import BACKSLASH, Problems, allowed_in
 from asperity.errors import CaseError, InputError
 
 C = TypeVar("C", bound=Case)

@@ -9,10 +9,10 @@ from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from asperity.arguments import shown
+from asperity.arguments import nearest, shown
 from asperity.config.case import Case
 from asperity.config.describing import Entry, entries
-from asperity.config.keys import Number, Quantity, allowed_in, nearest, value_kind
+from asperity.config.keys import Number, Quantity, allowed_in, value_kind
 from asperity.errors import InputError
 
 

@@ -7,10 +7,9 @@ from collections.abc import Mapping, Sequence
 from importlib import resources
 from typing import Any
 
-from asperity.arguments import file_path, shown
+from asperity.arguments import file_path, nearest, shown
 from asperity.config.case import Case
 from asperity.config.describing import commented
-from asperity.config.keys import nearest
 from asperity.config.parsing import plain_data, read_definition, read_toml, refuse_vast, validated
 from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from numpy.typing import ArrayLike
+from asperity.laws.base import check_damping
+from asperity.laws.spec import LawSpec, Look, Need
 
-from asperity.kernels.pointforce import Prepared
-from asperity.laws.base import check_damping, on_curve
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.texture import StateTexture
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from asperity.kernels.pointforce import Prepared
+    from asperity.laws.materials import Materials
+    from asperity.reduction.stiffness import ForceCurve
+    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,4 +53,22 @@ class Areal:
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
+        from asperity.laws.layout import on_curve
+
         return on_curve(self.curve, self.texture, positions, damping=self.damping, plane=self.plane)
+
+
+def _build(materials: Materials) -> Areal:
+    """Build the law from the materials of a case."""
+    return Areal(
+        materials.curve, materials.areal, materials.damping, plane=materials.plane, name=materials.name
+    )
+
+
+LAW = LawSpec(
+    "areal",
+    "Force on the texture averaged over the contact by the flat-punch weight.",
+    _build,
+    frozenset({Need.SAMPLES, Need.AREAL}),
+    look=Look("#0067a5", "-", "o"),
+)

@@ -1,18 +1,16 @@
-"""What a contact law is: protocols, and the two ways of laying one out on a path."""
+"""What a contact law is once it is built: two protocols."""
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+import math
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from asperity.errors import InputError
-from asperity.kernels.monotone import continued_to_touch, monotone_slopes, zero_crossing
-from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.table import PIECE, ForceTable
-from asperity.reduction.texture import StateTexture
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from asperity.kernels.pointforce import Prepared
 
 
 @runtime_checkable
@@ -40,6 +38,7 @@ class SteppedLaw(Protocol):
         ...
 
 
+@runtime_checkable
 class Law(Protocol):
     """A contact law: contact force from approach, approach rate and position on the path."""
 
@@ -59,182 +58,6 @@ class Law(Protocol):
 
 
 def check_damping(damping: float) -> None:
-    """Refuse a contact damping that is negative or not finite.
-
-    Parameters
-    ----------
-    damping : float
-        N s/m.
-
-    Raises
-    ------
-    InputError
-        If so.
-    """
-    if not (np.isfinite(damping) and damping >= 0.0):
+    """Refuse a contact damping, N s/m, that is negative or not finite."""
+    if not (math.isfinite(damping) and damping >= 0.0):
         raise InputError("contact damping (N s/m)", damping, "zero or a finite positive number")
-
-
-def on_curve(
-    curve: ForceCurve,
-    texture: StateTexture | None,
-    positions: ArrayLike,
-    *,
-    form: int = SHIFTED,
-    datum: float = 0.0,
-    damping: float = 0.0,
-    damped_in_flight: bool = False,
-    plane: StateTexture | None = None,
-) -> Prepared:
-    """Lay out a law that is a force curve following a line texture.
-
-    Parameters
-    ----------
-    curve : ForceCurve
-        Force against approach.
-    texture : StateTexture or None
-        Texture that the force follows; None for a smooth path.
-    positions : array_like (n,)
-        Positions of the contact, m.
-    form : int
-        `SHIFTED` or `SECANT` of `asperity.kernels.pointforce`.
-    datum, damping, damped_in_flight
-        As in `asperity.kernels.pointforce.Prepared`.
-    plane : StateTexture, optional
-        Plane from which the states of the texture count, m; the mean plane by default.
-
-    Returns
-    -------
-    Prepared
-        Arrays for the kernel.
-    """
-    at = np.atleast_1d(np.asarray(positions, dtype=float))
-    states = np.zeros(1) if texture is None else texture.approaches
-    values = np.zeros((at.size, 1)) if texture is None else texture.at(at)
-    planes = plane_at(plane, at)
-    return Prepared(
-        form,
-        planes,
-        np.ascontiguousarray(states, dtype=float),
-        values if plane is None else np.ascontiguousarray(values - planes[:, None], dtype=float),
-        np.zeros((0, len(states))),
-        np.zeros(0),
-        np.ascontiguousarray(curve.knots, dtype=float),
-        np.ascontiguousarray(curve.coefficients, dtype=float),
-        float(curve.exponent),
-        bool(curve.bilateral),
-        float(datum),
-        float(damping),
-        bool(damped_in_flight),
-        float(curve.upper),
-    )
-
-
-def plane_at(plane: StateTexture | None, positions: NDArray) -> NDArray:
-    """Plane from which states count at positions of the path.
-
-    Parameters
-    ----------
-    plane : StateTexture or None
-        One state, m, positive away from contact; None for the mean plane.
-    positions : ndarray (n,)
-        Positions, m.
-
-    Returns
-    -------
-    ndarray (n,)
-        Planes, m.
-    """
-    return np.zeros(positions.size) if plane is None else np.ascontiguousarray(plane.at(positions)[:, 0])
-
-
-def on_table(
-    table: ForceTable, positions: ArrayLike, *, damping: float = 0.0, plane: StateTexture | None = None
-) -> Prepared:
-    """Lay out a law that looks the force up in a table.
-
-    Parameters
-    ----------
-    table : ForceTable
-        Forces of the path.
-    positions : array_like (n,)
-        Positions of the contact, m.
-    damping : float
-        Contact damping, N s/m.
-    plane : StateTexture, optional
-        Plane from which the table's approaches count, m; the mean plane by default.
-
-    Returns
-    -------
-    Prepared
-        Arrays for the kernel: g = F^(2/3), negative before first touch, and its monotone slopes
-        at every position.
-    """
-    at = np.atleast_1d(np.asarray(positions, dtype=float))
-    root, slopes = np.empty((2, at.size, len(table.approaches)))
-    touches = np.empty(at.size)
-    for first in range(0, at.size, PIECE):
-        piece = slice(first, first + PIECE)
-        root[piece], slopes[piece], touches[piece] = _laid_out(table, at[piece])
-    return Prepared(
-        TABLE,
-        plane_at(plane, at),
-        np.ascontiguousarray(table.approaches, dtype=float),
-        root,
-        slopes,
-        touches,
-        np.zeros(2),
-        np.zeros((1, 4)),
-        1.5,
-        False,
-        0.0,
-        float(damping),
-        False,
-        float(table.approaches[-1]),
-    )
-
-
-def _laid_out(table: ForceTable, at: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-    """g = F^(2/3), its slopes and the first touch at some positions."""
-    root = np.cbrt(table.at(at)) ** 2
-    touches = table.touch_at(at)
-    if touches is None:
-        # ripples of the spline beside a place where contact is lost are no contact
-        touches = zero_crossing(table.approaches, continued_to_touch(table.approaches, root, least=0.05))
-    root = _straight_to_touch(table.approaches, root, touches)
-    return root, monotone_slopes(table.approaches, root), touches
-
-
-def _straight_to_touch(states: NDArray, root: NDArray, touches: NDArray) -> NDArray:
-    """Replace g before first touch, and a little after, by the line through the touch and the next state."""
-    beyond = states - touches[:, None] > 0.2 * np.gradient(states)
-    first = np.minimum(np.argmax(beyond, axis=1), len(states) - 1)
-    rows = np.arange(len(root))
-    rise = root[rows, first] / np.maximum(states[first] - touches, np.finfo(float).tiny)
-    line = np.where(beyond.any(axis=1), rise, 0.0)[:, None] * (states - touches[:, None])
-    return np.where(beyond, root, line)
-
-
-def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray:
-    """Elastic contact force of a law, without damping.
-
-    Parameters
-    ----------
-    law : Law
-        Any law.
-    positions : array_like (n,)
-        Positions on the path, m.
-    approach : array_like (n,) or float
-        Approach at each position, m.
-
-    Returns
-    -------
-    ndarray (n,)
-        Force, N.
-    """
-    at = np.atleast_1d(np.asarray(positions, dtype=float))
-    delta = np.ascontiguousarray(np.broadcast_to(np.asarray(approach, dtype=float), at.shape))
-    prepared = law.prepare(at)
-    if isinstance(prepared, Prepared):
-        return evaluate_all(prepared, delta)[0]
-    return np.array([prepared.evaluate(step, value)[0] for step, value in enumerate(delta)])

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import BSpline, make_interp_spline
 
-from asperity.contact.flaws import TRUNCATED, Counts, warn_of_flaws, window_for
-from asperity.contact.halfspace import Contact, HalfSpace
 from asperity.errors import InputError
 from asperity.laws.base import check_damping
+from asperity.laws.spec import LawSpec, Look, Need, Role
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+    from scipy.interpolate import BSpline
+
+    from asperity.contact.halfspace import Contact, HalfSpace
+    from asperity.laws.materials import Materials
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +70,8 @@ class Direct:
 
     def prepare(self, positions: ArrayLike) -> DirectOnPath:
         """Lay the law out on positions (n,) of the contact, m."""
+        from asperity.contact.halfspace import HalfSpace
+
         index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / self.spacing[0]
         half = self.body.shape[0] // 2
         last = self.heights.shape[0] - 1 - half
@@ -114,6 +121,8 @@ class DirectOnPath:
 
     def evaluate(self, step: int, approach: float) -> tuple[float, float]:
         """Elastic force, N, and its exact tangent dF/dδ, N/m, at a step of the path."""
+        from asperity.contact.flaws import TRUNCATED
+
         contact = self.half_space.at_approach(
             self._gap_at(step), approach, self._start_at(step), self.law.rtol
         )
@@ -148,6 +157,8 @@ class DirectOnPath:
 
     def warn_of_flaws(self) -> None:
         """Warn of contacts that did not converge or were cut off."""
+        from asperity.contact.flaws import Counts, warn_of_flaws, window_for
+
         window = window_for(self.law.body, self.law.spacing, self.overlap)
         remedy = f'contact.window = "{window * 1e3:.3g} mm" holds them.'
         counts = Counts(self.solves, self.iterations, self.unconverged, self.truncated)
@@ -164,6 +175,8 @@ class DirectOnPath:
         if abs(offset - first) < 1e-6:
             return self.law.heights[first : first + count]
         if self._spline is None:
+            from scipy.interpolate import make_interp_spline
+
             rows = np.arange(len(self.law.heights))
             self._spline = make_interp_spline(rows, self.law.heights, k=5)
         return np.asarray(self._spline(offset + np.arange(count)))
@@ -181,3 +194,29 @@ class DirectOnPath:
                 pressure = np.vstack([pressure[shift:], np.zeros((shift, pressure.shape[1]))])
         self._start = (step, pressure)
         return pressure
+
+
+def _build(materials: Materials) -> Direct:
+    """Build the law from the materials of a case."""
+    return Direct(
+        materials.heights,
+        materials.body,
+        materials.spacing,
+        materials.modulus,
+        materials.start,
+        materials.hardness,
+        materials.rtol,
+        materials.damping,
+        materials.name,
+    )
+
+
+LAW = LawSpec(
+    "direct",
+    "The three-dimensional contact, solved in every time step: the reference.",
+    _build,
+    frozenset({Need.SURFACE}),
+    solved_every_step=True,
+    role=Role.REFERENCE,
+    look=Look("#1c2126", "-", "v"),
+)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from numpy.typing import ArrayLike
+from asperity.laws.base import check_damping
+from asperity.laws.spec import LawSpec, Look, Need, Variant
 
-from asperity.kernels.pointforce import Prepared
-from asperity.laws.base import check_damping, on_curve
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.texture import StateTexture
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from asperity.kernels.pointforce import Prepared
+    from asperity.laws.materials import Materials
+    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,9 +41,28 @@ class Hertz:
     name: str = "hertz"
 
     def __post_init__(self) -> None:
+        from asperity.reduction.stiffness import ForceCurve
+
         check_damping(self.damping)
         ForceCurve.hertz(self.stiffness)
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
+        from asperity.laws.layout import on_curve
+        from asperity.reduction.stiffness import ForceCurve
+
         return on_curve(ForceCurve.hertz(self.stiffness), self.texture, positions, damping=self.damping)
+
+
+def _build(materials: Materials) -> Hertz:
+    """Build the law from the materials of a case."""
+    return Hertz(materials.hertz_constant, materials.line, materials.damping, materials.name)
+
+
+LAW = LawSpec(
+    "hertz",
+    "Smooth bodies: Hertzian contact.",
+    _build,
+    look=Look("#2a93c4", (0, (1.5, 1.5)), "P"),
+    variants=(Variant("filtered", "Here with the filtered line texture.", frozenset({Need.FILTER})),),
+)

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from numpy.typing import ArrayLike
+from asperity.laws.base import check_damping
+from asperity.laws.spec import LawSpec, Look, Need, Role, Variant
 
-from asperity.kernels.pointforce import Prepared
-from asperity.laws.base import check_damping, on_curve
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.texture import StateTexture
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from asperity.kernels.pointforce import Prepared
+    from asperity.laws.materials import Materials
+    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +47,16 @@ class Linear:
     name: str = "linear"
 
     def __post_init__(self) -> None:
+        from asperity.reduction.stiffness import ForceCurve
+
         check_damping(self.damping)
         ForceCurve.linear(self.force, self.stiffness, self.approach)
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
+        from asperity.laws.layout import on_curve
+        from asperity.reduction.stiffness import ForceCurve
+
         return on_curve(
             ForceCurve.linear(self.force, self.stiffness, self.approach),
             self.texture,
@@ -55,3 +64,25 @@ class Linear:
             damping=self.damping,
             damped_in_flight=True,
         )
+
+
+def _build(materials: Materials) -> Linear:
+    """Build the law from the materials of a case."""
+    approach, stiffness = materials.working_point
+    # one state: a texture that changed with it would not be linear
+    return Linear(
+        materials.load, stiffness, approach, materials.line_at_load, materials.damping, materials.name
+    )
+
+
+LAW = LawSpec(
+    "linear",
+    "The contact linearised at its working point; it never lets go.",
+    _build,
+    may_pull=True,
+    role=Role.BARE,
+    look=Look("#96700a", (0, (3, 1.5)), "X"),
+    variants=(
+        Variant("filtered", "Here with the filtered line texture.", frozenset({Need.FILTER}), Role.PRACTICE),
+    ),
+)

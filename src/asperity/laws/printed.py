@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-from numpy.typing import ArrayLike
+from typing import TYPE_CHECKING
 
 from asperity.errors import InputError
-from asperity.kernels.pointforce import SECANT, Prepared
-from asperity.laws.base import check_damping, on_curve
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.texture import StateTexture
+from asperity.laws.base import check_damping
+from asperity.laws.spec import LawSpec, Look, Need, Variant
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from asperity.kernels.pointforce import Prepared
+    from asperity.laws.materials import Materials
+    from asperity.reduction.stiffness import ForceCurve
+    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +58,9 @@ class Printed:
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
+        from asperity.kernels.pointforce import SECANT
+        from asperity.laws.layout import on_curve
+
         return on_curve(
             self.curve,
             self.texture,
@@ -62,3 +70,19 @@ class Printed:
             damping=self.damping,
             damped_in_flight=True,
         )
+
+
+def _build(materials: Materials) -> Printed:
+    """Build the law from the materials of a case."""
+    return Printed(materials.curve, materials.line, materials.datum, materials.damping, materials.name)
+
+
+LAW = LawSpec(
+    "printed",
+    "The thesis as printed: secant stiffness times the filtered line texture.",
+    _build,
+    frozenset({Need.SAMPLES, Need.DATUM, Need.FILTER}),
+    normalise="low-wavenumber",
+    look=Look("#a8458f", (0, (6, 1.5, 1.5, 1.5)), "^"),
+    variants=(Variant("unfiltered", "Here without the filter.", frozenset({Need.SAMPLES, Need.DATUM})),),
+)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from numpy.typing import ArrayLike
+from asperity.laws.base import check_damping
+from asperity.laws.spec import LawSpec, Look, Need, Variant
 
-from asperity.kernels.pointforce import Prepared
-from asperity.laws.base import check_damping, on_curve
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.texture import StateTexture
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from asperity.kernels.pointforce import Prepared
+    from asperity.laws.materials import Materials
+    from asperity.reduction.stiffness import ForceCurve
+    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,4 +46,21 @@ class Shifted:
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
+        from asperity.laws.layout import on_curve
+
         return on_curve(self.curve, self.texture, positions, damping=self.damping)
+
+
+def _build(materials: Materials) -> Shifted:
+    """Build the law from the materials of a case."""
+    return Shifted(materials.curve, materials.line, materials.damping, materials.name)
+
+
+LAW = LawSpec(
+    "shifted",
+    "The state functions, shifted by the filtered line texture: follows slow bumps.",
+    _build,
+    frozenset({Need.SAMPLES, Need.FILTER}),
+    look=Look("#c8500a", (0, (6, 1.5)), "s"),
+    variants=(Variant("unfiltered", "Here without the filter.", frozenset({Need.SAMPLES})),),
+)

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from numpy.typing import ArrayLike
+from asperity.laws.base import check_damping
+from asperity.laws.spec import LawSpec, Look, Need, Role
 
-from asperity.kernels.pointforce import Prepared
-from asperity.laws.base import check_damping, on_table
-from asperity.reduction.table import ForceTable
-from asperity.reduction.texture import StateTexture
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from asperity.kernels.pointforce import Prepared
+    from asperity.laws.materials import Materials
+    from asperity.reduction.table import ForceTable
+    from asperity.reduction.texture import StateTexture
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,4 +49,21 @@ class Table:
 
     def prepare(self, positions: ArrayLike) -> Prepared:
         """Lay the law out on positions (n,) of the contact, m."""
+        from asperity.laws.layout import on_table
+
         return on_table(self.table, positions, damping=self.damping, plane=self.plane)
+
+
+def _build(materials: Materials) -> Table:
+    """Build the law from the materials of a case."""
+    return Table(materials.table, materials.damping, plane=materials.plane, name=materials.name)
+
+
+LAW = LawSpec(
+    "table",
+    "The scanned three-dimensional contact force, looked up.",
+    _build,
+    frozenset({Need.SAMPLES, Need.SCAN}),
+    role=Role.STAND_IN,
+    look=Look("#00805c", "-", "D"),
+)

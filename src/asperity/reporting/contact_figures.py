@@ -13,10 +13,12 @@ from xarray import DataTree
 
 from asperity.reporting.data import engineering, force_unit, laws, number, present, values
 from asperity.reporting.filter_figures import FILTER
+from asperity.reporting.law_entries import law_entry
 from asperity.reporting.part import Data, Part, Series, field, present_series, series
 from asperity.reporting.style import (
+    BLUE,
+    GREEN,
     INK,
-    LAW_STYLES,
     MUTED,
     side_by_side,
     styled,
@@ -25,7 +27,6 @@ from asperity.reporting.texture import draw_map, length_unit
 from asperity.schema import Entry, contact
 from asperity.schema.rolling import CONTACT_FORCE
 
-_BLUE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "table"))
 CURVE_POINTS = 200
 """Points of a closed form."""
 
@@ -98,7 +99,7 @@ def _pressure_section(
     symbol: str,
 ) -> None:
     middle = int(np.argmin(np.abs(y - _centre(y))))
-    axes.fill_between(x / unit[0], pressure[:, middle], color=_BLUE, linewidth=0.5, step="mid")
+    axes.fill_between(x / unit[0], pressure[:, middle], color=BLUE, linewidth=0.5, step="mid")
     axes.set_xlim(x[0] / unit[0], x[-1] / unit[0])
     axes.set_ylim(bottom=0)
     axes.set_xlabel(f"x / {unit[1]} (rolling direction →)")
@@ -159,7 +160,7 @@ def force_figure(tree: DataTree, data: Data) -> Figure:
     size, symbol = force_unit(float(np.nanmax(data.lines[contact.FORCE].values)))
     force = "rough, mean ± standard deviation" if rough else "smooth bodies (Hertz)"
     secant = "k_c = F/r, mean ± standard deviation" if rough else "F/r, smooth bodies (Hertz)"
-    solid, dotted = {"color": _BLUE, "linestyle": "-"}, {"color": _GREEN, "linestyle": (0, (1.5, 1.5))}
+    solid, dotted = {"color": BLUE, "linestyle": "-"}, {"color": GREEN, "linestyle": (0, (1.5, 1.5))}
     _curve(panels[0], data, contact.FORCE, contact.FORCE_STD, size, label=force, **solid)
     _hertz(panels[0], tree, data.at, 1.5, size)
     panels[0].set_ylabel(f"contact force F / {symbol}")
@@ -235,7 +236,7 @@ def _force_caption(tree: DataTree) -> str:
 
 
 def _datum_sensitivity(tree: DataTree) -> str:
-    """What the force of `printed`, k_c = F/r times the texture, owes to where r counts from."""
+    """What a force that is k_c = F/r times the texture owes to where r counts from."""
     load, approach, datum, samples, path = (
         number(tree, attribute)
         for attribute in (
@@ -246,7 +247,7 @@ def _datum_sensitivity(tree: DataTree) -> str:
             contact.DATUM_PATH,
         )
     )
-    used = [law for law in laws(tree, CONTACT_FORCE) if law.startswith("printed")]
+    used = [law for law in laws(tree, CONTACT_FORCE) if "datum" in law_entry(tree, law).needs]
     if not used or load is None or approach is None or datum is None or samples is None or path is None:
         return ""
     other, where = (path, "samples and path") if datum == samples else (samples, "the samples alone")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 from xarray import DataArray, DataTree
 
 from asperity.schema import Attribute, Entry
-from asperity.schema.spectra import BASELINES, FORCE_LEVEL_DIFFERENCES
 from asperity.spectra import LEAST_PRODUCT, nominal
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
@@ -104,16 +102,6 @@ def of_law(tree: DataTree, entry: Entry, law: str, *dims: str) -> NDArray[np.flo
         raise KeyError(entry.path)
     row = [str(name) for name in found["law"].values].index(law)
     return np.asarray(found.isel(law=row).transpose(*dims).values, dtype=float)
-
-
-def baselines(names: Sequence[str]) -> list[str]:
-    """Those of the laws `names` that all others are compared with, the one of practice first."""
-    return [name for name in BASELINES if name in names]
-
-
-def differences(tree: DataTree) -> dict[Entry, str]:
-    """Variables of force level differences to the linear laws, with the law each compares with."""
-    return {entry: law for law, entry in FORCE_LEVEL_DIFFERENCES.items() if present(tree, entry)}
 
 
 def doubtful(tree: DataTree, product: Entry) -> NDArray[np.bool_]:

@@ -14,8 +14,9 @@ from xarray import DataTree
 
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.data import decoded, missing, records, stated
+from asperity.reporting.law_entries import law_colours, law_entries
 from asperity.reporting.part import Part
-from asperity.reporting.style import colour_variables, law_style, narrow_page, svg
+from asperity.reporting.style import colour_variables, narrow_page, svg
 from asperity.reporting.tables import Table
 from asperity.schema import provenance
 
@@ -50,10 +51,10 @@ def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
 
 
 def _picture(tree: DataTree, part: Part) -> Picture:
-    data = part.collect(tree)
-    wide = svg(part.plot(tree, data), part.name, part.title)
+    data, colours = part.collect(tree), law_colours(tree)
+    wide = svg(part.plot(tree, data), part.name, part.title, colours)
     with narrow_page():
-        narrow = svg(part.plot(tree, data), f"{part.name}-narrow", part.title)
+        narrow = svg(part.plot(tree, data), f"{part.name}-narrow", part.title, colours)
     lost = missing(tree, *part.needs, *part.any_of)
     caption = f"{part.caption(tree)} {lost}".strip()
     return Picture(part.name, part.title, caption, Markup(wide), Markup(narrow))
@@ -90,10 +91,10 @@ def _graded(warnings: list[dict[str, Any]]) -> str:
 
 
 def _law_key(tree: DataTree) -> list[dict[str, str]]:
-    meanings = decoded(tree, provenance.LAWS, {})
+    numbers = {colour: number for number, colour in enumerate(law_colours(tree))}
     return [
-        {"name": str(law), "meaning": str(text), "colour": law_style(law, "")["color"]}
-        for law, text in meanings.items()
+        {"name": law.name, "meaning": law.meaning, "colour": f"var(--c{numbers[law.colour]})"}
+        for law in law_entries(tree).values()
     ]
 
 
@@ -160,6 +161,6 @@ def page(tree: DataTree, chapters: Sequence[Chapter]) -> str:
         numerics=records(tree, provenance.NUMERICS),
         laws=_law_key(tree),
         sections=sections(tree, chapters),
-        light=Markup(colour_variables(dark=False)),
-        dark=Markup(colour_variables(dark=True)),
+        light=Markup(colour_variables(dark=False, colours=law_colours(tree))),
+        dark=Markup(colour_variables(dark=True, colours=law_colours(tree))),
     )

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import differences, doubtful, laws, present, values
+from asperity.reporting.data import doubtful, laws, present, values
+from asperity.reporting.law_entries import differences, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.style import (
     INK,
@@ -19,8 +20,6 @@ from asperity.reporting.style import (
     band_axis,
     decibels,
     frequency_axis,
-    law_marker,
-    law_style,
     legend_above,
     level_limits,
     new_figure,
@@ -103,7 +102,7 @@ def draw_laws(axes: Axes, tree: DataTree, lines: Mapping[Any, Series], reference
     main = next(iter(lines))
     spectra = {law: narrow_level(tree, psd.values, reference) for law, psd in lines.items()}
     for law, spectrum in spectra.items():
-        axes.plot(*spectrum, label=law, **law_style(law, main))
+        axes.plot(*spectrum, label=law, **law_style(tree, law, main))
     finish_spectrum(axes, tree, list(spectra.values()))
 
 
@@ -144,14 +143,14 @@ def band_figure(tree: DataTree, data: Data, *reference: Entry) -> Figure:
     figure = new_figure(4.0 + 2.4 * len(compared))
     heights = [3.4, *(2.4 for _ in compared)]
     panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
-    _draw_bands(panels[0], data, FORCE_LEVEL, span=100.0, step=10.0)
+    _draw_bands(panels[0], tree, data, FORCE_LEVEL, span=100.0, step=10.0)
     for entry in reference:
         if entry in data.lines:
             panels[0].plot(values(tree, BAND), data.lines[entry].values, **REFERENCE_STYLE)
     panels[0].set_ylabel("contact force level / dB re 1 N")
     legend_above(panels[0])
     for axes, (entry, name) in zip(panels[1:], compared.items(), strict=True):
-        _draw_bands(axes, data, entry, span=np.inf, step=5.0)
+        _draw_bands(axes, tree, data, entry, span=np.inf, step=5.0)
         axes.axhline(0, color=MUTED, linewidth=0.9)
         axes.set_ylabel(f"level − {name} / dB")
     for axes in panels:
@@ -160,7 +159,7 @@ def band_figure(tree: DataTree, data: Data, *reference: Entry) -> Figure:
     return figure
 
 
-def _draw_bands(axes: Axes, data: Data, entry: Entry, span: float, step: float) -> None:
+def _draw_bands(axes: Axes, tree: DataTree, data: Data, entry: Entry, *, span: float, step: float) -> None:
     levels = {
         law: data.lines[entry, law].values
         for law in _laws_of(data, FORCE_LEVEL)
@@ -168,8 +167,8 @@ def _draw_bands(axes: Axes, data: Data, entry: Entry, span: float, step: float) 
     }
     main = _laws_of(data, FORCE_LEVEL)[0]
     for law, level in levels.items():
-        style = law_style(law, main)
-        axes.plot(data.at, level, label=law, marker=law_marker(law), markeredgewidth=0, **style)
+        style = law_style(tree, law, main)
+        axes.plot(data.at, level, label=law, marker=law_entry(tree, law).marker, markeredgewidth=0, **style)
     level_limits(axes, list(levels.values()), span, step)
     band_axis(axes, data.at)
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from io import StringIO
 from typing import Any
 
@@ -24,16 +23,17 @@ from asperity.spectra import LEAST_PRODUCT
 
 WIDE, NARROW = 9.6, 4.5  # inches; a figure as wide as the page, and as that of a phone
 INK, MUTED, GRID = "#1c2126", "#5b6670", "#dfe3e7"
+BLUE, VERMILLION, GREEN = "#0067a5", "#c8500a", "#00805c"
 
 # The page replaces every colour of this table by a CSS variable, with a second value for dark screens.
 COLOURS = {
     INK: "#e8eaed",
     MUTED: "#a3adb7",
     GRID: "#333a42",
-    "#0067a5": "#58b0f0",  # blue
-    "#c8500a": "#ff8b4d",  # vermillion
+    BLUE: "#58b0f0",
+    VERMILLION: "#ff8b4d",
     "#a8458f": "#e58fcf",  # purple
-    "#00805c": "#2fc79a",  # green
+    GREEN: "#2fc79a",
     "#96700a": "#e3b341",  # ochre
     "#2a93c4": "#8fd3f4",  # sky
     "#6f7a85": "#98a3ae",  # grey
@@ -50,27 +50,7 @@ SEQUENCE = tuple(COLOURS)[-6:]
 Dashes = str | tuple[float, tuple[float, ...]]
 
 
-@dataclass(frozen=True)
-class LineStyle:
-    """Colour, dashes and marker that a law keeps in every figure."""
-
-    colour: str
-    dashes: Dashes = "-"
-    marker: str = "o"
-
-
-LAW_STYLES = {
-    "areal": LineStyle("#0067a5", "-", "o"),
-    "shifted": LineStyle("#c8500a", (0, (6, 1.5)), "s"),
-    "printed": LineStyle("#a8458f", (0, (6, 1.5, 1.5, 1.5)), "^"),
-    "table": LineStyle("#00805c", "-", "D"),
-    "direct": LineStyle(INK, "-", "v"),
-    "hertz": LineStyle("#2a93c4", (0, (1.5, 1.5)), "P"),
-    "linear": LineStyle("#96700a", (0, (3, 1.5)), "X"),
-}
 NARROW_LETTERS, HANDLE_LETTERS = 66, 10  # in one row of a legend, and what a handle takes of them
-VARIANT_DASHES: Dashes = (0, (8, 1.5, 1, 1.5, 1, 1.5))  # of a law with a suffix, as "linear-filtered"
-_OTHER = LineStyle("#6f7a85", (0, (4, 1, 1, 1, 1, 1)), "<")
 
 RC: dict[Any, Any] = {
     "svg.fonttype": "none",
@@ -148,30 +128,16 @@ def side_by_side(height: float, widths: Sequence[float]) -> tuple[Figure, list[A
     return figure, list(figure.subplots(1, len(widths), width_ratios=widths))
 
 
-def law_style(law: str, main: str) -> dict[str, Any]:
-    """Line properties of a law; the main law is drawn thicker and on top."""
-    base, _, variant = law.partition("-")  # "linear-filtered" keeps the colour of "linear"
-    style = LAW_STYLES.get(base, _OTHER)
-    dashes = VARIANT_DASHES if variant else style.dashes
-    emphasis = {"linewidth": 2.2, "zorder": 4} if law == main else {"linewidth": 1.25, "zorder": 3}
-    return {"color": style.colour, "linestyle": dashes, **emphasis}
-
-
-def law_marker(law: str) -> str:
-    """Marker of a law."""
-    return LAW_STYLES.get(law.partition("-")[0], _OTHER).marker
-
-
 def sequence(count: int) -> list[str]:
     """`count` colours from low to high; repeats nothing up to six."""
     picks = np.linspace(0, len(SEQUENCE) - 1, max(count, 1)).round().astype(int)
     return [SEQUENCE[pick] for pick in picks]
 
 
-def svg(figure: Figure, name: str, title: str) -> str:
+def svg(figure: Figure, name: str, title: str, colours: Mapping[str, str] = COLOURS) -> str:
     """SVG element of a figure for a page that holds many of them.
 
-    Identifiers get the prefix `name`, colours of the style become CSS variables, and everything that names
+    Identifiers get the prefix `name`, `colours` become CSS variables, and everything that names
     another document (prolog, metadata, name spaces) is left out.
     """
     FigureCanvasSVG(figure)
@@ -195,7 +161,7 @@ def svg(figure: Figure, name: str, title: str) -> str:
     def rewritten(tag: re.Match[str]) -> str:  # tags only: the words of a label stay as they are
         text = re.sub(r' id="([^"]*)"', lambda m: f' id="{name}-{m[1]}"' if m[1] in used else "", tag[0])
         text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
-        for index, colour in enumerate(COLOURS):
+        for index, colour in enumerate(colours):
             text = text.replace(colour, f"var(--c{index})")
         text = re.sub(r"(\d\.\d\d)\d+", r"\1", text)  # a hundredth of a point is finer than any screen
         return re.sub(r' d="([^"]*)"', lambda m: f' d="{tight(m[1])}"', text)
@@ -211,10 +177,10 @@ def tight(path: str) -> str:
     return path if re.search("[^MLz0-9. -]", path) else re.sub(r"(?<=\d)L", " ", path)
 
 
-def colour_variables(dark: bool) -> str:
+def colour_variables(dark: bool, colours: Mapping[str, str] = COLOURS) -> str:
     """CSS declarations of the colours that `svg` refers to."""
     return "".join(
-        f"--c{index}:{other if dark else colour};" for index, (colour, other) in enumerate(COLOURS.items())
+        f"--c{index}:{other if dark else colour};" for index, (colour, other) in enumerate(colours.items())
     )
 
 

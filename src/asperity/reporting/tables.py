@@ -18,6 +18,7 @@ from asperity.reporting.data import (
     values,
     variable,
 )
+from asperity.reporting.law_entries import law_entry
 from asperity.schema import contact, rolling, surface
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCE_TO_REFERENCE as REFERENCE
@@ -167,6 +168,13 @@ def _percent(share: float) -> str:
     return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
 
 
+def _pulling_words(names: list[str]) -> str:
+    if not names:
+        return ""
+    verb = "pulls" if len(names) == 1 else "pull"
+    return f"{' and '.join(names)} cannot lose contact, but {verb} where others let go."
+
+
 def loss_table(tree: DataTree) -> Table | None:
     """Share of time without contact, number of events and the longest, per law."""
     names = laws(tree, rolling.CONTACT_LOSS_SHARE)
@@ -183,5 +191,5 @@ def loss_table(tree: DataTree) -> Table | None:
         + [Cell(write(float(of_law(tree, entry, law))), "number") for entry, (_, write) in held.items()]
         for law in names
     ]
-    note = "The linear law cannot lose contact: it pulls where others let go." if "linear" in names else ""
+    note = _pulling_words([law for law in names if law_entry(tree, law).may_pull])
     return Table("contact_loss", "Loss of contact", ["law", *(name for name, _ in held.values())], rows, note)

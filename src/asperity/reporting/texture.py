@@ -17,9 +17,10 @@ from xarray import DataTree
 from asperity.reporting.data import engineering, number, present, stated, values
 from asperity.reporting.part import Data, Part, Series, field, present_series, series
 from asperity.reporting.style import (
+    BLUE,
     INK,
-    LAW_STYLES,
     MUTED,
+    VERMILLION,
     envelope,
     new_figure,
     note_at,
@@ -35,7 +36,6 @@ from asperity.schema.contact import HERTZ_RADIUS
 SLENDER = 2.5  # times longer than wide: such a map gets the whole width
 STRETCHES = 1200  # of the envelope of a long line
 PIXELS = 320  # along each side of a drawn map; denser maps show every n-th point
-_BLUE, _ORANGE = LAW_STYLES["areal"].colour, LAW_STYLES["shifted"].colour
 
 
 def length_unit(extent: float) -> tuple[float, str]:
@@ -102,7 +102,7 @@ def distribution(heights: NDArray[np.float64]) -> Distribution:
 
 def height_histogram(axes: Axes, named: dict[str, Distribution], unit: tuple[float, str]) -> None:
     """Draw how often each height occurs, per series in `named`, with the normal distribution of the first."""
-    colours = [_BLUE, _ORANGE]
+    colours = [BLUE, VERMILLION]
     for (name, (edges, density)), colour in zip(named.items(), colours, strict=False):
         axes.stairs(density * unit[0], edges / unit[0], color=colour, label=name, linewidth=1.4)
     edges, density = next(iter(named.values()))
@@ -194,7 +194,7 @@ def _draw_line(axes: Axes, data: Data, end: float) -> None:
     distance, low, high = data.at, data.lines["lowest"].values, data.lines["highest"].values
     along, along_symbol = length_unit(end - distance[0])
     size, symbol = length_unit(max(np.nanmax(-low), np.nanmax(high)) or 1e-9)
-    axes.fill_between(distance / along, low / size, high / size, color=_BLUE, linewidth=0.4)
+    axes.fill_between(distance / along, low / size, high / size, color=BLUE, linewidth=0.4)
     axes.set_xlim(distance[0] / along, end / along)
     axes.set_xlabel(f"distance / {along_symbol}")
     axes.set_ylabel(f"height / {symbol}")
@@ -202,8 +202,8 @@ def _draw_line(axes: Axes, data: Data, end: float) -> None:
 
 
 _SPECTRA = {
-    surface.PSD_SAMPLE: ("samples, mean", "-", _BLUE),
-    surface.PSD_PATH: ("path", (0, (5, 1.5)), _ORANGE),
+    surface.PSD_SAMPLE: ("samples, mean", "-", BLUE),
+    surface.PSD_PATH: ("path", (0, (5, 1.5)), VERMILLION),
 }
 
 
@@ -324,7 +324,7 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
     unit = length_unit(np.ptp(x))
     if heights.ndim == 1:
         starts, low, high = envelope(heights / size, STRETCHES)
-        left.fill_between(x[starts] / unit[0], low, high, color=_BLUE, linewidth=0.6)
+        left.fill_between(x[starts] / unit[0], low, high, color=BLUE, linewidth=0.6)
         left.set_xlabel(f"x / {unit[1]}")
         left.set_ylabel(f"height / {symbol}")
     else:
@@ -362,7 +362,7 @@ def lines_picture(lines: Sequence[NDArray[np.float64]], spacing: float, title: s
     figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
     longest = max(map(len, lines)) * spacing
     unit = length_unit(longest)
-    for row, (line, colour) in enumerate(zip(lines, cycle((_BLUE, _ORANGE)), strict=False)):
+    for row, (line, colour) in enumerate(zip(lines, cycle((BLUE, VERMILLION)), strict=False)):
         starts, low, high = envelope(line / size, STRETCHES)
         at = starts * spacing / unit[0]
         left.fill_between(at, low - row * reach, high - row * reach, color=colour, linewidth=0.5)

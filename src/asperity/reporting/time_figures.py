@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.reporting.data import engineering, force_unit, laws, of_law, values
+from asperity.reporting.law_entries import law_entry, law_style, pulling
 from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.style import (
     INK,
     MUTED,
     envelope,
     is_narrow,
-    law_style,
     legend_above,
     new_figure,
     styled,
@@ -32,17 +32,12 @@ HEADROOM = 0.5  # share of the main law's range by which other laws may widen it
 
 
 def lost(tree: DataTree, law: str, force: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Where contact is lost, as `force` of `law` shows; nowhere if the contact pulls as well (linear)."""
-    if is_bilateral(law) or (
+    """Where contact is lost, as `force` of `law` shows; nowhere if the contact pulls as well."""
+    if law_entry(tree, law).may_pull or (
         law in laws(tree, CONTACT_LOSS_SHARE) and of_law(tree, CONTACT_LOSS_SHARE, law) == 0
     ):
         return np.zeros(len(force), dtype=bool)
     return force <= 0
-
-
-def is_bilateral(law: str) -> bool:
-    """Whether the contact of `law` pulls as well as it pushes, so that it cannot be lost."""
-    return law.partition("-")[0] == "linear"
 
 
 def piece(tree: DataTree) -> slice:
@@ -70,25 +65,27 @@ def _force_unit(tree: DataTree) -> tuple[float, str]:
     return force_unit(float(np.nanmax(np.abs(values(tree, CONTACT_FORCE)))))
 
 
-def main_limits(series: Mapping[str, NDArray[np.float64]]) -> tuple[float, float]:
+def main_limits(series: Mapping[str, NDArray[np.float64]], pulling: Collection[str]) -> tuple[float, float]:
     """Limits of an axis that suit the main law, the first of `series`.
 
     Parameters
     ----------
     series : mapping of str to array
         What is drawn, by law.
+    pulling : collection of str
+        Laws whose contact cannot be lost.
 
     Returns
     -------
     low, high : float
         The main law's range, wider by at most `HEADROOM` of it on either side where zero, or another law that
-        can lose contact, needs it. A linear law, which swings as if nothing could be lost, widens nothing.
+        can lose contact, needs it. A law that swings as if nothing could be lost widens nothing.
     """
     main, *others = series
     low, high = float(np.nanmin(series[main])), float(np.nanmax(series[main]))
     bottom, top, room = low, high, HEADROOM * (high - low)
     for law in others:
-        if not is_bilateral(law):
+        if law not in pulling:
             bottom = min(bottom, max(low - room, float(np.nanmin(series[law]))))
             top = max(top, min(high + room, float(np.nanmax(series[law]))))
     if low - room <= 0.0 <= high + room:
@@ -128,7 +125,7 @@ def envelope_data(tree: DataTree) -> Data:
 def envelope_figure(tree: DataTree, data: Data) -> Figure:
     """Contact force of the whole run, one row per law, as the envelope of its extremes."""
     names = laws(tree, CONTACT_FORCE)
-    whole, limits = values(tree, TIME), main_limits(_forces(tree))
+    whole, limits = values(tree, TIME), main_limits(_forces(tree), pulling(tree))
     figure = new_figure(0.6 + 1.0 * len(names))
     panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
     unit, symbol = time_unit(whole[-1] - whole[0])
@@ -138,15 +135,13 @@ def envelope_figure(tree: DataTree, data: Data) -> Figure:
         columns = COLUMNS // 2 if is_narrow() else COLUMNS
         starts, low, _ = envelope(lowest, columns)
         high, time = envelope(highest, columns)[2], data.at[starts] / unit
-        axes.fill_between(
-            time, low / size, high / size, color=law_style(law, names[0])["color"], linewidth=0.5
-        )
+        axes.fill_between(time, low / size, high / size, color=law_entry(tree, law).colour, linewidth=0.5)
         axes.axhline(0, color=MUTED, linewidth=0.8)
         _flight_marks(axes, time[lost(tree, law, low)])
         axes.set_title(law + (" (main law)" if law == names[0] and len(names) > 1 else ""))
         axes.set_xlim(whole[0] / unit, whole[-1] / unit)
         axes.set_ylabel(f"F / {force_symbol}")
-        if law == names[0] or not is_bilateral(law):
+        if law == names[0] or not law_entry(tree, law).may_pull:
             axes.set_ylim(*(limit / size for limit in limits))
     panels[-1].set_xlabel(f"time / {symbol}")
     return figure
@@ -157,10 +152,10 @@ def _forces(tree: DataTree) -> dict[str, NDArray[np.float64]]:
     return {law: force.values for law, force in by_law(tree, CONTACT_FORCE).items()}
 
 
-def cut_off(data: Data) -> str:
+def cut_off(tree: DataTree, data: Data) -> str:
     """Say which laws leave the force axis of a piece."""
     forces = {law: force.values for law, force in data.lines.items()}
-    return beyond_limits(forces, main_limits(forces), "N")
+    return beyond_limits(forces, main_limits(forces, pulling(tree)), "N")
 
 
 def _flight_marks(axes: Axes, instants: NDArray[np.float64]) -> None:
@@ -195,20 +190,21 @@ def forces_figure(tree: DataTree, data: Data) -> Figure:
     figure = new_figure(3.9 + 0.16 * len(flights) if flies else 3.9)
     rows = [1, 0.06 * len(flights) + 0.04] if flies else [1]
     panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False, height_ratios=rows)[:, 0]
-    _draw_forces(panels[0], time, {law: data.lines[law].values for law in flights}, _force_unit(tree))
+    _draw_forces(panels[0], tree, time, {law: data.lines[law].values for law in flights})
     if flies:
-        _draw_flights(panels[1], time, flights)
+        _draw_flights(panels[1], tree, time, flights)
     panels[-1].set_xlabel(f"time / {symbol}")
     return figure
 
 
 def _draw_forces(
-    axes: Axes, time: NDArray[np.float64], forces: dict[str, NDArray[np.float64]], unit: tuple[float, str]
+    axes: Axes, tree: DataTree, time: NDArray[np.float64], forces: dict[str, NDArray[np.float64]]
 ) -> None:
-    main, (size, symbol), (low, high) = next(iter(forces)), unit, main_limits(forces)
+    main, (low, high) = next(iter(forces)), main_limits(forces, pulling(tree))
+    size, symbol = _force_unit(tree)
     for law, force in forces.items():
         faint = {"alpha": 0.5, "linewidth": 0.8} if force.min() < low or force.max() > high else {}
-        axes.plot(time, force / size, label=law, **law_style(law, main) | faint)
+        axes.plot(time, force / size, label=law, **law_style(tree, law, main) | faint)
     axes.axhline(0, color=MUTED, linewidth=0.8)
     axes.set_ylim(low / size, high / size)
     axes.set_ylabel(f"contact force / {symbol}")
@@ -216,10 +212,12 @@ def _draw_forces(
     legend_above(axes)
 
 
-def _draw_flights(axes: Axes, time: NDArray[np.float64], flights: dict[str, NDArray[np.bool_]]) -> None:
+def _draw_flights(
+    axes: Axes, tree: DataTree, time: NDArray[np.float64], flights: dict[str, NDArray[np.bool_]]
+) -> None:
     """Draw a bar per law where it has lost contact."""
     for row, (law, flight) in enumerate(flights.items()):
-        colour = law_style(law, "")["color"]
+        colour = law_entry(tree, law).colour
         axes.fill_between(time, row - 0.35, row + 0.35, where=flight, color=colour, step="mid", linewidth=0.8)
     axes.set_ylim(len(flights) - 0.4, -0.6)
     axes.set_yticks(range(len(flights)), list(flights))
@@ -232,13 +230,15 @@ def _piece_caption(tree: DataTree) -> str:
     if not _main_flight(tree).any():
         where = "in the middle of the run"
     data = piece_data(tree)
-    return f"A short piece {where}, every time step.{bars_words(tree, data)}{cut_off(data)}"
+    return f"A short piece {where}, every time step.{bars_words(tree, data)}{cut_off(tree, data)}"
 
 
 def bars_words(tree: DataTree, data: Data) -> str:
     """Sentence about the bars below the forces of a piece, where there are any."""
-    flies = any(lost(tree, law, force.values).any() for law, force in data.lines.items())
-    return " Bars below: no contact (F ≤ 0); linear never lets go." if flies else ""
+    if not any(lost(tree, law, force.values).any() for law, force in data.lines.items()):
+        return ""
+    held = " and ".join(law for law in data.lines if law_entry(tree, law).may_pull)
+    return " Bars below: no contact (F ≤ 0)" + (f"; {held} cannot lose it." if held else ".")
 
 
 def _envelope_caption(tree: DataTree) -> str:
@@ -253,8 +253,8 @@ def _envelope_caption(tree: DataTree) -> str:
 def _cut_off_of_those_that_let_go(tree: DataTree) -> str:
     forces = _forces(tree)
     main = next(iter(forces))
-    shared = {law: force for law, force in forces.items() if law == main or not is_bilateral(law)}
-    return beyond_limits(shared, main_limits(forces), "N")
+    shared = {law: force for law, force in forces.items() if law == main or law not in pulling(tree)}
+    return beyond_limits(shared, main_limits(forces, pulling(tree)), "N")
 
 
 FORCE_PIECE = Part(

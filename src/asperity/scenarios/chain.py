@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from asperity.config.case import SETTLED, Case
 from asperity.contact.scan import ScannedForces
 from asperity.errors import ShortRecordWarning
-from asperity.laws import Law
+from asperity.laws import Law, Need, needs_of
 from asperity.progress import Progress
 from asperity.rolling.events import ContactLoss
 from asperity.scenarios.geometry import Geometry
@@ -140,10 +140,9 @@ def reduce_and_roll(
     workshop = Workshop(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
     laws: dict[str, Law] = {}
     runs: dict[str, R] = {}
-    scan = None
     for name in case.laws:
-        laws[name], scanned = workshop.build(name)
-        scan = scanned or scan
+        laws[name] = workshop.build(name)
         runs[name] = roll(laws[name])
         watch.lap(f"law {name}")
+    scan = workshop.scan if Need.SCAN in needs_of(case.laws) else None
     return Chain(case, textures, shape, reduction, laws, runs, scan, watch.seconds)

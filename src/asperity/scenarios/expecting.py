@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from asperity.config.case import Case
+from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.reduction.real_contact import expected_area_ratio
 from asperity.scenarios.preparing import Prepared
@@ -42,7 +43,7 @@ class Work:
     Attributes
     ----------
     scans : dict of str to Expected
-        ``"filters"`` where samples are scanned, ``"path"`` where `table` is among the laws.
+        ``"filters"`` where samples are scanned, ``"path"`` where a law looks its scan up.
     seconds : dict of str to float
         Time by part of the work, s.
     """
@@ -121,12 +122,12 @@ def _contact_seconds(
 ) -> dict[str, float]:
     """Time of pressing the samples, of the scans, and of textures averaged under the patch."""
     case, textures = prepared.case, prepared.textures
-    samples, laws = case.contact.samples, case.laws
+    samples, needs = case.contact.samples, needs_of(case.laws)
     rows = 0 if textures.path is None else textures.path.shape[0]
-    touched = rows * (1 + ("table" in laws and textures.defects is not None)) + sum(
+    touched = rows * (1 + (Need.SCAN in needs and textures.defects is not None)) + sum(
         strip.shape[0] for strip in textures.strips
     )
-    averaged = rows * (1 + ("areal" in laws) * len(trial.approaches))
+    averaged = rows * (1 + (Need.AREAL in needs) * len(trial.approaches))
     found = {
         "pressing the samples": samples * trial.load + samples * trial.curve / min(thread_count(), samples),
         "averaging under the patch": touched * trial.touch + averaged * trial.average,
@@ -134,8 +135,8 @@ def _contact_seconds(
     found |= {f"scanning for the {name}": scan.seconds for name, scan in scans.items()}
     if any(scan.single for scan in scans.values()):
         found["compiling"] = SINGLE_COMPILED * pace
-    if "direct" in laws:
-        found["direct"] = SOLUTIONS_PER_STEP * steps_of(case) * trial.direct
+    solved = [law for law in case.laws if spec_of(law).solved_every_step]
+    found |= dict.fromkeys(solved, SOLUTIONS_PER_STEP * steps_of(case) * trial.direct)
     return found
 
 

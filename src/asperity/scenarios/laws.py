@@ -1,21 +1,25 @@
-"""The laws of a case, built from its textures and state functions."""
+"""What the laws of a case are made of: its textures and state functions."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import shown
 from asperity.config.sections import ContactCase, Numerics
 from asperity.contact.accuracy import rtol_for
 from asperity.contact.flaws import warn_of_flaws
 from asperity.contact.scan import ScanJob, ScannedForces, first_touch
-from asperity.laws import Areal, Direct, Hertz, Law, Linear, Printed, Shifted, Table
+from asperity.errors import InputError
+from asperity.laws import Law, LawSpec, Need, spec_of
 from asperity.progress import Progress
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import filtered_texture, punch_taps
+from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.stored import StoredForces, scan_into
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
@@ -40,58 +44,37 @@ class Workshop:
     cache: Cache  # for the scan of the path
     progress: Progress
 
-    def build(self, name: str) -> tuple[Law, ScannedForces[StoredForces] | None]:
-        """Build one law, and return the scan that it needed, if any.
+    def build(self, name: str) -> Law:
+        """Build a law of the case by its name, on positions along the path, m."""
+        spec = spec_of(name)
+        law = spec.build(LaidReady(self, spec))
+        if not isinstance(law, Law):
+            allowed = "an object with name, damping and prepare(positions)"
+            raise InputError(f"law `{name}`", shown(law), allowed)
+        if law.name != name:
+            remedy = "Hand the name of the materials on to it."
+            raise InputError(f"law `{name}`", f"one built as {shown(law.name)}", shown(name), remedy)
+        return law
 
-        Parameters
-        ----------
-        name : str
-            Name of the law in the case.
-
-        Returns
-        -------
-        law : Law
-            The law, on positions along the path, m.
-        scanned : ScannedForces or None
-            The scan of the path, for ``table``.
-        """
-        damping = self.contact.damping
-        base, _, variant = name.partition("-")
-        if base == "table":
-            return self._table(damping)
-        if base == "direct":
-            return self._direct(damping), None
-        if base in ("hertz", "linear"):
-            texture = self._filtered_line(name) if variant == "filtered" else self._line()
-            return (self._hertz if base == "hertz" else self._linear)(texture, damping, name), None
+    @cached_property
+    def reduced(self) -> Reduction:
+        """The state functions, which the case must have."""
         assert self.reduction is not None
-        curve = self.reduction.ensemble.curve
-        if base == "areal":
-            return Areal(curve, self._areal(), damping, plane=self._plane()), None
-        texture = self._line() if variant == "unfiltered" else self._filtered_line(name)
-        if base == "printed":
-            return Printed(curve, texture, self.reduction.ensemble.datum, damping, name), None
-        return Shifted(curve, texture, damping, name), None
+        return self.reduction
 
-    def _hertz(self, texture: StateTexture, damping: float, name: str) -> Law:
-        return Hertz(self.shape.hertz.stiffness_constant, texture, damping, name)
-
-    def _linear(self, texture: StateTexture, damping: float, name: str) -> Law:
-        if self.reduction is not None:  # a filter that changed with the state would not be linear
-            texture = texture.held_at(float(self.reduction.ensemble.curve.inverse(self.shape.load)))
-        approach, stiffness = working_point(self.contact, self.shape, self.reduction)
-        return Linear(self.shape.load, stiffness, approach, texture, damping, name)
-
-    def _line(self) -> StateTexture:
+    @property
+    def line(self) -> StateTexture:
+        """Line texture of the path, not filtered."""
         return StateTexture.unfiltered(-self.textures.followed, self.shape.spacing[0], self.textures.start)
 
-    def _filtered_line(self, law: str) -> StateTexture:
+    def filtered_line(self, law: LawSpec) -> StateTexture:
+        """Line texture of the path, through the filter of a law."""
         dx, start = self.shape.spacing[0], self.textures.start
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
             taps, states = punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
         else:
             found = self.reduction.filters[normalisation(self.contact, law)]
-            warn_of_filter(found, law, self.reduction.working_approach)
+            warn_of_filter(found, law.name, self.reduction.working_approach)
             taps, states = found.taps, found.contact_filter.approaches
         return self._over_defects(filtered_texture(self.textures.line, dx, taps, states, start))
 
@@ -101,67 +84,183 @@ class Workshop:
             return texture
         return replace(texture, heights=texture.heights - self.textures.trajectory)
 
-    def _plane(self) -> StateTexture | None:
-        if self.planes is None:
-            return None
+    @cached_property
+    def plane(self) -> StateTexture:
+        """Plane that the nominal patch feels under the working load, along the path."""
+        assert self.planes is not None
         return self._over_defects(
             StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self.textures.start)
         )
 
-    def _areal(self) -> StateTexture:
-        assert self.reduction is not None
+    @cached_property
+    def areal(self) -> StateTexture:
+        """Texture averaged under the patch of each state."""
         assert self.textures.path is not None
-        loaded = self.reduction.semi_axes[:, 0] > 0.0
+        loaded = self.reduced.semi_axes[:, 0] > 0.0
         return self._over_defects(
             areal_texture(
                 self.textures.path,
                 self.shape.spacing,
-                self.reduction.approaches[loaded],
-                np.minimum(self.reduction.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
+                self.reduced.approaches[loaded],
+                np.minimum(self.reduced.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
                 self.textures.start,
             )
         )
 
-    def _table(self, damping: float) -> tuple[Law, ScannedForces[StoredForces]]:
-        assert self.reduction is not None
-        assert self.planes is not None
-        plane = self._plane()
-        assert plane is not None
-        dx, half = self.shape.spacing[0], self.shape.body.shape[0] // 2
-        stride, surface = table_stride(self.shape), self.textures.surface
-        planes = -plane.heights[0, half : len(self.planes) - half : stride]
+    @cached_property
+    def scan(self) -> ScannedForces[StoredForces]:
+        """The scan of the path."""
+        reduction = self.reduced
         job = ScanJob(
-            self.shape.half_space(self.contact.hardness), surface, self.shape.body, self.reduction.approaches,
-            stride, rtol_for(self.numerics.force_accuracy), planes,
+            self.shape.half_space(self.contact.hardness), self.textures.surface, self.shape.body,
+            reduction.approaches, table_stride(self.shape), rtol_for(self.numerics.force_accuracy),
+            self._scanned_planes,
         )  # fmt: skip
         scanned = scan_into(self.cache, job, progress=self.progress, message="scanning the path")
-        reduction, widest = self.reduction, self.textures.widest_window
+        widest = self.textures.widest_window
         remedy = self.shape.remedy_for_cut_off(
             float(reduction.approaches[-1]), reduction.working_approach, reduction.datums["path"], widest
         )
         warn_of_flaws(scanned.counts, "the path", SCAN_TOLERANCE, remedy)
-        if self.textures.defects is not None:
-            touches = first_touch(surface, self.shape.body, stride) + planes
-        else:
-            assert self.reduction.touches is not None
-            touches = self.reduction.touches[::stride]
-        table = ForceTable(
-            scanned.forces, self.reduction.approaches, self.textures.start + half * dx, stride * dx, touches
-        )
-        return Table(table, damping, plane=plane), scanned
+        return scanned
 
-    def _direct(self, damping: float) -> Law:
-        surface = self.textures.surface
-        return Direct(
-            surface.rows(0, surface.shape[0]),
-            self.shape.body,
-            self.shape.spacing,
-            self.shape.modulus,
-            self.textures.start,
-            self.contact.hardness,
-            self.numerics.rtol,
-            damping,
+    @property
+    def _scanned_planes(self) -> NDArray[np.float64]:
+        """Planes at the positions of the scan, m, peaks positive."""
+        half, heights = self.shape.body.shape[0] // 2, self.plane.heights[0]
+        return -heights[half : len(heights) - half : table_stride(self.shape)]
+
+    @cached_property
+    def table(self) -> ForceTable:
+        """The scan of the path, to look forces up in."""
+        dx, half, stride = self.shape.spacing[0], self.shape.body.shape[0] // 2, table_stride(self.shape)
+        if self.textures.defects is not None:
+            touches = first_touch(self.textures.surface, self.shape.body, stride) + self._scanned_planes
+        else:
+            assert self.reduced.touches is not None
+            touches = self.reduced.touches[::stride]
+        return ForceTable(
+            self.scan.forces, self.reduced.approaches, self.textures.start + half * dx, stride * dx, touches
         )
+
+
+@dataclass(frozen=True, eq=False)
+class LaidReady:
+    """The materials of one law, see `asperity.laws.Materials`."""
+
+    workshop: Workshop
+    law: LawSpec
+
+    def _take_out(self, material: str, *needs: Need) -> None:
+        """Refuse a material that the law does not say it needs: what is planned and checked follows needs."""
+        if not self.law.needs & set(needs):
+            wanted = " or ".join(f'"{need}"' for need in needs)
+            allowed = f"materials that it needs; this one goes with {wanted}"
+            raise InputError(f"materials of law `{self.law.name}`", material, allowed)
+
+    @property
+    def name(self) -> str:
+        """See `Materials`, as for all that follows."""
+        return self.law.name
+
+    @property
+    def damping(self) -> float:
+        """Contact damping, N s/m."""
+        return self.workshop.contact.damping
+
+    @property
+    def load(self) -> float:
+        """Working load, N."""
+        return self.workshop.shape.load
+
+    @property
+    def hertz_constant(self) -> float:
+        """K of smooth bodies, N/m^1.5."""
+        return self.workshop.shape.hertz.stiffness_constant
+
+    @property
+    def modulus(self) -> float:
+        """Contact modulus, Pa."""
+        return self.workshop.shape.modulus
+
+    @property
+    def working_point(self) -> tuple[float, float]:
+        """Approach, m, and stiffness, N/m, under the working load."""
+        return working_point(self.workshop.contact, self.workshop.shape, self.workshop.reduction)
+
+    @property
+    def line(self) -> StateTexture:
+        """Line texture, filtered where the law needs it, m."""
+        return self.workshop.filtered_line(self.law) if Need.FILTER in self.law.needs else self.workshop.line
+
+    @property
+    def line_at_load(self) -> StateTexture:
+        """Line texture of the state under the working load, m."""
+        reduction, load = self.workshop.reduction, self.load
+        held_at = 0.0 if reduction is None else float(reduction.ensemble.curve.inverse(load))
+        return self.line.held_at(held_at)
+
+    @property
+    def curve(self) -> ForceCurve:
+        """Force over approach."""
+        self._take_out("curve", Need.SAMPLES)
+        return self.workshop.reduced.ensemble.curve
+
+    @property
+    def datum(self) -> float:
+        """Datum of the state, m."""
+        self._take_out("datum", Need.DATUM)
+        return self.workshop.reduced.ensemble.datum
+
+    @property
+    def areal(self) -> StateTexture:
+        """Texture averaged under the patch, m."""
+        self._take_out("areal", Need.AREAL)
+        return self.workshop.areal
+
+    @property
+    def plane(self) -> StateTexture:
+        """Plane that the patch feels, m."""
+        self._take_out("plane", Need.AREAL, Need.SCAN, Need.SURFACE)
+        return self.workshop.plane
+
+    @property
+    def table(self) -> ForceTable:
+        """Scanned force, N."""
+        self._take_out("table", Need.SCAN)
+        return self.workshop.table
+
+    @property
+    def heights(self) -> NDArray[np.float64]:
+        """Heights of the path, m, shape (rows, ny)."""
+        self._take_out("heights", Need.SURFACE)
+        surface = self.workshop.textures.surface
+        return surface.rows(0, surface.shape[0])
+
+    @property
+    def start(self) -> float:
+        """Position of the first row, m."""
+        return self.workshop.textures.start
+
+    @property
+    def body(self) -> NDArray[np.float64]:
+        """Shape of the smooth body, m, shape (nx, ny)."""
+        return self.workshop.shape.body
+
+    @property
+    def spacing(self) -> tuple[float, float]:
+        """Steps of the grid, m."""
+        return self.workshop.shape.spacing
+
+    @property
+    def hardness(self) -> float | None:
+        """Pressure cap, Pa."""
+        return self.workshop.contact.hardness
+
+    @property
+    def rtol(self) -> float:
+        """Tolerance of a solution."""
+        return self.workshop.numerics.rtol
 
 
 def table_stride(shape: Geometry) -> int:

@@ -13,6 +13,7 @@ from asperity.config.sections import ContactCase
 from asperity.contact.device import find_device
 from asperity.contact.scan import ScanJob, ScannedForces, scan_forces
 from asperity.errors import ContactFilterWarning
+from asperity.laws import LawSpec, Need, spec_of
 from asperity.progress import Progress
 from asperity.reduction.ensemble import StiffnessEnsemble
 from asperity.reduction.filter import (
@@ -41,28 +42,26 @@ SMOOTH_WAVENUMBERS = 120
 LineFilters = Mapping[Normalise, LineFilter]
 
 
-def normalisation(contact: ContactCase, law: str) -> Normalise:
-    """How the filter of a law is normalised: as the case says, else as printed for `printed` alone.
+def normalisation(contact: ContactCase, law: LawSpec) -> Normalise:
+    """How the filter of a law is normalised: as the case says, else as the law wants it.
 
     Parameters
     ----------
     contact : ContactCase
         The contact section of the case.
-    law : str
-        Name of the law.
+    law : LawSpec
+        The law.
 
     Returns
     -------
     str
         ``"low-wavenumber"`` or ``"tangent"``.
     """
-    if contact.normalise is not None:
-        return contact.normalise  # type: ignore[return-value]
-    return "low-wavenumber" if law == "printed" else "tangent"
+    return law.normalise if contact.normalise is None else contact.normalise  # type: ignore[return-value]
 
 
 def normalisations(contact: ContactCase, laws: Iterable[str]) -> tuple[Normalise, ...]:
-    """List the normalisations that the laws of a case need; the first one is shown in any case.
+    """List the normalisations that the laws of a case need, behind the one that is shown in any case.
 
     Parameters
     ----------
@@ -76,7 +75,9 @@ def normalisations(contact: ContactCase, laws: Iterable[str]) -> tuple[Normalise
     tuple of str
         Each once.
     """
-    return tuple(dict.fromkeys(normalisation(contact, law) for law in ("shifted", *laws)))
+    filtered = (spec for spec in map(spec_of, laws) if Need.FILTER in spec.needs)
+    shown: Normalise = contact.normalise or "tangent"  # type: ignore[assignment]
+    return tuple(dict.fromkeys([shown, *(normalisation(contact, law) for law in filtered)]))
 
 
 def filter_stride(shape: Geometry) -> int:

@@ -14,6 +14,7 @@ from asperity.contact.accuracy import FILTER_SHARE, rtol_for
 from asperity.contact.scan import ScanJob
 from asperity.errors import InputError
 from asperity.files import amount, free_space
+from asperity.laws import Need, needs_of
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.line_filters import filter_stride
@@ -52,13 +53,13 @@ def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, Exp
     Returns
     -------
     dict of Expected
-        ``"filters"`` where rough samples are scanned, ``"path"`` where `table` is among the laws.
+        ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up.
     """
     strips = [strip for strip in textures.strips if strip.heights.any()]
     accuracy, result = case.numerics.force_accuracy, {}
     if strips:
         result["filters"] = _sized(case, shape, strips, filter_stride(shape), FILTER_SHARE * accuracy)
-    if "table" in case.laws and textures.path is not None:
+    if Need.SCAN in needs_of(case.laws) and textures.path is not None:
         result["path"] = _sized(case, shape, [textures.path], table_stride(shape), accuracy)
     return result
 

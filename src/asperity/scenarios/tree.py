@@ -15,7 +15,7 @@ import xarray
 from asperity import __version__
 from asperity.contact.device import find_device
 from asperity.errors import Grade, PhysicsWarning
-from asperity.laws import LAWS
+from asperity.laws import baselines, reference, spec_of
 from asperity.results import checked
 from asperity.scenarios.chain import Chain
 from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
@@ -70,7 +70,7 @@ def assembled(
             provenance.KIND: case.kind,
             provenance.PARAMETERS: json.dumps(case.parameters(), ensure_ascii=False),
             provenance.NUMERICS: json.dumps(_listed(chain, numerics), ensure_ascii=False),
-            provenance.LAWS: json.dumps({n: _meaning(n) for n in chain.laws}, ensure_ascii=False),
+            provenance.LAWS: json.dumps([spec_of(n).entry() for n in chain.laws], ensure_ascii=False),
         }
     )
     tree = xarray.DataTree.from_dict({"/scenario": xarray.Dataset(attrs=scenario), **groups})
@@ -99,18 +99,6 @@ def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
         {"category": category, "message": message, "grade": grade.value, "count": n}
         for (category, message, grade), n in sorted(counts.items(), key=lambda c: -order.index(c[0][2]))
     ]
-
-
-_VARIANTS = {
-    "": "",
-    "filtered": " Here with the filtered line texture.",
-    "unfiltered": " Here without the filter.",
-}
-
-
-def _meaning(name: str) -> str:
-    base, _, variant = name.partition("-")
-    return LAWS[base].meaning + _VARIANTS[variant]
 
 
 def _listed(chain: Chain[Any], numerics: Iterable[tuple[str, str]]) -> list[dict[str, str]]:
@@ -171,6 +159,13 @@ def spectrum_segment(samples: int, step: float) -> int:
     return min(max(samples // 4, shortest), longest, samples)
 
 
+def difference_to(baseline: str) -> Entry:
+    """Find the entry of the force levels over those of a baseline."""
+    role = spec_of(baseline).role
+    assert role is not None
+    return spectra.FORCE_LEVEL_DIFFERENCES[role]
+
+
 def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xarray.Variable]:
     """Differences of the force levels to the linear laws, and to a reference if there is one.
 
@@ -186,10 +181,9 @@ def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xar
     dict of str to Variable
         Differences in dB, by law and band.
     """
-    compared = {entry: law for law, entry in spectra.FORCE_LEVEL_DIFFERENCES.items() if law in laws}
-    reference = next((name for name in ("direct", "table") if name in laws), None)
-    if reference is not None:
-        compared[spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = reference
+    compared = {difference_to(law): law for law in baselines(laws)}
+    if (solved := reference(laws)) is not None:
+        compared[spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = solved
     return {
         entry.name: entry.variable(force_level - force_level[laws.index(law)], reference=law)
         for entry, law in compared.items()

@@ -16,6 +16,7 @@ from asperity.contact import HalfSpace
 from asperity.contact.accuracy import FILTER_SHARE, rtol_for
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import PhysicsWarning
+from asperity.laws import Need, needs_of
 from asperity.progress import Progress
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import patches
@@ -111,7 +112,7 @@ def try_contacts(prepared: Prepared, progress: Progress) -> ContactTrial:
         )
         filters = _position_time(like)
     progress(3, 4, message)
-    if "table" in case.laws:
+    if Need.SCAN in needs_of(case.laws):
         path = _position_time(replace(job, surface=textures.surface, stride=table_stride(shape)), shape)
     rows = _middle(textures.path or textures.strips[0], ROWS)
     _, touch = timed(lambda: first_touch(rows.heights[: nx + 100], shape.body))

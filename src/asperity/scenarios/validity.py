@@ -11,13 +11,12 @@ from typing import Any
 import numpy as np
 
 from asperity.errors import Grade, OutOfRangeWarning, percent
+from asperity.laws import spec_of
 from asperity.scenarios.chain import Chain
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for
 
 _CUT_OFF = "share of contacts that the window cuts off"
 
-SCANNED = ("table", "direct")
-"""Laws that take the rough contact as it is, not as a texture averaged over Hertz's patch."""
 AREA = (0.9, 0.7)
 """Real contact area over that of smooth bodies: warned of, and out of range, below."""
 SLOPE = (0.2, 0.5)
@@ -79,8 +78,8 @@ def _grade(value: float, limits: tuple[float, float]) -> Grade | None:
 
 def _area(chain: Chain[Any]) -> Finding:
     ratio = chain.reduction.area_ratio  # type: ignore[union-attr]
-    averaged = tuple(law for law in chain.laws if law not in SCANNED)
-    scanned = [law for law in chain.laws if law in SCANNED]
+    averaged = tuple(law for law in chain.laws if not spec_of(law).sees_heights)
+    scanned = [law for law in chain.laws if spec_of(law).sees_heights]
     return Finding(
         "real contact area over that of smooth bodies",
         f"{ratio:.2f}",
@@ -146,12 +145,11 @@ def _cut_off(chain: Chain[Any]) -> Iterator[Finding]:
     main, run = next(iter(chain.runs.items()))
     held = float(ensemble.mean_force[ensemble.held - 1]) if ensemble.held else 0.0
     visited = float(np.mean(run.contact_force > held)) if ensemble.held < len(ensemble.approaches) else 0.0
-    smooth = main.partition("-")[0] in ("hertz", "linear")
     yield Finding(
         f"share of the time in contacts that the window cuts off, {main}",
         percent(visited),
         "below 1 %",
-        Grade.of_share(visited) if visited and not smooth else None,
+        Grade.of_share(visited) if visited and not spec_of(main).is_smooth else None,
         f"Forces above {held:.3g} N are too small: their contacts are larger than the window.",
         remedy,
         f"{percent(visited)} of the time in contacts that the window cuts off",

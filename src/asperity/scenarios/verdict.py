@@ -9,13 +9,14 @@ import numpy as np
 import xarray
 
 from asperity.errors import Grade
+from asperity.laws import baselines, names, spec_of
 from asperity.scenarios.chain import Chain, Run
-from asperity.scenarios.validity import SCANNED, Finding
+from asperity.scenarios.tree import difference_to
+from asperity.scenarios.validity import Finding
 from asperity.schema.spectra import (
     BAND,
     BAND_TIME_PRODUCT,
     FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
-    FORCE_LEVEL_DIFFERENCES,
 )
 from asperity.spectra import LEAST_PRODUCT, nominal_frequency
 
@@ -55,17 +56,15 @@ def verdict(
     sentences = list(_doubts(chain, found))
     sentences += [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
     secant = " (linear with the stiffness F/r)" if chain.case.contact.linearise == "secant" else ""
-    baselines = [
-        law for law, entry in FORCE_LEVEL_DIFFERENCES.items() if entry.name in spectra and law != main
-    ]
+    others = [law for law in baselines(chain.runs) if difference_to(law).name in spectra and law != main]
     shown = _shown(spectra)
     if not shown.any():
         sentences.append("The record is too short to compare its one-third octaves with those of other laws")
-    elif compared := list(_compared(spectra.isel(band=shown), main, baselines)):
+    elif compared := list(_compared(spectra.isel(band=shown), main, others)):
         sentences.append(f"Per one-third octave {main} is {' and '.join(compared)}{secant}")
-    if sound_power is not None and baselines:
+    if sound_power is not None and others:
         own = sound_power.sel(law=main)
-        changes = [f"{_signed(own - sound_power.sel(law=name))} over {name}" for name in baselines]
+        changes = [f"{_signed(own - sound_power.sel(law=name))} over {name}" for name in others]
         sentences.append(f"Its A-weighted sound power is {' and '.join(changes)}{secant}")
     return ". ".join(sentences) + "."
 
@@ -78,7 +77,8 @@ def _doubts(chain: Chain[Any], found: Sequence[Finding]) -> Iterator[str]:
         return
     out = any(finding.grade is Grade.OUT for finding in doubts)
     reasons = ", ".join(finding.brief for finding in doubts)
-    better = [law for law in SCANNED if law in chain.runs and any(law not in f.laws for f in doubts)]
+    seeing = [law for law in names() if law in chain.runs and spec_of(law).sees_heights]
+    better = [law for law in seeing if any(law not in finding.laws for finding in doubts)]
     instead = [
         f"{law} varies by {_force(float(np.std(chain.runs[law].contact_force)))} rms" for law in better
     ]
@@ -93,10 +93,10 @@ def _shown(spectra: xarray.Dataset) -> np.ndarray:
     return np.asarray((inside & (spectra[BAND_TIME_PRODUCT.name] >= LEAST_PRODUCT)).values)
 
 
-def _compared(bands: xarray.Dataset, main: str, baselines: list[str]) -> Iterator[str]:
+def _compared(bands: xarray.Dataset, main: str, others: list[str]) -> Iterator[str]:
     """Distance to the linear laws, the one of practice first, and to the reference."""
-    for name in baselines:
-        yield f"{_range(bands[FORCE_LEVEL_DIFFERENCES[name].name].sel(law=main))} over {name}"
+    for name in others:
+        yield f"{_range(bands[difference_to(name).name].sel(law=main))} over {name}"
     to_reference = bands.get(FORCE_LEVEL_DIFFERENCE_TO_REFERENCE.name)
     if to_reference is not None and to_reference.attrs["reference"] != main:
         distance = float(abs(to_reference.sel(law=main)).max())

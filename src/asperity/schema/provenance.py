@@ -22,4 +22,4 @@ WARNINGS = _root("warnings", "JSON", "warnings on the physics: category, message
 KIND = _scenario("kind", "text", "kind of case")
 PARAMETERS = _scenario("parameters", "JSON", "every key of the case, with its value and default")
 NUMERICS = _scenario("numerics", "JSON", "numbers of the computation: name, value")
-LAWS = _scenario("laws", "JSON", "meaning of each contact law")
+LAWS = _scenario("laws", "JSON", "each contact law: name, meaning, look, whether it may pull, needs, role")

@@ -28,12 +28,13 @@ def _difference(to: str, law: str, condition: str) -> Entry:
     return _entry(name, ("law", "band"), "dB", long_name, condition, NO_SIGNAL, ("reference",))
 
 
+PRACTICE, BARE = "baseline of practice", "baseline on the bare texture"
+"""Roles of the laws that all others are compared with; practice is that of CNOSSOS-EU and TWINS."""
 FORCE_LEVEL_DIFFERENCES = {
-    law: _difference(law.replace("-", "_"), law, f"where the law {law} was rolled")
-    for law in ("linear-filtered", "linear")
+    role: _difference(law.replace("-", "_"), law, f"where the law {law} was rolled")
+    for role, law in {PRACTICE: "linear-filtered", BARE: "linear"}.items()
 }
-"""By the law that all others are compared with; first that of practice, as in CNOSSOS-EU and TWINS."""
-BASELINES = tuple(FORCE_LEVEL_DIFFERENCES)
+"""By the role of the law that is compared with."""
 FORCE_LEVEL_DIFFERENCE_TO_REFERENCE = _difference(
     "reference", "the law that solves or scans the whole contact", "where such a law was rolled"
 )

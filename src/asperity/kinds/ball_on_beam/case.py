@@ -8,7 +8,6 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, model_validator
 
 from asperity.config.case import (
-    LAWS,
     SETTLED,
     Case,
     Law,
@@ -34,13 +33,14 @@ from asperity.config.keys import (
 )
 from asperity.config.sections import ContactCase, Numerics, Surface
 from asperity.errors import InputError
+from asperity.laws import Need, names, spec_of
 from asperity.scenarios.kind import Words
-from asperity.schema.spectra import BASELINES
 from asperity.units import written
 
-NEED_AREAL_PATH = ("areal", "table", "direct")  # laws that look at the texture beside the line, too
-NEED_NO_SAMPLES = ("hertz", "linear", "hertz-filtered", "linear-filtered")  # smooth bodies over the line
-
+ROLLED = ("areal", "shifted", "printed", "table", "linear-filtered", "linear")
+"""Laws that are rolled where a case names none, as far as its surface allows them."""
+SMOOTH = "hertz-filtered"
+"""Main law of those where there is no sample of the surface."""
 LONGEST_SETTLING = 0.2
 """Longest run-in that is chosen, s: after it no one-third octave from 40 Hz on holds the start from rest."""
 SETTLING_SHARE = 0.25
@@ -128,7 +128,7 @@ class BallOnBeam(Case):
         within=("0.1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
     )
     laws: tuple[Law, ...] = key(
-        ("areal", "shifted", "printed", "table", "linear-filtered", "linear"),
+        ROLLED,
         "laws of the contact force; the first is the main one",
     )
     start: Position | None = key(
@@ -161,14 +161,15 @@ class BallOnBeam(Case):
     @model_validator(mode="before")
     @classmethod
     def _laws_that_the_surface_allows(cls, data: Any) -> Any:
-        """Leave out of the default laws those that need more texture than a line has."""
+        """Leave out of the default laws those that need more texture than there is."""
         if not isinstance(data, dict) or "laws" in data or not isinstance(data.get("surface"), dict):
             return data
         surface = data["surface"]
         if not {"line", "spectrum"} & surface.keys():
             return data
-        rough = {"file", "rms"} & surface.keys()
-        return {**data, "laws": [*(["shifted", "printed"] if rough else ["hertz-filtered"]), *BASELINES]}
+        rough = bool({"file", "rms"} & surface.keys())
+        allowed = _allowed(line=True, samples=rough)
+        return {**data, "laws": [*([] if rough else [SMOOTH]), *(law for law in ROLLED if law in allowed)]}
 
     @property
     def time_step(self) -> float:
@@ -222,17 +223,13 @@ class BallOnBeam(Case):
 def _problems_of_laws(case: BallOnBeam) -> Iterator[InputError]:
     yield from problems_of_laws(case)
     for law in sorted(set(case.laws)):
-        if case.surface.has_line and law in NEED_AREAL_PATH:
-            allowed = "laws that need no texture beside the line: " + _listed(
-                set(LAWS) - set(NEED_AREAL_PATH)
-            )
+        if case.surface.has_line and spec_of(law).needs_areal_path:
+            allowed = "laws that need no texture beside the line: " + _listed(line=True)
             yield InputError("laws", f'"{law}" with a path given as a line', allowed)
-        elif not case.surface.has_samples and law not in NEED_NO_SAMPLES:
+        elif not case.surface.has_samples and Need.SAMPLES in spec_of(law).needs:
             remedy = 'Give samples as well: file = "…" or rms = "…" in [surface].'
-            yield InputError(
-                "laws", f'"{law}" without samples of the surface', _listed(NEED_NO_SAMPLES), remedy
-            )
-
+            allowed = _listed(line=True, samples=False)
+            yield InputError("laws", f'"{law}" without samples of the surface', allowed, remedy)
     if case.contact.linearise == "rough" and not case.surface.has_samples:
         yield InputError("contact.linearise", '"rough" without samples of the surface', '"hertz"')
 
@@ -254,8 +251,18 @@ def _problems_of_path(case: BallOnBeam) -> Iterator[InputError]:
         yield from problem_of_steps(case, case.settled_time + rolled)
 
 
-def _listed(words: set[str] | tuple[str, ...]) -> str:
-    return ", ".join(f'"{word}"' for word in LAWS if word in words)
+def _allowed(*, line: bool, samples: bool = True) -> list[str]:
+    """Laws that can be rolled over a line, without or with samples of the surface."""
+    return [
+        name
+        for name in names()
+        if not (line and spec_of(name).needs_areal_path)
+        and (samples or Need.SAMPLES not in spec_of(name).needs)
+    ]
+
+
+def _listed(*, line: bool, samples: bool = True) -> str:
+    return ", ".join(f'"{name}"' for name in _allowed(line=line, samples=samples))
 
 
 CASE = BallOnBeam

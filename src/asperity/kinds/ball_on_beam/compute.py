@@ -9,7 +9,7 @@ from asperity.kinds.ball_on_beam.bodies import Bodies
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.compiling import compile_kernels
 from asperity.kinds.ball_on_beam.roll import Rolling, roll
-from asperity.laws import Law
+from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.textures import Textures
@@ -54,7 +54,11 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
     watch.lap("compiled functions")
     pace = case.contact.spacing / case.speed
     duration = min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace)
-    checkpoint = Checkpoint(store, _run_key(case, textures, duration)) if "direct" in case.laws else None
+    checkpoints = {
+        name: Checkpoint(store, _run_key(name, case, textures, duration))
+        for name in case.laws
+        if spec_of(name).solved_every_step
+    }
 
     def roll_law(law: Law) -> Rolling:
         return roll(
@@ -69,15 +73,15 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
             sensors=case.beam.sensor_positions,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=checkpoint if law.name == "direct" else None,
+            checkpoint=checkpoints.get(law.name),
         )
 
     chain = reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
     return Computed(case, chain, ball, beam)
 
 
-def _run_key(case: BallOnBeam, textures: Textures, duration: float) -> str:
-    """Name of a direct run: everything that its motion depends on."""
+def _run_key(law: str, case: BallOnBeam, textures: Textures, duration: float) -> str:
+    """Name of a run of a law that solves every step: everything that its motion depends on."""
     assert textures.path is not None
     scalars = [
         case.speed, case.record_start, case.settled_time, duration, case.time_step, case.numerics.rtol,
@@ -85,4 +89,4 @@ def _run_key(case: BallOnBeam, textures: Textures, duration: float) -> str:
         list(case.beam.sensor_positions),
     ]  # fmt: skip
     sections = [case.ball.model_dump(mode="json"), case.beam.model_dump(mode="json")]
-    return content_key("direct", textures.path.rows(0, textures.path.shape[0]), scalars, sections)
+    return content_key(law, textures.path.rows(0, textures.path.shape[0]), scalars, sections)

@@ -15,7 +15,7 @@ from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compiling import compile_kernels
 from asperity.kinds.wheel_on_rail.passing import passed_points
 from asperity.kinds.wheel_on_rail.roll import WheelRolling, roll
-from asperity.laws import Law
+from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.textures import Textures
@@ -83,7 +83,11 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
                 stacklevel=2,
             )
     watch.lap("track")
-    checkpoint = Checkpoint(store, _run_key(case, textures)) if "direct" in case.laws else None
+    checkpoints = {
+        name: Checkpoint(store, _run_key(name, case, textures))
+        for name in case.laws
+        if spec_of(name).solved_every_step
+    }
 
     def roll_law(law: Law) -> WheelRolling:
         return roll(
@@ -95,7 +99,7 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
             settling=case.settling,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=checkpoint if law.name == "direct" else None,
+            checkpoint=checkpoints.get(law.name),
         )
 
     chain = reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
@@ -104,12 +108,12 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
     return Computed(case, chain, wheel, track, kernel, rail, points)
 
 
-def _run_key(case: WheelOnRail, textures: Textures) -> str:
-    """Name of a direct run: everything that its motion depends on."""
+def _run_key(law: str, case: WheelOnRail, textures: Textures) -> str:
+    """Name of a run of a law that solves every step: everything that its motion depends on."""
     scalars = [case.speed, case.start, case.duration, case.settling, case.time_step, case.numerics.rtol]
     contact = [case.contact.hardness, case.contact.damping, case.contact.spacing]
     sections = [s.model_dump(mode="json") for s in (case.wheel, case.track, case.numerics)]
     files = [case.wheel.profile, case.track.rail_profile, case.wheel.modes, case.wheel.receptance]
     content = [path.read_bytes().hex() for path in files if path is not None]
     heights = textures.surface.rows(0, len(textures.line))
-    return content_key("direct-rail", heights, scalars, contact, sections, content)
+    return content_key(f"{law}-rail", heights, scalars, contact, sections, content)

@@ -12,9 +12,6 @@ from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat
 from asperity.surfaces.en15610 import roll_over
 from asperity.surfaces.heightmap import Profile
 
-NEED_GEOMETRY = ("table", "direct")
-"""Laws that see the shape of a defect; the others follow the wheel's centre over it."""
-
 
 def corrugated(case: WheelOnRail, rows: int, seed: int) -> NDArray[np.float64]:
     """Corrugation of the rail along the path: heights (rows,), m, the same all across; zero without one.

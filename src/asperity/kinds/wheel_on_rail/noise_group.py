@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.sound_power import SOURCES, SoundPower, rolling_sound_power
+from asperity.laws import Role, in_role
 from asperity.reference import cnossos
 from asperity.schema import Entry
 from asperity.spectra import HALF_BAND
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
 
-BASELINE = "linear"
-"""Law whose sound power is that of the bare roughness; all others add their difference to it."""
 EMPTY = -200.0
 """Level of a band without texture, dB re 1 µm."""
 
@@ -48,17 +47,18 @@ def noise(
     force is not computed are left out of all totals.
     """
     laws = list(computed.chain.runs)
-    if BASELINE not in laws or not np.ptp(computed.chain.textures.line):
+    bare = in_role(Role.BARE, laws)
+    if bare is None or not np.ptp(computed.chain.textures.line):
         return {}
     linear, filtered = (_within(_linear(computed, name), band) for name in (None, _filter_of(computed)))
-    difference = force_level - force_level[laws.index(BASELINE)]
+    difference = force_level - force_level[laws.index(bare)]
     powers = [linear.with_difference(band, np.where(np.isfinite(d), d, np.nan)) for d in difference]
     levels = np.stack([power.levels for power in powers])
     standard = schema.CNOSSOS_SOUND_POWER_LEVEL_A
     return {
         schema.SOURCE: SOURCES,
         schema.NOISE_BAND: linear.band,
-        schema.SOUND_POWER_LEVEL: schema.SOUND_POWER_LEVEL.variable(levels, reference=BASELINE),
+        schema.SOUND_POWER_LEVEL: schema.SOUND_POWER_LEVEL.variable(levels, reference=bare),
         schema.SOUND_POWER_LEVEL_A: np.stack([power.a_weighted for power in powers]),
         standard: standard.variable(filtered.a_weighted, contact_filter=_filter_of(computed)),
     }

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from asperity.errors import InputError, TruncatedContactWarning
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.defects import NEED_GEOMETRY, corrugated, defects
+from asperity.kinds.wheel_on_rail.defects import corrugated, defects
 from asperity.kinds.wheel_on_rail.lines import rail_lines, wheel_lines
 from asperity.kinds.wheel_on_rail.records import Grid, Record, rail_levels, spectrum_strip, wheel_levels
+from asperity.laws import spec_of
 from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.textures import (
@@ -156,7 +157,7 @@ def warn_of(case: WheelOnRail, shape: Geometry, textures: Textures) -> None:
         The case, its geometry and its textures.
     """
     warn_of_start(case, "set settling")
-    seen = [law for law in case.laws if law in NEED_GEOMETRY]
+    seen = [law for law in case.laws if spec_of(law).sees_heights]
     if not seen or textures.defects is None or case.wheel.flat is None:
         return
     _, length = case.wheel.flat

@@ -14,6 +14,7 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.marks import draw_sleeper_tones, draw_split, pinned_pinned_split
 from asperity.reporting.data import engineering, laws, number, of_law, present, values
+from asperity.reporting.law_entries import law_style
 from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.spectrum_figures import (
     IN_FREQUENCY,
@@ -23,7 +24,7 @@ from asperity.reporting.spectrum_figures import (
     shade_bands,
     shaded_words,
 )
-from asperity.reporting.style import decibels, law_style, legend_above, level_limits, new_figure, styled
+from asperity.reporting.style import decibels, legend_above, level_limits, new_figure, styled
 from asperity.reporting.time_figures import bars_words, cut_off, forces_data, forces_figure
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.schema.spectra import BAND, FORCE_PSD, FREQUENCY
@@ -59,7 +60,7 @@ def _peak_caption(tree: DataTree) -> str:
     if present(tree, POSITION):
         where += f", {values(tree, POSITION)[peak]:.3f} m along the rail"
     data = peak_data(tree)
-    words = f"{bars_words(tree, data)}{cut_off(data)}"
+    words = f"{bars_words(tree, data)}{cut_off(tree, data)}"
     return f"Around the largest force of the main law, {main}: {where}. Every time step.{words}"
 
 
@@ -80,7 +81,7 @@ def psd_figure(tree: DataTree, data: Data) -> Figure:
     drawn = {key: _thinned(data.at, psd.values, high) for key, psd in data.lines.items()}
     reference, main = drawn.pop(REFERENCE, None), next(iter(drawn))
     for law, spectrum in drawn.items():
-        axes.plot(*spectrum, label=law, **law_style(law, main) | _thin(law, main))
+        axes.plot(*spectrum, label=law, **law_style(tree, law, main) | _thin(law, main))
     if reference is not None:
         axes.plot(*reference, **REFERENCE_STYLE)
     axes.set_xlim(0, high)

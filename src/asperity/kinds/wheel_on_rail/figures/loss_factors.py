@@ -13,11 +13,21 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.data import engineering, number, values, variable
 from asperity.reporting.part import Data, Part, Series, present_series, series
-from asperity.reporting.style import INK, LAW_STYLES, MUTED, frequency_axis, legend_above, new_figure, styled
+from asperity.reporting.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    VERMILLION,
+    frequency_axis,
+    legend_above,
+    new_figure,
+    styled,
+)
 
 BAND, FORCE, RAIL = schema.TRACK_BAND, schema.LOSS_FACTOR_FORCE_ERROR, schema.LOSS_FACTOR_RAIL_ERROR
 CONSTANT, STIFFNESS, LOSS = schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR
-_COLOURS = tuple(LAW_STYLES[law].colour for law in ("areal", "shifted", "table"))
+_COLOURS = (BLUE, VERMILLION, GREEN)
 _DOTS = (0, (1.5, 1.5))
 EDGE = 10**0.05
 """From the centre of a one-third octave to its upper edge."""

@@ -15,7 +15,8 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.force import around_peak
 from asperity.kinds.wheel_on_rail.figures.marks import draw_marks, draw_sleepers, natural_frequencies
-from asperity.reporting.data import baselines, laws, number, of_law, present, values, variable
+from asperity.reporting.data import laws, number, of_law, present, values, variable
+from asperity.reporting.law_entries import baselines_among, law_style, pulling
 from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.spectrum_figures import (
     DRAWN,
@@ -27,7 +28,6 @@ from asperity.reporting.spectrum_figures import (
 from asperity.reporting.style import (
     INK,
     frequency_axis,
-    law_style,
     legend_above,
     level_limits,
     new_figure,
@@ -89,8 +89,8 @@ def displacement_figure(tree: DataTree, data: Data) -> Figure:
     for axes, (entry, motions) in zip(panels, found.items(), strict=True):
         name, size, length = MOTIONS[entry]
         for law, motion in motions.items():
-            axes.plot(time / unit, motion / size, label=law, **law_style(law, next(iter(motions))))
-        low, high = main_limits(motions)
+            axes.plot(time / unit, motion / size, label=law, **law_style(tree, law, next(iter(motions))))
+        low, high = main_limits(motions, pulling(tree))
         axes.set_ylim(high / size, low / size)  # downwards
         axes.set_ylabel(f"{name} / {length}")
         draw_sleepers(axes, tree, time[0], time[-1], unit)
@@ -104,7 +104,7 @@ def _displaced_beyond(tree: DataTree) -> str:
     """Say which laws leave the axes."""
     words = ""
     for entry, motions in _motions(displacement_data(tree)).items():
-        outside = beyond_limits(motions, main_limits(motions), "m")
+        outside = beyond_limits(motions, main_limits(motions, pulling(tree)), "m")
         words += outside.replace("The axis suits", f"{MOTIONS[entry][0].capitalize()}: the axis suits")
     return words
 
@@ -156,7 +156,7 @@ def _around_passing(tree: DataTree, point: int) -> tuple[slice, float | None]:
 
 def _main_and_linear(tree: DataTree) -> list[str]:
     names = laws(tree, VELOCITY)
-    return [*(name for name in baselines(names)[:1] if name != names[0]), names[0]]
+    return [*(name for name in baselines_among(tree, names)[:1] if name != names[0]), names[0]]
 
 
 def _of_points(tree: DataTree, entry: Entry, part: slice) -> dict[Any, Series]:
@@ -192,7 +192,7 @@ def velocity_figure(tree: DataTree, data: Data) -> Figure:
         shown = np.isin(data.at, whole[part])
         time = data.at[shown] - (passing or 0.0)
         for law in names:
-            style = law_style(law, main) | {"linewidth": 1.0, "linestyle": "-"}
+            style = law_style(tree, law, main) | {"linewidth": 1.0, "linestyle": "-"}
             axes.plot(time * 1e3, data.lines[law, point].values[shown] * 1e3, label=law, **style)
         if passing is not None:
             axes.axvline(0, color=INK, linewidth=0.8, linestyle=":")
@@ -239,7 +239,7 @@ def velocity_psd_figure(tree: DataTree, data: Data) -> Figure:
         for law in names:
             psd = data.lines[law, point].values
             frequency, level = narrow_level(tree, psd, schema.VELOCITY_REFERENCE**2)
-            axes.plot(frequency, level, label=law, **law_style(law, names[0]))
+            axes.plot(frequency, level, label=law, **law_style(tree, law, names[0]))
             levels.append(level)
         axes.set_ylabel("velocity PSD / dB re (1 nm/s)²/Hz", fontsize=8.5)
         _name(axes, labels[point])

@@ -12,16 +12,14 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.reporting.data import baselines, doubtful, laws, of_law, variable
+from asperity.reporting.data import doubtful, laws, of_law, variable
+from asperity.reporting.law_entries import baselines_among, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
 from asperity.reporting.style import (
     INK,
-    LAW_STYLES,
     MUTED,
     band_axis,
-    law_marker,
-    law_style,
     legend_above,
     level_limits,
     new_figure,
@@ -73,8 +71,8 @@ def band_figure(tree: DataTree, data: Data) -> Figure:
     for law in names:
         level = data.lines[law, whole].values + weighting
         axes.plot(
-            bands, level, label=f"{whole}, {law}", marker=law_marker(law), markeredgewidth=0,
-            **law_style(law, names[0]),
+            bands, level, label=f"{whole}, {law}", marker=law_entry(tree, law).marker, markeredgewidth=0,
+            **law_style(tree, law, names[0]),
         )  # fmt: skip
         levels.append(level)
     share = _share_law(tree)
@@ -122,10 +120,9 @@ def total_figure(tree: DataTree, data: Data) -> Figure:
     thickness = 0.82 / len(names)
     for row, (law, level) in enumerate(zip(names, levels, strict=True)):
         places = np.arange(len(found)) + (row - (len(names) - 1) / 2) * thickness
-        colour = LAW_STYLES.get(law.partition("-")[0])
         axes.barh(
             places, level - base, 0.86 * thickness, left=base, label=law, linewidth=0,
-            color=colour.colour if colour else MUTED,
+            color=law_entry(tree, law).colour,
         )  # fmt: skip
         _write(axes, level, places)
     axes.set_yticks(range(len(found)), found)
@@ -154,7 +151,7 @@ def sound_power_table(tree: DataTree) -> Table | None:
     if not names:
         return None
     levels = {law: of_law(tree, POWER_A, law, "source") for law in names}
-    compared = baselines(names)
+    compared = baselines_among(tree, names)
     head = ["law", *(f"{source} / dB(A)" for source in radiating)]
     head += [f"{source} − {name} / dB" for name in compared for source in radiating]
 

@@ -14,9 +14,10 @@ from asperity.reporting.data import doubtful, engineering, nominal_band, number,
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
 from asperity.reporting.style import (
+    BLUE,
     INK,
-    LAW_STYLES,
     MUTED,
+    VERMILLION,
     level_limits,
     new_figure,
     shade_doubtful,
@@ -29,8 +30,8 @@ ROUGHNESS, BAND, PRODUCT = schema.ROUGHNESS_LEVEL, schema.SURFACE_BAND, schema.S
 SPAN = 60.0
 """Levels, dB, that are drawn below the highest: a texture without waves leaves rounding errors."""
 _LOOK = {
-    "rail": (LAW_STYLES["areal"].colour, "-", "o"),
-    "wheel": (LAW_STYLES["shifted"].colour, (0, (6, 1.5)), "s"),
+    "rail": (BLUE, "-", "o"),
+    "wheel": (VERMILLION, (0, (6, 1.5)), "s"),
     "combined": (INK, (0, (1.5, 1.5)), ""),
 }
 

@@ -16,9 +16,11 @@ from asperity.kinds.wheel_on_rail.figures.marks import draw_marks, natural_frequ
 from asperity.reporting.data import engineering, number, plain, present, stated, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
 from asperity.reporting.style import (
+    BLUE,
+    GREEN,
     INK,
-    LAW_STYLES,
     MUTED,
+    VERMILLION,
     frequency_axis,
     legend_above,
     new_figure,
@@ -28,12 +30,11 @@ from asperity.reporting.style import (
     styled,
 )
 
-_BLUE, _ORANGE, _GREEN = (LAW_STYLES[law].colour for law in ("areal", "shifted", "table"))
 FREQUENCY = schema.TRACK_FREQUENCY
 _RECEPTANCES = {
-    schema.RECEPTANCE_MIDSPAN: ("rail, mid-span", _BLUE, "-"),
-    schema.RECEPTANCE_SUPPORT: ("rail, over a sleeper", _ORANGE, (0, (6, 1.5))),
-    schema.WHEEL_RECEPTANCE: ("wheel", _GREEN, (0, (6, 1.5, 1.5, 1.5))),
+    schema.RECEPTANCE_MIDSPAN: ("rail, mid-span", BLUE, "-"),
+    schema.RECEPTANCE_SUPPORT: ("rail, over a sleeper", VERMILLION, (0, (6, 1.5))),
+    schema.WHEEL_RECEPTANCE: ("wheel", GREEN, (0, (6, 1.5, 1.5, 1.5))),
     schema.CONTACT_RECEPTANCE: ("contact spring", MUTED, (0, (1.5, 1.5))),
 }
 _PHASES = {
@@ -41,8 +42,8 @@ _PHASES = {
     schema.RECEPTANCE_SUPPORT: schema.RECEPTANCE_SUPPORT_PHASE,
 }
 _RATES = {
-    schema.DECAY_RATE: ("eigenvalue", _BLUE, "-", 1.6),
-    schema.DECAY_RATE_EN15461: ("EN 15461, sum over distances", _ORANGE, (0, (6, 1.5)), 1.2),
+    schema.DECAY_RATE: ("eigenvalue", BLUE, "-", 1.6),
+    schema.DECAY_RATE_EN15461: ("EN 15461, sum over distances", VERMILLION, (0, (6, 1.5)), 1.2),
     schema.DECAY_RATE_LIMIT: ("lower limit, ISO 3095", INK, (0, (4, 2)), 1.4),
 }
 KERNELS = 6

@@ -6,7 +6,8 @@ import pytest
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError, TruncatedContactWarning
-from asperity.laws import Areal, Direct, Printed, Shifted, Table, force
+from asperity.laws import Areal, Direct, Printed, Shifted, Table
+from asperity.laws.layout import force
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import filtered_texture
 from asperity.reduction.stiffness import ForceCurve

@@ -1,0 +1,142 @@
+"""The laws by name: those that come with the program, a line each, and those registered from Python."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterable
+
+from asperity.arguments import nearest, shown
+from asperity.errors import InputError
+from asperity.laws.spec import LawSpec, Need, Role
+
+BUILT_IN = (
+    "areal",
+    "shifted",
+    "printed",
+    "table",
+    "direct",
+    "hertz",
+    "linear",
+)
+"""Modules of this package, each with its ``LAW``, in the order in which people read of them."""
+
+_specs: dict[str, LawSpec] = {}  # of laws and variants
+_families: dict[str, tuple[str, ...]] = {}  # names of each law and its variants
+
+
+def names() -> tuple[str, ...]:
+    """List the names that may stand in a case, each law followed by its variants."""
+    return tuple(_specs)
+
+
+def spec_of(name: object) -> LawSpec:
+    """Find a law, or a variant of one, by its name.
+
+    Parameters
+    ----------
+    name : str
+        As ``"linear-filtered"``.
+
+    Returns
+    -------
+    LawSpec
+        The law.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name; the nearest is named.
+    """
+    if not isinstance(name, str) or name not in _specs:
+        allowed = ", ".join(f'"{known}"' for known in _specs)
+        raise InputError("law", shown(name), allowed, nearest(name, names()))
+    return _specs[name]
+
+
+def register(law: LawSpec) -> None:
+    """Add a law, which may then stand in cases of any kind.
+
+    It is known to this process until `unregister`; the processes of a study on several cores have to
+    register it themselves.
+
+    Parameters
+    ----------
+    law : LawSpec
+        The law, with its variants.
+
+    Raises
+    ------
+    InputError
+        If it is no `LawSpec`, or a name or role of it is taken.
+
+    Examples
+    --------
+    >>> from asperity import laws
+    >>> def build(materials):
+    ...     constant = 2.0 * materials.hertz_constant
+    ...     return laws.Hertz(constant, materials.line, materials.damping, materials.name)
+    >>> laws.register(laws.LawSpec("stiffer", "Hertzian contact, twice as stiff.", build))
+    >>> "stiffer" in laws.names()
+    True
+    >>> laws.unregister("stiffer")
+    """
+    if not isinstance(law, LawSpec):
+        raise InputError("law", shown(law), "an asperity.laws.LawSpec")
+    taken = {spec.role: spec.name for spec in _specs.values() if spec.role is not None}
+    for spec in law.family:
+        if spec.name in _specs:
+            remedy = "Take another name, or unregister that law first."
+            raise InputError("name of a law", shown(spec.name), "a name that no other law has", remedy)
+        if spec.role in taken:
+            received = f'"{spec.role}", which `{taken[spec.role]}` has'
+            raise InputError(f"role of law `{spec.name}`", received, "a role that no other law has, or None")
+    _specs.update({spec.name: spec for spec in law.family})
+    _families[law.name] = tuple(spec.name for spec in law.family)
+
+
+def unregister(name: str) -> None:
+    """Forget a law that was registered, with its variants.
+
+    Parameters
+    ----------
+    name : str
+        Of the law itself.
+
+    Raises
+    ------
+    InputError
+        If there is none, or it comes with the program.
+    """
+    spec_of(name)
+    if name in BUILT_IN or name not in _families:
+        own = ", ".join(f'"{own}"' for own in _families if own not in BUILT_IN) or "none is"
+        raise InputError("law", shown(name), f"a law that was registered ({own})")
+    for member in _families.pop(name):
+        del _specs[member]
+
+
+def needs_of(laws: Iterable[str]) -> frozenset[Need]:
+    """Collect what any of some laws needs."""
+    return frozenset().union(*(spec_of(name).needs for name in laws))
+
+
+def in_role(role: Role, laws: Iterable[str]) -> str | None:
+    """Find the law that has a role among some laws."""
+    return next((name for name in laws if spec_of(name).role is role), None)
+
+
+def baselines(laws: Iterable[str]) -> list[str]:
+    """List the laws, among some, that levels are compared with, that of practice first."""
+    among = list(laws)
+    found = (in_role(role, among) for role in (Role.PRACTICE, Role.BARE))
+    return [name for name in found if name is not None]
+
+
+def reference(laws: Iterable[str]) -> str | None:
+    """Find the law, among some, that the others are held against."""
+    among = list(laws)
+    return in_role(Role.REFERENCE, among) or in_role(Role.STAND_IN, among)
+
+
+for _module in BUILT_IN:
+    register(importlib.import_module(f"asperity.laws.{_module}").LAW)

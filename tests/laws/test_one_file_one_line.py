@@ -1,0 +1,132 @@
+"""A law is one file and one line: in a copy of the package, that is all that is added."""
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import asperity
+from asperity import laws
+from asperity.reporting.style import COLOURS
+
+FILE = '''
+"""`cubic`: a law that did not come with the program."""
+
+from asperity.laws.areal import Areal
+from asperity.laws.spec import LawSpec, Look, Need
+
+
+def build(materials):
+    return Areal(materials.curve, materials.areal, materials.damping, plane=materials.plane, name="cubic")
+
+
+LAW = LawSpec(
+    "cubic",
+    "A law from a file of its own.",
+    build,
+    frozenset({Need.SAMPLES, Need.AREAL}),
+    look=Look("#7f3b08", "-", "p"),
+)
+'''
+SCRIPT = '''
+import json, pathlib, sys
+from asperity.kinds.cases import parse_case, template
+from asperity.kinds.report import report
+from asperity.running import run
+
+assert '"direct", "cubic", "hertz"' in template("ball-on-beam")
+assert '"direct", "cubic", "hertz"' in template("wheel-on-rail")
+try:
+    parse_case('kind = "ball-on-beam"\\nlaws = ["cubik"]')
+except ValueError as error:
+    assert 'Did you mean "cubic"?' in str(error), error
+case = """
+kind = "ball-on-beam"
+laws = ["cubic", "areal", "linear"]
+start = "0.45 m"
+duration = "20 ms"
+settling = "0 s"
+[surface]
+rms = "0.04 um"
+longest = "0.4 mm"
+shortest = "60 um"
+[contact]
+spacing = "20 um"
+window = "0.66 mm"
+samples = 2
+sample_length = "1.4 mm"
+[ball]
+load = "30 N"
+[numerics]
+highest_frequency = "2 kHz"
+"""
+tree = run(parse_case(case))
+force = tree["rolling/contact_force"]
+assert (force.sel(law="cubic").values == force.sel(law="areal").values).all()
+page = report(tree, sys.argv[1]).read_text(encoding="utf-8")
+order = [page.index(f"<strong>{law}</strong>") for law in ("cubic", "areal", "linear")]
+assert order == sorted(order)
+assert "<strong>cubic</strong>: A law from a file of its own." in page
+assert ":#7f3b08;" in page
+assert "cubic [N]" in (pathlib.Path(sys.argv[1]) / "force_piece.csv").read_text(encoding="utf-8")
+print("all follows")
+'''
+
+
+def test_a_law_is_one_file_and_one_line(tmp_path):
+    package = shutil.copytree(Path(asperity.__file__).parent, tmp_path / "src" / "asperity")
+    (package / "laws" / "cubic.py").write_text(FILE, encoding="utf-8")
+    registry = package / "laws" / "registry.py"
+    lines = registry.read_text(encoding="utf-8").splitlines()
+    lines.insert(lines.index('    "direct",') + 1, '    "cubic",')
+    registry.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", SCRIPT, str(tmp_path / "report")],
+        env=os.environ | {"PYTHONPATH": str(package.parent)}, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == "all follows"
+
+
+def test_importing_laws_and_cases_compiles_nothing():
+    heavy = ("numba", "scipy", "xarray", "matplotlib")
+    modules = ("asperity.laws", "asperity.config.case", "asperity.kinds.ball_on_beam.case")
+    code = f"import sys, {', '.join(modules)}; print([m for m in {heavy!r} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_law_has_its_module_its_colour_and_its_row_in_the_readme():
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    colours = [laws.spec_of(name).look.colour for name in laws.names() if "-" not in name]
+    assert len(set(colours)) == len(colours)
+    assert set(colours) <= set(COLOURS)  # each with a value for dark screens that people chose
+    table = readme[readme.index("| law | contact force") : readme.index("How far each law")]
+    for name in laws.names():
+        base, _, variant = name.partition("-")
+        assert f"`{base}`" in table
+        assert not variant or f"`…-{variant}`" in table
+
+
+def test_nothing_but_the_laws_decides_by_their_names():
+    """What the others of the package need to know of a law stands in its spec."""
+    own = set(laws.names()) - {"hertz"}  # a value of contact.linearise, too
+    source = Path(asperity.__file__).parent
+    for module in sorted(source.rglob("*.py")):
+        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Compare):
+                compared = {part.value for part in ast.walk(node) if isinstance(part, ast.Constant)}
+                assert not own & compared, f"{module}:{node.lineno}"
+
+
+@pytest.mark.parametrize("name", laws.names())
+def test_a_law_says_what_it_is_in_one_sentence(name):
+    spec = laws.spec_of(name)
+    assert spec.meaning[0].isupper()
+    assert spec.meaning.endswith(".")
+    assert spec.name == name
+    assert spec.variants == ()
