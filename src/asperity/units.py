@@ -116,4 +116,5 @@ def _suited(value: float, dimension: str, unit: str) -> str:
         return unit
     prefixes = {"": 1.0, **{name: scale for name, scale in _PREFIXES.items() if name != "µ"}}
     below = [name for name, scale in prefixes.items() if scale <= abs(value)]
-    return max(below, key=prefixes.__getitem__, default="n") + dimension
+    best = max(below, key=prefixes.__getitem__, default="n")
+    return best + dimension if LEAST_NUMBER <= abs(value) / prefixes[best] < MOST_NUMBER else dimension

@@ -403,7 +403,7 @@ def _outside_of(
     unit = kind.dimension if isinstance(kind, Quantity) else ""
     least, most = (quantity(limit, unit) if isinstance(limit, str) else limit for limit in (low, high))
     if not least <= value <= most:
-        received = written(value, unit, str(low).partition(" ")[2]) if unit else f"{value:.4g}"
+        received = written(value, unit, unit) if unit else f"{value:.4g}"
         yield InputError(name, received, f"{low} to {high}", _sentence(reason))
 
 

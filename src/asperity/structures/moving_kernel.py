@@ -96,10 +96,11 @@ def moving_kernel(
     weights = kept["weights"]
     left = _left_over(weights)
     if duration is None and left > DIED_AWAY:
+        frequency, keys = _lacks_damping(track, weights, time_step)
         warnings.warn(
             f"the moving kernel still has {100 * left:.2g} % of its largest value after {LONGEST:g} s, more "
-            f"than {100 * DIED_AWAY:g} %: what comes later is cut off. Raise ballast_damping or "
-            "ballast_loss_factor, then those of the pads.",
+            f"than {100 * DIED_AWAY:g} %: what comes later is cut off. It swings at {frequency:.4g} Hz: "
+            f"raise {keys}.",
             CoarseSamplingWarning,
             stacklevel=2,
         )
@@ -126,6 +127,19 @@ def _until_it_dies(
 def _left_over(weights: NDArray[np.float64]) -> float:
     last = weights[:, -max(1, weights.shape[1] // 10) :]
     return float(np.abs(last).max() / np.abs(weights).max())
+
+
+def _lacks_damping(track: Track, weights: NDArray[np.float64], time_step: float) -> tuple[float, str]:
+    """Frequency of what is left of a kernel, Hz, and the parameters of the track that damp it."""
+    half = weights[:, weights.shape[1] // 2 :]
+    longest = half[np.argmax(np.abs(half[:, -half.shape[1] // 5 :]).max(axis=1))]
+    spectrum = np.abs(np.fft.rfft((longest - longest.mean()) * np.hanning(longest.size)))
+    frequency = float(np.argmax(spectrum) / (longest.size * time_step))
+    layers = ("ballast_damping or ballast_loss_factor", "pad_damping or pad_loss_factor")
+    lightest = dict(zip(track.cut_on_frequencies, layers, strict=False))
+    lightest[track.pinned_pinned_frequency] = "rail_loss_factor"
+    nearest = min(lightest, key=lambda natural: abs(np.log(max(frequency, 1.0) / natural)))
+    return frequency, lightest[nearest]
 
 
 def _weights(
