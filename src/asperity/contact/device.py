@@ -26,7 +26,7 @@ class Device:
     name: str  # what it is, in words
     xp: Any  # numpy or CuPy
     free_memory: Callable[[], int]  # bytes that a batch may take
-    to_host: Callable[[Any], NDArray]  # array on the device to a numpy array
+    to_host: Callable[[Any], NDArray[Any]]  # array on the device to a numpy array
     release: Callable[[], None]  # gives memory that is kept for reuse back
     exhausted: tuple[type[Exception], ...]  # what an allocation raises when memory has run out
 

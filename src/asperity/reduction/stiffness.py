@@ -21,8 +21,10 @@ class ForceCurve:
     above the last one g goes on with its end slope.
     """
 
-    knots: NDArray  # (k,), approaches, m, increasing
-    coefficients: NDArray  # (k − 1, 4), of g in each interval, highest power first, in (approach − knot)
+    knots: NDArray[np.float64]  # (k,), approaches, m, increasing
+    coefficients: NDArray[
+        np.float64
+    ]  # (k − 1, 4), of g in each interval, highest power first, in (approach − knot)
     exponent: float = 1.5  # of g in the force
     upper: float = np.inf  # largest approach that the data cover, m; beyond it the curve is a continuation
     bilateral: bool = False
@@ -63,17 +65,17 @@ class ForceCurve:
         """Approach below which the force is zero, m (minus infinity for a bilateral curve)."""
         return -np.inf if self.bilateral else float(self.knots[0])
 
-    def force(self, approach: ArrayLike) -> NDArray:
+    def force(self, approach: ArrayLike) -> NDArray[np.float64]:
         """Contact force, N, at approaches, m."""
         g, _ = self._root(np.asarray(approach, dtype=float))
         return g if self.exponent == 1.0 else g**self.exponent
 
-    def stiffness(self, approach: ArrayLike) -> NDArray:
+    def stiffness(self, approach: ArrayLike) -> NDArray[np.float64]:
         """Tangent stiffness dF/ds, N/m, at approaches, m."""
         g, slope = self._root(np.asarray(approach, dtype=float))
         return slope if self.exponent == 1.0 else self.exponent * g ** (self.exponent - 1.0) * slope
 
-    def secant(self, approach: ArrayLike, datum: float) -> NDArray:
+    def secant(self, approach: ArrayLike, datum: float) -> NDArray[np.float64]:
         """Secant stiffness k_c(r) = F/r, N/m, on the state r = approach + datum (thesis Eq. 2.3).
 
         Zero where r <= 0. The datum, m, is at least minus the first touch, so that r > 0 in contact.
@@ -81,7 +83,7 @@ class ForceCurve:
         state = np.asarray(approach, dtype=float) + datum
         return np.where(state > 0.0, self.force(approach) / np.where(state > 0.0, state, 1.0), 0.0)
 
-    def inverse(self, force: ArrayLike) -> NDArray:
+    def inverse(self, force: ArrayLike) -> NDArray[np.float64]:
         """Approach, m, at which the curve has a force, N; the first touch for zero force.
 
         A force is not negative unless the curve is bilateral.
@@ -104,7 +106,7 @@ class ForceCurve:
         straight = (cubic == 0.0) & (square == 0.0)
         return np.where(straight, self.knots[interval] + (g - value) / slope, curved)
 
-    def _root(self, s: NDArray) -> tuple[NDArray, NDArray]:
+    def _root(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The interpolated g and its slope."""
         interval = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.coefficients) - 1)
         cubic, square, slope, value = np.moveaxis(self.coefficients[interval], -1, 0)
@@ -125,7 +127,7 @@ def _check_positive(what: str, value: float) -> None:
         raise InputError(what, value, "a finite positive number")
 
 
-def _check_samples(approach: NDArray, force: NDArray) -> None:
+def _check_samples(approach: NDArray[np.float64], force: NDArray[np.float64]) -> None:
     if approach.ndim != 1 or approach.shape != force.shape:
         raise InputError(
             "force curve samples", f"shapes {approach.shape} and {force.shape}", "two lists of one length"

@@ -24,12 +24,12 @@ class ForceTable:
     """Contact force at positions of the path and states of the contact, at least two."""
 
     # (s, m), at state i and position m, N, not negative; not falling with the approach but by accuracy
-    forces: NDArray | StoredForces
-    approaches: NDArray  # (s,), of the states, m, increasing
+    forces: NDArray[np.float64] | StoredForces
+    approaches: NDArray[np.float64]  # (s,), of the states, m, increasing
     start: float  # position of the first point on the path, m
     spacing: float  # distance of the points, m
     # (m,), approach at which contact begins, m; by default it is estimated from the forces
-    touches: NDArray | None = None
+    touches: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         forces = self.forces
@@ -45,7 +45,7 @@ class ForceTable:
         object.__setattr__(self, "forces", forces)
         object.__setattr__(self, "approaches", approaches)
 
-    def at(self, positions: ArrayLike) -> NDArray:
+    def at(self, positions: ArrayLike) -> NDArray[np.float64]:
         """Forces (n, s), N, at positions (n,), m, by cubic splines: not negative, not falling with states."""
         count = self.forces.shape[1]
         index = grid_index("force table", count, self.start, self.spacing, positions)
@@ -59,7 +59,7 @@ class ForceTable:
         # a spline may undershoot beside a place where contact is lost
         return np.maximum.accumulate(np.maximum(result, 0.0, out=result), axis=1)
 
-    def touch_at(self, positions: ArrayLike) -> NDArray | None:
+    def touch_at(self, positions: ArrayLike) -> NDArray[np.float64] | None:
         """Approach at first touch at positions (n,), m, interpolated linearly; None where it is not known."""
         if self.touches is None:
             return None
@@ -67,7 +67,9 @@ class ForceTable:
         return np.interp(np.asarray(positions, dtype=float), at, self.touches)
 
 
-def _check_forces(forces: NDArray | StoredForces, approaches: NDArray, spacing: float) -> None:
+def _check_forces(
+    forces: NDArray[np.float64] | StoredForces, approaches: NDArray[np.float64], spacing: float
+) -> None:
     """Refuse forces that no contact has, piece by piece."""
     lowest, largest, fall = 0.0, 0.0, 0.0
     for first in range(0, forces.shape[-1], PIECE):

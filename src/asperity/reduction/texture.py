@@ -19,8 +19,10 @@ class StateTexture:
     used.
     """
 
-    heights: NDArray  # (s, m), at state i and position m, m, positive *away* from the contact (h = −z)
-    approaches: NDArray  # (s,), of the states, m, increasing
+    heights: NDArray[
+        np.float64
+    ]  # (s, m), at state i and position m, m, positive *away* from the contact (h = −z)
+    approaches: NDArray[np.float64]  # (s,), of the states, m, increasing
     start: float  # position of the first point on the path, m
     spacing: float  # distance of the points, m
 
@@ -46,12 +48,14 @@ class StateTexture:
         heights = (1.0 - share) * self.heights[lower] + share * self.heights[upper]
         return StateTexture.unfiltered(heights, self.spacing, self.start)
 
-    def at(self, positions: ArrayLike) -> NDArray:
+    def at(self, positions: ArrayLike) -> NDArray[np.float64]:
         """Texture (n, s), m, of every state at positions (n,) on the path, m, by cubic splines along it."""
         return along_path("state texture", self.heights, self.start, self.spacing, positions)
 
 
-def check_states(what: str, values: NDArray, approaches: NDArray, spacing: float) -> None:
+def check_states(
+    what: str, values: NDArray[np.float64], approaches: NDArray[np.float64], spacing: float
+) -> None:
     """Refuse values (s, m) at approaches (s,) and positions along a path whose shapes or values do not fit.
 
     Approaches and spacing in m; `what` they are is for the message.
@@ -67,7 +71,9 @@ def check_states(what: str, values: NDArray, approaches: NDArray, spacing: float
         raise InputError(f"spacing of the {what} (m)", spacing, "a finite positive number")
 
 
-def along_path(what: str, values: NDArray, start: float, spacing: float, positions: ArrayLike) -> NDArray:
+def along_path(
+    what: str, values: NDArray[np.float64], start: float, spacing: float, positions: ArrayLike
+) -> NDArray[np.float64]:
     """Natural cubic splines (n, s) of rows (s, m) along a path, at positions (n,), m.
 
     The rows are sampled at ``start + spacing * arange(m)``; `what` they are is for the message.
@@ -76,7 +82,9 @@ def along_path(what: str, values: NDArray, start: float, spacing: float, positio
     return np.asarray(splines_along(np.ascontiguousarray(values, dtype=float), index))
 
 
-def grid_index(what: str, points: int, start: float, spacing: float, positions: ArrayLike) -> NDArray:
+def grid_index(
+    what: str, points: int, start: float, spacing: float, positions: ArrayLike
+) -> NDArray[np.float64]:
     """Places, from 0 to points − 1, of positions on the path, m, on the grid of a state function.
 
     Its points begin at `start` and are a spacing apart, m; `what` is known there is for the message.

@@ -15,7 +15,7 @@ from xarray import DataTree
 from asperity.reporting.data import laws, of_law, present, values
 from asperity.schema import Entry
 
-Columns = dict[str, NDArray]
+Columns = dict[str, NDArray[np.float64]]
 """Columns of a CSV file: ``"quantity [unit]"`` → numbers, all of one length, in SI units."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,10 +55,10 @@ class FreeMass:
         self.displacement = self.free(step, before) + self.compliance(step) * force
         self.velocity += self.time_step / self.mass * (0.5 * (before + force) - self.load)
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """Displacement, m, and velocity, m/s."""
         return {"mass": np.array([self.displacement, self.velocity])}
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from there."""
         self.displacement, self.velocity = (float(value) for value in state["mass"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,12 +64,12 @@ class BeamSide:
         self.displacement = float(ahead @ self.modes)
         self.velocity = float(ahead @ self.rates + self.path.speed * (slope @ self.modes))
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """Modal coordinates and their rates, and what they are at the contact."""
         contact = np.array([self.displacement, self.velocity])
         return {"modes": self.modes, "rates": self.rates, "contact": contact}
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from there."""
         self.modes, self.rates = state["modes"], state["rates"]
         self.displacement, self.velocity = (float(value) for value in state["contact"])
@@ -94,14 +95,14 @@ class ShapesAlong:
             self.offset = offset
         return end
 
-    def around(self, step: int) -> tuple[NDArray, NDArray, NDArray]:
+    def around(self, step: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Shapes at start and end of a step, kg^-1/2, and slopes at its end, kg^-1/2 per metre."""
         self.end_of_chunk(step)
         row = step - self.offset
         return self.shapes[row - 1], self.shapes[row], self.slopes[row]
 
 
-def beam_step(beam: Beam, time_step: float) -> NDArray:
+def beam_step(beam: Beam, time_step: float) -> NDArray[np.float64]:
     """Exact step of a beam's modes, (8, modes), as `asperity.kernels.modal.modal_coefficients` has it.
 
     Time step in s. Of modes that turn by more than RESOLVED in a step only the static answer to the force at
@@ -111,7 +112,9 @@ def beam_step(beam: Beam, time_step: float) -> NDArray:
     return resolved_step(natural, np.full(natural.shape, beam.damping_ratio), time_step)
 
 
-def resolved_step(natural: NDArray, damping_ratio: NDArray, time_step: float) -> NDArray:
+def resolved_step(
+    natural: NDArray[np.float64], damping_ratio: NDArray[np.float64], time_step: float
+) -> NDArray[np.float64]:
     """As `beam_step`, of natural angular frequencies (modes,), rad/s, and damping ratios (modes,)."""
     coefficients = modal_coefficients(natural, damping_ratio, time_step)
     damped = natural * np.sqrt(np.maximum(1.0 - damping_ratio**2, 0.0))
@@ -121,7 +124,7 @@ def resolved_step(natural: NDArray, damping_ratio: NDArray, time_step: float) ->
     return coefficients
 
 
-def modal_alternating_compliance(coefficients: NDArray, shapes: NDArray) -> float:
+def modal_alternating_compliance(coefficients: NDArray[np.float64], shapes: NDArray[np.float64]) -> float:
     """Least alternating compliance of modes, m/N: of coefficients (8, modes) and shapes (places, modes)."""
     a = coefficients
     # q and q' change their sign from step to step, as the force does

@@ -24,7 +24,7 @@ contact, which has a state. One file holds both; `asperity.rolling.ball` is the 
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
@@ -60,11 +60,11 @@ class Side(Protocol):
         """Advance to the end of a step, over which the force goes linearly from `before` to `force`, N."""
         ...
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """Copies of all that `restore` needs to go on from here exactly."""
         ...
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
         ...
 

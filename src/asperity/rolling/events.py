@@ -16,7 +16,7 @@ class ContactLoss:
     duration: float  # samples out of contact times the time step, s
 
 
-def contact_losses(flying: NDArray, time_step: float) -> list[ContactLoss]:
+def contact_losses(flying: NDArray[np.bool_], time_step: float) -> list[ContactLoss]:
     """Flights in a record, in order of time; `flying` (n,) says whether bodies are apart; time step in s."""
     edges = np.diff(np.concatenate([[False], np.asarray(flying, dtype=bool), [False]]).astype(np.int8))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)

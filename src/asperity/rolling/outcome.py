@@ -39,7 +39,7 @@ def flying(
 
 
 def warn_after(
-    name: str, counts: NDArray, prepared: Prepared | SteppedLaw, approach: NDArray[np.float64]
+    name: str, counts: NDArray[np.int64], prepared: Prepared | SteppedLaw, approach: NDArray[np.float64]
 ) -> None:
     """Warn of forces that missed the tolerance, and of a law that was continued beyond its data.
 

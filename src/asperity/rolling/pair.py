@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -163,14 +163,14 @@ class Pair:
         """Time and position of a step."""
         return self.path.where(step)
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """Of the coupling and of both bodies."""
         sides = {"over": self.below.state(), "rolling": self.above.state()}
         return copied(self.motion) | {
             f"{side}.{name}": value for side, state in sides.items() for name, value in state.items()
         }
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
         put_back(self.motion, state)
         for side, body in (("over.", self.below), ("rolling.", self.above)):

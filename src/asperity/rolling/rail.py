@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,11 +84,11 @@ class RailSide:
         self.velocity = (self.displacement - earlier) / self.time_step
         self.memory.accept()
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """What the rail remembers, and what it does at the contact."""
         return {"memory": self.memory.held.copy(), "contact": np.array([self.displacement, self.velocity])}
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from there."""
         self.memory.held = state["memory"].copy()
         self.displacement, self.velocity = (float(value) for value in state["contact"])

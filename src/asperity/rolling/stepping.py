@@ -72,21 +72,21 @@ class Stepper(Protocol):
         """Time and position of a step, in words."""
         ...
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """Copies of all that changes from step to step, but for the records."""
         ...
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
         ...
 
 
-def copied(motion: Any) -> dict[str, NDArray]:
+def copied(motion: Any) -> dict[str, NDArray[Any]]:
     """Copies of the arrays of a named tuple, by their names."""
     return {name: value.copy() for name, value in motion._asdict().items()}
 
 
-def put_back(motion: Any, state: dict[str, NDArray]) -> None:
+def put_back(motion: Any, state: dict[str, NDArray[Any]]) -> None:
     """Write saved arrays into those of a named tuple."""
     for name in motion._fields:
         getattr(motion, name)[...] = state[name]
@@ -184,7 +184,7 @@ def _solve_from_python(
     return (free_approach - approach) / compliance, STEPPED_ITERATIONS, False
 
 
-def _state(stepper: Stepper, prepared: Prepared | SteppedLaw) -> dict[str, NDArray]:
+def _state(stepper: Stepper, prepared: Prepared | SteppedLaw) -> dict[str, NDArray[Any]]:
     """What bodies and law need to go on from here."""
     found = {f"{MOTION}{name}": value for name, value in stepper.state().items()}
     if not isinstance(prepared, Prepared):
@@ -192,7 +192,7 @@ def _state(stepper: Stepper, prepared: Prepared | SteppedLaw) -> dict[str, NDArr
     return found
 
 
-def _histories(stepper: Stepper, held: dict[str, NDArray]) -> dict[str, NDArray]:
+def _histories(stepper: Stepper, held: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Records up to a state."""
     done = int(held[f"{MOTION}counts"][0]) + 1
     return {f"record.{name}": value[..., :done].copy() for name, value in stepper.record._asdict().items()}
@@ -222,6 +222,6 @@ def restore(checkpoint: Checkpoint | None, stepper: Stepper, prepared: Prepared 
         prepared.restore(_named(arrays, LAW))
 
 
-def _named(arrays: dict[str, NDArray], prefix: str) -> dict[str, NDArray]:
+def _named(arrays: dict[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
     """Arrays whose names have a prefix, without it."""
     return {name.removeprefix(prefix): value for name, value in arrays.items() if name.startswith(prefix)}

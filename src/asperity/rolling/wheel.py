@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,11 +71,11 @@ class WheelSide:
         self.states = self.decay * self.states + self.before * before + self.now * force
         self.force = force
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """Of the mass, of the poles, and the force, N."""
         return self.mass.state() | {"poles": self.states, "force": np.array(self.force)}
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from there."""
         self.mass.restore(state)
         self.states, self.force = state["poles"], float(state["force"])
@@ -84,7 +85,9 @@ def _displaced(states: NDArray[np.complex128]) -> float:
     return 2.0 * float(states.real.sum())
 
 
-def wheel_step(wheel: Wheel, time_step: float) -> tuple[NDArray, NDArray, NDArray]:
+def wheel_step(
+    wheel: Wheel, time_step: float
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128], NDArray[np.complex128]]:
     """Exact step, s, of a wheel's resonances for a force that is linear over it: q' = s q + r F.
 
     Returns factors of the states, and of the forces at start and end of the step, m/N. Fast ones are as in

@@ -29,15 +29,15 @@ class Run(Protocol):
     """What all kinds of rolling record."""
 
     @property
-    def time(self) -> NDArray:
+    def time(self) -> NDArray[np.float64]:
         """Times, s, shape (n,)."""
 
     @property
-    def position(self) -> NDArray:
+    def position(self) -> NDArray[np.float64]:
         """Positions of the contact, m, shape (n,)."""
 
     @property
-    def contact_force(self) -> NDArray:
+    def contact_force(self) -> NDArray[np.float64]:
         """Contact force, N, shape (n,)."""
 
     @property

@@ -108,7 +108,7 @@ def _filters(chain: Chain[Any]) -> dict[Entry, Any]:
 
 
 def _magnitudes(
-    entries: tuple[Entry, ...], found: LineFilter, rows: NDArray, count: int
+    entries: tuple[Entry, ...], found: LineFilter, rows: NDArray[np.intp], count: int
 ) -> dict[Entry, xarray.Variable]:
     """A filter as fitted, as estimated and as applied, and the spread of its fits."""
     estimated = found.contact_filter
@@ -119,7 +119,7 @@ def _magnitudes(
     }
 
 
-def _on_states(values: NDArray[np.float64], rows: NDArray, count: int) -> NDArray[np.float64]:
+def _on_states(values: NDArray[np.float64], rows: NDArray[np.intp], count: int) -> NDArray[np.float64]:
     """Values of some states among `count`; NaN for the others."""
     full = np.full((count, *values.shape[1:]), np.nan)
     full[rows] = values

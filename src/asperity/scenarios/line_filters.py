@@ -96,7 +96,7 @@ def line_filters(
     rtol: float,
     cache: Cache | None,
     progress: Progress,
-) -> tuple[LineFilters, list[ScannedForces]]:
+) -> tuple[LineFilters, list[ScannedForces[NDArray[np.float64]]]]:
     """Scan the strips, and design a filter for every normalisation that is needed; return them and the scans.
 
     States whose mean force is below `lightest`, N, have no filter. Filters of bodies without texture are sin
@@ -152,7 +152,7 @@ def _scanned(
 
 
 def _spectra(
-    strip: HeightMap, scanned: ScannedForces, shape: Geometry, semi_axes: NDArray[np.float64]
+    strip: HeightMap, scanned: ScannedForces[NDArray[np.float64]], shape: Geometry, semi_axes: NDArray[np.float64]
 ) -> FilterSpectra:
     """Spectra of a scan, and of the lines under the patch of each state at every row of the grid."""
     dx, dy = shape.spacing

@@ -113,7 +113,7 @@ class Beam:
         return cls(length, stiffness, material.density * width * height, **options)
 
     @cached_property
-    def _bending_roots(self) -> NDArray:
+    def _bending_roots(self) -> NDArray[np.float64]:
         """Wavenumber times length of the bending modes up to the highest frequency."""
         unit = np.sqrt(self.bending_stiffness / self.mass_per_length) / self.length**2  # omega of root 1
         largest = np.sqrt(2.0 * np.pi * self.highest_frequency / unit)
@@ -133,7 +133,7 @@ class Beam:
         return 2 if self.support == "free" else 0
 
     @cached_property
-    def natural_frequencies(self) -> NDArray:
+    def natural_frequencies(self) -> NDArray[np.float64]:
         """Undamped natural frequencies of all modes, Hz; rigid modes of a free beam first."""
         unit = np.sqrt(self.bending_stiffness / self.mass_per_length) / self.length**2
         rigid = np.full(self._rigid_modes, self.suspension_frequency)
@@ -149,7 +149,7 @@ class Beam:
         """Mass, kg."""
         return self.mass_per_length * self.length
 
-    def shapes(self, x: ArrayLike) -> tuple[NDArray, NDArray]:
+    def shapes(self, x: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mass-normalised mode shapes and their slopes.
 
         Parameters
@@ -170,7 +170,9 @@ class Beam:
         (wave, rising, falling), slopes = self._parts(x)
         return wave + rising + falling, slopes + self._wavenumbers * (rising - falling)
 
-    def shapes_along(self, start: float, spacing: float, count: int) -> tuple[NDArray, NDArray]:
+    def shapes_along(
+        self, start: float, spacing: float, count: int
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mode shapes and slopes at equally spaced positions, as under a contact that rolls.
 
         Parameters
@@ -206,11 +208,16 @@ class Beam:
         return shapes, slopes
 
     @cached_property
-    def _wavenumbers(self) -> NDArray:
+    def _wavenumbers(self) -> NDArray[np.float64]:
         """Of all modes, 1/m; zero for the rigid ones."""
         return np.concatenate([np.zeros(self._rigid_modes), self._bending_roots / self.length])
 
-    def _parts(self, x: ArrayLike) -> tuple[tuple[NDArray, NDArray | float, NDArray | float], NDArray]:
+    def _parts(
+        self, x: ArrayLike
+    ) -> tuple[
+        tuple[NDArray[np.float64], NDArray[np.float64] | float, NDArray[np.float64] | float],
+        NDArray[np.float64],
+    ]:
         """Mode shapes (n, modes) in three parts, and the slope of the first.
 
         A sinusoid, or the straight line of a rigid mode, and the exponentials that rise and fall with x.
@@ -235,7 +242,9 @@ class Beam:
             rising, falling = np.hstack([none, rising]), np.hstack([none, falling])
         return (scale * wave, scale * rising, scale * falling), scale * slope
 
-    def _centred_parts(self, at: NDArray) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    def _centred_parts(
+        self, at: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Bending modes of free and clamped beams, even or odd about the middle.
 
         cos(kx)/cos(kL/2) -+ cosh(kx)/cosh(kL/2) and the same with sines, written with decaying exponentials
@@ -255,7 +264,7 @@ class Beam:
         slope = k * np.where(even, -sine / np.cos(half), cosine / np.sin(half))
         return wave, slope, rising, falling
 
-    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray:
+    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
         """Displacement at `x` per harmonic force at `x0`, by modal superposition.
 
         Parameters

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +43,7 @@ POSITIONS, LINES = 6, 8
 STEPS, SETTLED = 40, 1e-3
 """Most steps of the fit, and the relative gain of a step that ends it."""
 
-Linearised = Callable[[NDArray], tuple[NDArray, NDArray]]
+Linearised = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
 
 
 def causal_track(track: Track) -> Track:
@@ -101,21 +102,21 @@ class _Fit:
         nominal = self.receptance(track)
         self.wanted = [self.banded(np.abs(1.0 / (carried + nominal)) ** 2) for carried in self.carried]
 
-    def receptance(self, track: Track) -> NDArray:
+    def receptance(self, track: Track) -> NDArray[np.complex128]:
         """Receptances of the rail at the places, (places, f)."""
         waves = track.waves(self.omega)
         return np.array([waves.receptance(x, x) for x in self.places])
 
-    def banded(self, values: NDArray) -> NDArray:
+    def banded(self, values: NDArray[Any]) -> NDArray[Any]:
         """Mean over places and over the frequencies of each band, (places, f, …) → (bands, …)."""
         mean = values.mean(axis=0)
         return np.asarray(mean.reshape(-1, LINES, *mean.shape[1:]).mean(axis=1))
 
-    def parts(self, unknowns: NDArray) -> NDArray:
+    def parts(self, unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
         """Coefficients of spring and elements, (lossy parts, 1 + elements)."""
         return np.asarray(self.least + unknowns.reshape(self.least.shape))
 
-    def track_of(self, unknowns: NDArray, stiffer: str = "", share: float = 0.0) -> Track:
+    def track_of(self, unknowns: NDArray[np.float64], stiffer: str = "", share: float = 0.0) -> Track:
         """The track with the elements that the unknowns stand for, one part stiffer by a share."""
         found = {}
         for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
@@ -123,16 +124,16 @@ class _Fit:
             found[name] = Relaxation(static, tuple(strengths), FREQUENCIES)
         return replace(self.track, relaxations=Relaxations(self.rail, **found))
 
-    def constant(self, stiffness: float, loss: float) -> NDArray:
+    def constant(self, stiffness: float, loss: float) -> NDArray[np.float64]:
         """Real and imaginary part of a constant, in the rows of `coarse`."""
         return np.repeat([stiffness, loss], len(self.coarse) // 2)
 
-    def start(self) -> NDArray:
+    def start(self) -> NDArray[np.float64]:
         """Unknowns that depart least from the constant loss factors."""
         aims = [self.constant(1.0 - least_static(eta), eta) for eta in self.lossy.values()]
         return np.concatenate([np.zeros(0), *(nnls(self.coarse, aim)[0] for aim in aims)])
 
-    def linearised(self, unknowns: NDArray) -> tuple[NDArray, NDArray]:
+    def linearised(self, unknowns: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Weighted errors and departures, (n,), and their slopes, (n, unknowns)."""
         receptance, share, columns = self.receptance(self.track_of(unknowns)), 1e-6, []
         for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
@@ -146,8 +147,12 @@ class _Fit:
         return np.concatenate(residuals), np.vstack(slopes)
 
     def _errors(
-        self, carried: NDArray, wanted: NDArray, receptance: NDArray, change: NDArray
-    ) -> tuple[NDArray, NDArray]:
+        self,
+        carried: NDArray[np.float64],
+        wanted: NDArray[np.float64],
+        receptance: NDArray[np.complex128],
+        change: NDArray[np.complex128],
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Errors of the level in each band, dB, large ones weighted, and their slopes."""
         transfer = 1.0 / (carried + receptance)
         power = np.abs(transfer) ** 2
@@ -158,14 +163,14 @@ class _Fit:
         weight = np.sqrt(1.0 + (error / LARGE) ** 2)
         return share * weight * error, share * (2.0 * weight - 1.0 / weight)[:, None] * slopes
 
-    def _departures(self, unknowns: NDArray) -> tuple[NDArray, NDArray]:
+    def _departures(self, unknowns: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Departures from the constant loss factors at the centres of bands, and their slopes."""
         aims = np.array([self.constant(1.0, eta) for eta in self.lossy.values()])
         departures = self.parts(unknowns) @ self.coarse.T - aims
         return DEPARTURE * departures.ravel(), DEPARTURE * block_diag(*[self.coarse] * len(aims))
 
 
-def _least_squares(linearised: Linearised, start: NDArray) -> NDArray:
+def _least_squares(linearised: Linearised, start: NDArray[np.float64]) -> NDArray[np.float64]:
     """Unknowns, not negative, of the least sum of squares: Levenberg-Marquardt, its steps by `nnls`."""
     unknowns, damping = start, 1e-3
     residual, slope = linearised(unknowns)

@@ -15,7 +15,7 @@ EN_15461_BAYS = (
 )  # fmt: skip
 
 
-def decay_rate(track: Track, frequency: ArrayLike) -> NDArray:
+def decay_rate(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
     """Decay rate, dB/m, of the wave that reaches farthest, from its change over one bay; frequencies in Hz.
 
     -20 lg|lambda|/L of the larger multiplier.
@@ -25,7 +25,7 @@ def decay_rate(track: Track, frequency: ArrayLike) -> NDArray:
     return (-20.0 * np.log10(largest) / track.sleeper_spacing).reshape(frequency.shape)
 
 
-def decay_rate_en15461(track: Track, frequency: ArrayLike) -> NDArray:
+def decay_rate_en15461(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
     """Decay rate, dB/m, as a measurement by EN 15461 finds it, force at mid-span; frequencies in Hz.
 
     It differs from `decay_rate` as measurements do: the near field at the force raises it, up to twofold for
@@ -39,7 +39,7 @@ def decay_rate_en15461(track: Track, frequency: ArrayLike) -> NDArray:
     return decay_rate_of_responses(distances, np.abs(responses)).reshape(frequency.shape)
 
 
-def decay_rate_of_responses(distances: ArrayLike, responses: ArrayLike) -> NDArray:
+def decay_rate_of_responses(distances: ArrayLike, responses: ArrayLike) -> NDArray[np.float64]:
     """Decay rate, dB/m, of responses (n, ...) at distances (n,) from the force, m, EN 15461.
 
     4.343/sum(|A_n|^2/|A_0|^2 Delta x_n), with magnitudes in any unit and distances that ascend from zero. EN
@@ -55,7 +55,7 @@ def decay_rate_of_responses(distances: ArrayLike, responses: ArrayLike) -> NDArr
     return 10.0 * np.log10(np.e) / np.tensordot(np.diff(edges), energy / energy[0], axes=1)
 
 
-def _positive(frequency: ArrayLike) -> NDArray:
+def _positive(frequency: ArrayLike) -> NDArray[np.float64]:
     frequency = np.asarray(frequency, dtype=float)
     if not (np.all(np.isfinite(frequency)) and np.all(frequency > 0.0)):
         raise InputError("frequency (Hz)", np.min(frequency), "finite positive numbers")

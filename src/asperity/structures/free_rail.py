@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 
 def free_rail_waves(
-    omega: NDArray,
-    bending_stiffness: complex | NDArray,
+    omega: NDArray[np.float64],
+    bending_stiffness: complex | NDArray[np.complex128],
     mass_per_length: float,
-    shear_stiffness: complex | NDArray | None = None,
+    shear_stiffness: complex | NDArray[np.complex128] | None = None,
     rotary_inertia: float | None = None,
-) -> tuple[NDArray, NDArray]:
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     """Receptance of a free infinite rail as a sum of two waves, G_0(x) = sum_i A_i exp(-i k_i |x|).
 
     Wavenumbers k_i, rad/m, Im k_i <= 0, and amplitudes A_i, m/N, both (2, f), at angular frequencies (f,),

@@ -33,14 +33,14 @@ class HatResponse:
         self.hat = (np.sin(half) / half) ** 2
         self.waves: PeriodicWaves = track.waves(self.omega)
 
-    def response(self, spectra: NDArray) -> NDArray[np.float64]:
+    def response(self, spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
         """Response to the hat at lags 0 … taps − 1 from receptances times the hat, (k, f) → (k, taps)."""
         n = self.taps
         response = fft.irfft(_folded(spectra, n), 2 * n, axis=1)[:, :n]
         return np.asarray(response * np.exp(self.shift * self.time_step * np.arange(n)))
 
 
-def _folded(spectra: NDArray, n: int) -> NDArray:
+def _folded(spectra: NDArray[np.complex128], n: int) -> NDArray[np.complex128]:
     """Sum over all frequencies that look alike at the time steps, up to half the sampling frequency."""
     folded = spectra[:, : n + 1].copy()
     folded[:, n] = 2.0 * folded[:, n].real

@@ -183,7 +183,7 @@ def _weights(
     return weights
 
 
-def _cubic(share: NDArray) -> NDArray:
+def _cubic(share: NDArray[np.float64]) -> NDArray[np.float64]:
     """Weights of the nodes −1, 0, 1, 2 for places between 0 and 1 (Lagrange)."""
     before, after, beyond = share + 1.0, share - 1.0, share - 2.0
     return np.stack(

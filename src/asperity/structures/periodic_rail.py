@@ -24,25 +24,27 @@ class PeriodicWaves:
     written, nothing becomes infinite where the supports exert no force.
     """
 
-    multipliers: NDArray  # (2, f), lambda_j, the change of wave j over one bay, |lambda_j| < 1
-    coefficients: NDArray  # (2, f), C_j, N/m times the square of the scale that the shapes carry
-    wavenumbers: NDArray  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
-    weights: NDArray  # (2, 2, f), share of the free wave i in wave j, axes (i, j, f)
+    multipliers: NDArray[np.complex128]  # (2, f), lambda_j, the change of wave j over one bay, |lambda_j| < 1
+    coefficients: NDArray[
+        np.complex128
+    ]  # (2, f), C_j, N/m times the square of the scale that the shapes carry
+    wavenumbers: NDArray[np.complex128]  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
+    weights: NDArray[np.complex128]  # (2, 2, f), share of the free wave i in wave j, axes (i, j, f)
     spacing: float  # distance of the supports L, m
 
-    def outgoing(self, x: float) -> NDArray:
+    def outgoing(self, x: float) -> NDArray[np.complex128]:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= L, m: phi_lambda(x), scaled."""
         return self._shapes(x, self.multipliers)
 
-    def incoming(self, x: float) -> NDArray:
+    def incoming(self, x: float) -> NDArray[np.complex128]:
         """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= L: phi_{1/lambda}(x), scaled."""
         return self._shapes(x, 1.0 / self.multipliers)
 
-    def _shapes(self, x: float, multipliers: NDArray) -> NDArray:
+    def _shapes(self, x: float, multipliers: NDArray[np.complex128]) -> NDArray[np.complex128]:
         near, far = np.sin(self.wavenumbers * x), np.sin(self.wavenumbers * (self.spacing - x))
         return np.sum(self.weights * (far[:, None] + multipliers * near[:, None]), axis=0)
 
-    def receptance(self, x: float, x0: float) -> NDArray:
+    def receptance(self, x: float, x0: float) -> NDArray[np.complex128]:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from any support, m."""
         first, last = min(x, x0), max(x, x0)
         first_bay = np.floor(first / self.spacing)
@@ -54,7 +56,10 @@ class PeriodicWaves:
 
 
 def periodic_waves(
-    wavenumbers: NDArray, amplitudes: NDArray, support: NDArray, spacing: float
+    wavenumbers: NDArray[np.complex128],
+    amplitudes: NDArray[np.complex128],
+    support: NDArray[np.complex128],
+    spacing: float,
 ) -> PeriodicWaves:
     """Floquet waves from the receptance of the free rail, G_0(x) = sum_i A_i exp(-i k_i |x|).
 
@@ -113,7 +118,7 @@ def static_receptance(
     root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
     multipliers = 1.0 / np.where(np.abs(c + root) > 1.0, c + root, c - root)
 
-    def shape(multiplier: NDArray) -> NDArray:
+    def shape(multiplier: NDArray[np.complex128]) -> NDArray[np.complex128]:
         ramp = (spacing - x) + multiplier * x
         cube = (spacing - x) ** 3 + multiplier * x**3
         slope = bending * spacing**2 / (4.0 * y**2) + 0.5 * shear / y

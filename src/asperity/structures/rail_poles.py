@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,13 +112,13 @@ def _poles(kernel: MovingKernel, count: int) -> NDArray[np.complex128]:
     return fit.poles
 
 
-def _decays(poles: NDArray, lags: int) -> NDArray[np.complex128]:
+def _decays(poles: NDArray[np.complex128], lags: int) -> NDArray[np.complex128]:
     with np.errstate(divide="ignore"):
         rates = np.log(np.where(poles == 0.0, 1e-300, poles))
     return np.asarray(np.exp(rates[:, None] * np.arange(lags)))
 
 
-def _residues(weights: NDArray[np.float64], poles: NDArray) -> NDArray[np.complex128]:
+def _residues(weights: NDArray[np.float64], poles: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Least squares in time, of the weights, their running sums and their sum."""
     decays = _decays(poles, weights.shape[1])
     columns = []
@@ -134,7 +135,7 @@ def _residues(weights: NDArray[np.float64], poles: NDArray) -> NDArray[np.comple
     return paired(solution, poles)
 
 
-def over_the_bay(values: NDArray) -> NDArray:
+def over_the_bay(values: NDArray[Any]) -> NDArray[Any]:
     """Values (positions, ...) at the start positions of a kernel, tabulated over a bay: (CELLS + 1, ...).
 
     At equal places, both ends of the bay included, by a periodic cubic spline.

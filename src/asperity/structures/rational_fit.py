@@ -72,7 +72,9 @@ def vector_fit(
     return best
 
 
-def partial_fractions(points: NDArray, poles: NDArray) -> NDArray[np.complex128]:
+def partial_fractions(
+    points: NDArray[np.complex128], poles: NDArray[np.complex128]
+) -> NDArray[np.complex128]:
     """Real-coefficient basis (n, p + q) of partial fractions at points s (n,), poles (p,) with Im >= 0.
 
     For each pole 1/(s − p), or for Im > 0 the two columns 1/(s − p) ± 1/(s − p*), the second times i.
@@ -88,7 +90,7 @@ def partial_fractions(points: NDArray, poles: NDArray) -> NDArray[np.complex128]
     return np.array(columns).T
 
 
-def _spanning(weighted: NDArray) -> NDArray:
+def _spanning(weighted: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Few real combinations of the responses that span all of them, by singular values."""
     joined = np.concatenate([weighted.real, weighted.imag], axis=1)
     _, size, rows = np.linalg.svd(joined, full_matrices=False)
@@ -97,16 +99,21 @@ def _spanning(weighted: NDArray) -> NDArray:
     return np.asarray(real + 1j * imaginary)
 
 
-def _stacked(matrix: NDArray) -> NDArray:
+def _stacked(matrix: NDArray[np.complex128]) -> NDArray[np.float64]:
     return np.concatenate([matrix.real, matrix.imag])
 
 
-def _relocated(s: NDArray, weight: NDArray, spanning: NDArray, poles: NDArray) -> NDArray:
+def _relocated(
+    s: NDArray[np.complex128],
+    weight: NDArray[np.float64],
+    spanning: NDArray[np.complex128],
+    poles: NDArray[np.complex128],
+) -> NDArray[np.complex128]:
     """Zeros of the fitted scaling function: the next poles."""
     basis = partial_fractions(s, poles)
     known, unknowns = _stacked(weight[:, None] * basis), basis.shape[1]
     scaling = np.column_stack([basis, np.ones(s.size)])
-    blocks: list[NDArray] = []
+    blocks: list[NDArray[np.float64]] = []
     for response in spanning:  # already weighted
         system = np.hstack([known, -_stacked(response[:, None] * scaling)])
         blocks.append(np.asarray(np.linalg.qr(system, mode="r"))[unknowns:, unknowns:])
@@ -127,7 +134,7 @@ def _relocated(s: NDArray, weight: NDArray, spanning: NDArray, poles: NDArray) -
     return zeros[zeros.imag >= 0.0]
 
 
-def _realisation(poles: NDArray) -> tuple[NDArray, NDArray]:
+def _realisation(poles: NDArray[np.complex128]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Real state matrix and input vector of the partial fractions."""
     columns = int(np.sum(np.where(poles.imag == 0.0, 1, 2)))
     state, drive, i = np.zeros((columns, columns)), np.zeros(columns), 0
@@ -142,7 +149,7 @@ def _realisation(poles: NDArray) -> tuple[NDArray, NDArray]:
     return state, drive
 
 
-def _stable(poles: NDArray, domain: Domain) -> NDArray:
+def _stable(poles: NDArray[np.complex128], domain: Domain) -> NDArray[np.complex128]:
     if domain == "disc":
         with np.errstate(divide="ignore", invalid="ignore"):
             mirrored = np.where(np.abs(poles) > 1.0, 1.0 / np.conj(poles), poles)
@@ -152,8 +159,11 @@ def _stable(poles: NDArray, domain: Domain) -> NDArray:
 
 
 def _residues(
-    s: NDArray, weight: NDArray, weighted: NDArray, poles: NDArray
-) -> tuple[NDArray[np.complex128], NDArray]:
+    s: NDArray[np.complex128],
+    weight: NDArray[np.float64],
+    weighted: NDArray[np.complex128],
+    poles: NDArray[np.complex128],
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
     """Residues by least squares, and what they leave of the weighted responses."""
     matrix = _stacked(weight[:, None] * partial_fractions(s, poles))
     right = np.concatenate([weighted.real, weighted.imag], axis=1).T
@@ -162,7 +172,7 @@ def _residues(
     return paired(solution, poles), matrix @ solution - right
 
 
-def paired(coefficients: NDArray, poles: NDArray) -> NDArray[np.complex128]:
+def paired(coefficients: NDArray[np.float64], poles: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Complex residues (m, p) from the real coefficients (p + q, m) of `partial_fractions`."""
     result, i = np.zeros((coefficients.shape[1], poles.size), dtype=complex), 0
     for j, pole in enumerate(poles):

@@ -151,7 +151,7 @@ class Track:
             or self.ballast_loss_factor
         )
 
-    def support_stiffness(self, omega: ArrayLike) -> NDArray:
+    def support_stiffness(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """Dynamic stiffness of one support under the rail, N/m, at angular frequencies, rad/s.
 
         K = K_p (K_b - m_s omega^2)/(K_p + K_b - m_s omega^2); omega has a positive real part or, if causal,
@@ -162,7 +162,7 @@ class Track:
         below = ballast - self.sleeper_mass * omega**2
         return pad * below / (pad + below)
 
-    def layer_stiffnesses(self, omega: ArrayLike) -> tuple[NDArray, NDArray]:
+    def layer_stiffnesses(self, omega: ArrayLike) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Dynamic stiffness of a pad, and of ballast under a sleeper, N/m, as in `support_stiffness`."""
         omega, relaxed = np.asarray(omega, dtype=complex), self.relaxations or Relaxations()
         pad = self.pad_stiffness * _loss(self.pad_loss_factor, relaxed.pad, omega)
@@ -170,7 +170,7 @@ class Track:
         rate = 1j * omega
         return pad + rate * (self.pad_damping or 0.0), ballast + rate * (self.ballast_damping or 0.0)
 
-    def free_waves(self, omega: ArrayLike) -> tuple[NDArray, NDArray]:
+    def free_waves(self, omega: ArrayLike) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Waves of the rail without supports at angular frequencies (f,), rad/s; see `free_rail_waves`."""
         omega, relaxed = np.asarray(omega, dtype=complex), self.relaxations or Relaxations()
         loss = _loss(self.rail_loss_factor, relaxed.rail, omega)
@@ -194,7 +194,7 @@ class Track:
         wavenumbers, amplitudes = self.free_waves(omega)
         return periodic_waves(wavenumbers, amplitudes, self.support_stiffness(omega), self.sleeper_spacing)
 
-    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray:
+    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
         """Displacement at `x` per harmonic force at `x0`.
 
         Parameters
@@ -331,7 +331,9 @@ class Track:
         )
 
 
-def _loss(factor: float | None, relaxation: Relaxation | None, omega: NDArray) -> NDArray:
+def _loss(
+    factor: float | None, relaxation: Relaxation | None, omega: NDArray[np.float64]
+) -> NDArray[np.complex128]:
     """Complex stiffness relative to the nominal one."""
     if relaxation is not None:
         return relaxation.at(omega)

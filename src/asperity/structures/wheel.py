@@ -244,7 +244,7 @@ class Wheel:
         return np.asarray(rigid + pairs.sum(axis=-1))
 
 
-def _check_receptance(frequency: NDArray, receptance: NDArray) -> None:
+def _check_receptance(frequency: NDArray[np.float64], receptance: NDArray[np.complex128]) -> None:
     what = "receptance of the wheel"
     if frequency.ndim != 1 or frequency.shape != receptance.shape:
         received = f"shapes {frequency.shape} and {receptance.shape}"

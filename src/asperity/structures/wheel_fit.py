@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,9 @@ RESIDUAL_MODES = (1.5, 3.0)  # of the highest frequency: the stiffness of all mo
 RESIDUAL_DAMPING = 0.01
 
 
-def fit_modes(frequency: NDArray, receptance: NDArray, rigid: NDArray) -> Modes:
+def fit_modes(
+    frequency: NDArray[np.float64], receptance: NDArray[np.complex128], rigid: NDArray[np.complex128]
+) -> Modes:
     """Modes with positive modal masses that add to the rigid motion of a wheel.
 
     Frequency (n,), Hz, above zero and rising; receptances (n,) of the whole wheel, not zero, and of its rigid
@@ -53,7 +56,7 @@ def fit_modes(frequency: NDArray, receptance: NDArray, rigid: NDArray) -> Modes:
     return best
 
 
-def _start_poles(frequency: NDArray, receptance: NDArray) -> list[NDArray]:
+def _start_poles(frequency: NDArray[np.float64], receptance: NDArray[np.complex128]) -> list[NDArray[Any]]:
     """A weakly damped pole at each high peak, and spare ones spread over the widest gaps between."""
     peaks, found = find_peaks(20.0 * np.log10(np.abs(receptance)), prominence=3.0)
     peaks = peaks[np.argsort(-found["prominences"])[:MOST_PEAKS]]
@@ -69,7 +72,7 @@ def _start_poles(frequency: NDArray, receptance: NDArray) -> list[NDArray]:
     return starts
 
 
-def _with_residual(poles: NDArray, frequency: NDArray) -> NDArray:
+def _with_residual(poles: NDArray[np.complex128], frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Oscillating poles near the band, and those of the residual stiffness above it."""
     natural = np.abs(poles) / (2.0 * np.pi)
     upper = RESIDUAL_MODES[-1] * frequency[-1]
@@ -80,7 +83,10 @@ def _with_residual(poles: NDArray, frequency: NDArray) -> NDArray:
 
 
 def _modal_masses(
-    frequency: NDArray, flexible: NDArray, weights: NDArray, poles: NDArray
+    frequency: NDArray[np.float64],
+    flexible: NDArray[np.complex128],
+    weights: NDArray[np.float64],
+    poles: NDArray[np.complex128],
 ) -> tuple[Modes, float]:
     """Modes of given poles by non-negative least squares, and the weighted error that they leave."""
     omega, natural = 2.0 * np.pi * frequency[:, None], np.abs(poles)

@@ -31,9 +31,9 @@ LARGEST_DEFLECTION = 0.02
 class Rolling(Rolled):
     """A ball has rolled over a beam."""
 
-    ball_displacement: NDArray  # (n,), m, positive downwards
-    beam_displacement: NDArray  # (n,), under the ball, m, positive downwards
-    acceleration: NDArray  # (sensors, n), of the beam, m/s², positive downwards
+    ball_displacement: NDArray[np.float64]  # (n,), m, positive downwards
+    beam_displacement: NDArray[np.float64]  # (n,), under the ball, m, positive downwards
+    acceleration: NDArray[np.float64]  # (sensors, n), of the beam, m/s², positive downwards
     energy: EnergyBalance  # where the work of the load went, in run-in and run
 
 
@@ -143,7 +143,7 @@ def roll(
     )
 
 
-def _system(beam: Beam, ball: Ball, sensors: NDArray, path: Path) -> System:
+def _system(beam: Beam, ball: Ball, sensors: NDArray[np.float64], path: Path) -> System:
     natural = 2.0 * np.pi * beam.natural_frequencies
     return System(
         beam_step(beam, path.time_step),
@@ -185,7 +185,7 @@ def _at_rest(system: System, beam: Beam, path: Path, approach: float) -> tuple[B
     return motion, record
 
 
-def _warn_if_bent(deflection: NDArray, beam: Beam) -> None:
+def _warn_if_bent(deflection: NDArray[np.float64], beam: Beam) -> None:
     """Compare the deflection with what beam theory allows."""
     share = float(np.abs(deflection).max()) / beam.length
     if share > LARGEST_DEFLECTION:

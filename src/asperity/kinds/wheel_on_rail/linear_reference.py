@@ -18,7 +18,7 @@ from asperity.errors import InputError
 class WheelReceptance(Protocol):
     """A wheel, as far as the linear reference knows it."""
 
-    def receptance(self, frequency: ArrayLike, /) -> NDArray:
+    def receptance(self, frequency: ArrayLike, /) -> NDArray[np.complex128]:
         """Displacement per force at the contact point, m/N."""
 
 
@@ -29,7 +29,7 @@ class RailReceptance(Protocol):
     def sleeper_spacing(self) -> float:
         """Length of a bay, m."""
 
-    def receptance(self, frequency: ArrayLike, x: float, x0: float, /) -> NDArray:
+    def receptance(self, frequency: ArrayLike, x: float, x0: float, /) -> NDArray[np.complex128]:
         """Displacement at `x` per force at `x0`, m/N."""
 
 

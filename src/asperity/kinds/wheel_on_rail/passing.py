@@ -54,8 +54,8 @@ def passed_points(
 
 
 def _pass(
-    displacement: NDArray,
-    forces: NDArray,
+    displacement: NDArray[np.float64],
+    forces: NDArray[np.float64],
     point: _Point,
     first: float,
     stride: float,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from numpy.typing import NDArray
 
 from asperity.kernels.pointforce import Prepared
@@ -47,10 +49,10 @@ class RailStepper:
         """Time and position of a step."""
         return self.path.where(step)
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """Of the motion."""
         return copied(self.motion)
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
         put_back(self.motion, state)
