@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from asperity.errors import InputError
 
@@ -25,11 +25,11 @@ class SteppedLaw(Protocol):
         """Keep the last evaluation of this step as the start of the next."""
         ...
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """What `restore` needs to go on from here exactly."""
         ...
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
         ...
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -121,7 +121,7 @@ class DirectOnPath:
 
     def evaluate(self, step: int, approach: float) -> tuple[float, float]:
         """Elastic force, N, and its exact tangent dF/dδ, N/m, at a step of the path."""
-        from asperity.contact.flaws import TRUNCATED
+        from asperity.kernels.scanning import TRUNCATED
 
         contact = self.half_space.at_approach(
             self._gap_at(step), approach, self._start_at(step), self.law.rtol
@@ -141,13 +141,13 @@ class DirectOnPath:
             self._row = round(self.offsets[step])
         self._trial = None
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, NDArray[Any]]:
         """What `restore` needs to go on from here exactly."""
         counts = [self.iterations, self.solves, self.unconverged, self.truncated, self._row]
         pressure = np.zeros((0, 0)) if self._pressure is None else self._pressure
         return {"counts": np.array(counts), "pressure": pressure, "overlap": np.array(self.overlap)}
 
-    def restore(self, state: dict[str, NDArray]) -> None:
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
         counts = (int(c) for c in state["counts"])
         self.iterations, self.solves, self.unconverged, self.truncated, self._row = counts

@@ -68,7 +68,7 @@ def on_curve(
     )
 
 
-def plane_at(plane: StateTexture | None, positions: NDArray) -> NDArray:
+def plane_at(plane: StateTexture | None, positions: NDArray[np.float64]) -> NDArray[np.float64]:
     """Plane from which states count at positions of the path.
 
     Parameters
@@ -132,7 +132,9 @@ def on_table(
     )
 
 
-def _laid_out(table: ForceTable, at: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+def _laid_out(
+    table: ForceTable, at: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """g = F^(2/3), its slopes and the first touch at some positions."""
     root = np.cbrt(table.at(at)) ** 2
     touches = table.touch_at(at)
@@ -143,7 +145,9 @@ def _laid_out(table: ForceTable, at: NDArray) -> tuple[NDArray, NDArray, NDArray
     return root, monotone_slopes(table.approaches, root), touches
 
 
-def _straight_to_touch(states: NDArray, root: NDArray, touches: NDArray) -> NDArray:
+def _straight_to_touch(
+    states: NDArray[np.float64], root: NDArray[np.float64], touches: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Replace g before first touch, and a little after, by the line through the touch and the next state."""
     beyond = states - touches[:, None] > 0.2 * np.gradient(states)
     first = np.minimum(np.argmax(beyond, axis=1), len(states) - 1)
@@ -153,7 +157,7 @@ def _straight_to_touch(states: NDArray, root: NDArray, touches: NDArray) -> NDAr
     return np.where(beyond, root, line)
 
 
-def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray:
+def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray[np.float64]:
     """Elastic contact force of a law, without damping.
 
     Parameters

@@ -152,7 +152,10 @@ def _scanned(
 
 
 def _spectra(
-    strip: HeightMap, scanned: ScannedForces[NDArray[np.float64]], shape: Geometry, semi_axes: NDArray[np.float64]
+    strip: HeightMap,
+    scanned: ScannedForces[NDArray[np.float64]],
+    shape: Geometry,
+    semi_axes: NDArray[np.float64],
 ) -> FilterSpectra:
     """Spectra of a scan, and of the lines under the patch of each state at every row of the grid."""
     dx, dy = shape.spacing
