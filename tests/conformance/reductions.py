@@ -12,7 +12,8 @@ from scipy.integrate import cumulative_trapezoid
 from asperity.contact import HalfSpace, Hertz
 from asperity.kinds.ball_on_beam.roll import roll
 from asperity.laws import Hertz as HertzLaw
-from asperity.laws import Linear, Printed, Shifted, force
+from asperity.laws import Linear, Printed, Shifted
+from asperity.laws.layout import force
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import punch_taps, response
 from asperity.reduction.stiffness import ForceCurve

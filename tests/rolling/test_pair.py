@@ -11,7 +11,7 @@ from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kinds.ball_on_beam import roll as ball_on_beam
 from asperity.kinds.wheel_on_rail import roll as wheel_on_rail
 from asperity.laws import Hertz, Linear
-from asperity.laws.base import force
+from asperity.laws.layout import force
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.ball import FreeMass, RollingBall
