@@ -77,3 +77,19 @@ def test_every_link_of_a_page_leads_somewhere():
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("benchmarks/*.md")]:
         for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
             assert "://" in target or (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_files_that_contributors_are_sent_to_are_there():
+    package = ROOT / "src" / "asperity"
+    places = [
+        ROOT,
+        package,
+        package / "laws",
+        package / "surfaces",
+        package / "kinds/ball_on_beam",
+        ROOT / ".github/workflows",
+    ]
+    names = re.findall(r"`([\w./]+(?:\.py|\.md|\.yml|/)|\.ci/\w+)`", text("CONTRIBUTING.md"))
+    assert len(names) > 20
+    for name in names:
+        assert any((place / name).exists() for place in places), name
