@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 import pytest
-from asperity.scenarios.missing import UNKNOWN
+from asperity.schema.entry import UNKNOWN
 from program import LONG
 
 import asperity
