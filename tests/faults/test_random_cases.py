@@ -5,7 +5,6 @@ import warnings
 
 import numpy as np
 import pytest
-from asperity.schema.entry import UNKNOWN
 from program import LONG
 
 import asperity
@@ -14,6 +13,7 @@ from asperity.config.keys import Choice, Number, Quantity, extra_of, value_kind
 from asperity.errors import AsperityError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of
+from asperity.schema.entry import UNKNOWN
 from asperity.units import quantity
 
 SHORT = {
@@ -40,7 +40,7 @@ def drawn(entry, source):
     """A value of a key: near its default mostly, at a limit of what is plausible now and then; or None."""
     kind, default = value_kind(entry.field.annotation, entry.field.metadata), entry.default
     if isinstance(kind, Choice):
-        return source.choice(kind.words)
+        return source.choice(kind.known)
     if isinstance(kind, Number) and not kind.whole and isinstance(default, int | float):
         low, high = kind.at_least or kind.above or 0.0, kind.at_most or 10.0
         return source.choice([low, high, source.uniform(low, high), 0.5 * default])
