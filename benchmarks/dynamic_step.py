@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike
 
 from asperity.errors import PhysicsWarning
 from asperity.kinds.ball_on_beam.compute import Computed, compute
-from asperity.kinds.ball_on_beam.roll import Rolling, roll
+from asperity.kinds.ball_on_beam.roll import Rolling, roll_ball
 from asperity.kinds.cases import parse_case
 from asperity.laws import Law
 from asperity.progress import progress_bar
@@ -121,7 +121,7 @@ class Clock:
 def rolled(computed: Computed, law: Law, duration: float) -> tuple[float, float, Rolling]:
     """CPU time of a step and of the laying-out, s, and what was rolled."""
     case, timed, clock = computed.case, Timed(law), Clock()
-    run = roll(
+    run = roll_ball(
         computed.beam,
         computed.ball,
         timed,

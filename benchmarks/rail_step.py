@@ -23,9 +23,9 @@ import time
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.contact import Hertz as HertzContact
-from asperity.kinds.wheel_on_rail.roll import roll
-from asperity.laws import Hertz, Law, Linear, Shifted, Table
+from asperity.contact import HertzLaw as HertzContact
+from asperity.kinds.wheel_on_rail.roll import roll_wheel
+from asperity.laws import HertzLaw, Law, Linear, Shifted, Table
 from asperity.reduction.fir import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
@@ -93,7 +93,7 @@ def laws(duration: float) -> dict[str, Law]:
     curve = ForceCurve.from_samples(np.append(0.0, states), np.append(0.0, force))
     return {
         "linear": Linear(LOAD, hertz.tangent_stiffness(approach), approach, plain),
-        "hertz": Hertz(hertz.stiffness_constant, plain),
+        "hertz": HertzLaw(hertz.stiffness_constant, plain),
         "shifted": Shifted(curve, filtered),
         "table": Table(ForceTable(following, states, -1.0, SPACING)),
     }
@@ -102,7 +102,7 @@ def laws(duration: float) -> dict[str, Law]:
 def timed(rail: RailPoles | MovingKernel, law: LaidOut, duration: float) -> float:
     """CPU time per step, s."""
     clock = Clock()
-    roll(rail, Wheel.rigid(MASS, LOAD), law, start=0.0, duration=duration, settling=0.0, progress=clock)  # type: ignore[arg-type]
+    roll_wheel(rail, Wheel.rigid(MASS, LOAD), law, start=0.0, duration=duration, settling=0.0, progress=clock)  # type: ignore[arg-type]
     return clock.seconds_per_step
 
 

@@ -38,7 +38,7 @@ from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compute import Computed, compute
 from asperity.kinds.wheel_on_rail.linear_reference import mean_square_transfer
-from asperity.kinds.wheel_on_rail.roll import roll
+from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.kinds.wheel_on_rail.sound_power import rolling_sound_power
 from asperity.laws import Law, Linear, Printed
 from asperity.reference import cnossos
@@ -119,7 +119,7 @@ def forces(level: float = 0.0) -> Forces:
     segment = round(0.2 / case.time_step)
     density = {}
     for name, law in compared.items():
-        run = roll(
+        run = roll_wheel(
             computed.rail, computed.wheel, law,
             start=case.start, duration=case.duration, settling=case.settling,
         )  # fmt: skip

@@ -14,7 +14,7 @@ from asperity.kernels.modal import (
     refine,
     roll_beam,
 )
-from asperity.laws import Hertz
+from asperity.laws import HertzLaw
 
 H = 2e-3
 
@@ -108,7 +108,7 @@ def test_flight_is_a_parabola_and_the_beam_rings_freely():
     n = 500
     motion, record = motion_at(3, -1.0, 0.3, [1e-3, -5e-4, 2e-4]), records(n + 1)
     shapes = np.ones((n + 1, 3))
-    law = Hertz(1e10).prepare(np.zeros(n + 1))
+    law = HertzLaw(1e10).prepare(np.zeros(n + 1))
     assert roll_beam(system, motion, record, law, shapes, np.zeros_like(shapes), 0, n, np.inf)
     t = system.time_step * np.arange(1, n + 1)
     assert_allclose(record.force, 0.0, atol=0.0)
@@ -129,7 +129,7 @@ def test_ball_bounces_elastically():
         motion, record = motion_at(3, -1e-3, 0.0, np.zeros(3)), records(n + 1)
         nodes = np.zeros((n + 1, 3))  # over a node of all modes the beam does not give
         assert roll_beam(
-            system, motion, record, Hertz(1e9).prepare(np.zeros(n + 1)), nodes, nodes, 0, n, np.inf
+            system, motion, record, HertzLaw(1e9).prepare(np.zeros(n + 1)), nodes, nodes, 0, n, np.inf
         )
         landed = int(np.argmax(record.force > 0))
         heights.append(record.ball[landed:].min())
@@ -155,7 +155,9 @@ def test_force_that_is_not_finite_stops_the_run():
     system, _, _ = flight_system()
     motion, record = motion_at(3, np.nan, 0.0, np.zeros(3)), records(11)
     shapes = np.ones((11, 3))
-    assert not roll_beam(system, motion, record, Hertz(1e9).prepare(np.zeros(11)), shapes, shapes, 0, 10, 1e9)
+    assert not roll_beam(
+        system, motion, record, HertzLaw(1e9).prepare(np.zeros(11)), shapes, shapes, 0, 10, 1e9
+    )
 
 
 @pytest.mark.parametrize("phase", [0.01, 1.0, 20.0])

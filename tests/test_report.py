@@ -14,7 +14,6 @@ from asperity.errors import ComputationError
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import page_of, parts_of, report
 from asperity.laws import spec_of
-from asperity.reporting import lines_picture, surface_picture
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
 from asperity.reporting.style import (
     COLOURS,
@@ -22,6 +21,7 @@ from asperity.reporting.style import (
     smooth_on_log_axis,
 )
 from asperity.reporting.tables import reference_table, validity_table
+from asperity.reporting.texture import lines_picture, surface_picture
 from asperity.reporting.time_figures import piece
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import DATUM, LAWS, LOAD, report_tree

@@ -17,8 +17,8 @@ from asperity.errors import (
     Outcome,
     UnconvergedWarning,
 )
-from asperity.kinds.ball_on_beam.roll import roll
-from asperity.laws import Areal, Hertz, Linear, Printed, Shifted, Table
+from asperity.kinds.ball_on_beam.roll import roll_ball
+from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
@@ -67,7 +67,7 @@ def moving_force(alpha, time_step, sensors=(0.5,)):
     critical = np.pi / beam.length * np.sqrt(beam.bending_stiffness / beam.mass_per_length)
     speed = alpha * critical
     law = Linear(BALL.static_load, stiffness=1e-3)
-    run = roll(
+    run = roll_ball(
         beam, BALL, law, speed=speed, start=0.0, duration=1 / speed, time_step=time_step, sensors=sensors
     )
     assert_allclose(run.contact_force, BALL.static_load, rtol=1e-6)
@@ -129,8 +129,8 @@ def test_stiff_contact_converges_to_the_moving_mass():
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=1.5e3)
     speed, errors = 20.0, []
     for stiffness in (1e10, 1e11, 1e12):
-        run = roll(
-            beam, BALL, Hertz(stiffness), speed=speed, start=0.0, duration=0.05, time_step=5e-6, sensors=[]
+        run = roll_ball(
+            beam, BALL, HertzLaw(stiffness), speed=speed, start=0.0, duration=0.05, time_step=5e-6, sensors=[]
         )
         reference = moving_mass(beam, BALL, speed, run.time[::100])
         errors.append(np.abs(run.beam_displacement[::100] - reference).max() / reference.max())
@@ -168,7 +168,9 @@ def bump_law(name):
 )
 def test_body_follows_a_slow_bump(name, followed):
     stiff = Beam(1.0, bending_stiffness=1e6, mass_per_length=100.0, highest_frequency=5e3)
-    run = roll(stiff, BALL, bump_law(name), speed=0.05, start=0.3, duration=0.4, time_step=5e-5, sensors=[])
+    run = roll_ball(
+        stiff, BALL, bump_law(name), speed=0.05, start=0.3, duration=0.4, time_step=5e-5, sensors=[]
+    )
     rise = run.relative_displacement[0] - run.relative_displacement.min()
     assert_allclose(rise / BUMP, followed, rtol=0.01)
     assert_allclose(run.position[run.relative_displacement.argmin()], 0.315, atol=2e-4)
@@ -181,7 +183,7 @@ def test_linear_contact_answers_a_sine_as_its_receptances_say():
     x = np.arange(0.19, 0.5, 2e-5)
     texture = StateTexture.unfiltered(height * np.sin(2 * np.pi * frequency * (x - 0.2)), 2e-5, 0.19)
     law = Linear(BALL.static_load, stiffness, 0.0, texture, damping)
-    run = roll(beam, BALL, law, speed=1.0, start=0.2, duration=0.2, time_step=1e-5, sensors=[])
+    run = roll_ball(beam, BALL, law, speed=1.0, start=0.2, duration=0.2, time_step=1e-5, sensors=[])
     tail = run.time >= 0.1 - 1e-9
     phase = np.exp(-2j * np.pi * frequency * run.time[tail])[:-1]
     amplitude = 2 * np.mean((run.contact_force[tail][:-1] - BALL.static_load) * phase) * 1j
@@ -194,7 +196,7 @@ def test_ball_leaves_a_step_on_a_parabola():
     drop = 20e-6
     x = np.arange(0.29, 0.35, 1e-5)
     texture = StateTexture.unfiltered(0.5 * drop * (1 + np.tanh((x - 0.305) / 2e-5)), 1e-5, 0.29)
-    run = roll(BEAM, BALL, Hertz(K, texture), **ROUGH | {"duration": 0.008})
+    run = roll_ball(BEAM, BALL, HertzLaw(K, texture), **ROUGH | {"duration": 0.008})
     first = run.contact_loss[0]
     assert_allclose(first.start, 0.005, atol=1e-4)
     flying = (run.time >= first.start) & (run.time < first.start + first.duration)
@@ -216,14 +218,14 @@ def test_flights_are_found():
 
 
 def test_linear_contact_is_never_lost_though_it_pulls():
-    run = roll(BEAM, BALL, Linear(BALL.static_load, 2e7, 0.0, rough_texture(1e-6)), **ROUGH)
+    run = roll_ball(BEAM, BALL, Linear(BALL.static_load, 2e7, 0.0, rough_texture(1e-6)), **ROUGH)
     assert run.contact_force.min() < 0.0
     assert run.contact_loss == []
 
 
 def test_printed_with_damping_flies_though_its_damper_acts():
     law = Printed(HERTZ, rough_texture(1e-6), datum=0.0, damping=20.0)
-    run = roll(BEAM, BALL, law, **ROUGH)
+    run = roll_ball(BEAM, BALL, law, **ROUGH)
     assert 0.0 < run.contact_loss_share < 1.0
     assert np.all(run.contact_force[~run.in_contact][1:] != 0.0)
 
@@ -235,7 +237,7 @@ def test_force_converges_with_the_square_of_the_time_step():
     texture = rough_texture(0.03e-6, shortest=1e-3)
     steps = 2e-5 * 0.5 ** np.arange(4)
     forces = [
-        roll(BEAM, BALL, Hertz(K, texture), **ROUGH | {"time_step": h}).contact_force[:: 2**i]
+        roll_ball(BEAM, BALL, HertzLaw(K, texture), **ROUGH | {"time_step": h}).contact_force[:: 2**i]
         for i, h in enumerate(steps)
     ]
     change = [np.abs(a - b).max() for a, b in itertools.pairwise(forces)]
@@ -247,21 +249,21 @@ def test_energy_balance_closes_and_the_better_the_finer(support):
     beam = replace(BEAM, support=support)
     law = Shifted(HERTZ, rough_texture(0.2e-6, shortest=5e-4), damping=30.0)
     residuals = [
-        roll(beam, BALL, law, **ROUGH | {"time_step": h}).energy.residual for h in (1e-5, 5e-6, 2.5e-6)
+        roll_ball(beam, BALL, law, **ROUGH | {"time_step": h}).energy.residual for h in (1e-5, 5e-6, 2.5e-6)
     ]
     assert residuals[0] < 1e-3
     assert residuals[2] < residuals[0] / 8
 
 
 def test_energy_terms_add_up():
-    energy = roll(BEAM, BALL, Hertz(K, rough_texture(0.05e-6)), **ROUGH).energy
+    energy = roll_ball(BEAM, BALL, HertzLaw(K, rough_texture(0.05e-6)), **ROUGH).energy
     load, *others = energy.terms().values()
     assert_allclose(load, sum(others), atol=1.01 * energy.residual * energy.throughput + 1e-18)
     assert energy.beam_damping > 0.0
 
 
 def test_balance_of_nothing_is_closed():
-    energy = roll(BEAM, BALL, Hertz(K), **ROUGH).energy
+    energy = roll_ball(BEAM, BALL, HertzLaw(K), **ROUGH).energy
     assert replace(energy, throughput=0.0).residual == 0.0
 
 
@@ -303,8 +305,8 @@ class SteppedShifted:
 @pytest.mark.parametrize("damping", [0.0, 60.0])
 def test_python_and_compiled_stepping_agree(damping):
     law = Shifted(HERTZ, rough_texture(0.3e-6), damping)
-    compiled = roll(BEAM, BALL, law, **ROUGH)
-    stepped = roll(BEAM, BALL, FromPython(law, damping), **ROUGH)
+    compiled = roll_ball(BEAM, BALL, law, **ROUGH)
+    stepped = roll_ball(BEAM, BALL, FromPython(law, damping), **ROUGH)
     assert compiled.contact_loss_share > 0.0  # through flights and landings
     assert_allclose(stepped.contact_force, compiled.contact_force, atol=1e-4 * compiled.contact_force.max())
     assert len(stepped.contact_loss) == len(compiled.contact_loss)
@@ -330,7 +332,7 @@ class Shelf:
 def test_interrupted_run_goes_on_bit_by_bit(wrap):
     law = wrap(Shifted(HERTZ, rough_texture(0.2e-6)))
     path = ROUGH | {"time_step": 5e-6}  # more than one chunk
-    whole = roll(BEAM, BALL, law, **path)
+    whole = roll_ball(BEAM, BALL, law, **path)
     shelf, seen = Shelf(), []
 
     def stop_half_way(done, total, message):
@@ -339,9 +341,9 @@ def test_interrupted_run_goes_on_bit_by_bit(wrap):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        roll(BEAM, BALL, law, **path, progress=stop_half_way, checkpoint=shelf)
+        roll_ball(BEAM, BALL, law, **path, progress=stop_half_way, checkpoint=shelf)
     seen_again = []
-    resumed = roll(
+    resumed = roll_ball(
         BEAM, BALL, law, **path, checkpoint=shelf, progress=lambda done, *_: seen_again.append(done)
     )
     assert seen_again[0] > seen[-1]
@@ -350,19 +352,19 @@ def test_interrupted_run_goes_on_bit_by_bit(wrap):
         assert np.array_equal(getattr(resumed, name), getattr(whole, name))
     assert resumed.energy == whole.energy
     assert resumed.evaluations == whole.evaluations
-    finished = roll(BEAM, BALL, law, **path, checkpoint=shelf)
+    finished = roll_ball(BEAM, BALL, law, **path, checkpoint=shelf)
     assert np.array_equal(finished.contact_force, whole.contact_force)
 
 
 def test_checkpoint_of_another_run_is_refused():
     shelf = Shelf()
-    roll(BEAM, BALL, Hertz(K), **ROUGH, checkpoint=shelf)
+    roll_ball(BEAM, BALL, HertzLaw(K), **ROUGH, checkpoint=shelf)
     with pytest.raises(InputError, match=r"checkpoint.*roll anew"):
-        roll(BEAM, BALL, Hertz(K), **ROUGH | {"sensors": [0.5]}, checkpoint=shelf)
+        roll_ball(BEAM, BALL, HertzLaw(K), **ROUGH | {"sensors": [0.5]}, checkpoint=shelf)
 
 
 def test_smooth_rolling_starts_at_rest_and_carries_the_load():
-    run = roll(BEAM, BALL, Hertz(K), **ROUGH)
+    run = roll_ball(BEAM, BALL, HertzLaw(K), **ROUGH)
     assert_allclose(run.contact_force[0], BALL.static_load, rtol=1e-9)
     assert_allclose(run.relative_displacement[0], WORKING, rtol=1e-8)
     assert_allclose(run.contact_force.mean(), BALL.static_load, rtol=0.02)
@@ -390,18 +392,18 @@ def test_smooth_rolling_starts_at_rest_and_carries_the_load():
 )
 def test_bad_paths_are_refused(change, message):
     with pytest.raises(InputError, match=message):
-        roll(BEAM, BALL, Hertz(K), **ROUGH | change)
+        roll_ball(BEAM, BALL, HertzLaw(K), **ROUGH | change)
 
 
 def test_path_longer_than_the_texture_is_refused():
     with pytest.raises(InputError, match="longer texture"):
-        roll(BEAM, BALL, Hertz(K, rough_texture(1e-7)), **ROUGH | {"duration": 0.1})
+        roll_ball(BEAM, BALL, HertzLaw(K, rough_texture(1e-7)), **ROUGH | {"duration": 0.1})
 
 
 def test_coarse_time_steps_are_named():
     coarse = ROUGH | {"time_step": 2e-4}
     with pytest.warns(CoarseSamplingWarning) as caught:
-        roll(BEAM, BALL, Hertz(K), **coarse, highest_frequency=2000.0)
+        roll_ball(BEAM, BALL, HertzLaw(K), **coarse, highest_frequency=2000.0)
     text = "\n".join(str(w.message) for w in caught)
     for part in ("contact resonance", "highest mode", "highest frequency asked for", "time step of at most"):
         assert part in text
@@ -410,14 +412,14 @@ def test_coarse_time_steps_are_named():
 def test_resolved_run_warns_of_nothing():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        roll(BEAM, BALL, Hertz(K), **ROUGH, highest_frequency=5000.0)
+        roll_ball(BEAM, BALL, HertzLaw(K), **ROUGH, highest_frequency=5000.0)
 
 
 def test_continuation_beyond_the_data_is_named():
     s = np.linspace(0.0, 1.05 * WORKING, 6)
     law = Shifted(ForceCurve.from_samples(s, HERTZ.force(s)), rough_texture(0.1e-6))
     with pytest.warns(ExtrapolationWarning, match=r"let contact\.approaches reach higher"):
-        roll(BEAM, BALL, law, **ROUGH)
+        roll_ball(BEAM, BALL, law, **ROUGH)
 
 
 class Erratic(SteppedShifted):
@@ -443,7 +445,7 @@ class Failing(FromPython):
 def test_steps_that_do_not_converge_are_counted():
     law = Failing(Shifted(HERTZ, None))
     with pytest.warns(UnconvergedWarning, match=r"take a smaller numerics\.time_step"):
-        run = roll(BEAM, BALL, law, **ROUGH | {"duration": 2e-4})
+        run = roll_ball(BEAM, BALL, law, **ROUGH | {"duration": 2e-4})
     assert run.unconverged_steps > 0
     assert run.outcome is Outcome.STEPS_UNCONVERGED
     assert not run.outcome.ok
@@ -452,7 +454,7 @@ def test_steps_that_do_not_converge_are_counted():
 def test_force_that_is_not_finite_is_reported_with_its_place():
     shelf = Shelf()
     with pytest.raises(ComputationError, match=r"step 7, time 7e-05 s, position 0.30007 m.*smaller"):
-        roll(BEAM, BALL, Failing(Shifted(HERTZ, None), kind=Broken), **ROUGH, checkpoint=shelf)
+        roll_ball(BEAM, BALL, Failing(Shifted(HERTZ, None), kind=Broken), **ROUGH, checkpoint=shelf)
     assert shelf.saves == 0
 
 
@@ -460,9 +462,9 @@ def test_force_that_is_not_finite_is_reported_with_its_place():
 
 
 def test_a_record_after_a_run_in_is_the_end_of_a_longer_run():
-    law = Hertz(K, rough_texture(0.05e-6))
-    whole = roll(BEAM, BALL, law, **ROUGH)
-    late = roll(BEAM, BALL, law, **ROUGH | {"start": 0.305, "duration": 0.015}, settling=0.005)
+    law = HertzLaw(K, rough_texture(0.05e-6))
+    whole = roll_ball(BEAM, BALL, law, **ROUGH)
+    late = roll_ball(BEAM, BALL, law, **ROUGH | {"start": 0.305, "duration": 0.015}, settling=0.005)
     assert late.time[0] == 0.0
     assert_allclose(late.position[0], 0.305)
     assert len(late.time) == len(late.position) == len(whole.time) - 500
@@ -473,7 +475,7 @@ def test_a_record_after_a_run_in_is_the_end_of_a_longer_run():
 
 def test_a_run_in_on_a_smooth_beam_starts_at_rest():
     """The static deflection is that of the place where the ball lies, not of where the record starts."""
-    run = roll(BEAM, BALL, Hertz(K), speed=1.0, start=0.5, duration=0.02, time_step=1e-5, sensors=[],
+    run = roll_ball(BEAM, BALL, HertzLaw(K), speed=1.0, start=0.5, duration=0.02, time_step=1e-5, sensors=[],
                settling=0.2)  # fmt: skip
     assert np.abs(run.contact_force - BALL.static_load).max() < 0.02 * BALL.static_load
 
@@ -481,4 +483,4 @@ def test_a_run_in_on_a_smooth_beam_starts_at_rest():
 @pytest.mark.parametrize(("settling", "text"), [(-0.1, r"settling \(s\)"), (0.4, "path .* -0.1 to")])
 def test_a_run_in_that_cannot_be_is_refused(settling, text):
     with pytest.raises(InputError, match=text):
-        roll(BEAM, BALL, Hertz(K), **ROUGH, settling=settling)
+        roll_ball(BEAM, BALL, HertzLaw(K), **ROUGH, settling=settling)

@@ -6,8 +6,8 @@ import pytest
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
 from asperity.kinds.wheel_on_rail.passing import passed_points
-from asperity.kinds.wheel_on_rail.roll import roll
-from asperity.laws import Hertz, Linear
+from asperity.kinds.wheel_on_rail.roll import roll_wheel
+from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
 from asperity.spectra import band_levels, psd
@@ -58,7 +58,7 @@ def linear(texture=None):
 
 class TestSmoothRail:
     def test_the_mean_force_is_the_load_and_tones_lie_at_the_sleeper_passing_frequency(self, poles):
-        run = roll(poles, WHEEL, Hertz(HERTZ), start=0.0, duration=1.5, settling=1.0)
+        run = roll_wheel(poles, WHEEL, HertzLaw(HERTZ), start=0.0, duration=1.5, settling=1.0)
         # 140 sleepers are passed in 1.5 s at 56 m/s
         samples = len(run.contact_force) - 1
         spectrum = np.abs(np.fft.rfft(run.contact_force[:samples])) / samples
@@ -70,10 +70,10 @@ class TestSmoothRail:
         assert np.sum(spectrum[tones] ** 2) > 0.9999 * power
 
     def test_without_a_run_in_it_starts_steady(self, poles):
-        run = roll(poles, WHEEL, Hertz(HERTZ), start=0.1, duration=0.02, settling=0.0)
+        run = roll_wheel(poles, WHEEL, HertzLaw(HERTZ), start=0.1, duration=0.02, settling=0.0)
         assert run.contact_force[0] == LOAD
         assert np.abs(run.contact_force[:20] / LOAD - 1.0).max() < 0.01
-        steady = roll(poles, WHEEL, Hertz(HERTZ), start=0.1, duration=0.02, settling=1.0)
+        steady = roll_wheel(poles, WHEEL, HertzLaw(HERTZ), start=0.1, duration=0.02, settling=1.0)
         assert run.rail_displacement[0] == pytest.approx(steady.rail_displacement[0], rel=0.03)
 
 
@@ -81,7 +81,7 @@ class TestPolesAgainstScatter:
     def test_force_in_time_and_in_bands(self, kernel, poles):
         texture = roughness(0.0, 2.0)
         runs = [
-            roll(rail, WHEEL, Hertz(HERTZ, texture), start=0.0, duration=1.0, settling=0.3)
+            roll_wheel(rail, WHEEL, HertzLaw(HERTZ, texture), start=0.0, duration=1.0, settling=0.3)
             for rail in (poles, kernel)
         ]
         fitted, scattered = (run.contact_force for run in runs)
@@ -96,7 +96,7 @@ class TestAgainstTheFrequencyDomain:
         step = 25e-6
         rail = rail_poles(moving_kernel(TRACK, SPEED, step), 100)
         texture = roughness(0.0, 6.5)
-        run = roll(rail, WHEEL, linear(texture), start=0.0, duration=6.0, settling=0.4)
+        run = roll_wheel(rail, WHEEL, linear(texture), start=0.0, duration=6.0, settling=0.4)
         segment = 16000
         frequency, found = psd(run.contact_force, step, segment=segment)
         heard = texture.at(run.position)[:, 0]
@@ -116,7 +116,8 @@ class TestAgainstTheFrequencyDomain:
         heights = 1e-8 * np.cumsum(np.random.default_rng(3).standard_normal(25_000))
         texture = StateTexture.unfiltered(-(heights - heights.mean()), 2e-3, -5.0)
         rough, smooth = (
-            roll(rail, WHEEL, linear(each), start=0.0, duration=4.0, settling=0.4) for each in (texture, None)
+            roll_wheel(rail, WHEEL, linear(each), start=0.0, duration=4.0, settling=0.4)
+            for each in (texture, None)
         )
         # the contact is linear: without the tones of the sleepers, the force is that of the texture
         frequency, found = psd(rough.contact_force - smooth.contact_force, STEP, segment=20_000)
@@ -135,7 +136,7 @@ class TestConvergence:
         for divide in (1, 2, 4):
             step = 8e-5 / divide
             rail = moving_kernel(TRACK, SPEED, step, duration=0.2)
-            run = roll(rail, WHEEL, Hertz(HERTZ, texture), start=0.0, duration=0.048, settling=0.096)
+            run = roll_wheel(rail, WHEEL, HertzLaw(HERTZ, texture), start=0.0, duration=0.048, settling=0.096)
             forces.append(run.contact_force[::divide])
         n = min(map(len, forces))
         coarse = np.linalg.norm(forces[0][:n] - forces[1][:n])
@@ -148,8 +149,8 @@ class TestWheel:
         # a mode far below the contact resonance of the rail: the force dips where wheel and rail balance
         wheel = Wheel.from_modes(MASS, LOAD, [1800.0], [0.005], [40.0])
         texture = roughness(0.0, 2.0)
-        run = roll(poles, wheel, linear(texture), start=0.0, duration=1.2, settling=0.4)
-        rigid = roll(poles, WHEEL, linear(texture), start=0.0, duration=1.2, settling=0.4)
+        run = roll_wheel(poles, wheel, linear(texture), start=0.0, duration=1.2, settling=0.4)
+        rigid = roll_wheel(poles, WHEEL, linear(texture), start=0.0, duration=1.2, settling=0.4)
         frequency, density = psd(np.stack([run.contact_force, rigid.contact_force]), STEP, segment=4000)
         _, heard = psd(texture.at(run.position)[:, 0], SPEED * STEP, segment=4000)
         expected = [
@@ -168,7 +169,7 @@ class TestFlight:
         shares = []
         for level in (10.0, 15.0, 20.0):
             texture = roughness(level, 2.5)
-            run = roll(poles, WHEEL, Hertz(HERTZ, texture), start=0.0, duration=2.0, settling=0.3)
+            run = roll_wheel(poles, WHEEL, HertzLaw(HERTZ, texture), start=0.0, duration=2.0, settling=0.3)
             shares.append(run.contact_loss_share)
             assert (run.contact_force >= 0.0).all()
             assert sum(e.duration for e in run.contact_loss) == pytest.approx(
@@ -182,7 +183,7 @@ class TestFlight:
 class TestPassedPoints:
     def test_a_point_moves_with_the_contact_when_it_is_passed(self, kernel, poles):
         texture = roughness(0.0, 1.2)
-        run = roll(kernel, WHEEL, linear(texture), start=0.0, duration=0.6, settling=0.2)
+        run = roll_wheel(kernel, WHEEL, linear(texture), start=0.0, duration=0.6, settling=0.2)
         points = np.array([16.2, 16.5, 16.61])
         displacement, velocity = passed_points(kernel, [run], points)
         for i, x in enumerate(points):
@@ -195,7 +196,7 @@ class TestPassedPoints:
         assert np.abs(far).max() < 1e-3 * np.abs(displacement).max()
 
     def test_points_must_be_finite(self, kernel, poles):
-        run = roll(poles, WHEEL, linear(), start=0.0, duration=0.01, settling=0.0)
+        run = roll_wheel(poles, WHEEL, linear(), start=0.0, duration=0.01, settling=0.0)
         with pytest.raises(InputError, match="points on the rail"):
             passed_points(kernel, [run], [np.nan])
 
@@ -203,9 +204,9 @@ class TestPassedPoints:
 class TestCheckpoint:
     def test_an_interrupted_run_goes_on_bit_by_bit(self, poles, monkeypatch, tmp_path):
         texture = roughness(0.0, 1.0)
-        law = Hertz(HERTZ, texture)
+        law = HertzLaw(HERTZ, texture)
         settings = {"start": 0.0, "duration": 0.1, "settling": 0.1}
-        whole = roll(poles, WHEEL, law, **settings)
+        whole = roll_wheel(poles, WHEEL, law, **settings)
         kept = Checkpoint(Store(tmp_path), "run")
         monkeypatch.setattr("asperity.kinds.wheel_on_rail.stepper.CHUNK", 700)
 
@@ -214,12 +215,12 @@ class TestCheckpoint:
                 raise KeyboardInterrupt
 
         with pytest.raises(KeyboardInterrupt):
-            roll(poles, WHEEL, law, **settings, checkpoint=kept, progress=stop)
+            roll_wheel(poles, WHEEL, law, **settings, checkpoint=kept, progress=stop)
         assert kept.load()["motion.counts"][0] == 1400
-        resumed = roll(poles, WHEEL, law, **settings, checkpoint=kept)
+        resumed = roll_wheel(poles, WHEEL, law, **settings, checkpoint=kept)
         np.testing.assert_array_equal(resumed.contact_force, whole.contact_force)
         with pytest.raises(InputError, match="checkpoint"):
-            roll(poles, WHEEL, law, start=0.0, duration=0.01, settling=0.0, checkpoint=kept)
+            roll_wheel(poles, WHEEL, law, start=0.0, duration=0.01, settling=0.0, checkpoint=kept)
 
 
 class TestBadInput:
@@ -233,8 +234,18 @@ class TestBadInput:
     )
     def test_numbers(self, poles, settings, message):
         with pytest.raises(InputError, match=message):
-            roll(poles, WHEEL, Hertz(HERTZ), **{"start": 0.0, "duration": 0.1, "settling": 0.0} | settings)
+            roll_wheel(
+                poles, WHEEL, HertzLaw(HERTZ), **{"start": 0.0, "duration": 0.1, "settling": 0.0} | settings
+            )
 
     def test_a_coarse_time_step_is_warned_of(self, poles):
         with pytest.warns(CoarseSamplingWarning, match="highest frequency asked for, 8000 Hz"):
-            roll(poles, WHEEL, Hertz(HERTZ), start=0.0, duration=0.01, settling=0.0, highest_frequency=8000.0)
+            roll_wheel(
+                poles,
+                WHEEL,
+                HertzLaw(HERTZ),
+                start=0.0,
+                duration=0.01,
+                settling=0.0,
+                highest_frequency=8000.0,
+            )

@@ -10,9 +10,8 @@ from ledger import Check
 from scipy.integrate import cumulative_trapezoid
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.kinds.ball_on_beam.roll import roll
-from asperity.laws import Hertz as HertzLaw
-from asperity.laws import Linear, Printed, Shifted
+from asperity.kinds.ball_on_beam.roll import roll_ball
+from asperity.laws import HertzLaw, Linear, Printed, Shifted
 from asperity.laws.layout import force
 from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import punch_taps, response
@@ -101,7 +100,7 @@ def moving_force():
     static = ball.static_load * beam.length**3 / (48 * beam.bending_stiffness)
     for alpha in (0.1, 0.25, 0.5, 0.75):
         speed = alpha * critical
-        run = roll(
+        run = roll_ball(
             replace(beam), ball, Linear(ball.static_load, stiffness=1e-3), speed=speed, start=0.0,
             duration=1 / speed, time_step=2e-5, sensors=[0.5],
         )  # fmt: skip

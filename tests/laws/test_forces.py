@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all, with_damping
-from asperity.laws import Areal, Hertz, Linear, Printed, Shifted, Table, names
+from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table, names
 from asperity.laws.layout import force, on_curve
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
@@ -44,7 +44,7 @@ def every_law():
         Shifted(HERTZ, texture),
         Areal(HERTZ, texture),
         Table(shifted_table(texture.heights[1])),
-        Hertz(K, texture),
+        HertzLaw(K, texture),
         Linear(LOAD, 3e7, WORKING, texture),
     ]
 
@@ -91,9 +91,9 @@ def test_shifted_areal_and_hertz_follow_the_texture():
     texture = waves(states=1)
     positions = np.linspace(1e-4, 3e-3, 50)
     expected = K * np.maximum(WORKING - texture.at(positions)[:, 0], 0.0) ** 1.5
-    for law in (Shifted(HERTZ, texture), Areal(HERTZ, texture), Hertz(K, texture)):
+    for law in (Shifted(HERTZ, texture), Areal(HERTZ, texture), HertzLaw(K, texture)):
         assert_allclose(force(law, positions, WORKING), expected, rtol=1e-12)
-    assert_allclose(force(Hertz(K), positions, WORKING), LOAD, rtol=1e-12)
+    assert_allclose(force(HertzLaw(K), positions, WORKING), LOAD, rtol=1e-12)
 
 
 def test_table_reproduces_a_hertzian_table_between_its_nodes():
@@ -162,7 +162,7 @@ def test_arguments_beyond_the_data_are_counted():
     assert isinstance(prepared, Prepared)
     assert count_beyond(prepared, np.full(4, 1.2e-6)) == 2
     assert count_beyond(on_curve(curve, None, np.zeros(3)), np.array([0.9e-6, 1.0e-6, 1.1e-6])) == 1
-    assert count_beyond(Hertz(K).prepare(np.zeros(1)), np.array([1.0])) == 0
+    assert count_beyond(HertzLaw(K).prepare(np.zeros(1)), np.array([1.0])) == 0
 
 
 @given(st.floats(1e-3, 1e4))
@@ -188,7 +188,7 @@ def test_load_that_no_approach_carries():
         lambda c: Shifted(HERTZ, None, c),
         lambda c: Areal(HERTZ, waves(), c),
         lambda c: Table(shifted_table(np.zeros(9)), c),
-        lambda c: Hertz(K, None, c),
+        lambda c: HertzLaw(K, None, c),
         lambda c: Linear(LOAD, 1e7, 0.0, None, c),
     ],
 )

@@ -296,7 +296,7 @@ def spoilt(build):
         (lambda m: m.heights, "received heights"),
         (lambda m: m.plane, "received plane"),
         (lambda m: 3.0, "law `spring`: received 3.0; allowed: an object with name, damping and prepare"),
-        (lambda m: laws.Hertz(m.hertz_constant), "law `spring`: received one built as 'hertz'"),
+        (lambda m: laws.HertzLaw(m.hertz_constant), "law `spring`: received one built as 'hertz'"),
     ],
 )
 def test_a_law_that_is_not_built_as_it_says_is_told(build, message, registered):

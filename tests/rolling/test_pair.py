@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kinds.ball_on_beam import roll as ball_on_beam
 from asperity.kinds.wheel_on_rail import roll as wheel_on_rail
-from asperity.laws import Hertz, Linear
+from asperity.laws import HertzLaw, Linear
 from asperity.laws.layout import force
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
@@ -117,9 +117,9 @@ def same(found, expected, rel=1e-9):
 @pytest.mark.parametrize("support", ["simply-supported", "free"])
 def test_a_ball_on_a_beam_is_that_of_the_compiled_stepper(support):
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3, support=support)
-    law = Hertz(2.4e10, rough(1e-7, 1e-5, 0.29), damping=2.0)
+    law = HertzLaw(2.4e10, rough(1e-7, 1e-5, 0.29), damping=2.0)
     path = {"speed": 1.0, "start": 0.3, "duration": 0.02, "time_step": 1e-5, "settling": 0.005}
-    compiled = ball_on_beam.roll(beam, BALL, law, sensors=[0.5], **path)
+    compiled = ball_on_beam.roll_ball(beam, BALL, law, sensors=[0.5], **path)
     pair = roll_pair(RolledBeam(beam), RollingBall(BALL), law, **path)
     assert np.std(compiled.contact_force) > 0.2 * BALL.static_load
     same(pair.contact_force, compiled.contact_force)
@@ -127,8 +127,8 @@ def test_a_ball_on_a_beam_is_that_of_the_compiled_stepper(support):
     same(pair.rolling_displacement, compiled.ball_displacement)
     same(pair.relative_displacement, compiled.relative_displacement)
     # flights multiply what rounding leaves: a shorter run of a rougher path
-    law, path = Hertz(2.4e10, rough(3e-7, 1e-5, 0.29)), path | {"duration": 0.004, "settling": 0.0}
-    compiled = ball_on_beam.roll(beam, BALL, law, sensors=[0.5], **path)
+    law, path = HertzLaw(2.4e10, rough(3e-7, 1e-5, 0.29)), path | {"duration": 0.004, "settling": 0.0}
+    compiled = ball_on_beam.roll_ball(beam, BALL, law, sensors=[0.5], **path)
     pair = roll_pair(RolledBeam(beam), RollingBall(BALL), law, **path)
     assert compiled.contact_loss
     assert pair.contact_loss == compiled.contact_loss
@@ -138,9 +138,9 @@ def test_a_ball_on_a_beam_is_that_of_the_compiled_stepper(support):
 @pytest.mark.parametrize("scattered", [False, True], ids=["poles", "scattered"])
 def test_a_wheel_on_a_rail_is_that_of_the_compiled_stepper(kernel, poles, wheel, scattered):
     rail = kernel if scattered else poles
-    law = Hertz(9.4e10, rough(2e-5, 1e-3, -0.5))
+    law = HertzLaw(9.4e10, rough(2e-5, 1e-3, -0.5))
     where = {"start": 0.53, "duration": 0.03, "settling": 0.011}
-    compiled = wheel_on_rail.roll(rail, wheel, law, **where)
+    compiled = wheel_on_rail.roll_wheel(rail, wheel, law, **where)
     pair = roll_pair(RolledRail(rail), RollingWheel(wheel), law, speed=56.0, time_step=50e-6, **where)
     assert np.std(compiled.contact_force) > 0.1 * wheel.load
     same(pair.contact_force, compiled.contact_force)
@@ -149,9 +149,9 @@ def test_a_wheel_on_a_rail_is_that_of_the_compiled_stepper(kernel, poles, wheel,
 
 
 def test_a_law_that_python_steps(poles):
-    law = Hertz(9.4e10, rough(1e-5, 1e-3, -0.5))
+    law = HertzLaw(9.4e10, rough(1e-5, 1e-3, -0.5))
     where = {"start": 0.53, "duration": 0.005, "settling": 0.001}
-    compiled = wheel_on_rail.roll(poles, RINGING, Stepped(law), **where)
+    compiled = wheel_on_rail.roll_wheel(poles, RINGING, Stepped(law), **where)
     pair = roll_pair(
         RolledRail(poles), RollingWheel(RINGING), Stepped(law), speed=56.0, time_step=50e-6, **where
     )
@@ -361,7 +361,7 @@ def test_a_ball_that_leaves_the_ground_falls_freely():
     # a step down by more than the approach: F = 0 and the body accelerates by P/m
     texture = StateTexture.unfiltered(np.where(np.arange(2000) < 300, 0.0, 1e-5), 1e-5)
     run = roll_pair(
-        RigidGround(), BODY, Hertz(2.4e10, texture), speed=1.0, start=0.0, duration=0.008, time_step=1e-6
+        RigidGround(), BODY, HertzLaw(2.4e10, texture), speed=1.0, start=0.0, duration=0.008, time_step=1e-6
     )
     flight = run.contact_loss[0]
     away = slice(round(flight.start / 1e-6) + 1, round((flight.start + flight.duration) / 1e-6) - 1)
@@ -477,23 +477,23 @@ def test_a_pair_that_is_interrupted_amid_a_step_goes_on_bit_by_bit(poles):
             duration=0.003, settling=0.001, checkpoint=checkpoint,
         )  # fmt: skip
 
-    interrupted_amid_a_step(rolled, Hertz(9.4e10, rough(1e-5, 1e-3, -0.5)))
+    interrupted_amid_a_step(rolled, HertzLaw(9.4e10, rough(1e-5, 1e-3, -0.5)))
 
 
 @pytest.mark.parametrize("scattered", [False, True], ids=["poles", "scattered"])
 def test_a_wheel_that_is_interrupted_amid_a_step_goes_on_bit_by_bit(kernel, poles, scattered):
     def rolled(law, checkpoint):
-        return wheel_on_rail.roll(
+        return wheel_on_rail.roll_wheel(
             kernel if scattered else poles, RINGING, law, start=0.53, duration=0.003, settling=0.001,
             checkpoint=checkpoint,
         )  # fmt: skip
 
-    interrupted_amid_a_step(rolled, Hertz(9.4e10, rough(1e-5, 1e-3, -0.5)))
+    interrupted_amid_a_step(rolled, HertzLaw(9.4e10, rough(1e-5, 1e-3, -0.5)))
 
 
 def test_a_compiled_law_goes_on_bit_by_bit(monkeypatch):
     monkeypatch.setattr("asperity.rolling.pair.CHUNK", 70)
-    law, shelf = Hertz(2.4e10, rough(3e-7, 1e-5, 0.28), damping=2.0), Shelf()
+    law, shelf = HertzLaw(2.4e10, rough(3e-7, 1e-5, 0.28), damping=2.0), Shelf()
     path = {"speed": 1.0, "start": 0.3, "duration": 0.003, "time_step": 1e-5}
     bodies = RolledBeam(BEAM), RollingBall(BALL)
     whole = roll_pair(*bodies, law, **path)
@@ -551,13 +551,13 @@ def test_a_step_too_long_for_the_contact_is_told():
 def test_bad_input_of_a_pair_is_refused(changed, message):
     path = {"speed": 1.0, "start": 0.3, "duration": 0.002, "time_step": 1e-5} | changed
     with pytest.raises(InputError, match=message):
-        roll_pair(RolledBeam(BEAM), RollingBall(BALL), Hertz(2.4e10), **path)
+        roll_pair(RolledBeam(BEAM), RollingBall(BALL), HertzLaw(2.4e10), **path)
 
 
 def test_a_rail_of_another_speed_is_refused(poles):
     path = {"speed": 50.0, "start": 0.0, "duration": 0.002, "time_step": 50e-6}
     with pytest.raises(InputError, match=r"50 m/s in steps of 5e-05 s.*56 m/s.*Compute the moving kernel"):
-        roll_pair(RolledRail(poles), RollingWheel(RIGID), Hertz(9.4e10), **path)
+        roll_pair(RolledRail(poles), RollingWheel(RIGID), HertzLaw(9.4e10), **path)
 
 
 def test_a_free_mass_under_a_load_falls():

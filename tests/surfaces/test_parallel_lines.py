@@ -6,7 +6,7 @@ from asperity.errors import InputError, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.surfaces.en15610 import process, trim
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.parallel_lines import common_length, register, strip_from_lines
+from asperity.surfaces.parallel_lines import bring_into_register, common_length, strip_from_lines
 from asperity.surfaces.synthesis import strip_from_bands
 from like_measured import either, wheel_lines
 
@@ -25,7 +25,7 @@ def test_lines_measured_to_and_fro_come_into_register():
         Profile(np.roll(z[::-1] if k % 2 else z, shift), MM)
         for k, (z, shift) in enumerate(zip(lines, shifts, strict=True))
     ]
-    found = register(measured)
+    found = bring_into_register(measured)
     assert_allclose(found.lines, lines, atol=1e-15)
     assert found.replaced == ()
     assert found.reversed == (False, True) * 3
@@ -36,12 +36,12 @@ def test_short_lines_are_replaced_by_their_neighbours():
     lines = wheel_strip(4).T
     measured = [Profile(z[:2000] if k in (1, 3) else z, MM) for k, z in enumerate(lines)]
     with pytest.warns(ShortRecordWarning, match=r"2 of 4 parallel lines are shorter than 95%"):
-        found = register(measured)
+        found = bring_into_register(measured)
     assert found.replaced == (1, 3)
     assert_allclose(found.lines[[0, 2]], lines[[0, 2]])
     assert_allclose(found.lines[1], (lines[0] + lines[2]) / 2)
     assert_allclose(found.lines[3], lines[2])
-    assert register(measured[:1]).lines.shape == (1, 2880)
+    assert bring_into_register(measured[:1]).lines.shape == (1, 2880)
 
 
 def test_lines_are_cut_to_the_shortest():
@@ -77,7 +77,7 @@ def wheel(depth, measured):
 
 @either
 def test_flats_of_measured_wheels_come_to_lie_beside_each_other(measured):
-    found = register(wheel(0.2, measured))
+    found = bring_into_register(wheel(0.2, measured))
     assert found.reversed[:7] == (False, True, False, True, False, True, False)
     assert np.ptp(np.argmin(found.lines[:7], axis=1)) <= 5  # the flat covers seven of the ten lines
     strip = strip_from_lines(found.lines, MM, 5 * MM, 91, 0.5 * MM)
@@ -88,7 +88,7 @@ def test_flats_of_measured_wheels_come_to_lie_beside_each_other(measured):
 @either
 def test_lines_that_were_rolled_over_keep_to_and_fro_apart(measured):
     # the circle takes the short waves that tell the directions apart; the starts still lie close together
-    found = register([process(profile, curvature=True)[0] for profile in wheel(0.2, measured)])
+    found = bring_into_register([process(profile, curvature=True)[0] for profile in wheel(0.2, measured)])
     assert found.reversed == 5 * (False, True)
     assert np.ptp(np.argmin(found.lines[:5], axis=1)) <= 5
 
@@ -96,7 +96,7 @@ def test_lines_that_were_rolled_over_keep_to_and_fro_apart(measured):
 @either
 def test_a_short_line_of_a_measured_wheel_does_not_spoil_the_others(measured):
     with pytest.warns(ShortRecordWarning, match="1 of 10"):
-        found = register(wheel(0.6, measured))
+        found = bring_into_register(wheel(0.6, measured))
     assert found.replaced == (4,)
     assert np.ptp(np.argmin(found.lines[:9], axis=1)) <= 10
     assert min(found.correlations[:9]) > 0.75
@@ -112,7 +112,7 @@ def test_a_short_line_of_a_measured_wheel_does_not_spoil_the_others(measured):
 )
 def test_wrong_lines_are_refused(profiles, text):
     with pytest.raises(InputError, match=text):
-        register(profiles)
+        bring_into_register(profiles)
 
 
 @pytest.mark.parametrize(

@@ -77,7 +77,7 @@ def _as_lines(surfaces: list[HeightMap | Profile], told: bool | None) -> tuple[P
 
 def _inspect_lines(lines: tuple[Profile, ...], title: str, picture: Path, *, told: bool) -> None:
     """Print what is in lines side by side, and draw them."""
-    from asperity.reporting import lines_picture
+    from asperity.reporting.texture import lines_picture
     from asperity.surfaces.statistics import line_statistics
 
     say(f"{title}: {described_lines(lines)}")
@@ -188,7 +188,7 @@ def homogeneity_line(surface: HeightMap | Profile) -> str:
 
 def draw(surface: HeightMap | Profile, title: str, picture: Path) -> Path:
     """Draw a levelled surface to a PNG, PDF or SVG file."""
-    from asperity.reporting import surface_picture
+    from asperity.reporting.texture import surface_picture
     from asperity.surfaces.heightmap import HeightMap
 
     spacing = surface.spacing if isinstance(surface, HeightMap) else (surface.spacing, surface.spacing)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from asperity.laws.areal import Areal
 from asperity.laws.base import Law, SteppedLaw
 from asperity.laws.direct import Direct
-from asperity.laws.hertz import Hertz
+from asperity.laws.hertz import HertzLaw
 from asperity.laws.linear import Linear
 from asperity.laws.materials import Materials
 from asperity.laws.printed import Printed
@@ -32,7 +32,7 @@ from asperity.laws.table import Table
 __all__ = [
     "Areal",
     "Direct",
-    "Hertz",
+    "HertzLaw",
     "Law",
     "LawSpec",
     "Linear",

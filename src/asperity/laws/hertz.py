@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Hertz:
+class HertzLaw:
     """F = K (approach - h)^1.5, plus c times the approach rate in contact; never pulls.
 
     Parameters
@@ -54,9 +54,9 @@ class Hertz:
         return on_curve(ForceCurve.hertz(self.stiffness), self.texture, positions, damping=self.damping)
 
 
-def _build(materials: Materials) -> Hertz:
+def _build(materials: Materials) -> HertzLaw:
     """Build the law from the materials of a case."""
-    return Hertz(materials.hertz_constant, materials.line, materials.damping, materials.name)
+    return HertzLaw(materials.hertz_constant, materials.line, materials.damping, materials.name)
 
 
 LAW = LawSpec(

@@ -24,27 +24,10 @@ def on_curve(
     damped_in_flight: bool = False,
     plane: StateTexture | None = None,
 ) -> Prepared:
-    """Lay out a law that is a force curve following a line texture.
+    """Lay out a law that is a force curve following a line texture, at positions (n,) of the contact, m.
 
-    Parameters
-    ----------
-    curve : ForceCurve
-        Force against approach.
-    texture : StateTexture or None
-        Texture that the force follows; None for a smooth path.
-    positions : array_like (n,)
-        Positions of the contact, m.
-    form : int
-        `SHIFTED` or `SECANT` of `asperity.kernels.pointforce`.
-    datum, damping, damped_in_flight
-        As in `asperity.kernels.pointforce.Prepared`.
-    plane : StateTexture, optional
-        Plane from which the states of the texture count, m; the mean plane by default.
-
-    Returns
-    -------
-    Prepared
-        Arrays for the kernel.
+    The form is `SHIFTED` or `SECANT` of `asperity.kernels.pointforce`, where the rest is explained; without
+    texture the path is smooth. The states of the texture count from the plane, m, by default the mean plane.
     """
     at = np.atleast_1d(np.asarray(positions, dtype=float))
     states = np.zeros(1) if texture is None else texture.approaches
@@ -69,19 +52,9 @@ def on_curve(
 
 
 def plane_at(plane: StateTexture | None, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Plane from which states count at positions of the path.
+    """Plane (n,) from which states count at positions (n,) of the path, m, positive away from contact.
 
-    Parameters
-    ----------
-    plane : StateTexture or None
-        One state, m, positive away from contact; None for the mean plane.
-    positions : ndarray (n,)
-        Positions, m.
-
-    Returns
-    -------
-    ndarray (n,)
-        Planes, m.
+    None is the mean plane.
     """
     return np.zeros(positions.size) if plane is None else np.ascontiguousarray(plane.at(positions)[:, 0])
 
@@ -89,24 +62,10 @@ def plane_at(plane: StateTexture | None, positions: NDArray[np.float64]) -> NDAr
 def on_table(
     table: ForceTable, positions: ArrayLike, *, damping: float = 0.0, plane: StateTexture | None = None
 ) -> Prepared:
-    """Lay out a law that looks the force up in a table.
+    """Lay out a law that looks the force up in a table, at positions (n,) of the contact, m.
 
-    Parameters
-    ----------
-    table : ForceTable
-        Forces of the path.
-    positions : array_like (n,)
-        Positions of the contact, m.
-    damping : float
-        Contact damping, N s/m.
-    plane : StateTexture, optional
-        Plane from which the table's approaches count, m; the mean plane by default.
-
-    Returns
-    -------
-    Prepared
-        Arrays for the kernel: g = F^(2/3), negative before first touch, and its monotone slopes
-        at every position.
+    g = F^(2/3), negative before first touch, and its monotone slopes at every position. Damping in N s/m; the
+    table's approaches count from the plane, m, by default the mean plane.
     """
     at = np.atleast_1d(np.asarray(positions, dtype=float))
     root, slopes = np.empty((2, at.size, len(table.approaches)))
@@ -158,22 +117,7 @@ def _straight_to_touch(
 
 
 def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray[np.float64]:
-    """Elastic contact force of a law, without damping.
-
-    Parameters
-    ----------
-    law : Law
-        Any law.
-    positions : array_like (n,)
-        Positions on the path, m.
-    approach : array_like (n,) or float
-        Approach at each position, m.
-
-    Returns
-    -------
-    ndarray (n,)
-        Force, N.
-    """
+    """Elastic contact force of a law, (n,), N, without damping, at positions (n,) and approaches, m."""
     at = np.atleast_1d(np.asarray(positions, dtype=float))
     delta = np.ascontiguousarray(np.broadcast_to(np.asarray(approach, dtype=float), at.shape))
     prepared = law.prepare(at)

@@ -30,23 +30,7 @@ def names() -> tuple[str, ...]:
 
 
 def spec_of(name: object) -> LawSpec:
-    """Find a law, or a variant of one, by its name.
-
-    Parameters
-    ----------
-    name : str
-        As ``"linear-filtered"``.
-
-    Returns
-    -------
-    LawSpec
-        The law.
-
-    Raises
-    ------
-    InputError
-        If there is none of that name; the nearest is named.
-    """
+    """Find a law, or a variant of one, by its name, as ``"linear-filtered"``."""
     if not isinstance(name, str) or name not in _specs:
         allowed = ", ".join(f'"{known}"' for known in _specs)
         raise InputError("law", shown(name), allowed, nearest(name, names()))
@@ -74,7 +58,7 @@ def register(law: LawSpec) -> None:
     >>> from asperity import laws
     >>> def build(materials):
     ...     constant = 2.0 * materials.hertz_constant
-    ...     return laws.Hertz(constant, materials.line, materials.damping, materials.name)
+    ...     return laws.HertzLaw(constant, materials.line, materials.damping, materials.name)
     >>> laws.register(laws.LawSpec("stiffer", "Hertzian contact, twice as stiff.", build))
     >>> "stiffer" in laws.names()
     True
@@ -95,18 +79,7 @@ def register(law: LawSpec) -> None:
 
 
 def unregister(name: str) -> None:
-    """Forget a law that was registered, with its variants.
-
-    Parameters
-    ----------
-    name : str
-        Of the law itself.
-
-    Raises
-    ------
-    InputError
-        If there is none, or it comes with the program.
-    """
+    """Forget a law that was registered, with its variants; those that come with the program stay."""
     spec_of(name)
     if name in BUILT_IN or name not in _families:
         own = ", ".join(f'"{own}"' for own in _families if own not in BUILT_IN) or "none is"

@@ -9,7 +9,7 @@ from xarray import DataTree
 
 from asperity.reporting.contact_figures import CONTACT as CONTACT_PARTS
 from asperity.reporting.part import Part
-from asperity.reporting.tables import Table, validity_table
+from asperity.reporting.tables import ReportTable, validity_table
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Chapter:
     name: str
     title: str
     parts: tuple[Part, ...]
-    tables: tuple[Callable[[DataTree], Table | None], ...] = ()
+    tables: tuple[Callable[[DataTree], ReportTable | None], ...] = ()
 
 
 CONTACT = Chapter("contact", "Contact", CONTACT_PARTS, (validity_table,))

@@ -141,7 +141,7 @@ _CURVES = (
 )
 
 
-def force_data(tree: DataTree) -> Data:
+def loading_data(tree: DataTree) -> Data:
     """Force and stiffness against approach and state."""
     approach = series(tree, contact.APPROACH)
     lines = present_series(tree, {entry: entry.name for entry in _CURVES})
@@ -153,7 +153,7 @@ def force_data(tree: DataTree) -> Data:
 
 
 @styled()
-def force_figure(tree: DataTree, data: Data) -> Figure:
+def loading_figure(tree: DataTree, data: Data) -> Figure:
     """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
     figure, panels = side_by_side(4.2, (1, 1))
     rough = bool(contact.FORCE_STD in data.lines and np.nanmax(data.lines[contact.FORCE_STD].values) > 0)
@@ -273,8 +273,8 @@ CONTACT = (
         "contact_force",
         "Contact force and stiffness",
         (contact.FORCE, contact.APPROACH),
-        force_data,
-        force_figure,
+        loading_data,
+        loading_figure,
         _force_caption,
     ),
     *FILTER,

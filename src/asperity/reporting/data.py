@@ -17,7 +17,7 @@ _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def variable(tree: DataTree, entry: Entry) -> DataArray | None:
+def stored_variable(tree: DataTree, entry: Entry) -> DataArray | None:
     """Variable of an entry, or None if it is missing or holds no finite number."""
     if entry.group not in tree.children or entry.name not in tree[entry.group].variables:
         return None
@@ -32,7 +32,7 @@ def values(tree: DataTree, entry: Entry, *dims: str) -> NDArray[np.float64]:
 
     A dimension of the variable that is not in `dims` is a fault of the caller.
     """
-    found = variable(tree, entry)
+    found = stored_variable(tree, entry)
     if found is None:
         raise KeyError(entry.path)
     return np.asarray((found.transpose(*dims) if dims else found).values, dtype=float)
@@ -40,14 +40,14 @@ def values(tree: DataTree, entry: Entry, *dims: str) -> NDArray[np.float64]:
 
 def present(tree: DataTree, *entries: Entry) -> bool:
     """Whether every one of `entries` is a variable with at least one finite number."""
-    return all(variable(tree, entry) is not None for entry in entries)
+    return all(stored_variable(tree, entry) is not None for entry in entries)
 
 
 def missing(tree: DataTree, *entries: Entry) -> str:
     """Say of which of these variables how many values are missing, and why; nothing where none is."""
     told = []
     for entry in entries:
-        found = variable(tree, entry)
+        found = stored_variable(tree, entry)
         if found is not None and "missing" in found.attrs:
             lost = int((~np.isfinite(found.values)).sum())
             what = f"{lost} of {found.size} values of the {entry.long_name}"
@@ -71,7 +71,7 @@ def number(tree: DataTree, attribute: Attribute) -> float | None:
     return result if math.isfinite(result) else None
 
 
-def decoded(tree: DataTree, attribute: Attribute, empty: Any) -> Any:
+def json_attribute(tree: DataTree, attribute: Attribute, empty: Any) -> Any:
     """JSON text in an attribute, decoded; `empty` if it is missing, damaged or of another kind."""
     try:
         found = json.loads(stated(tree, attribute))
@@ -80,14 +80,14 @@ def decoded(tree: DataTree, attribute: Attribute, empty: Any) -> Any:
     return found if isinstance(found, type(empty)) else empty
 
 
-def records(tree: DataTree, attribute: Attribute) -> list[dict[str, Any]]:
+def json_list(tree: DataTree, attribute: Attribute) -> list[dict[str, Any]]:
     """Entries of a list in an attribute, each a mapping; none if it is missing or damaged."""
-    return [entry for entry in decoded(tree, attribute, []) if isinstance(entry, dict)]
+    return [entry for entry in json_attribute(tree, attribute, []) if isinstance(entry, dict)]
 
 
 def laws(tree: DataTree, entry: Entry) -> list[str]:
     """Laws that a variable has finite numbers for, in the order of the case."""
-    found = variable(tree, entry)
+    found = stored_variable(tree, entry)
     if found is None:
         return []
     rest = [dim for dim in found.dims if dim != "law"]
@@ -97,7 +97,7 @@ def laws(tree: DataTree, entry: Entry) -> list[str]:
 
 def of_law(tree: DataTree, entry: Entry, law: str, *dims: str) -> NDArray[np.float64]:
     """Numbers of one law, with the remaining dimensions in the order of `dims`."""
-    found = variable(tree, entry)
+    found = stored_variable(tree, entry)
     if found is None:
         raise KeyError(entry.path)
     row = [str(name) for name in found["law"].values].index(law)

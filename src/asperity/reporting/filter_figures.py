@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import number, plain, present, values, variable
+from asperity.reporting.data import number, plain, present, stored_variable, values
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.style import INK, MUTED, new_figure, sequence, styled, wavenumber_axis
 from asperity.schema import Entry, contact
@@ -212,7 +212,7 @@ def _filter_caption(tree: DataTree) -> str:
 
 def _normalised(tree: DataTree, entry: Entry) -> str:
     """What 0 dB of a filter is."""
-    found = variable(tree, entry)
+    found = stored_variable(tree, entry)
     return "" if found is None else _NORMALISED.get(found.attrs.get("normalise", ""), "")
 
 
@@ -223,7 +223,7 @@ _NORMALISED = {
 
 
 def _printed_filter_caption(tree: DataTree) -> str:
-    scale = variable(tree, contact.FILTER_SCALE)
+    scale = stored_variable(tree, contact.FILTER_SCALE)
     found = ""
     if scale is not None:
         low, high = float(np.nanmin(scale.values)), float(np.nanmax(scale.values))

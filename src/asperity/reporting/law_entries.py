@@ -10,7 +10,7 @@ from typing import Any
 
 from xarray import DataTree
 
-from asperity.reporting.data import present, records
+from asperity.reporting.data import json_list, present
 from asperity.reporting.style import COLOURS, Dashes
 from asperity.schema import Entry, provenance
 from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES
@@ -36,7 +36,7 @@ class LawEntry:
 
 def law_entries(tree: DataTree) -> dict[str, LawEntry]:
     """Laws that the result describes, by name, in the order of the case."""
-    return {entry.name: entry for entry in map(_read, records(tree, provenance.LAWS))}
+    return {entry.name: entry for entry in map(_read, json_list(tree, provenance.LAWS))}
 
 
 def _read(entry: dict[str, Any]) -> LawEntry:

@@ -13,11 +13,11 @@ from markupsafe import Markup
 from xarray import DataTree
 
 from asperity.reporting.chapter import Chapter
-from asperity.reporting.data import decoded, missing, records, stated
+from asperity.reporting.data import json_attribute, json_list, missing, stated
 from asperity.reporting.law_entries import law_colours, law_entries
 from asperity.reporting.part import Part
 from asperity.reporting.style import colour_variables, narrow_page, svg
-from asperity.reporting.tables import Table
+from asperity.reporting.tables import ReportTable
 from asperity.schema import provenance
 
 
@@ -33,12 +33,12 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Section:
+class PageSection:
     """A chapter of the page with its figures and tables, in the order they are shown."""
 
     name: str
     title: str
-    blocks: list[Picture | Table]
+    blocks: list[Picture | ReportTable]
 
 
 def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
@@ -46,7 +46,7 @@ def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
     return [part for chapter in chapters for part in chapter.parts if part.drawable(tree)]
 
 
-def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | Table]:
+def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | ReportTable]:
     return [_picture(tree, part) for part in parts if part.drawable(tree)]
 
 
@@ -60,10 +60,10 @@ def _picture(tree: DataTree, part: Part) -> Picture:
     return Picture(part.name, part.title, caption, Markup(wide), Markup(narrow))
 
 
-def sections(tree: DataTree, chapters: Sequence[Chapter]) -> list[Section]:
+def sections(tree: DataTree, chapters: Sequence[Chapter]) -> list[PageSection]:
     """Chapters of the page; a chapter without any data is left out."""
     found = (
-        Section(
+        PageSection(
             chapter.name,
             chapter.title,
             [*_pictures(tree, chapter.parts), *(t for make in chapter.tables if (t := make(tree)))],
@@ -79,7 +79,7 @@ _GRADES = {"out of range": ("out", "out of range"), "warning": ("", "warnings"),
 
 def _warnings(tree: DataTree) -> list[dict[str, Any]]:
     """Warnings on the physics with their grade and its look."""
-    graded = [{"grade": "warning", **warning} for warning in records(tree, provenance.WARNINGS)]
+    graded = [{"grade": "warning", **warning} for warning in json_list(tree, provenance.WARNINGS)]
     return [warning | {"look": _GRADES.get(warning["grade"], ("", ""))[0]} for warning in graded]
 
 
@@ -129,21 +129,11 @@ def _unbroken(text: str) -> str:
 
 
 def page(tree: DataTree, chapters: Sequence[Chapter]) -> str:
-    """The whole page as HTML text.
+    """The whole page of a result, with the chapters of its kind, as one self-contained HTML text.
 
-    Parameters
-    ----------
-    tree : xarray.DataTree
-        A result of a run.
-    chapters : sequence of Chapter
-        What its kind of case can show.
-
-    Returns
-    -------
-    str
-        One self-contained document: styles and figures inside, nothing loaded from elsewhere.
+    Styles and figures are inside; nothing is loaded from elsewhere.
     """
-    kind, parameters = stated(tree, provenance.KIND), records(tree, provenance.PARAMETERS)
+    kind, parameters = stated(tree, provenance.KIND), json_list(tree, provenance.PARAMETERS)
     warnings = _warnings(tree)
     return _template().render(
         title=stated(tree, provenance.TITLE) or kind or "Rolling contact",
@@ -153,12 +143,12 @@ def page(tree: DataTree, chapters: Sequence[Chapter]) -> str:
         seed="" if (seed := stated(tree, provenance.SEED)) is None else seed,
         case=stated(tree, provenance.CASE) or "",
         kind=kind or "",
-        citations=[str(text) for text in decoded(tree, provenance.CITATIONS, [])],
+        citations=[str(text) for text in json_attribute(tree, provenance.CITATIONS, [])],
         warnings=warnings,
         graded=_graded(warnings),
         case_groups=_case_groups(parameters),
         changed=sum(not parameter.get("is_default", True) for parameter in parameters),
-        numerics=records(tree, provenance.NUMERICS),
+        numerics=json_list(tree, provenance.NUMERICS),
         laws=_law_key(tree),
         sections=sections(tree, chapters),
         light=Markup(colour_variables(dark=False, colours=law_colours(tree))),

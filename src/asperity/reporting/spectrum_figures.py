@@ -82,13 +82,13 @@ def shaded_words(tree: DataTree) -> str:
     return doubtful_words(tree, BAND_TIME_PRODUCT) if present(tree, BAND) else ""
 
 
-def force_data(tree: DataTree) -> Data:
+def force_spectrum_data(tree: DataTree) -> Data:
     """Power spectral density of the contact force of each law, all lines."""
     return Data(series(tree, FREQUENCY), by_law(tree, FORCE_PSD))
 
 
 @styled()
-def force_figure(tree: DataTree, data: Data) -> Figure:
+def force_spectrum_figure(tree: DataTree, data: Data) -> Figure:
     """Power spectral densities of the contact force of all laws on one axis."""
     figure = new_figure(4.4)
     axes = figure.subplots()
@@ -226,8 +226,8 @@ FORCE_SPECTRUM = Part(
     "force_psd",
     "Contact force against frequency",
     (FORCE_PSD, FREQUENCY),
-    force_data,
-    force_figure,
+    force_spectrum_data,
+    force_spectrum_figure,
     _force_caption,
 )
 FORCE_BANDS = force_bands()

@@ -10,13 +10,13 @@ from xarray import DataTree
 from asperity.reporting.data import (
     doubtful,
     engineering,
+    json_list,
     laws,
     nominal_band,
     of_law,
     present,
-    records,
+    stored_variable,
     values,
-    variable,
 )
 from asperity.reporting.law_entries import law_entry
 from asperity.schema import contact, rolling, surface
@@ -34,7 +34,7 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """A table of the page: its name, heading, column heads, rows of cells and a note."""
 
     name: str
@@ -49,9 +49,9 @@ def text_cell(found: object) -> Cell:
     return Cell(str(found))
 
 
-def statistics_table(tree: DataTree) -> Table | None:
+def statistics_table(tree: DataTree) -> ReportTable | None:
     """Statistics of the texture, each with the bandwidth it holds for."""
-    found = records(tree, surface.STATISTICS)
+    found = json_list(tree, surface.STATISTICS)
     if not found:
         return None
     rows = []
@@ -69,7 +69,7 @@ def statistics_table(tree: DataTree) -> Table | None:
             ]
         )
     note = "A statistic of a texture holds for its bandwidth of wavelengths only."
-    return Table(
+    return ReportTable(
         "statistics",
         "Statistics of the texture",
         ["symbol", "meaning", "of", "value", "bandwidth"],
@@ -78,9 +78,9 @@ def statistics_table(tree: DataTree) -> Table | None:
     )
 
 
-def homogeneity_table(tree: DataTree) -> Table | None:
+def homogeneity_table(tree: DataTree) -> ReportTable | None:
     """Whether the measured maps are the same everywhere."""
-    tested = variable(tree, surface.HOMOGENEITY_P)
+    tested = stored_variable(tree, surface.HOMOGENEITY_P)
     if tested is None or not present(tree, surface.TILE_VARIATION, surface.TILE_VARIATION_EXPECTED):
         return None
     significance = float(tested.attrs["significance"])
@@ -99,12 +99,12 @@ def homogeneity_table(tree: DataTree) -> Table | None:
         f"{significance:g} a map is not the same everywhere; one in twenty is so by chance."
     )
     head = ["map", "tiles vary by", "by chance", "p", "same everywhere?"]
-    return Table("homogeneity", "Homogeneity of the measured maps", head, rows, note)
+    return ReportTable("homogeneity", "Homogeneity of the measured maps", head, rows, note)
 
 
-def validity_table(tree: DataTree) -> Table | None:
+def validity_table(tree: DataTree) -> ReportTable | None:
     """Quantities that bound the range in which the laws hold, with their limits."""
-    found = records(tree, contact.VALIDITY)
+    found = json_list(tree, contact.VALIDITY)
     if not found:
         return None
     looks = {"out of range": "number far", "warning": "number off"}
@@ -116,12 +116,14 @@ def validity_table(tree: DataTree) -> Table | None:
         value = Cell(names[1], looks.get(grade, "number"))
         rows.append([text_cell(names[0]), value, text_cell(names[2]), text_cell(told)])
     note = "Shaded: outside the range in which the laws are known to hold, and far outside."
-    return Table("validity", "Range of validity", ["quantity", "here", "in range", "meaning"], rows, note)
+    return ReportTable(
+        "validity", "Range of validity", ["quantity", "here", "in range", "meaning"], rows, note
+    )
 
 
-def reference_table(tree: DataTree) -> Table | None:
+def reference_table(tree: DataTree) -> ReportTable | None:
     """Level differences to the reference law per one-third octave."""
-    compared = variable(tree, REFERENCE)
+    compared = stored_variable(tree, REFERENCE)
     reference = None if compared is None else str(compared.attrs["reference"])
     names = [law for law in laws(tree, REFERENCE) if law != reference]
     if not names or not present(tree, BAND):
@@ -147,7 +149,7 @@ def reference_table(tree: DataTree) -> Table | None:
             f"{LEAST_PRODUCT:g}; they say little, and are not in the last two rows."
         )
     title = f"Contact force level minus that of {reference}, in dB"
-    return Table("reference", title, ["band / Hz", *names], rows, note)
+    return ReportTable("reference", title, ["band / Hz", *names], rows, note)
 
 
 def signed(difference: float) -> str:
@@ -175,7 +177,7 @@ def _pulling_words(names: list[str]) -> str:
     return f"{' and '.join(names)} cannot lose contact, but {verb} where others let go."
 
 
-def loss_table(tree: DataTree) -> Table | None:
+def loss_table(tree: DataTree) -> ReportTable | None:
     """Share of time without contact, number of events and the longest, per law."""
     names = laws(tree, rolling.CONTACT_LOSS_SHARE)
     if not names:
@@ -192,4 +194,6 @@ def loss_table(tree: DataTree) -> Table | None:
         for law in names
     ]
     note = _pulling_words([law for law in names if law_entry(tree, law).may_pull])
-    return Table("contact_loss", "Loss of contact", ["law", *(name for name, _ in held.values())], rows, note)
+    return ReportTable(
+        "contact_loss", "Loss of contact", ["law", *(name for name, _ in held.values())], rows, note
+    )

@@ -207,14 +207,14 @@ _SPECTRA = {
 }
 
 
-def psd_data(tree: DataTree) -> Data:
+def texture_psd_data(tree: DataTree) -> Data:
     """Spectra against wavenumber, all lines."""
     names = {entry: f"PSD of {name}" for entry, (name, _, _) in _SPECTRA.items()}
     return Data(series(tree, surface.SURFACE_WAVENUMBER, "wavenumber"), present_series(tree, names))
 
 
 @styled()
-def psd_figure(tree: DataTree, data: Data) -> Figure:
+def texture_psd_figure(tree: DataTree, data: Data) -> Figure:
     """Power spectral densities of samples and path in the rolling direction."""
     figure = new_figure(3.9)
     axes = figure.subplots()
@@ -285,8 +285,8 @@ TEXTURE = (
         "texture_psd",
         "Texture against wavenumber",
         (surface.SURFACE_WAVENUMBER,),
-        psd_data,
-        psd_figure,
+        texture_psd_data,
+        texture_psd_figure,
         lambda _: (
             "Power spectral density of the lines in rolling direction, mean over the lines, one-sided "
             "per cycle/m; drawn as mean power per 1/24 octave where the lines are denser than that."
@@ -301,18 +301,8 @@ TEXTURE = (
 def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], title: str) -> Figure:
     """Draw what a surface file holds: its map and the distribution of its heights.
 
-    Parameters
-    ----------
-    heights : (nx, ny) array, or (n,) array for a line
-        Heights in m, positive out of the material; NaN where missing.
-    spacing : (float, float)
-        Distance of neighbouring points along x and y in m.
-    title : str
-        Heading, as the name of the file.
-
-    Returns
-    -------
-    Figure
+    Heights (nx, ny), or (n,) for a line, and distances along x and y, m, positive out of the material; NaN
+    where missing.
     """
     heights = np.asarray(heights, dtype=np.float64)
     size, symbol, colours = height_scale(heights)
@@ -341,18 +331,7 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
 def lines_picture(lines: Sequence[NDArray[np.float64]], spacing: float, title: str) -> Figure:
     """Draw lines that were measured side by side, one above the other, and the distribution of their heights.
 
-    Parameters
-    ----------
-    lines : sequence of (n,) arrays
-        Levelled heights in m, positive out of the material; NaN where missing.
-    spacing : float
-        Distance of neighbouring points along the lines in m.
-    title : str
-        Heading, as the name of the file.
-
-    Returns
-    -------
-    Figure
+    Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
     """
     together = np.concatenate(lines)
     size, symbol, _ = height_scale(together)

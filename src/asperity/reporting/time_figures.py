@@ -68,18 +68,8 @@ def _force_unit(tree: DataTree) -> tuple[float, str]:
 def main_limits(series: Mapping[str, NDArray[np.float64]], pulling: Collection[str]) -> tuple[float, float]:
     """Limits of an axis that suit the main law, the first of `series`.
 
-    Parameters
-    ----------
-    series : mapping of str to array
-        What is drawn, by law.
-    pulling : collection of str
-        Laws whose contact cannot be lost.
-
-    Returns
-    -------
-    low, high : float
-        The main law's range, wider by at most `HEADROOM` of it on either side where zero, or another law that
-        can lose contact, needs it. A law that swings as if nothing could be lost widens nothing.
+    Its range, wider by at most `HEADROOM` of it on either side where zero, or another law that can lose
+    contact, needs it. A law that pulls, and swings as if nothing could be lost, widens nothing.
     """
     main, *others = series
     low, high = float(np.nanmin(series[main])), float(np.nanmax(series[main]))

@@ -24,7 +24,7 @@ from asperity.rolling.stability import (
     softening,
     stiffness_in_impacts,
 )
-from asperity.rolling.stepping import Stepper, restore, run
+from asperity.rolling.stepping import Stepper, restore, step_through
 from asperity.store import Checkpoint
 
 S = TypeVar("S", bound=Stepper)
@@ -69,49 +69,17 @@ def roll_along(
     progress: Progress | None,
     checkpoint: Checkpoint | None,
 ) -> tuple[Rolled, S]:
-    """Roll bodies along a path under a law, from static equilibrium.
+    """Roll bodies along a path under a law and a static load, N, from equilibrium; return record and bodies.
 
-    Parameters
-    ----------
-    path : Path
-        Where the contact is at every time step.
-    law : Law
-        The contact between the bodies.
-    load : float
-        Static force, N.
-    stand : callable
-        From the approach as the law sees it under the load, m, and a compliance in series with the contact,
-        m/N, to the bodies at rest.
-    alternating : tuple of float
-        Least alternating compliance of both bodies, and of what throws them apart, m/N
-        (`asperity.rolling.stability`).
-    limits : callable
-        From the contact stiffness at rest, N/m, to what the time step must resolve.
-    judge : callable, optional
-        Looks at the bodies at the end, also at that of a motion that runs away, and may warn.
-    progress : callable or None
-        Called with steps done, steps in all, and a message.
-    checkpoint : Checkpoint or None
-        Where to keep the state about every 10 s, at the end and when interrupted, and to go on from.
+    `stand` makes the bodies at rest from the approach as the law sees it under the load, m, and a compliance
+    in series with the contact, m/N; `limits` says, of the contact stiffness at rest, N/m, what the time step
+    must resolve; `alternating` holds the least alternating compliance of both bodies, and of what throws them
+    apart, m/N (`asperity.rolling.stability`). `judge` looks at the bodies at the end, also at that of a
+    motion that runs away, and may warn. A checkpoint keeps the state about every 10 s, at the end and when
+    interrupted, to go on from there.
 
-    Returns
-    -------
-    rolled : Rolled
-        Time histories and losses of contact.
-    stepper : Stepper
-        The bodies at the end of the path, with their records of run-in and record.
-
-    Raises
-    ------
-    InputError
-        If the checkpoint is of another run.
-    ComputationError
-        If the load cannot be carried, or the motion runs away.
-
-    Warns
-    -----
-    CoarseSamplingWarning, ExtrapolationWarning, UnconvergedWarning
-        If the time step is coarse, the law was continued beyond its data, or forces missed the tolerance.
+    Warned of are a coarse time step, a law that was continued beyond its data, and forces that missed the
+    tolerance.
     """
     prepared = law.prepare(path.positions)
     relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
@@ -123,7 +91,7 @@ def roll_along(
     stepper = stand(approach, softer)
     restore(checkpoint, stepper, prepared)
     try:
-        run(stepper, prepared, law.damping, largest_force(load, strongest), progress, checkpoint)
+        step_through(stepper, prepared, law.damping, largest_force(load, strongest), progress, checkpoint)
     finally:  # why a motion may have run away
         judge(stepper)
     record, counts, kept = stepper.record, stepper.motion.counts, slice(path.settled, None)

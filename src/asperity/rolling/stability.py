@@ -46,19 +46,9 @@ RISE = 4.0
 
 
 def largest_stiffness(prepared: Prepared | SteppedLaw, at_rest: tuple[float, float]) -> tuple[float, float]:
-    """Largest stiffness and force of a law within what it was made for.
+    """Largest stiffness, N/m, and force, N, of a law within what it was made for; zero for a force not known.
 
-    Parameters
-    ----------
-    prepared : Prepared or SteppedLaw
-        The law on the path.
-    at_rest : tuple of float
-        Approach, m, and stiffness, N/m, under the load.
-
-    Returns
-    -------
-    stiffness, force : float
-        N/m, N; the force is zero where it is not known.
+    `at_rest` holds approach, m, and stiffness, N/m, under the load.
     """
     if not isinstance(prepared, Prepared):
         return RISE * at_rest[1], 0.0
@@ -72,17 +62,7 @@ def largest_stiffness(prepared: Prepared | SteppedLaw, at_rest: tuple[float, flo
 def stiffness_in_impacts(prepared: Prepared | SteppedLaw, largest: float, at_rest: float) -> float:
     """Stiffness that a contact may have in impacts, N/m; zero if it never opens.
 
-    Parameters
-    ----------
-    prepared : Prepared or SteppedLaw
-        The law on the path.
-    largest, at_rest : float
-        Stiffness within what the law was made for, and under the load, N/m.
-
-    Returns
-    -------
-    float
-        N/m.
+    `largest` is that within what the law was made for, `at_rest` that under the load, N/m.
     """
     if isinstance(prepared, Prepared) and prepared.bilateral:
         return 0.0
@@ -96,30 +76,11 @@ def softening(
     at_rest: float,
     time_step: float,
 ) -> float:
-    """Compliance in series with the contact that keeps a time step stable, and impacts elastic.
+    """Compliance in series with the contact, m/N, that keeps a time step stable, s, and impacts elastic.
 
-    Parameters
-    ----------
-    alternating : tuple of float
-        Least alternating compliance of both bodies, and of what throws them apart, m/N.
-    stiffness : tuple of float
-        Largest stiffness of the contact, and that of impacts, N/m.
-    damping : float
-        Of the contact, N s/m.
-    at_rest : float
-        Stiffness of the contact at rest, N/m.
-    time_step : float
-        s.
-
-    Returns
-    -------
-    float
-        m/N; zero if the step is stable as it is.
-
-    Warns
-    -----
-    CoarseSamplingWarning
-        If it is not, and the contact becomes softer by more than NEGLIGIBLE.
+    Zero if they are so already. `alternating` holds the least compliance of both bodies, and of what throws
+    them apart, m/N; `stiffness` the largest of the contact, and that of impacts, and `at_rest` that at rest,
+    N/m; damping in N s/m. A contact that becomes softer by more than NEGLIGIBLE is warned of.
     """
     both, thrown = (-value for value in alternating)
     opposed = both * (stiffness[0] + 4.0 * damping / time_step) / MARGIN

@@ -92,7 +92,7 @@ def put_back(motion: Any, state: dict[str, NDArray[Any]]) -> None:
         getattr(motion, name)[...] = state[name]
 
 
-def run(
+def step_through(
     stepper: Stepper,
     prepared: Prepared | SteppedLaw,
     damping: float,
@@ -100,27 +100,10 @@ def run(
     progress: Progress | None,
     checkpoint: Checkpoint | None,
 ) -> None:
-    """Step from where the bodies stand to the end of the path.
+    """Step from where the bodies stand to the end of the path; state and histories are written.
 
-    Parameters
-    ----------
-    stepper : Stepper
-        The bodies; their state and histories are written.
-    prepared : Prepared or SteppedLaw
-        The law on the path.
-    damping : float
-        Contact damping of a `SteppedLaw`, N s/m.
-    largest : float
-        Largest force that makes sense, N.
-    progress : callable or None
-        Called with steps done, steps in all, and a message.
-    checkpoint : Checkpoint or None
-        Where the state is kept.
-
-    Raises
-    ------
-    ComputationError
-        If the force exceeds that, or is not a number: the motion has run away.
+    The damping is that of a `SteppedLaw`, N s/m. A force beyond the `largest` that makes sense, N, or none,
+    says that the motion has run away.
     """
     motion, saved = stepper.motion, time.monotonic()
     held = _state(stepper, prepared)

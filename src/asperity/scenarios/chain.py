@@ -109,27 +109,9 @@ def reduce_and_roll(
     progress: Progress,
     watch: Stopwatch,
 ) -> Chain[R]:
-    """Reduce the samples, build the laws of a case and roll each of them.
+    """Reduce the samples, build the laws of a case and roll each of them, by the callable `roll`.
 
-    Parameters
-    ----------
-    case : Case
-        The case.
-    textures, shape
-        What presses on what.
-    roll : callable
-        Rolls one law.
-    store : Store
-        Keeps finished scans.
-    progress : Progress
-        Called during long work.
-    watch : Stopwatch
-        Books the wall time.
-
-    Returns
-    -------
-    Chain
-        All that was computed.
+    The store keeps finished scans; the stopwatch books the wall time.
     """
     planes = None if textures.path is None else patch_planes(textures.path, shape)
     reduction = None

@@ -38,18 +38,11 @@ COUNTING_TIME = 12e-3
 
 @dataclass(frozen=True)
 class Work:
-    """What a run will take.
+    """What a run will take."""
 
-    Attributes
-    ----------
-    scans : dict of str to Expected
-        ``"filters"`` where samples are scanned, ``"path"`` where a law looks its scan up.
-    seconds : dict of str to float
-        Time by part of the work, s.
-    """
-
+    # ``"filters"`` where samples are scanned, ``"path"`` where a law looks its scan up
     scans: dict[str, Expected]
-    seconds: dict[str, float]
+    seconds: dict[str, float]  # by part of the work
 
     @property
     def total(self) -> float:

@@ -43,38 +43,12 @@ LineFilters = Mapping[Normalise, LineFilter]
 
 
 def normalisation(contact: ContactCase, law: LawSpec) -> Normalise:
-    """How the filter of a law is normalised: as the case says, else as the law wants it.
-
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of the case.
-    law : LawSpec
-        The law.
-
-    Returns
-    -------
-    str
-        ``"low-wavenumber"`` or ``"tangent"``.
-    """
+    """How the filter of a law is normalised: as the case says, else as the law wants it."""
     return law.normalise if contact.normalise is None else contact.normalise  # type: ignore[return-value]
 
 
 def normalisations(contact: ContactCase, laws: Iterable[str]) -> tuple[Normalise, ...]:
-    """List the normalisations that the laws of a case need, behind the one that is shown in any case.
-
-    Parameters
-    ----------
-    contact : ContactCase
-        The contact section of the case.
-    laws : iterable of str
-        Names of its laws.
-
-    Returns
-    -------
-    tuple of str
-        Each once.
-    """
+    """List the normalisations that laws need, each once, behind the one that is shown in any case."""
     filtered = (spec for spec in map(spec_of, laws) if Need.FILTER in spec.needs)
     shown: Normalise = contact.normalise or "tangent"  # type: ignore[assignment]
     return tuple(dict.fromkeys([shown, *(normalisation(contact, law) for law in filtered)]))

@@ -45,15 +45,7 @@ class Expected:
 def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, Expected]:
     """Find the sizes of the scans of a case.
 
-    Parameters
-    ----------
-    case, shape, textures
-        The case, what presses on what, and what is rolled over.
-
-    Returns
-    -------
-    dict of Expected
-        ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up.
+    ``"filters"`` where rough samples are scanned, ``"path"`` where a law looks its scan up.
     """
     strips = [strip for strip in textures.strips if strip.heights.any()]
     accuracy, result = case.numerics.force_accuracy, {}

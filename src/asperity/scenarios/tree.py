@@ -42,27 +42,10 @@ def assembled(
     numerics: Iterable[tuple[str, str]],
     citations: tuple[str, ...] = (),
 ) -> xarray.DataTree:
-    """Put the groups of a result together, with provenance.
+    """Put the groups of a result, but for scenario, together with provenance.
 
-    Parameters
-    ----------
-    chain : Chain
-        What was computed.
-    groups : mapping of str to Dataset
-        Groups by name, but for scenario.
-    caught : list of WarningMessage
-        Warnings met on the way.
-    title, verdict : str
-        What was rolled, and what the run says.
-    numerics : iterable of (str, str)
-        Numbers of the computation beyond those that all kinds of case have: name and value.
-    citations : tuple of str
-        Sources beyond `CITATIONS`.
-
-    Returns
-    -------
-    xarray.DataTree
-        The result.
+    The title says what was rolled, the verdict what the run says. `numerics` are names and values of the
+    computation beyond those that all kinds of case have, `citations` sources beyond `CITATIONS`.
     """
     case = chain.case
     scenario = attributes(
@@ -167,20 +150,7 @@ def difference_to(baseline: str) -> Entry:
 
 
 def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xarray.Variable]:
-    """Differences of the force levels to the linear laws, and to a reference if there is one.
-
-    Parameters
-    ----------
-    laws : list of str
-        Names of the laws.
-    force_level : ndarray, shape (laws, bands)
-        dB re 1 N.
-
-    Returns
-    -------
-    dict of str to Variable
-        Differences in dB, by law and band.
-    """
+    """Differences of force levels (laws, bands), dB, to the linear laws, and to a reference if any."""
     compared = {difference_to(law): law for law in baselines(laws)}
     if (solved := reference(laws)) is not None:
         compared[spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = solved

@@ -72,25 +72,7 @@ def timed(task: Callable[[], T]) -> tuple[T, float]:
 
 
 def try_contacts(prepared: Prepared, progress: Progress) -> ContactTrial:
-    """Solve a few contacts of every kind that a case needs.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        A case with samples.
-    progress : Progress
-        Called between the kinds.
-
-    Returns
-    -------
-    ContactTrial
-        Times.
-
-    Raises
-    ------
-    InputError
-        If the approaches of the case do not reach its load.
-    """
+    """Solve a few contacts of every kind that a case with samples needs."""
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     rtol = rtol_for(case.numerics.force_accuracy)
     message, (nx, ny) = "trying contacts", shape.body.shape

@@ -31,25 +31,10 @@ def verdict(
     body: str,
     sound_power: xarray.DataArray | None = None,
 ) -> str:
-    """Say in a few words how the main law's contact went, and how far it is from the others.
+    """Say in a sentence or two how the main law's contact went, and how far it is from the others.
 
-    Parameters
-    ----------
-    chain : Chain
-        What was computed; the first law is the main one.
-    spectra : Dataset
-        The spectra group of the result.
-    found : sequence of Finding
-        What holds the case to the range of its laws.
-    body : str
-        What rolls: "ball" or "wheel".
-    sound_power : DataArray, shape (laws,), optional
-        A-weighted, dB.
-
-    Returns
-    -------
-    str
-        One or two sentences.
+    The main law is the first of the chain; `body` is what rolls: "ball" or "wheel"; sound power (laws,),
+    A-weighted, dB.
     """
     main, run = next(iter(chain.runs.items()))
     dynamic = float(np.std(run.contact_force))

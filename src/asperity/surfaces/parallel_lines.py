@@ -60,7 +60,7 @@ class Register:
     replaced: tuple[int, ...]
 
 
-def register(profiles: Sequence[Profile]) -> Register:
+def bring_into_register(profiles: Sequence[Profile]) -> Register:
     """Turn and shift the complete, parallel lines of a wheel so that neighbours agree.
 
     Lines are often measured to and fro, each starting anew. Every line but the first is tried in both

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from asperity.kinds.ball_on_beam.bodies import Bodies
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.compiling import compile_kernels
-from asperity.kinds.ball_on_beam.roll import Rolling, roll
+from asperity.kinds.ball_on_beam.roll import Rolling, roll_ball
 from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
@@ -61,7 +61,7 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
     }
 
     def roll_law(law: Law) -> Rolling:
-        return roll(
+        return roll_ball(
             beam,
             ball,
             law,

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from asperity.config.case import Case
-from asperity.kinds.ball_on_beam.roll import roll
-from asperity.laws import Hertz
+from asperity.kinds.ball_on_beam.roll import roll_ball
+from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.preparing import Prepared
@@ -37,10 +37,10 @@ def step_seconds(prepared: Prepared) -> float:
     """Time of a step of smooth bodies over a smooth path, s."""
     case: Any = prepared.case
     beam, ball = prepared.bodies.beam, prepared.bodies.ball
-    law = Hertz(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
+    law = HertzLaw(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
     middle, duration = 0.5 * beam.length, min(STEPS * case.time_step, 0.4 * beam.length / case.speed)
     _, taken = timed(
-        lambda: roll(
+        lambda: roll_ball(
             beam, ball, law, speed=case.speed, start=middle, duration=duration,
             time_step=case.time_step, sensors=[middle] * len(case.beam.sensor_positions),
         )

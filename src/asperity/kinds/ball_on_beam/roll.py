@@ -37,7 +37,7 @@ class Rolling(Rolled):
     energy: EnergyBalance  # where the work of the load went, in run-in and run
 
 
-def roll(
+def roll_ball(
     beam: Beam,
     ball: Ball,
     law: Law,
@@ -54,57 +54,16 @@ def roll(
 ) -> Rolling:
     """Roll a ball over a beam at constant speed, from static equilibrium, and keep what follows the run-in.
 
-    The beam is advanced exactly mode by mode and the ball exactly, for a contact force that varies
-    linearly over a step; the force at the end of each step solves the contact law implicitly, to second
-    order. A step that is too long to be stable is kept so by a softened contact, with a warning
-    (`asperity.rolling.stability`).
+    The contact is at `start` at time zero, after the run-in, m; the law reads its texture at the same
+    coordinate. Speed in m/s, times in s, sensors (k,) on the beam, m. The time step is checked against the
+    highest frequency of interest, Hz. A checkpoint keeps the state about every 10 s, at the end and when
+    interrupted, to go on from there.
 
-    Parameters
-    ----------
-    beam, ball, law
-        The structures and the contact law between them.
-    speed : float
-        m/s.
-    start : float
-        Position of the contact on the beam at time zero, after the run-in, m. The law reads its texture
-        at the same coordinate.
-    duration : float
-        s.
-    time_step : float
-        s.
-    sensors : array_like (k,)
-        Positions of the accelerometers on the beam, m.
-    settling : float, optional
-        Run-in before time zero, s; not kept.
-    highest_frequency : float, optional
-        Highest frequency of interest, Hz, checked against the time step.
-    progress : callable, optional
-        Called with steps done, steps in all, and a message.
-    checkpoint : Checkpoint, optional
-        Where to keep the state about every 10 s, at the end and when interrupted, and to go on from.
-
-    Returns
-    -------
-    Rolling
-        Time histories, events and energy balance.
-
-    Raises
-    ------
-    InputError
-        If a number is not positive, the path leaves the beam, or the checkpoint is of another run.
-    ComputationError
-        If the load cannot be carried, or the motion runs away.
-
-    Warns
-    -----
-    CoarseSamplingWarning
-        If the time step is coarse for the contact, the modes or the highest frequency.
-    ExtrapolationWarning
-        If the law was continued beyond its data.
-    LargeDeflectionWarning
-        If the beam leaves the range of beam theory.
-    UnconvergedWarning
-        If contact forces missed the tolerance.
+    The beam is advanced exactly mode by mode and the ball exactly, for a contact force that varies linearly
+    over a step; the force at the end of each step solves the contact law implicitly, to second order. A step
+    that is too long to be stable is kept so by a softened contact, with a warning
+    (`asperity.rolling.stability`). Warned of are also a coarse time step, a law that was continued beyond its
+    data, large deflections and forces that missed the tolerance.
     """
     path = Path.laid(start, speed, time_step, duration, settling)
     refuse_off_the_beam(beam, path)

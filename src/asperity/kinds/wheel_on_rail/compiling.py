@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from asperity.kernels import rail
-from asperity.kinds.wheel_on_rail.roll import roll
-from asperity.laws import Hertz
+from asperity.kinds.wheel_on_rail.roll import roll_wheel
+from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios import compiling
@@ -29,6 +29,6 @@ def roll_a_wheel() -> None:
     poles = RailPoles(kernel, np.array([0.5 + 0.1j]), np.full((4, 1), 1e-12 + 0j), 0.0, 0.0)
     rails: list[RailPoles | MovingKernel] = [kernel, poles]
     for each in rails:
-        law = Hertz(1e11, StateTexture.unfiltered(np.zeros(8), 0.2))
-        roll(each, wheel, law, start=0.0, duration=4e-6, settling=0.0)
+        law = HertzLaw(1e11, StateTexture.unfiltered(np.zeros(8), 0.2))
+        roll_wheel(each, wheel, law, start=0.0, duration=4e-6, settling=0.0)
     rail.add_passing(np.zeros((1, 4)), np.zeros((1, 4)), np.zeros((4, 2)), np.zeros(1), 0)

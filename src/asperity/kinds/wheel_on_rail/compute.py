@@ -14,7 +14,7 @@ from asperity.kinds.wheel_on_rail.bodies import Bodies
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compiling import compile_kernels
 from asperity.kinds.wheel_on_rail.passing import passed_points
-from asperity.kinds.wheel_on_rail.roll import WheelRolling, roll
+from asperity.kinds.wheel_on_rail.roll import WheelRolling, roll_wheel
 from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
@@ -47,20 +47,7 @@ class Computed:
 
 
 def compute(prepared: Prepared, progress: Progress) -> Computed:
-    """Reduce and roll.
-
-    Parameters
-    ----------
-    prepared : Prepared
-        A case from `asperity.scenarios.preparing.prepare`.
-    progress : Progress
-        Called during long work.
-
-    Returns
-    -------
-    Computed
-        All that was computed.
-    """
+    """Reduce and roll a case from `asperity.scenarios.preparing.prepare`."""
     case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
     assert isinstance(case, WheelOnRail)
     assert isinstance(bodies, Bodies)
@@ -90,7 +77,7 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
     }
 
     def roll_law(law: Law) -> WheelRolling:
-        return roll(
+        return roll_wheel(
             rail,
             wheel,
             law,

@@ -19,7 +19,7 @@ from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.levels import check_levels
-from asperity.surfaces.parallel_lines import common_length, lines_of, register, strip_from_lines
+from asperity.surfaces.parallel_lines import bring_into_register, common_length, lines_of, strip_from_lines
 
 FULL_TURN = 0.02
 """Share of the circumference that a measured line around a wheel may lack or exceed."""
@@ -70,7 +70,7 @@ def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
             ShortRecordWarning,
             stacklevel=2,
         )
-    found = register(profiles)
+    found = bring_into_register(profiles)
     lines = found.lines
     if len(lines) > 1 and np.median(found.correlations[1:]) > SAME_TEXTURE:
         moved = sum(bool(s) or r for s, r in zip(found.shifts, found.reversed, strict=True))

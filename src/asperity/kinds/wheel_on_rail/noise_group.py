@@ -26,25 +26,10 @@ def noise(
 ) -> dict[Entry, Any]:
     """Sound power of each law: that of the linear contact, changed in each band by as much as the force.
 
-    Parameters
-    ----------
-    computed : Computed
-        What was computed.
-    band : ndarray, shape (b,)
-        Band centres, Hz.
-    force_level : ndarray, shape (laws, b)
-        dB re 1 N.
-
-    Returns
-    -------
-    dict of Entry
-        Nothing without the linear law or without roughness.
-
-    Notes
-    -----
-    The linear law follows the bare line, so its sound power is that of CNOSSOS-EU without the contact
-    filter A3: the difference of another law holds what its contact filters. Bands in which the
-    force is not computed are left out of all totals.
+    Force levels (laws, b), dB re 1 N, in bands with centres (b,), Hz. The linear law follows the bare line,
+    so its sound power is that of CNOSSOS-EU without the contact filter A3: the difference of another law
+    holds what its contact filters. Bands in which the force is not computed are left out of all totals.
+    Nothing without the linear law or without roughness.
     """
     laws = list(computed.chain.runs)
     bare = in_role(Role.BARE, laws)

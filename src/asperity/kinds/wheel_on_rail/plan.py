@@ -13,8 +13,8 @@ from asperity.kinds.wheel_on_rail.compute import POLES
 from asperity.kinds.wheel_on_rail.loss_factors import warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses
 from asperity.kinds.wheel_on_rail.passing import passed_points
-from asperity.kinds.wheel_on_rail.roll import roll
-from asperity.laws import Hertz
+from asperity.kinds.wheel_on_rail.roll import roll_wheel
+from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.preparing import Prepared
@@ -76,9 +76,9 @@ def seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, fl
 def step_seconds(prepared: Prepared) -> float:
     """Time of a step of smooth bodies over a smooth path, s."""
     case = prepared.case
-    law = Hertz(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
+    law = HertzLaw(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
     rail, wheel, duration = _rail_like(prepared), prepared.bodies.wheel, STEPS * case.time_step
-    _, taken = timed(lambda: roll(rail, wheel, law, start=0.0, duration=duration, settling=0.0))
+    _, taken = timed(lambda: roll_wheel(rail, wheel, law, start=0.0, duration=duration, settling=0.0))
     return taken / STEPS
 
 

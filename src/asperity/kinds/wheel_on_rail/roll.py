@@ -32,7 +32,7 @@ class WheelRolling(Rolled):
     history_start: float  # position of its first value, m
 
 
-def roll(
+def roll_wheel(
     rail: RailPoles | MovingKernel,
     wheel: Wheel,
     law: Law,
@@ -46,52 +46,16 @@ def roll(
 ) -> WheelRolling:
     """Roll a wheel along a track at constant speed, and keep what follows the run-in.
 
-    Before the run-in the load alone has rolled long enough for the rail to be steady. Rail and wheel
-    are advanced exactly for a contact force that varies linearly over a step, and the force at the end of
-    each step solves the contact law implicitly, to second order. A step that is too long to be stable is kept
-    so by a softened contact, with a warning (`asperity.rolling.stability`).
+    The track is given for one speed and time step, as poles, or scattered. The contact is at `start` at time
+    zero, after the run-in, m from a sleeper; the law reads its texture at that coordinate. Times in s. The
+    time step is checked against the highest frequency of interest, Hz. A checkpoint keeps the state about
+    every 10 s, at the end and when interrupted, to go on from there.
 
-    Parameters
-    ----------
-    rail : RailPoles or MovingKernel
-        The track for one speed and time step, as poles, or scattered.
-    wheel : Wheel
-        Mass, load and resonances.
-    law : Law
-        The contact. It reads its texture at the position along the rail.
-    start : float
-        Position of the contact at time zero, m from a sleeper.
-    duration : float
-        s.
-    settling : float
-        Run-in before time zero, s; not kept.
-    highest_frequency : float, optional
-        Highest frequency of interest, Hz, checked against the time step.
-    progress : callable, optional
-        Called with steps done, steps in all, and a message.
-    checkpoint : Checkpoint, optional
-        Where to keep the state about every 10 s, at the end and when interrupted, and to go on from.
-
-    Returns
-    -------
-    WheelRolling
-        Time histories and losses of contact.
-
-    Raises
-    ------
-    InputError
-        If a number is not positive, or the checkpoint is of another run.
-    ComputationError
-        If the load cannot be carried, or the motion runs away.
-
-    Warns
-    -----
-    CoarseSamplingWarning
-        If the time step is coarse for the contact resonance or the highest frequency.
-    ExtrapolationWarning
-        If the law was continued beyond its data.
-    UnconvergedWarning
-        If contact forces missed the tolerance.
+    Before the run-in the load alone has rolled long enough for the rail to be steady. Rail and wheel are
+    advanced exactly for a contact force that varies linearly over a step, and the force at the end of each
+    step solves the contact law implicitly, to second order. A step that is too long to be stable is kept so
+    by a softened contact, with a warning (`asperity.rolling.stability`). Warned of are also a coarse time
+    step, a law that was continued beyond its data and forces that missed the tolerance.
     """
     over, rolls = RolledRail(rail), RollingWheel(wheel)
     kernel, step = over.kernel, over.kernel.time_step

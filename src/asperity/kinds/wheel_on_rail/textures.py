@@ -149,13 +149,7 @@ def _cut(heights: NDArray[np.float64], case: WheelOnRail) -> tuple[HeightMap, ..
 
 
 def warn_of(case: WheelOnRail, shape: Geometry, textures: Textures) -> None:
-    """Warn of a record that holds the start, and of a window too short for what a law shall see of a defect.
-
-    Parameters
-    ----------
-    case, shape, textures
-        The case, its geometry and its textures.
-    """
+    """Warn of a record that holds the start, and of a window too short for what a law sees of a defect."""
     warn_of_start(case, "set settling")
     seen = [law for law in case.laws if spec_of(law).sees_heights]
     if not seen or textures.defects is None or case.wheel.flat is None:

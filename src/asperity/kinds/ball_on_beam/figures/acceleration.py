@@ -11,7 +11,7 @@ from xarray import DataTree
 
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_LEVEL, ACCELERATION_REFERENCE
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_PSD as PSD
-from asperity.reporting.data import laws, missing, of_law, variable
+from asperity.reporting.data import laws, missing, of_law, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import (
     DRAWN,
@@ -29,14 +29,14 @@ _AXIS = "acceleration PSD / dB re (1 µm/s²)²/Hz"
 
 def sensor_label(tree: DataTree, sensor: int) -> str:
     """Name of a sensor: its position."""
-    found = variable(tree, PSD)
+    found = stored_variable(tree, PSD)
     assert found is not None
     return f"x = {float(found['sensor'][sensor]):g} m"
 
 
 def _sensors(tree: DataTree) -> list[int]:
     """Sensors that have a signal."""
-    found = variable(tree, PSD)
+    found = stored_variable(tree, PSD)
     assert found is not None
     others = [dim for dim in found.dims if dim != "sensor"]
     return [int(i) for i in np.flatnonzero(found.notnull().any(others).values)]

@@ -5,19 +5,19 @@ from __future__ import annotations
 from xarray import DataTree
 
 from asperity.kinds.ball_on_beam.schema import ENERGY, ENERGY_RESIDUAL
-from asperity.reporting.data import engineering, laws, of_law, variable
-from asperity.reporting.tables import Cell, Table, text_cell
+from asperity.reporting.data import engineering, laws, of_law, stored_variable
+from asperity.reporting.tables import Cell, ReportTable, text_cell
 
 
-def energy_table(tree: DataTree) -> Table | None:
+def energy_table(tree: DataTree) -> ReportTable | None:
     """Energy balance per law, and what is left of it."""
     names = laws(tree, ENERGY)
     if not names:
         return None
-    found = variable(tree, ENERGY)
+    found = stored_variable(tree, ENERGY)
     assert found is not None
     terms = [str(term) for term in found["energy_term"].values]
-    residual = variable(tree, ENERGY_RESIDUAL)
+    residual = stored_variable(tree, ENERGY_RESIDUAL)
     rows = []
     for law in names:
         energies = of_law(tree, ENERGY, law, "energy_term")
@@ -29,7 +29,7 @@ def energy_table(tree: DataTree) -> Table | None:
     if residual is not None:
         note += f" Residual: {ENERGY_RESIDUAL.long_name}."
     head = ["law", *terms, *(["relative residual"] if residual is not None else [])]
-    return Table(
+    return ReportTable(
         "energy_balance",
         "Energy balance of the run",
         head,

@@ -64,7 +64,7 @@ def _peak_caption(tree: DataTree) -> str:
     return f"Around the largest force of the main law, {main}: {where}. Every time step.{words}"
 
 
-def psd_data(tree: DataTree) -> Data:
+def force_psd_data(tree: DataTree) -> Data:
     """Power spectral density of the contact force by each law and by the frequency domain, all lines."""
     lines: dict[Any, Series] = {**by_law(tree, FORCE_PSD)}
     if present(tree, REFERENCE):
@@ -73,7 +73,7 @@ def psd_data(tree: DataTree) -> Data:
 
 
 @styled()
-def psd_figure(tree: DataTree, data: Data) -> Figure:
+def force_psd_figure(tree: DataTree, data: Data) -> Figure:
     """Power spectral densities of the contact force on a linear frequency axis, with the track's marks."""
     figure = new_figure(4.6)
     axes = figure.subplots()
@@ -153,8 +153,8 @@ FORCE_SPECTRUM = Part(
     "force_psd",
     "Contact force against frequency",
     (FORCE_PSD, FREQUENCY),
-    psd_data,
-    psd_figure,
+    force_psd_data,
+    force_psd_figure,
     _psd_caption,
 )
 FORCE_BANDS = force_bands(schema.LINEAR_REFERENCE_LEVEL)

@@ -11,7 +11,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.reporting.data import engineering, number, values, variable
+from asperity.reporting.data import engineering, number, stored_variable, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
 from asperity.reporting.style import (
     BLUE,
@@ -35,7 +35,7 @@ EDGE = 10**0.05
 
 def _layers(tree: DataTree) -> list[str]:
     """Parts of the track that have a loss factor."""
-    found = variable(tree, CONSTANT)
+    found = stored_variable(tree, CONSTANT)
     return [] if found is None else [str(name) for name in found["layer"].values]
 
 

@@ -15,7 +15,7 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.force import around_peak
 from asperity.kinds.wheel_on_rail.figures.marks import draw_marks, draw_sleepers, natural_frequencies
-from asperity.reporting.data import laws, number, of_law, present, values, variable
+from asperity.reporting.data import laws, number, of_law, present, stored_variable, values
 from asperity.reporting.law_entries import baselines_among, law_style, pulling
 from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.spectrum_figures import (
@@ -138,7 +138,7 @@ def _name(axes: Axes, label: str) -> None:
 
 
 def _points(tree: DataTree, entry: Entry) -> list[int]:
-    found = variable(tree, entry)
+    found = stored_variable(tree, entry)
     assert found is not None
     others = [dim for dim in found.dims if dim != "point"]
     return [int(index) for index in np.flatnonzero(found.notnull().any(others).values)]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.reporting.data import doubtful, laws, of_law, variable
+from asperity.reporting.data import doubtful, laws, of_law, stored_variable
 from asperity.reporting.law_entries import baselines_among, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
@@ -26,7 +26,7 @@ from asperity.reporting.style import (
     shade_doubtful,
     styled,
 )
-from asperity.reporting.tables import Cell, Table, signed, text_cell
+from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
 from asperity.schema import Entry
 from asperity.spectra import a_weighting
 
@@ -37,18 +37,18 @@ _SHARES = {"track": (0, (1.5, 1.5)), "wheel": (0, (6, 1.5, 1.5, 1.5))}
 
 def sources(tree: DataTree, entry: Entry) -> list[str]:
     """Sources of the levels of an entry, as ``["track", "wheel", "total"]``."""
-    found = variable(tree, entry)
+    found = stored_variable(tree, entry)
     return [] if found is None else [str(name) for name in found["source"].values]
 
 
 def _share_law(tree: DataTree) -> str:
     """Law of which the shares of track and wheel are drawn: that of the bare roughness."""
-    found = variable(tree, POWER)
+    found = stored_variable(tree, POWER)
     assert found is not None
     return str(found.attrs.get("reference") or laws(tree, POWER)[0])
 
 
-def band_data(tree: DataTree) -> Data:
+def sound_power_data(tree: DataTree) -> Data:
     """Sound power per band, law and source, unweighted, beside the A-weighting."""
     band = series(tree, BAND, "band centre")
     lines: dict[Any, Series] = {"A": Series("A-weighting", "dB", a_weighting(band.values))}
@@ -61,7 +61,7 @@ def band_data(tree: DataTree) -> Data:
 
 
 @styled()
-def band_figure(tree: DataTree, data: Data) -> Figure:
+def sound_power_figure(tree: DataTree, data: Data) -> Figure:
     """A-weighted sound power per one-third octave: the total by each law, track and wheel of linear."""
     figure = new_figure(4.4)
     axes = figure.subplots()
@@ -145,7 +145,7 @@ def _write(axes: Axes, levels: NDArray[np.float64], places: NDArray[np.floating]
             )  # fmt: skip
 
 
-def sound_power_table(tree: DataTree) -> Table | None:
+def sound_power_table(tree: DataTree) -> ReportTable | None:
     """A-weighted sound power per law and source, and its differences to the linear laws."""
     names, radiating = laws(tree, POWER_A), sources(tree, POWER_A)
     if not names:
@@ -163,12 +163,12 @@ def sound_power_table(tree: DataTree) -> Table | None:
 
     rows = [row(law, level) for law, level in levels.items()]
     note = "Re 1 pW, over the bands that were computed. Positive differences: linear contact underestimates."
-    standard = variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
+    standard = stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
     if standard is not None:
         rows.append(row("CNOSSOS-EU", standard.sel(source=radiating).values))
         name = standard.attrs.get("contact_filter", "")
         note += f" CNOSSOS-EU: the same roughness with its own contact filter ({name})."
-    return Table("sound_power_table", "A-weighted sound power", head, rows, note)
+    return ReportTable("sound_power_table", "A-weighted sound power", head, rows, note)
 
 
 def _told(value: float) -> str:
@@ -191,8 +191,8 @@ NOISE = (
         "sound_power_bands",
         "Sound power in one-third octaves",
         (POWER, BAND),
-        band_data,
-        band_figure,
+        sound_power_data,
+        sound_power_figure,
         _band_caption,
     ),
 )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.reporting.data import doubtful, engineering, nominal_band, number, variable
+from asperity.reporting.data import doubtful, engineering, nominal_band, number, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
 from asperity.reporting.style import (
@@ -38,7 +38,7 @@ _LOOK = {
 
 def _parts(tree: DataTree) -> dict[str, Series]:
     """Levels by part; a part without any level is left out."""
-    found = variable(tree, ROUGHNESS)
+    found = stored_variable(tree, ROUGHNESS)
     assert found is not None
     names = [str(name) for name in found["part"].values]
     rows = np.asarray(found.transpose(*ROUGHNESS.dims).values, dtype=float)
