@@ -49,16 +49,9 @@ def _filters(tree: DataTree, *entries: Entry) -> Data:
     return Data(series(tree, contact.WAVENUMBER), lines)
 
 
-def _rows(data: Data, entry: Entry) -> dict[int, NDArray[np.float64]]:
-    """Filters of an entry by the place of their state."""
-    return {
-        key[1]: line.values for key, line in data.lines.items() if isinstance(key, tuple) and key[0] is entry
-    }
-
-
 def _drawn_filters(tree: DataTree, data: Data, entry: Entry, most: int = MOST_FILTERS) -> list[int]:
     """States whose filters are drawn: a few, evenly spread, that of the working load among them."""
-    filled = np.array(list(_rows(data, entry)))
+    filled = np.array(list(data.of(entry)))
     picks = np.linspace(0, len(filled) - 1, min(most, len(filled))).round().astype(int)
     working = number(tree, contact.WORKING_APPROACH)
     if working is not None:
@@ -94,7 +87,7 @@ def printed_filter_figure(tree: DataTree, data: Data) -> Figure:
 def _magnitudes(axes: Axes, tree: DataTree, data: Data, entries: tuple[Entry, ...], rows: list[int]) -> None:
     """A filter as estimated (dots), as fitted (wide) and as applied (thin), and what theory says (dashed)."""
     wavenumber, approach, excited = data.at, values(tree, contact.APPROACH), _excited(tree)
-    fitted, raw, applied, spread = (_rows(data, entry) for entry in entries)
+    fitted, raw, applied, spread = (data.of(entry) for entry in entries)
     theory = _theory(tree)
     for row, colour in zip(rows, sequence(len(rows)), strict=True):
         level = np.where(excited, _level(fitted[row]), np.nan)
@@ -138,7 +131,7 @@ def _dots(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[NDArray[np.fl
 def _signed(axes: Axes, tree: DataTree, data: Data, rows: list[int]) -> None:
     """The signed estimate, faint where it explains little of the force."""
     wavenumber, excited, theory = data.at, _excited(tree), _theory(tree)
-    estimate, coherence = (_rows(data, entry) for entry in (contact.FILTER_SIGNED, contact.FILTER_COHERENCE))
+    estimate, coherence = (data.of(entry) for entry in (contact.FILTER_SIGNED, contact.FILTER_COHERENCE))
     for row, colour in zip(rows, sequence(len(rows)), strict=True):
         signed = estimate.get(row, np.full(len(wavenumber), np.nan))
         known = excited & (coherence.get(row, np.ones(len(wavenumber))) >= LEAST_COHERENCE)

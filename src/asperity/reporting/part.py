@@ -41,6 +41,11 @@ class Data:
     x: Series | None  # what they stand over
     lines: Mapping[Any, Series]  # by law, by entry of the schema, or by both
 
+    def of(self, entry: Entry) -> dict[Any, NDArray[np.float64]]:
+        """Numbers of one entry, by what tells its lines apart: a law, a state, a point."""
+        keys = [key for key in self.lines if isinstance(key, tuple) and key[0] is entry]
+        return {key[1]: self.lines[key].values for key in keys}
+
     @property
     def field(self) -> NDArray[np.float64]:
         """All lines side by side: ``field[x, y]``."""

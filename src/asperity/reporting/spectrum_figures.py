@@ -160,21 +160,12 @@ def band_figure(tree: DataTree, data: Data, *reference: Entry) -> Figure:
 
 
 def _draw_bands(axes: Axes, tree: DataTree, data: Data, entry: Entry, *, span: float, step: float) -> None:
-    levels = {
-        law: data.lines[entry, law].values
-        for law in _laws_of(data, FORCE_LEVEL)
-        if (entry, law) in data.lines
-    }
-    main = _laws_of(data, FORCE_LEVEL)[0]
+    levels, main = data.of(entry), next(iter(data.of(FORCE_LEVEL)))
     for law, level in levels.items():
         style = law_style(tree, law, main)
         axes.plot(data.at, level, label=law, marker=law_entry(tree, law).marker, markeredgewidth=0, **style)
     level_limits(axes, list(levels.values()), span, step)
     band_axis(axes, data.at)
-
-
-def _laws_of(data: Data, entry: Entry) -> list[str]:
-    return [key[1] for key in data.lines if isinstance(key, tuple) and key[0] is entry]
 
 
 DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than that"

@@ -72,11 +72,7 @@ def displacement_data(tree: DataTree) -> Data:
 
 def _motions(data: Data) -> dict[Entry, dict[str, NDArray[np.float64]]]:
     """Motions that a result holds, by law."""
-    found: dict[Entry, dict[str, NDArray[np.float64]]] = {}
-    for key, line in data.lines.items():
-        if isinstance(key, tuple):
-            found.setdefault(key[0], {})[key[1]] = line.values
-    return found
+    return {entry: motions for entry in MOTIONS if (motions := data.of(entry))}
 
 
 @styled()
