@@ -5,6 +5,7 @@ from real_runs import CASES
 
 import asperity
 from asperity.kinds import KINDS
+from asperity.kinds.report import report
 
 
 @pytest.fixture(scope="session")
@@ -19,3 +20,10 @@ def real_runs(tmp_path_factory):
 def real_run(request, real_runs):
     """Result of one kind of case after the other."""
     return real_runs[request.param]
+
+
+@pytest.fixture(scope="session")
+def reports(real_runs, tmp_path_factory):
+    """Folders of the reports, by kind."""
+    folder = tmp_path_factory.mktemp("reports")
+    return {kind: report(tree, folder / kind).parent for kind, tree in real_runs.items()}

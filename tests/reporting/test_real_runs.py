@@ -11,7 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from real_runs import without
 
 from asperity.kinds import KINDS
-from asperity.kinds.report import page_of, parts_of, report
+from asperity.kinds.report import page_of, parts_of
 from asperity.reporting.csv_files import columns_text
 from asperity.reporting.style import narrow_page, styled
 from asperity.results import read_result, save
@@ -31,13 +31,6 @@ LEVELS = r"dB|dB/m|dB re 1 N|dB re 1 µm|dB re 1 pW|dB\(A\) re 1 pW"
 
 def kind_of(tree):
     return tree["scenario"].attrs["kind"]
-
-
-@pytest.fixture(scope="session")
-def reports(real_runs, tmp_path_factory):
-    """Folders of the reports, by kind."""
-    folder = tmp_path_factory.mktemp("reports")
-    return {kind: report(tree, folder / kind).parent for kind, tree in real_runs.items()}
 
 
 @pytest.fixture
@@ -86,6 +79,8 @@ def test_every_figure_is_drawn_for_a_phone_too(real_run, text):
     boxes = [float(box.split()[2]) for box in re.findall(r'viewBox="([^"]*)"', text)]
     assert sorted(boxes) == pytest.approx(sorted([72 * 9.6, 72 * 4.5] * count))
     assert text.count('class="drawing wide"') == text.count('class="drawing narrow"') == count
+    assert "min-width: 40rem" not in text
+    assert re.search(r"@media screen and \(max-width: \d+rem\) {\s+.narrow { display: block; }", text)
 
 
 def test_what_the_run_says_is_shown(real_run, text):

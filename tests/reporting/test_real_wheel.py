@@ -1,0 +1,300 @@
+"""The figures and tables that only a wheel on a rail has, on a real run."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+
+from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
+from asperity.kinds.report import chapters_of, page_of, parts_of
+from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
+from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
+from asperity.kinds.wheel_on_rail.figures.motion import point_labels
+from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
+from asperity.laws import spec_of
+from report_reading import HOSTILE, Reader, read_csv
+
+PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
+
+
+@pytest.fixture
+def tree(real_runs):
+    return real_runs["wheel-on-rail"]
+
+
+@pytest.fixture
+def folder(reports):
+    return reports["wheel-on-rail"]
+
+
+def lines_at(axes):
+    """Places of the vertical lines of a panel."""
+    found = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
+    return [x[0] for x in found if x[0] == x[1]]
+
+
+def ticks_of(axes):
+    (ticks,) = [line.get_xdata() for line in axes.lines if line.get_label() == "_ticks"]
+    return ticks
+
+
+def test_kind_of_case_chooses_the_chapters(real_runs, tree):
+    assert chapters_of(tree) == WHEEL_ON_RAIL
+    assert chapters_of(real_runs["ball-on-beam"]) == BALL_ON_BEAM
+    ball = {part.name for chapter in BALL_ON_BEAM for part in chapter.parts}
+    assert not {"receptance", "roughness", "sound_power", "displacement"} & ball
+
+
+def test_result_without_a_kind_is_known_by_its_track(tree):
+    tree = tree.copy()
+    tree["scenario"].attrs = {}
+    assert chapters_of(tree) == WHEEL_ON_RAIL
+
+
+def test_numbers_survive_the_csv_files_to_the_last_bit(tree, folder):
+    spectra, track = tree["spectra"].to_dataset(), tree["track"].to_dataset()
+    psd, bands = read_csv(folder / "force_psd.csv"), read_csv(folder / "force_bands.csv")
+    for law in spectra["law"].values:
+        power = read_csv(folder / "sound_power_bands.csv")[f"wheel, {law} [dB re 1 pW]"]
+        assert np.array_equal(power, spectra["sound_power_level"].sel(law=law, source="wheel").values)
+    assert np.array_equal(psd["linear, frequency domain [N^2/Hz]"], spectra["linear_reference_psd"].values)
+    reference = bands["linear, frequency domain [dB re 1 N]"]
+    assert np.array_equal(reference, spectra["linear_reference_level"].values)
+    roughness = read_csv(folder / "roughness.csv")["wheel [dB re 1 µm]"]
+    level = spectra["roughness_level"].sel(part="wheel").values
+    assert np.array_equal(roughness, level, equal_nan=True)
+    receptance = read_csv(folder / "receptance.csv")
+    assert np.array_equal(receptance["receptance_midspan [m/N]"], track["receptance_midspan"].values)
+    phase = receptance["receptance_support phase [rad]"]
+    assert np.array_equal(phase, track["receptance_support_phase"].values)
+    kernel = list(read_csv(folder / "moving_kernel.csv").items())
+    assert kernel[1][0] == "kernel(start=0 m) [m/(N s)]"
+    assert np.array_equal(kernel[1][1], track["moving_kernel"].values[0])
+
+
+def test_force_spectrum_carries_the_marks_of_the_track(tree):
+    speed, sleepers = tree["rolling"].attrs["speed"], tree["track"].attrs["sleeper_spacing"]
+    pinned = tree["track"].attrs["pinned_pinned_frequency"]
+    axes = PARTS["force_psd"].draw(tree).axes[0]
+    split = [pinned - speed / sleepers / 2, pinned + speed / sleepers / 2]
+    assert lines_at(axes) == pytest.approx(split)
+    tones = ticks_of(axes)
+    assert tones == pytest.approx(speed / sleepers * np.arange(1, len(tones) + 1))
+    assert axes.get_xlim()[1] - tones[-1] < speed / sleepers
+    caption = PARTS["force_psd"].caption(tree)
+    assert f"every {speed / sleepers:.1f} Hz" in caption
+    assert f"{split[0]:.0f} and {split[1]:.0f} Hz" in caption
+
+
+@pytest.mark.parametrize("name", ["receptance", "decay_rate"])
+def test_track_frequencies_are_marked_and_named(tree, name):
+    named = {"antiresonance": "anti-resonance", "cut_on": "cut-on", "pinned_pinned": "pinned–pinned"}
+    marks = {tree["track"].attrs[f"{key}_frequency"]: label for key, label in named.items()}
+    figure = PARTS[name].draw(tree)
+    assert lines_at(figure.axes[0])[-3:] == sorted(marks)
+    labels = [label.get_text() for label in figure.findobj(Text)]
+    assert {f"{label}, {frequency:.0f} Hz" for frequency, label in marks.items()} <= set(labels)
+
+
+def test_sleepers_are_marked_where_the_wheel_passes_them(tree):
+    rolling, sleepers = tree["rolling"].to_dataset(), tree["track"].attrs["sleeper_spacing"]
+    for axes in PARTS["displacement"].draw(tree).axes:
+        seconds = 1e-3 * ticks_of(axes)  # drawn in ms
+        places = np.interp(seconds, rolling["time"].values, rolling["position"].values) / sleepers
+        assert len(places) >= 3
+        assert places == pytest.approx(np.round(places), abs=1e-6)
+
+
+def test_table_of_sound_power_holds_levels_and_differences(tree, folder):
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    body = text[text.index('id="sound_power_table"') :]
+    rows = re.findall(r"<tr><td>(.*?)</td>(.*?)</tr>", body[: body.index("</table>")])
+    levels = tree["spectra"].to_dataset()["sound_power_level_a"]
+    assert [law for law, _ in rows] == [*levels["law"].values, "CNOSSOS-EU"]
+    for law, cells in rows[:-1]:
+        shown = [cell.replace("−", "-") for cell in re.findall(r">([^<]+)</td>", cells)]
+        expected = levels.sel(law=law).values
+        assert [float(cell) for cell in shown[:3]] == pytest.approx(expected, abs=0.051)
+        for place, baseline in enumerate(("linear-filtered", "linear"), start=1):
+            differences = shown[3 * place : 3 * place + 3]
+            if law == baseline:
+                assert differences == ["–"] * 3
+                continue
+            over = expected - levels.sel(law=baseline).values
+            assert [float(cell) for cell in differences] == pytest.approx(over, abs=0.051)
+
+
+def test_the_standard_stands_beside_the_laws(tree):
+    standard = tree["spectra"].to_dataset()["cnossos_sound_power_level_a"]
+    table = sound_power_table(tree)
+    last = [cell.text for cell in table.rows[-1]]
+    assert last[:4] == ["CNOSSOS-EU", *(f"{level:.1f}" for level in standard.values)]
+    assert standard.attrs["contact_filter"] in table.note
+
+
+def test_bars_end_at_their_levels(tree):
+    axes = PARTS["sound_power"].draw(tree).axes[0]
+    levels = tree["spectra"].to_dataset()["sound_power_level_a"].values
+    assert [bar.get_x() + bar.get_width() for bar in axes.patches] == pytest.approx(levels.ravel())
+
+
+def test_contact_of_wheel_and_rail_is_outlined_by_its_ellipse(tree):
+    along, across = (tree["contact"].attrs[f"hertz_radius{end}"] for end in ("", "_across"))
+    axes = PARTS["contact_pressure"].draw(tree).axes[0]
+    for outline in axes.patches:
+        assert (outline.get_width(), outline.get_height()) == pytest.approx((2e3 * along, 2e3 * across))
+    assert len(axes.patches) == 2  # dark on light: seen on every colour
+    assert "dashed ellipse" in PARTS["contact_pressure"].caption(tree)
+
+
+def test_large_forces_are_shown_in_kilonewtons(tree):
+    for name in ("force_envelope", "force_peak", "contact_force"):
+        assert any(axes.get_ylabel().endswith("/ kN") for axes in PARTS[name].draw(tree).axes)
+
+
+def of_laws(tree, *laws):
+    """A result of the first laws of another, under other names."""
+    tree = tree.copy(deep=True)
+    for group in ("rolling", "spectra"):
+        tree[group] = tree[group].to_dataset().isel(law=slice(len(laws))).assign_coords(law=list(laws))
+    tree["scenario"].attrs["laws"] = json.dumps([spec_of(law).entry() for law in laws if law != HOSTILE])
+    return tree
+
+
+@pytest.mark.parametrize("laws", [["linear"], ["table"], ["direct", "hertz-filtered", "linear"]])
+def test_any_set_of_laws(tree, laws):
+    tree = of_laws(tree, *laws)
+    for name in ("force_envelope", "force_peak", "force_psd", "force_bands", "sound_power", "displacement"):
+        labels = [label.get_text() for label in PARTS[name].draw(tree).findobj(Text)]
+        assert all(any(law in label for label in labels) for law in laws)
+    assert sound_power_table(tree) is not None
+
+
+def test_hostile_names_stay_text(tree):
+    tree = of_laws(tree, HOSTILE, "linear")
+    names = {"part": [HOSTILE, "b", "c"], "source": [HOSTILE, "b", "total"]}
+    tree["spectra"] = tree["spectra"].to_dataset().assign_coords(names)
+    tree["track"].attrs["kernel_method"] = HOSTILE
+    del tree["surface"], tree["contact"]
+    reader = Reader(page_of(tree))
+    assert not reader.open
+    assert not {"script", "img"} & {tag for tag, _ in reader.tags}
+    assert "".join(reader.text).count(HOSTILE) > 10
+
+
+def test_smooth_surface_has_no_map_and_no_spectrum(tree):
+    tree = tree.copy(deep=True)
+    for name in ("sample_heights", "psd_sample", "psd_path"):
+        tree["surface"][name].values[:] = 0.0
+    drawn = {part.name for part in parts_of(tree)}
+    assert set(PARTS) - drawn == {"texture_sample", "texture_psd"}
+
+
+def test_spectra_are_shaded_where_their_bands_say_little(tree):
+    tree = tree.copy(deep=True)
+    tree["spectra/band_time_product"].values[:] = 100.0
+    for name in ("force_psd", "rail_velocity_psd"):
+        assert not any(axes.patches for axes in PARTS[name].draw(tree).axes)
+    tree["spectra/band_time_product"].values[:6] = 9.9
+    for name in ("force_psd", "rail_velocity_psd"):
+        assert all(len(axes.patches) == 1 for axes in PARTS[name].draw(tree).axes)
+        assert "B T is below 10" in PARTS[name].caption(tree)
+
+
+def test_bands_without_roughness_are_not_drawn(tree):
+    tree = tree.copy(deep=True)
+    level = tree["spectra"]["roughness_level"].values
+    level[:] = np.linspace(20.0, 0.0, level.shape[1])
+    level[:, :5] = -130.0
+    level[1, 12] = -100.0
+    axes = PARTS["roughness"].draw(tree).axes[0]
+    rail, wheel = (next(x for x in axes.lines if x.get_label() == name) for name in ("rail", "wheel"))
+    assert np.array_equal(rail.get_ydata(), level[0, 5:])
+    assert np.isnan(wheel.get_ydata()[7])
+    assert len(PARTS["roughness"].columns(tree)["wavelength [m]"]) == level.shape[1]
+
+
+def test_drawn_force_spectrum_keeps_the_power(tree):
+    spectra = tree["spectra"].to_dataset()
+    lines = 5.0 * np.arange(1, 1 + spectra.sizes["frequency"])
+    tree = tree.copy()
+    tree["spectra"] = spectra.assign_coords(frequency=lines)
+    axes = PARTS["force_psd"].draw(tree).axes[0]
+    line = next(line for line in axes.lines if line.get_label() == "areal")
+    drawn = np.mean(10 ** (line.get_ydata() / 10))
+    count = 4 * len(line.get_xdata())  # lines 5 Hz apart, drawn every 20 Hz
+    assert count > 40
+    assert drawn == pytest.approx(spectra["force_psd"].sel(law="areal").values[:count].mean())
+
+
+def test_piece_around_the_peak_holds_it(tree):
+    rolling = tree["rolling"].to_dataset()
+    peak = int(np.argmax(rolling["contact_force"].sel(law="areal").values))
+    part = around_peak(tree)
+    assert part.start <= peak < part.stop
+    step = float(rolling["time"][1])
+    assert (part.stop - part.start) * step == pytest.approx(AROUND_PEAK, abs=step)
+    assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].caption(tree)
+
+
+@pytest.mark.parametrize("flat", [True, False])
+def test_bars_of_lost_contact_are_drawn_where_it_is_lost(tree, flat):
+    part, tree = PARTS["force_peak"], tree.copy(deep=True)
+    rolling = tree["rolling"].to_dataset()
+    force = rolling["contact_force"].sel(law="areal")
+    peak = int(np.argmax(force.values))
+    if flat:  # in flight before the wheel strikes
+        force[max(peak - 40, 0) : peak - 5] = 0.0
+    rolling["contact_loss_share"][0] = 0.02 * flat
+    tree["rolling"] = rolling
+    assert len(part.draw(tree).axes) == 1 + flat
+    assert ("Bars below" in part.caption(tree)) == flat
+
+
+@pytest.mark.parametrize("end", [0, -1])
+def test_piece_around_a_peak_at_an_end_stays_inside(tree, end):
+    tree = tree.copy(deep=True)
+    tree["rolling"]["contact_force"].values[:, end] = 1e6
+    part, count = around_peak(tree), tree["rolling"].sizes["time"]
+    assert (part.start == 0) == (end == 0)
+    assert (part.stop == count) == (end == -1)
+    step = float(tree["rolling"]["time"][1])
+    assert (part.stop - part.start) * step == pytest.approx(AROUND_PEAK, abs=step)
+
+
+def test_passed_points_are_named_by_their_place_in_the_bay(tree):
+    tree = tree.copy()
+    points = {"point": [1.2, 1.5, 1.65]}
+    rolling = tree["rolling"].to_dataset().drop_dims("point")
+    tree["rolling"] = rolling.assign_coords(points)
+    assert point_labels(tree) == ["x = 1.2 m, over a sleeper", "x = 1.5 m, mid-span", "x = 1.65 m"]
+
+
+@pytest.mark.parametrize(
+    ("name", "variable"),
+    [
+        ("force_bands", "band_time_product"),
+        ("sound_power_bands", "noise_band_time_product"),
+        ("roughness", "surface_band_length_product"),
+    ],
+)
+def test_bands_that_say_little_are_shaded_and_in_the_csv_file(tree, name, variable):
+    part, tree = PARTS[name], tree.copy(deep=True)
+    product = tree[f"spectra/{variable}"].values
+    product[:] = 100.0
+    assert not part.draw(tree).axes[0].patches
+    product[:4] = 9.9
+    assert len(part.draw(tree).axes[0].patches) == 1
+    assert "Shaded" in part.caption(tree)
+    columns = part.columns(tree)
+    assert columns["B T of 10 or more [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
+
+
+def test_motion_is_compared_with_practice(tree):
+    drawn = PARTS["rail_velocity"].draw(tree).axes[0]
+    assert {line.get_label() for line in drawn.lines} >= {"areal", "linear-filtered"}
+    assert "linear" not in {line.get_label() for line in drawn.lines}
