@@ -31,7 +31,7 @@ _HOME = {
 
 
 def _cases() -> dict[str, str]:
-    """Classes of cases: "ball-on-beam" is BallOnBeam in the module ``case`` of its kind."""
+    """Classes of cases, by the words of their kinds joined: each in the module ``case`` of its kind."""
     kinds = importlib.import_module("asperity.kinds").KINDS
     return {name.title().replace("-", ""): f"{kind.folder}.case" for name, kind in kinds.items()}
 

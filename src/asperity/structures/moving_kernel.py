@@ -137,7 +137,7 @@ def _lacks_damping(track: Track, weights: NDArray[np.float64], time_step: float)
     frequency = float(np.argmax(spectrum) / (longest.size * time_step))
     layers = ("ballast_damping or ballast_loss_factor", "pad_damping or pad_loss_factor")
     lightest = dict(zip(track.cut_on_frequencies, layers, strict=False))
-    lightest[track.pinned_pinned_frequency] = "rail_loss_factor"
+    lightest |= {track.pinned_pinned_frequency: "rail_loss_factor"}
     nearest = min(lightest, key=lambda natural: abs(np.log(max(frequency, 1.0) / natural)))
     return frequency, lightest[nearest]
 
