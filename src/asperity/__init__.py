@@ -30,23 +30,22 @@ _HOME = {
 """Module of each public name; the cases of each kind come beside them."""
 
 
-def _cases() -> dict[str, str]:
-    """Classes of cases, by the words of their kinds joined: each in the module ``case`` of its kind."""
+def _cases() -> dict[str, Any]:
+    """Kinds by the classes of their cases, the words of their names joined."""
     kinds = importlib.import_module("asperity.kinds").KINDS
-    return {name.title().replace("-", ""): f"{kind.folder}.case" for name, kind in kinds.items()}
+    return {name.title().replace("-", ""): kind for name, kind in kinds.items()}
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name on first use, so that ``import asperity`` stays fast."""
     if name == "__all__":
         return ["__version__", *_HOME, *_cases()]
-    home = (
-        f"asperity.{_HOME[name]}" if name in _HOME else None if name.startswith("_") else _cases().get(name)
-    )
-    if home is None:
+    if name in _HOME:
+        module = importlib.import_module(f"asperity.{_HOME[name]}")
+        return module if _HOME[name] == name else getattr(module, name)
+    if name.startswith("_") or name not in (cases := _cases()):
         raise AttributeError(f"module 'asperity' has no attribute {name!r}")
-    module = importlib.import_module(home)
-    return module if home == f"asperity.{name}" else getattr(module, name)
+    return cases[name].case
 
 
 def __dir__() -> list[str]:

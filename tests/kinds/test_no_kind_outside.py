@@ -47,7 +47,7 @@ def test_no_section_or_key_of_one_kind_is_looked_at():
     """Neither ``case.beam`` nor ``getattr(case, "beam")`` nor ``"beam.length"``."""
     any_of = "|".join(SECTIONS)
     looks = re.compile(
-        rf"\bcase\.({any_of})\b|[gs]etattr\([^)]*[\"']({any_of})[\"']|[\"'`\[]({any_of})\.[a-z_]\w+"
+        rf"\bcase\.({any_of})\b|[gs]etattr\([^)]*[\"']({any_of})[\"']|[\"'`]({any_of})\.[a-z_]\w+"
     )
 
     def wrong(path, line):

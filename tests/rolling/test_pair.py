@@ -534,6 +534,9 @@ def test_a_step_too_long_for_the_contact_is_told():
     # sqrt(2e7/0.5)/2π = 1007 Hz, by a step of 0.2 ms 5 in a period
     with pytest.warns(CoarseSamplingWarning, match=r"contact resonance, 1007 Hz, has 4.97 time steps"):
         roll_pair(RigidGround(), BODY, law, **path, time_step=2e-4)
+    # on a spring the contact is softer: sqrt(1/(1/2e7 + 1/5e6)/0.5)/2π = 450.2 Hz
+    with pytest.warns(CoarseSamplingWarning, match=r"contact resonance, 450.2 Hz, has 5.55 time steps"):
+        roll_pair(SpringAndDamper(5e6), BODY, law, **path, time_step=4e-4)
     with pytest.warns(CoarseSamplingWarning, match=r"highest frequency asked for, 5000 Hz, has 8 time steps"):
         roll_pair(RigidGround(), BODY, law, **path, time_step=2.5e-5, highest_frequency=5000.0)
 

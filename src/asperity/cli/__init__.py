@@ -88,22 +88,19 @@ def demo(directory: Path, overwrite: bool) -> None:
     run_into(demo_case(), directory, overwrite=overwrite)
 
 
-_WRITTEN = (*KINDS, "study")
-
-
 def _templates(context: click.Context, argument: click.Parameter, incomplete: str) -> list[str]:
     """Complete what 'asperity new' can write."""
-    return [name for name in _WRITTEN if name.startswith(incomplete)]
+    return [name for name in (*KINDS, "study") if name.startswith(incomplete)]
 
 
 @main.command()
-@click.argument("kind", metavar="|".join(_WRITTEN), shell_complete=_templates)
+@click.argument("kind", metavar="|".join((*KINDS, "study")), shell_complete=_templates)
 def new(kind: str) -> None:
     """Write a commented case, or a study of one, to standard output."""
     from asperity.kinds.cases import not_a_kind, template
 
-    if kind not in _WRITTEN:
-        raise not_a_kind(kind, _WRITTEN)
+    if kind not in (names := (*KINDS, "study")):
+        raise not_a_kind(kind, names)
     if kind == "study":
         from asperity.studies.definition import TEMPLATE
 

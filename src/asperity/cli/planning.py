@@ -77,7 +77,7 @@ def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
         ("textures", prepared.textures.origin),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
         ("time", f"{case.rolled_time:g} s{run_in}, {steps} steps of {case.time_step * 1e6:.4g} µs"),
-        *prepared.kind.plan.rows(case),
+        *prepared.kind.plan("rows")(case),
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
         *_real_contact(prepared),

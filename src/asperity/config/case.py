@@ -18,6 +18,9 @@ from asperity.units import written
 MOST_STEPS = 10**8
 SETTLED = 0.05
 """Run-in after which the force of a record varies as in a long run, within some per cent, s."""
+RECORDED = 0.5
+"""Record of a case that says nothing of it, s."""
+STEPS_PER_PERIOD = 20  # of the highest frequency
 SAMPLING = 2.5  # points per period of the highest frequency, at least
 
 Law = Annotated[str, BeforeValidator(Choice(names))]
@@ -29,14 +32,36 @@ class Case(Section):
     Every length, time, force and so on is in SI here; units stand in the case file alone.
     """
 
-    kind: str
-    speed: Speed
-    laws: tuple[Law, ...]
+    kind: str  # each kind declares its own
+    speed: Speed = key(
+        "1 m/s",
+        "rolling speed",
+        within=("0.1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
+    )
+    laws: tuple[Law, ...]  # each kind names its own
     seed: Index = key(1, "seed of everything random")
-    start: Position | None
-    duration: Duration | None
-    settling: DurationOrZero | None
-    surface: Surface
+    start: Position | None = key(
+        None,
+        "where on the path the record starts",
+        otherwise="after the run-in, which begins at 0 m",
+        example='"0.2 m"',
+        within=("0 m", "1000 km", "paths are shorter"),
+    )
+    duration: Duration | None = key(
+        None,
+        "time that is recorded",
+        otherwise="0.5 s",
+        example='"1 s"',
+        within=("1 us", "1 h", "records lie between"),
+    )
+    settling: DurationOrZero | None = key(
+        None,
+        "time that is rolled before the record starts, so that the start from rest is forgotten",
+        otherwise="50 ms",
+        example='"0.2 s"',
+        within=("1 us", "1 h", "records lie between"),
+    )
+    surface: Surface = key({}, "what is rolled over: a measured map, or synthesised roughness")
 
     if TYPE_CHECKING:  # each kind declares these two after the sections of its own
         contact: ContactCase
@@ -76,29 +101,41 @@ class Case(Section):
 
     @property
     def time_step(self) -> float:
-        """Time step in s."""
-        raise NotImplementedError
+        """Time step in s: as given, or near 1/(20 f_max) with positions on the grid of the contact solution.
+
+        The distance rolled in one step is then a whole multiple, or a whole fraction, of ``contact.spacing``.
+        """
+        if self.numerics.time_step is not None:
+            return self.numerics.time_step
+        wanted = 1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency)
+        return time_step_on_grid(wanted, self.contact.spacing / self.speed)
 
     @property
     def record_start(self) -> float:
-        """Position in m where the record starts."""
-        raise NotImplementedError
+        """Position in m where the record starts: as given, or after the run-in."""
+        return self.start if self.start is not None else self.speed * self.settled_time
 
     @property
     def settled_time(self) -> float:
-        """Time in s that is rolled before the record starts."""
-        raise NotImplementedError
+        """Time in s that is rolled before the record starts: as given, or `SETTLED`."""
+        return SETTLED if self.settling is None else self.settling
 
     @property
     def rolled_time(self) -> float:
-        """Time in s that is recorded; the run-in comes before it."""
-        raise NotImplementedError
+        """Time in s that is recorded: as given, or `RECORDED`; the run-in comes before it."""
+        return RECORDED if self.duration is None else self.duration
 
     @property
     def rolled_range(self) -> tuple[float, float]:
         """First and last position of the contact in m, from the start of the run-in."""
         first = self.record_start - self.speed * self.settled_time
         return first, self.record_start + self.speed * self.rolled_time
+
+    def problems(self) -> Iterator[InputError]:
+        """What must fit together across the sections; a kind adds its own."""
+        yield from problems_of_laws(self)
+        yield from problems_of_sampling(self)
+        yield from problem_of_steps(self, self.settled_time + self.rolled_time)
 
 
 def problems_of_laws(case: Case) -> Iterator[InputError]:

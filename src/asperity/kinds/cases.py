@@ -141,11 +141,11 @@ def kind_named(name: object) -> Kind:
         If there is no such kind.
     """
     if not isinstance(name, str) or name not in KINDS:
-        raise not_a_kind(name)
+        raise not_a_kind(name, tuple(KINDS))
     return KINDS[name]
 
 
-def not_a_kind(kind: object, names: Sequence[str] = tuple(KINDS)) -> InputError:
+def not_a_kind(kind: object, names: Sequence[str]) -> InputError:
     """Error about a kind of case that this version does not have; None stands for a missing key."""
     allowed = ", ".join(f'"{name}"' for name in names)
     if kind is None:

@@ -81,13 +81,13 @@ def roll_pair(
         above = rolls.placed(path, -(below.displacement + closer), -below.velocity)
         return Pair(path, rolls.load, below, above, approach, softening)
 
+    alternating = over.alternating_compliance(path) + rolls.alternating_compliance(path)
+
     def limits(stiffness: float) -> Iterator[Limit]:
         direct = below.compliance(1) + rolls.placed(path, 0.0, 0.0).compliance(1)
-        # a mass on the contact's spring turns by ω h with (ω h)² = 6 k α
-        yield "the contact resonance", np.sqrt(6.0 * stiffness * direct) / (2.0 * np.pi * time_step), 10.0
+        yield "the contact resonance", _resonance(stiffness, direct, alternating, time_step), 10.0
         yield "the highest frequency asked for", highest_frequency or 0.0, 10.0
 
-    alternating = over.alternating_compliance(path) + rolls.alternating_compliance(path)
     rolled, pair = roll_along(
         path,
         law,
@@ -104,6 +104,16 @@ def roll_pair(
         over_displacement=pair.record.over[kept],
         rolling_displacement=pair.record.rolling[kept],
     )
+
+
+def _resonance(stiffness: float, direct: float, alternating: float, time_step: float) -> float:
+    """Natural frequency, Hz, of bodies on the contact, N/m, from their two compliances in a time step, m/N.
+
+    A mass m has α = h²/6m and β = −h²/12m, a spring of compliance c has α = β = c.
+    """
+    inverse_mass = max(4.0 * (direct - alternating), 0.0) / time_step**2
+    compliance = max(direct + 2.0 * alternating, 0.0) / 3.0
+    return float(np.sqrt(inverse_mass * stiffness / (1.0 + stiffness * compliance))) / (2.0 * np.pi)
 
 
 class Pair:

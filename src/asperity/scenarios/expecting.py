@@ -76,7 +76,7 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
             trial = try_contacts(prepared, progress)
             scans = {name: _timed_scan(name, scan, trial) for name, scan in scans.items()}
             seconds |= _contact_seconds(prepared, trial, scans, pace)
-        seconds |= prepared.kind.plan.seconds(prepared, progress, pace)
+        seconds |= prepared.kind.plan("seconds")(prepared, progress, pace)
         seconds |= _rolling_seconds(prepared, pace)
     return Work(scans, seconds)
 
@@ -140,11 +140,11 @@ def _rolling_seconds(prepared: Prepared, pace: float) -> dict[str, float]:
     plan = prepared.kind.plan
     path = prepared.textures.path
     points = len(prepared.textures.line) if path is None else math.prod(path.shape)
-    written = steps * laws * plan.records(case) * NUMBER_TIME + points * POINT_TIME
+    written = steps * laws * plan("records")(case) * NUMBER_TIME + points * POINT_TIME
     return {
-        "rolling": steps * laws * (plan.step_seconds(prepared) + states * STATE_TIME * pace),
+        "rolling": steps * laws * (plan("step_seconds")(prepared) + states * STATE_TIME * pace),
         "spectra and statistics": (written + LAID_OUT) * pace,
-        "report": plan.REPORT * pace,
+        "report": plan("REPORT") * pace,
     }
 
 

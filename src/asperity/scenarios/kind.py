@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 SHARED = (provenance, surface, contact, rolling, spectra)
 """What the results of all kinds hold."""
+USUAL = "asperity.scenarios.usual"
+"""What a kind offers that says nothing of its own."""
 
 
 @dataclass(frozen=True)
@@ -38,16 +40,17 @@ class Words:
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of case, by the folder that holds all there is about it.
+    """A kind of case, by the folder that holds all there is about it; of a small one, by its only file.
 
     Attributes
     ----------
     folder : str
-        Its package. The modules below stand in it:
+        Its package, in which these modules stand, or one module with all their names. Where one body rolls
+        over another the first three are enough: the folder `asperity.scenarios.usual` has the others.
 
         ========== ===================================================================================
         case       ``CASE``, the class of its cases; ``WORDS`` and ``ROLLING``, the section of what rolls
-        bodies     ``bodies_of(case)``, built from the case
+        bodies     ``bodies_of(case)``, built from the case; as usual what is rolled over and what rolls
         geometry   ``geometry_of(case)``, what presses on what on the contact grid
         textures   ``textures_of(case)``; ``warn_of(case, shape, textures)``, before anything is computed
         compiling  ``compile_kernels(progress)``, of all that is stepped
@@ -63,74 +66,88 @@ class Kind:
 
     folder: str
 
-    def _part(self, name: str) -> Any:
-        return importlib.import_module(f"{self.folder}.{name}")
+    def offers(self, module: str, name: str) -> Any:
+        """What stands under a name in a module of the folder, or in the one file; else what is usual."""
+        for place in (f"{self.folder}.{module}", self.folder, f"{USUAL}.{module}"):
+            found = getattr(_module(place), name, None)
+            if found is not None:
+                return found
+        raise AttributeError(f"{self.folder} offers no {name}, and none is usual")
 
     @property
     def case(self) -> type[Case]:
         """Class of its cases."""
-        found: type[Case] = self._part("case").CASE
+        found: type[Case] = self.offers("case", "CASE")
         return found
 
     @property
     def words(self) -> Words:
         """What a commented case says beside its keys."""
-        found: Words = self._part("case").WORDS
+        found: Words = self.offers("case", "WORDS")
         return found
 
     @property
     def rolling(self) -> str:
         """The section of the case that describes what rolls."""
-        return str(self._part("case").ROLLING)
+        return str(self.offers("case", "ROLLING"))
 
     def bodies_of(self, case: Case) -> Any:
         """Build the bodies of a case."""
-        return self._part("bodies").bodies_of(case)
+        return self.offers("bodies", "bodies_of")(case)
 
     def geometry_of(self, case: Case) -> Geometry:
         """Lay out the bodies of a case on the contact grid."""
-        found: Geometry = self._part("geometry").geometry_of(case)
+        found: Geometry = self.offers("geometry", "geometry_of")(case)
         return found
 
     def textures_of(self, case: Case) -> Textures:
         """Gather the textures of a case."""
-        found: Textures = self._part("textures").textures_of(case)
+        found: Textures = self.offers("textures", "textures_of")(case)
         return found
 
     def warn_of(self, case: Case, shape: Geometry, textures: Textures) -> None:
         """Warn of what is doubtful before anything is computed."""
-        self._part("textures").warn_of(case, shape, textures)
+        self.offers("textures", "warn_of")(case, shape, textures)
 
     def compile_kernels(self, progress: Progress) -> None:
         """Compile all that is stepped, or load it."""
-        self._part("compiling").compile_kernels(progress)
+        self.offers("compiling", "compile_kernels")(progress)
 
     def computed(
         self, prepared: Prepared, progress: Progress, caught: list[warnings.WarningMessage]
     ) -> xarray.DataTree:
         """Compute a case and lay out its result; warnings of laying out may be added to `caught`."""
-        computed = self._part("compute").compute(prepared, progress)
-        found: xarray.DataTree = self._part("result").layout(computed, caught)
+        computed = self.offers("compute", "compute")(prepared, progress)
+        found: xarray.DataTree = self.offers("result", "layout")(computed, caught)
         return found
 
     @property
     def schema(self) -> tuple[ModuleType, ...]:
         """Modules with the entries of its result, its own the last."""
-        return (*SHARED, self._part("schema"))
+        return (*SHARED, _module(f"{self.folder}.schema") or importlib.import_module(f"{USUAL}.schema"))
 
     @property
     def kept(self) -> Mapping[Entry, Mapping[str, str]]:
         """What a study keeps of its results beside what it keeps of all, and where of it."""
-        found: Mapping[Entry, Mapping[str, str]] = self._part("schema").KEPT
+        found: Mapping[Entry, Mapping[str, str]] = self.offers("schema", "KEPT")
         return found
 
     @property
     def chapters(self) -> tuple[Chapter, ...]:
         """Chapters of its report."""
-        found: tuple[Chapter, ...] = self._part("chapters").CHAPTERS
+        found: tuple[Chapter, ...] = self.offers("chapters", "CHAPTERS")
         return found
 
-    @property
-    def plan(self) -> Any:
-        """Its module ``plan``."""
-        return self._part("plan")
+    def plan(self, name: str) -> Any:
+        """What it says of its work under a name, see above."""
+        return self.offers("plan", name)
+
+
+def _module(place: str) -> ModuleType | None:
+    """The module, if there is one of that name."""
+    try:
+        return importlib.import_module(place)
+    except ModuleNotFoundError as error:
+        if error.name != place:  # one that it needs is not there
+            raise
+        return None

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import xarray
+from numpy.typing import NDArray
 
 from asperity import __version__
 from asperity.contact.device import find_device
@@ -19,7 +20,7 @@ from asperity.laws import baselines, reference, spec_of
 from asperity.results import checked
 from asperity.scenarios.chain import Chain
 from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
-from asperity.spectra import LEAST_PRODUCT, band_product
+from asperity.spectra import LEAST_PRODUCT, averaging_time, band_levels, band_product, psd
 
 SEGMENT = (0.025, 0.2)
 """Shortest and longest segment of the spectra, s: lines 40 Hz and 5 Hz apart."""
@@ -147,6 +148,33 @@ def difference_to(baseline: str) -> Entry:
     role = spec_of(baseline).role
     assert role is not None
     return spectra.FORCE_LEVEL_DIFFERENCES[role]
+
+
+def force_spectra(chain: Chain[Any]) -> dict[str, xarray.Variable]:
+    """Lay out the contact force over frequency: narrow bands, one-third octaves, differences between laws."""
+    step, highest = chain.case.time_step, chain.case.numerics.highest_frequency
+    laws, force = list(chain.runs), chain.stacked("contact_force")
+    segment = spectrum_segment(force.shape[1], step)
+    time = averaging_time(force.shape[1], step, segment=segment)
+    frequency, density = psd(force, step, segment=segment)
+    band, level = band_levels(frequency, density, high=highest)
+    shown = drawn(frequency, highest)
+    found = variables(
+        {
+            spectra.LAW: laws,
+            spectra.FREQUENCY: frequency[shown],
+            spectra.BAND: band,
+            spectra.BAND_TIME_PRODUCT: product_of_bands(spectra.BAND_TIME_PRODUCT, band, time),
+            spectra.FORCE_PSD: density[:, shown],
+            spectra.FORCE_LEVEL: level,
+        }
+    )
+    return found | level_differences(laws, level)
+
+
+def drawn(frequency: NDArray[np.float64], highest: float) -> NDArray[np.bool_]:
+    """Which lines of a spectrum are kept: up to the edge of the one-third octave of the highest, Hz."""
+    return np.asarray((frequency > 0.0) & (frequency <= 1.13 * highest))
 
 
 def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xarray.Variable]:

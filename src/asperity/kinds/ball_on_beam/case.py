@@ -14,7 +14,6 @@ from asperity.config.case import (
     problem_of_steps,
     problems_of_laws,
     problems_of_sampling,
-    time_step_on_grid,
 )
 from asperity.config.keys import (
     Choice,
@@ -28,10 +27,9 @@ from asperity.config.keys import (
     OwnOrNamed,
     Position,
     Section,
-    Speed,
     key,
 )
-from asperity.config.sections import ContactCase, Numerics, Surface
+from asperity.config.sections import ContactCase, Numerics
 from asperity.errors import InputError
 from asperity.laws import Need, names, spec_of
 from asperity.scenarios.kind import Words
@@ -122,11 +120,6 @@ class BallOnBeam(Case):
     """
 
     kind: Annotated[str, BeforeValidator(Choice(("ball-on-beam",)))] = key("ball-on-beam", "what rolls")
-    speed: Speed = key(
-        "1 m/s",
-        "rolling speed",
-        within=("0.1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
-    )
     laws: tuple[Law, ...] = key(
         ROLLED,
         "laws of the contact force; the first is the main one",
@@ -152,7 +145,6 @@ class BallOnBeam(Case):
         example='"0.2 s"',
         within=("1 us", "1 h", "records lie between"),
     )
-    surface: Surface = key({}, "what is rolled over: a measured map, or synthesised roughness")
     ball: BallCase = key({}, "the ball that rolls")
     beam: BeamCase = key({}, "the beam that is rolled over")
     contact: ContactCase = key({}, "how the rough contact is solved and reduced")
@@ -170,23 +162,6 @@ class BallOnBeam(Case):
         rough = bool({"file", "rms"} & surface.keys())
         allowed = _allowed(line=True, samples=rough)
         return {**data, "laws": [*([] if rough else [SMOOTH]), *(law for law in ROLLED if law in allowed)]}
-
-    @property
-    def time_step(self) -> float:
-        """Time step in s: as given, or near 1/(20 f_max) with positions on the grid of the contact solution.
-
-        The distance rolled in one step is then a whole multiple, or a whole fraction, of ``contact.spacing``.
-        """
-        if self.numerics.time_step is not None:
-            return self.numerics.time_step
-        per_cell = self.contact.spacing / self.speed
-        wanted = 1 / (20 * self.numerics.highest_frequency)
-        return time_step_on_grid(wanted, per_cell)
-
-    @property
-    def record_start(self) -> float:
-        """Position in m on the beam where the record starts: as given, or after the run-in."""
-        return self.start if self.start is not None else self.speed * self.settled_time
 
     @property
     def settled_time(self) -> float:

@@ -4,26 +4,11 @@ from __future__ import annotations
 
 from asperity.kinds.ball_on_beam.figures.acceleration import ACCELERATION
 from asperity.kinds.ball_on_beam.figures.energy import energy_table
-from asperity.reporting.chapter import CONTACT, Chapter
-from asperity.reporting.spectrum_figures import FORCE_BANDS, FORCE_SPECTRUM
-from asperity.reporting.tables import (
-    homogeneity_table,
-    loss_table,
-    reference_table,
-    statistics_table,
-)
-from asperity.reporting.texture import TEXTURE
-from asperity.reporting.time_figures import FORCE_ENVELOPE, FORCE_PIECE
+from asperity.reporting.chapter import Chapter
+from asperity.scenarios.usual import chapters
 
 CHAPTERS = (
-    Chapter("texture", "Texture", TEXTURE, (statistics_table, homogeneity_table)),
-    CONTACT,
-    Chapter(
-        "force",
-        "Contact force",
-        (FORCE_PIECE, FORCE_ENVELOPE, FORCE_SPECTRUM, FORCE_BANDS),
-        (reference_table, loss_table),
-    ),
+    *chapters.CHAPTERS,
     Chapter("acceleration", "Acceleration", ACCELERATION),
     Chapter("energy", "Energy", (), (energy_table,)),
 )

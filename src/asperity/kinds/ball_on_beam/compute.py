@@ -13,6 +13,7 @@ from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.textures import Textures
+from asperity.scenarios.usual.textures import recorded_time
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
@@ -52,8 +53,7 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
     ball, beam, store, watch = bodies.ball, bodies.beam, Store(), Stopwatch(textures=prepared.seconds)
     compile_kernels(progress)  # not before the files are known to be right
     watch.lap("compiled functions")
-    pace = case.contact.spacing / case.speed
-    duration = min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace)
+    duration = recorded_time(case, textures)
     checkpoints = {
         name: Checkpoint(store, _run_key(name, case, textures, duration))
         for name in case.laws

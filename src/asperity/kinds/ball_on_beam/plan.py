@@ -6,31 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from asperity.config.case import Case
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import HertzLaw
-from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.preparing import Prepared
 from asperity.scenarios.trial import STEPS, timed
-
-REPORT = 7.5
-"""Time of starting the program, and of drawing and writing a report, s."""
-
-
-def rows(case: Case) -> list[tuple[str, str]]:
-    """What else will be computed, in words: nothing."""
-    return []
 
 
 def records(case: Any) -> int:
     """Histories that a law leaves behind."""
     return 4 + len(case.beam.sensor_positions)
-
-
-def seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, float]:
-    """Time of what is computed once for all laws, s: nothing."""
-    return {}
 
 
 def step_seconds(prepared: Prepared) -> float:

@@ -13,15 +13,15 @@ from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import (
     assembled,
-    level_differences,
-    product_of_bands,
+    drawn,
+    force_spectra,
     rolling_group,
     spectrum_segment,
 )
 from asperity.scenarios.validity import findings, warn_of_findings
 from asperity.scenarios.verdict import verdict
-from asperity.schema import spectra, variables
-from asperity.spectra import averaging_time, band_levels, psd
+from asperity.schema import variables
+from asperity.spectra import band_levels, psd
 
 
 def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
@@ -78,27 +78,16 @@ def _rolling(computed: Computed) -> xarray.Dataset:
 
 
 def _spectra(computed: Computed) -> xarray.Dataset:
-    step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
-    laws, stack = list(computed.chain.runs), computed.chain.stacked
-    samples = len(computed.chain.runs[laws[0]].time)
-    segment = spectrum_segment(samples, step)
-    time = averaging_time(samples, step, segment=segment)
-    frequency, force = psd(stack("contact_force"), step, segment=segment)
-    _, acceleration = psd(stack("acceleration"), step, segment=segment)
-    band, force_level = band_levels(frequency, force, high=highest)
-    _, acceleration_level = band_levels(frequency, acceleration, schema.ACCELERATION_REFERENCE, high=highest)
-    shown = (frequency > 0.0) & (frequency <= 1.13 * highest)
-    found = variables(
+    case, acceleration = computed.case, computed.chain.stacked("acceleration")
+    highest = case.numerics.highest_frequency
+    segment = spectrum_segment(acceleration.shape[-1], case.time_step)
+    frequency, density = psd(acceleration, case.time_step, segment=segment)
+    _, level = band_levels(frequency, density, schema.ACCELERATION_REFERENCE, high=highest)
+    own = variables(
         {
-            spectra.LAW: laws,
-            schema.SPECTRA_SENSOR: computed.case.beam.sensor_positions,
-            spectra.FREQUENCY: frequency[shown],
-            spectra.BAND: band,
-            spectra.BAND_TIME_PRODUCT: product_of_bands(spectra.BAND_TIME_PRODUCT, band, time),
-            spectra.FORCE_PSD: force[:, shown],
-            spectra.FORCE_LEVEL: force_level,
-            schema.ACCELERATION_PSD: acceleration[..., shown],
-            schema.ACCELERATION_LEVEL: acceleration_level,
+            schema.SPECTRA_SENSOR: case.beam.sensor_positions,
+            schema.ACCELERATION_PSD: density[..., drawn(frequency, highest)],
+            schema.ACCELERATION_LEVEL: level,
         }
     )
-    return xarray.Dataset(found | level_differences(laws, force_level))
+    return xarray.Dataset(force_spectra(computed.chain) | own)

@@ -1,4 +1,4 @@
-"""The textures of a ball-on-beam case."""
+"""The textures of a path: a measured map or line, or synthesised."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.config.case import Case
 from asperity.errors import InputError
-from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.reference.cnossos import rail_roughness
 from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
@@ -32,17 +32,17 @@ from asperity.surfaces.strip import Strip
 from asperity.surfaces.synthesis import from_bands
 
 
-def textures_of(case: BallOnBeam) -> Textures:
+def textures_of(case: Case) -> Textures:
     """Gather the textures of a case, with a window before and beyond the path."""
     return gather(case, window_cells(case.contact))
 
 
-def warn_of(case: BallOnBeam, shape: Geometry, textures: Textures) -> None:
+def warn_of(case: Case, shape: Geometry, textures: Textures) -> None:
     """Warn of what is doubtful before anything is computed."""
-    warn_of_start(case, "shorten the duration or start farther along the beam")
+    warn_of_start(case, "shorten the duration or start farther along the path")
 
 
-def gather(case: BallOnBeam, margin: int) -> Textures:
+def gather(case: Case, margin: int) -> Textures:
     """Read or synthesise all textures of a case, with `margin` rows before the path and beyond its end."""
     seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
     ny, spacing = window_cells(case.contact), case.contact.spacing
@@ -72,7 +72,7 @@ def gather(case: BallOnBeam, margin: int) -> Textures:
     return Textures(maps, strips, path, line, start, before, margin, missing, origin)
 
 
-def _line(case: BallOnBeam, rows: int, least: int, lead: int, seed: int) -> tuple[NDArray[np.float64], str]:
+def _line(case: Case, rows: int, least: int, lead: int, seed: int) -> tuple[NDArray[np.float64], str]:
     """Line of the path: `lead` points for the run-in, then `rows`, at least `least`, for the record."""
     spacing = case.contact.spacing
     if case.surface.spectrum is not None:
@@ -107,3 +107,9 @@ def _line(case: BallOnBeam, rows: int, least: int, lead: int, seed: int) -> tupl
     held = profile.heights[: rows + lead]
     origin = f"path measured, {case.surface.line.name}{mirrored_words(held, rows + lead)}"
     return mirrored_before(held, rows + lead), origin
+
+
+def recorded_time(case: Case, textures: Textures) -> float:
+    """Time of the record, s: that of the case, or until its line ends."""
+    pace = case.contact.spacing / case.speed
+    return min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace)

@@ -1,0 +1,58 @@
+"""One body rolls over another: the whole chain from texture to spectra."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from asperity.laws import Law, spec_of
+from asperity.progress import Progress
+from asperity.rolling.pair import RolledPair, roll_pair
+from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
+from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.usual.textures import recorded_time
+from asperity.store import Checkpoint, Store, content_key
+
+
+@dataclass(frozen=True, eq=False)
+class Computed:
+    """Everything that was computed for a case, before it is laid out as a result."""
+
+    prepared: Prepared
+    chain: Chain[RolledPair]
+
+
+def compute(prepared: Prepared, progress: Progress) -> Computed:
+    """Reduce and roll a case from `asperity.scenarios.preparing.prepare`."""
+    case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
+    store, watch = Store(), Stopwatch(textures=prepared.seconds)
+    prepared.kind.compile_kernels(progress)  # not before the files are known to be right
+    watch.lap("compiled functions")
+    duration = recorded_time(case, textures)
+
+    def roll_law(law: Law) -> RolledPair:
+        return roll_pair(
+            bodies.over,
+            bodies.rolls,
+            law,
+            speed=case.speed,
+            start=case.record_start,
+            duration=duration,
+            settling=case.settled_time,
+            time_step=case.time_step,
+            highest_frequency=case.numerics.highest_frequency,
+            progress=progress,
+            checkpoint=_checkpoint(law, prepared, store),
+        )
+
+    return Computed(
+        prepared, reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
+    )
+
+
+def _checkpoint(law: Law, prepared: Prepared, store: Store) -> Checkpoint | None:
+    """Where a law that is solved in every step is kept, by all that its motion depends on."""
+    path = prepared.textures.path
+    if path is None or not spec_of(law.name).solved_every_step:
+        return None
+    rows = path.rows(0, path.shape[0])
+    return Checkpoint(store, content_key(law.name, rows, prepared.case.model_dump(mode="json")))

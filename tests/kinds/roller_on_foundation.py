@@ -1,0 +1,117 @@
+"""A roller on an elastic foundation: a kind of case in one file, as a user would write it.
+
+The foundation is massless: w = F/k. The roller is a rigid mass under a load.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from pydantic import BeforeValidator
+
+from asperity.config.case import Case, Law
+from asperity.config.keys import Choice, Force, Length, Mass, OwnOrNamed, Section, Stiffness, key
+from asperity.config.sections import ContactCase, Numerics
+from asperity.contact import Hertz
+from asperity.reference.materials import contact_modulus
+from asperity.rolling.ball import RollingBall
+from asperity.scenarios.geometry import geometry, parabola
+from asperity.scenarios.kind import Words
+from asperity.scenarios.usual.bodies import Bodies
+from asperity.structures.ball import Ball
+
+
+class Roller(Section):
+    """What rolls."""
+
+    radius: Length = key("25 mm", "radius", within=("10 um", "10 m", "rollers lie between"))
+    mass: Mass = key("0.5 kg", "mass", within=("1 mg", "1000 t", "rollers lie between"))
+    load: Force = key("30 N", "force that presses it down", within=("1 nN", "1 GN", "loads lie between"))
+    material: OwnOrNamed = key("steel", "material")
+
+
+class Foundation(Section):
+    """What is rolled over."""
+
+    stiffness: Stiffness = key("5 MN/m", "stiffness", within=("1 N/m", "1 TN/m", "foundations lie between"))
+    material: OwnOrNamed = key("steel", "material of its surface")
+
+
+class RollerOnFoundation(Case):
+    """A roller on an elastic foundation."""
+
+    kind: Annotated[str, BeforeValidator(Choice(("roller-on-foundation",)))] = key(
+        "roller-on-foundation", "what rolls"
+    )
+    laws: tuple[Law, ...] = key(("areal", "hertz", "linear"), "laws of the contact force")
+    roller: Roller = key({}, "the roller")
+    foundation: Foundation = key({}, "the foundation")
+    contact: ContactCase = key({}, "how the rough contact is solved and reduced")
+    numerics: Numerics = key({}, "how finely time is resolved")
+
+
+CASE = RollerOnFoundation
+ROLLING = "roller"
+WORDS = Words("A roller on an elastic foundation.", " in [surface]", {"surface.rms": '"0.2 um"'})
+
+
+@dataclass(frozen=True)
+class ElasticFoundation:
+    """A spring at rest, of a stiffness, N/m: rolled over."""
+
+    stiffness: float
+
+    def laid(self, path, load):
+        return Sunk(self.stiffness, path.time_step, load)
+
+    def alternating_compliance(self, path):
+        return 1.0 / self.stiffness
+
+
+class Sunk:
+    """The foundation under the contact."""
+
+    def __init__(self, stiffness, time_step, load):
+        self.stiffness, self.time_step = stiffness, time_step
+        self.displacement, self.velocity = load / stiffness, 0.0
+
+    def free(self, step, before):
+        return 0.0
+
+    def compliance(self, step):
+        return 1.0 / self.stiffness
+
+    def complete(self, step, before, force):
+        self.displacement, self.velocity = (
+            force / self.stiffness,
+            (force - before) / (self.stiffness * self.time_step),
+        )
+
+    def state(self):
+        return {"sunk": np.array([self.displacement, self.velocity])}
+
+    def restore(self, state):
+        self.displacement, self.velocity = state["sunk"]
+
+
+def bodies_of(case):
+    """Build the bodies of a case."""
+    roller = Ball(case.roller.radius, case.roller.material, case.roller.load, case.roller.mass)
+    return Bodies(ElasticFoundation(case.foundation.stiffness), RollingBall(roller))
+
+
+def geometry_of(case):
+    """Lay out the roller on the contact grid."""
+    modulus = contact_modulus(case.roller.material, case.foundation.material)
+    hertz = Hertz(modulus, case.roller.radius, case.roller.radius)
+    section = parabola(case.contact, case.roller.radius)
+    return geometry(
+        case.contact,
+        section,
+        hertz,
+        case.roller.load,
+        smallest_radius=case.roller.radius,
+        body="roller",
+    )

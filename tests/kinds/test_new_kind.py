@@ -1,0 +1,118 @@
+"""A kind of case takes one file and one line, and whatever runs cases runs it."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import asperity
+from asperity.cli import main
+from asperity.kinds import KINDS
+from asperity.scenarios.kind import Kind
+
+NAME = "roller-on-foundation"
+FILE = Path(__file__).with_name("roller_on_foundation.py")
+CASE = f"""
+kind = "{NAME}"
+duration = "20 ms"
+settling = "5 ms"
+
+[surface]
+rms = "0.05 um"
+longest = "0.2 mm"
+shortest = "50 um"
+
+[roller]
+load = "30 N"
+
+[contact]
+spacing = "20 um"
+window = "1 mm"
+samples = 2
+sample_length = "4 mm"
+
+[numerics]
+highest_frequency = "2 kHz"
+"""
+
+
+@pytest.fixture
+def kind(tmp_path, monkeypatch):
+    """The file in a folder of its own, and one line."""
+    (tmp_path / "own").mkdir()
+    shutil.copy(FILE, tmp_path / "own" / "rollers.py")
+    monkeypatch.syspath_prepend(str(tmp_path / "own"))
+    monkeypatch.setitem(KINDS, NAME, Kind("rollers"))
+    return KINDS[NAME]
+
+
+def command(*arguments):
+    done = CliRunner().invoke(main, arguments, standalone_mode=False)
+    assert (done.exit_code, done.return_value, done.exception) == (0, None, None), done.output
+    return done.output
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")
+def test_a_kind_in_one_file_is_written_checked_run_and_reported(kind, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert f'kind = "{NAME}"' in command("new", NAME)
+    Path("case.toml").write_text(CASE)
+    plan = command("check", "case.toml")
+    assert "roller.load" in plan
+    assert "foundation.stiffness" in plan
+    command("run", "case.toml", "-o", "out")
+    result = asperity.open_result("out/run.nc")
+    assert result.attrs["title"] == "A roller on an elastic foundation"
+    assert "roller" in result.attrs["verdict"]
+    rolling, spectra = result["rolling"].to_dataset(), result["spectra"].to_dataset()
+    assert list(rolling["law"].values) == ["areal", "hertz", "linear"]
+    force, sunk = rolling["contact_force"], rolling["over_displacement"]
+    np.testing.assert_allclose(sunk, force / 5e6, rtol=1e-12)
+    assert float(abs(force.mean("time") / 30.0 - 1.0).max()) < 0.02
+    # Hertz follows every wave of the line, the areal texture is smoothed by the contact
+    rms = force.std("time")
+    assert float(rms.sel(law="hertz")) > 1.5 * float(rms.sel(law="areal")) > 0.0
+    assert np.isfinite(spectra["force_level"].sel(band=slice(300.0, 2000.0))).all()
+    page = Path("out/report.html").read_text(encoding="utf-8")
+    for heading in ("Texture", "Contact", "Contact force"):
+        assert f">{heading}</h2>" in page
+    assert {"force_psd.csv", "force_bands.csv"} <= {path.name for path in Path("out").iterdir()}
+
+
+def test_a_kind_in_one_file_runs_from_python(kind):
+    case = {"kind": NAME, "laws": ["linear"], "duration": "10 ms", "settling": "0 s"} | {
+        "surface": {"spectrum": "iso3095", "level": "-20 dB"},
+        "contact": {"spacing": "20 um", "window": "0.6 mm"},
+        "numerics": {"highest_frequency": "2 kHz"},
+    }
+    result = asperity.run(case)
+    assert result["scenario"].attrs["kind"] == NAME
+    assert asperity.RollerOnFoundation is kind.case
+
+
+def test_what_is_not_usual_and_not_offered_is_told(tmp_path, monkeypatch):
+    (tmp_path / "bare.py").write_text("")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(AttributeError, match="bare offers no CASE, and none is usual"):
+        Kind("bare").case  # noqa: B018
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken" / "__init__.py").write_text("")
+    (tmp_path / "broken" / "case.py").write_text("import a_module_that_is_not_there")
+    with pytest.raises(ModuleNotFoundError, match="a_module_that_is_not_there"):
+        Kind("broken").case  # noqa: B018
+
+
+def test_a_kind_takes_one_file_and_one_line():
+    """The file above is all: no other file of the project or of the tests knows its name but this one."""
+    root = Path(__file__).parents[2]
+    knowing = [
+        path.relative_to(root)
+        for folder in ("src", "tests")
+        for path in (root / folder).rglob("*.py")
+        if "foundation" in path.name or "RollerOnFoundation" in path.read_text(encoding="utf-8")
+    ]
+    assert {path.name for path in knowing} == {FILE.name, Path(__file__).name}
+    code = [line for line in FILE.read_text().splitlines() if line.strip()]
+    assert len(code) < 100
