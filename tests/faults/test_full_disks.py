@@ -95,6 +95,19 @@ def test_a_full_file_system(earlier, small, tmp_path, what, full):
             assert "finished work is not kept" in told
 
 
+def test_a_study_needs_no_cache(small, tmp_path):
+    """Its table holds all members, and it is said once that they are not kept."""
+    smooth = 'kind = "ball-on-beam"\nduration = "5 ms"\nlaws = ["hertz"]\n[surface]\nspectrum = "iso3095"\n'
+    folder = prepared(tmp_path / "study", smooth)
+    prepared(folder, 'case = "case.toml"\n[sweep]\nseed = [1, 2, 3]\n', "study.toml")
+    fill(small)
+    code, told = ended(program(folder, "study", "study.toml", env={"ASPERITY_CACHE": str(small / "cache")}))
+    promised(code, told)
+    assert code == 0
+    assert told.count("arning: ") == told.count("finished work is not kept") == 1
+    assert len((folder / "runs" / "study" / "study.csv").read_text().splitlines()) == 4
+
+
 def test_nothing_can_be_written_anywhere(tmp_path):
     """A read-only home, and no folder for temporary files: files stand where folders should."""
     folder = prepared(tmp_path)

@@ -7,6 +7,7 @@ import os
 import signal
 import threading
 import time
+import warnings
 from collections import deque
 from collections.abc import Collection, Generator, Iterator, Sequence
 from concurrent.futures import (
@@ -155,6 +156,7 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 def _begin(watched: Connection, threads: int) -> None:
     """Prepare a process: interrupts are left to the one that started it, and it ends with that one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    warnings.simplefilter("ignore")  # what a member warns of stands in its result
     os.environ.setdefault(THREADS, str(threads))
     threading.Thread(target=_end_with, args=(watched,), daemon=True).start()
 
