@@ -67,3 +67,34 @@ def test_nothing_is_pickled_and_no_text_is_evaluated():
             if module.name == "kept.py":  # numba's own format, read only after its digest
                 names.discard("pickle")
             assert not names & banned, f"{module}: {names & banned}"
+
+
+KIND = {
+    "Bodies", "Computed", "bodies_of", "compile_kernels", "compute", "geometry_of", "layout", "records",
+    "rows", "seconds", "step_seconds", "textures_of", "warn_of",
+}  # fmt: skip
+"""What each kind of case offers under the same name, see `asperity.scenarios.kind.Kind`."""
+
+
+SHARED = {"Entry", "Prepared", "prepare"}
+"""What two rooms still call the same: laws and cases made ready, entries of results and keys of cases."""
+
+
+def has_its_own_name(module, name):
+    """Whether a name is not one of those that several modules have to share."""
+    inside = module.relative_to(SOURCE).parts
+    if inside[0] == "kinds" and len(inside) > 2:
+        return name not in KIND
+    if inside[:2] == ("surfaces", "readers"):
+        return name != "read"  # each format is read by the `read` of its module
+    return inside != ("cli", "__init__.py")  # commands are called as what they do
+
+
+def test_public_names_are_unique():
+    homes = {}
+    for module in MODULES:
+        for node in ast.parse(module.read_text(encoding="utf-8")).body:
+            named = isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")
+            if named and has_its_own_name(module, node.name):
+                homes.setdefault(node.name, []).append(str(module.relative_to(SOURCE)))
+    assert {name: where for name, where in homes.items() if len(where) > 1 and name not in SHARED} == {}
