@@ -56,7 +56,7 @@ def test_a_minimal_case_has_the_documented_defaults():
     assert case.contact.spacing == pytest.approx(8e-6)
     assert (case.contact.damping, case.contact.hardness, case.contact.approaches) == (0.0, None, None)
     assert (case.numerics.highest_frequency, case.numerics.rtol) == (5000.0, 1e-6)
-    assert case.text == MINIMAL
+    assert parse_case(case.text) == case
     assert case.duration is case.start is case.settling is None
     assert (case.settled_time, case.record_start, case.rolled_time) == pytest.approx((0.2, 0.2, 0.8))
 
@@ -90,9 +90,9 @@ def test_every_key_of_the_interface_is_understood(map_file):
 
 def test_a_case_is_frozen():
     case = parse_case(MINIMAL)
-    with pytest.raises(ValueError, match="frozen"):
+    with pytest.raises(AttributeError, match="speed of BallOnBeam does not change"):
         case.speed = 2.0
-    with pytest.raises(ValueError, match="frozen"):
+    with pytest.raises(AttributeError, match=r"radius of Ball.* does not change"):
         case.ball.radius = 2.0
 
 
@@ -169,7 +169,7 @@ def test_a_run_in_that_begins_before_the_beam_is_refused():
 def test_the_template_is_a_case_with_the_defaults():
     case = parse_case(template("ball-on-beam"))
     plain = parse_case(MINIMAL)
-    assert case.model_dump() == plain.model_dump()
+    assert case == plain
     assert [item["key"] for item in case.parameters() if not item["is_default"]] == ["surface.rms"]
 
 
@@ -241,7 +241,7 @@ def test_parameters_are_listed_with_units_and_marked():
         "note": "radius",
     }
     assert listed["speed"]["is_default"]
-    assert listed["speed"]["value"] == "1000 mm/s"
+    assert listed["speed"]["value"] == "1 m/s"
     assert not listed["beam.sensors"]["is_default"]
     assert listed["beam.sensors"]["value"] == "0.5 m"
     assert listed["ball.load"]["value"] == "its weight"

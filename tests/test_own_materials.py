@@ -53,7 +53,7 @@ def test_titles_and_parameters_name_them():
     found = asperity.run(with_beam_of(ALUMINIUM))
     assert found.attrs["title"] == "Glass ball on a 70 GPa beam"
     rows = {p["key"]: p for p in json.loads(found["scenario"].attrs["parameters"])}
-    assert rows["beam.material"]["value"] == "youngs_modulus 70 GPa, poisson_ratio 0.3, density 2.7 g/cm^3"
+    assert rows["beam.material"]["value"] == "youngs_modulus 70 GPa, poisson_ratio 0.3, density 2700 kg/m^3"
     assert not rows["beam.material"]["is_default"]
     brass = {"name": "brass", "youngs_modulus": "100 GPa", "poisson_ratio": 0.34, "density": "8500 kg/m^3"}
     assert asperity.run(with_beam_of(brass)).attrs["title"] == "Glass ball on a brass beam"
@@ -75,9 +75,8 @@ def test_a_case_file_has_them_in_braces_or_below(text):
 
 def test_python_may_hand_a_material_over():
     brass = Material("brass", 100e9, 0.34, 8500.0)
-    case = as_case(CASE).model_copy(
-        update={"beam": as_case(CASE).beam.model_copy(update={"material": brass})}
-    )
+    case = as_case(CASE).with_(beam={"material": brass})
+    assert (case.beam.material.name, case.beam.material.density) == ("brass", 8500.0)
     assert contact_modulus(case.ball.material, case.beam.material) < contact_modulus(
         MATERIALS["glass"], MATERIALS["steel"]
     )
@@ -97,7 +96,7 @@ def test_a_study_may_sweep_them():
 
 
 def test_all_that_is_wrong_is_said_at_once():
-    wrong = {"youngs_modulus": 70e9, "poison_ratio": 0.3, "poisson_ratio": 0.6, "name": ""}
+    wrong = {"youngs_modulus": "70", "poison_ratio": 0.3, "poisson_ratio": 0.6, "name": ""}
     with pytest.raises(CaseError) as caught:
         as_case(with_beam_of(wrong))
     errors = caught.value.errors
@@ -105,9 +104,8 @@ def test_all_that_is_wrong_is_said_at_once():
     text = "\n".join(errors)
     for message in (
         "beam.material.poison_ratio: received an unknown key; allowed: name, youngs_modulus, poisson_ratio, "
-        'density. Did you mean "poisson_ratio"?',
-        "beam.material.youngs_modulus: received 70000000000.0; allowed: a pressure greater than 0",
-        '"70000000000.0 Pa" if it is in SI units (Pa)',
+        'density, citation. Did you mean "poisson_ratio"?',
+        "beam.material.youngs_modulus: received '70'; allowed: a pressure greater than 0",
         "beam.material.poisson_ratio: received 0.6; allowed: a number greater than -1 and at most 0.5.",
         'beam.material.density: received nothing; allowed: a density greater than 0, with its unit, as "2700',
         "beam.material.name: received ''; allowed: a text in quotes.",

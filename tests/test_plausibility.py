@@ -5,7 +5,8 @@ import math
 import pytest
 
 from asperity.config.describing import entries
-from asperity.config.keys import Number, Quantity, extra_of, value_kind
+from asperity.config.form import extra_of
+from asperity.config.keys import Number, Quantity, value_kind
 from asperity.errors import CaseError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of
@@ -52,7 +53,7 @@ def test_numbers_beyond_their_limits_are_told_with_a_reason(kind, entry):
         texture = {"surface": {"rms": "0.3 um"} if kind == "ball-on-beam" else {"smooth": True}}
         case = {"kind": kind, **texture, **({section: keys} if section else keys)}
         with pytest.raises(CaseError) as caught:
-            case_of(case, "", "case")
+            case_of(case)
         message = str(caught.value)
         own = "; allowed: a" in message  # its kind, as a length greater than 0, is stricter
         assert entry.dotted in message
@@ -61,7 +62,7 @@ def test_numbers_beyond_their_limits_are_told_with_a_reason(kind, entry):
 
 def test_the_message_names_value_limits_and_reason():
     with pytest.raises(CaseError) as caught:
-        case_of({"kind": "ball-on-beam", "surface": {"rms": "1e20 m"}}, "", "case")
+        case_of({"kind": "ball-on-beam", "surface": {"rms": "1e20 m"}})
     assert (
         "surface.rms: received 1e+20 m; allowed: 1 pm to 1 mm. Less is smoother than atoms are, more is no "
         "roughness." in str(caught.value)
@@ -71,6 +72,6 @@ def test_the_message_names_value_limits_and_reason():
 def test_an_own_material_is_held_to_solids():
     material = {"youngs_modulus": "1 Pa", "poisson_ratio": 0.3, "density": "1 t/mm^3"}
     with pytest.raises(CaseError) as caught:
-        case_of({"kind": "ball-on-beam", "ball": {"material": material}}, "", "case")
+        case_of({"kind": "ball-on-beam", "ball": {"material": material}})
     assert "youngs_modulus: received 1 Pa; allowed: 1 kPa to 10 TPa" in str(caught.value)
     assert "density: received 1e+12 kg/m^3; allowed: 1 kg/m^3 to 100000 kg/m^3" in str(caught.value)

@@ -6,6 +6,7 @@ import xarray as xr
 
 import asperity
 from asperity.errors import InputError
+from asperity.reporting.notebook import Result
 from asperity.results import GROUPS, case_text, checked, read_result, save, variable
 from asperity.schema import VERSION
 
@@ -38,7 +39,7 @@ def test_a_result_comes_back_as_it_was(tmp_path):
 
 def test_a_folder_stands_for_its_run(tmp_path):
     save(small_tree(), tmp_path / "run.nc")
-    xr.testing.assert_identical(asperity.open_result(tmp_path), small_tree())
+    xr.testing.assert_identical(asperity.open_result(tmp_path), Result.of(small_tree()))
 
 
 def test_the_file_is_closed_after_loading(tmp_path):

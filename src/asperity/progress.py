@@ -6,11 +6,13 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from html import escape
 from typing import Protocol, TextIO
 
 from asperity.printable import printable
 from asperity.terminal import write
 
+NOTEBOOK_INTERVAL = 0.2  # s between drawings of a bar
 QUIET_INTERVAL = 10.0  # s between lines where standard error is not a terminal
 
 
@@ -51,6 +53,67 @@ def progress_bar(stream: TextIO | None = None) -> Iterator[Progress]:
             bars.update(tasks[message], completed=done, total=total)
 
         yield update
+
+
+@contextmanager
+def shown_progress(progress: Progress | None) -> Iterator[Progress]:
+    """Take the progress that a caller wants; without any, a bar in a notebook, and none elsewhere."""
+    if progress is not None:
+        yield progress
+    elif _in_notebook():
+        with _NotebookProgress() as shown:
+            yield shown
+    else:
+        yield lambda done, total, message: None
+
+
+def _in_notebook() -> bool:
+    """Whether a notebook shows what is displayed; IPython is asked only where it runs already."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return shell is not None and shell.has_trait("kernel")
+
+
+class _NotebookProgress:
+    """A bar beneath the cell that is run, which goes when the work ends."""
+
+    def __init__(self) -> None:
+        from IPython.display import display
+
+        self.line = "", 0, 1, 0.0  # message, done, total and seconds left
+        self.started = self.drawn = time.monotonic()
+        self.first_done = 0
+        self.handle = display(self, display_id=True)
+
+    def __enter__(self) -> _NotebookProgress:
+        return self
+
+    def __exit__(self, *caught: object) -> None:
+        self.line = "", 0, 1, 0.0
+        self.handle.update(self)
+
+    def __call__(self, done: int, total: int, message: str) -> None:
+        now = time.monotonic()
+        begun = message != self.line[0]
+        if begun:
+            self.first_done, self.started = done, now
+        elif now - self.drawn < NOTEBOOK_INTERVAL and done < total:
+            return
+        left = (now - self.started) * (total - done) / max(done - self.first_done, 1)
+        self.line, self.drawn = (message, done, total, left), now
+        self.handle.update(self)
+
+    def __repr__(self) -> str:
+        message, done, total, _ = self.line
+        return f"{message}: {done} of {total}" if message else ""
+
+    def _repr_html_(self) -> str:
+        message, done, total, left = self.line
+        if not message:
+            return ""
+        bar = f'<progress value="{done}" max="{max(total, 1)}"></progress>'
+        rest = f", about {duration(left)} left" if 0 < done < total else ""
+        return f"{bar} {escape(printable(message))}: {done} of {total}{rest}"
 
 
 class _PlainProgress:

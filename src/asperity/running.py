@@ -11,16 +11,15 @@ from asperity.arguments import shown
 from asperity.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    import xarray
-
     from asperity.config.case import Case
     from asperity.progress import Progress
+    from asperity.reporting.notebook import Result
     from asperity.scenarios.preparing import Prepared
 
 
 def run(
     case: str | os.PathLike[str] | Mapping[str, Any] | Case | Prepared, progress: Progress | None = None
-) -> xarray.DataTree:
+) -> Result:
     """Compute a case.
 
     Parameters
@@ -29,13 +28,13 @@ def run(
         A TOML case file; its keys and values, sections as mappings; a case object; or what
         `prepare` made of one.
     progress : callable, optional
-        ``progress(done, total, message)``, called during long work.
+        ``progress(done, total, message)``, called during long work. In a notebook a bar is shown by default.
 
     Returns
     -------
-    xarray.DataTree
-        Groups scenario, surface, contact, rolling and spectra, and what its kind adds; see
-        `asperity.results`.
+    Result
+        An `xarray.DataTree` with the groups scenario, surface, contact, rolling and spectra, and what its
+        kind adds. A notebook shows its verdict, its numbers and its force.
 
     Raises
     ------
@@ -46,24 +45,29 @@ def run(
     """
     from asperity.errors import PhysicsWarning
     from asperity.kinds.cases import as_case
+    from asperity.progress import shown_progress
+    from asperity.reporting.notebook import Result
     from asperity.scenarios.preparing import Prepared
     from asperity.threads import one_thread_in_linear_algebra
 
     loaded = case if isinstance(case, Prepared) else as_case(case)
     if progress is not None and not callable(progress):
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
-    quiet = progress or (lambda done, total, message: None)
     try:
-        with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
+        with (
+            warnings.catch_warnings(record=True) as caught,
+            one_thread_in_linear_algebra(),
+            shown_progress(progress) as told,
+        ):
             warnings.simplefilter("always", PhysicsWarning)
             prepared = loaded if isinstance(loaded, Prepared) else prepare(loaded)
             caught += prepared.caught
-            result = prepared.kind.computed(prepared, quiet, caught)
+            result = prepared.kind.computed(prepared, told, caught)
     except ComputationError:
         _warn_again(caught)  # they may say why
         raise
     _warn_again(message for message in caught if not issubclass(message.category, PhysicsWarning))
-    return result
+    return Result.of(result)
 
 
 def _warn_again(caught: Iterable[warnings.WarningMessage]) -> None:
@@ -71,7 +75,7 @@ def _warn_again(caught: Iterable[warnings.WarningMessage]) -> None:
         warnings.warn_explicit(message.message, message.category, message.filename, message.lineno)
 
 
-def open_result(path: str | os.PathLike[str]) -> xarray.DataTree:
+def open_result(path: str | os.PathLike[str]) -> Result:
     """Open the result of a run again.
 
     Parameters
@@ -81,22 +85,23 @@ def open_result(path: str | os.PathLike[str]) -> xarray.DataTree:
 
     Returns
     -------
-    xarray.DataTree
-        The result, in memory; the file is closed.
+    Result
+        The result as `run` returned it, in memory; the file is closed.
 
     Raises
     ------
     InputError
         If the file is missing, damaged, too large or not a result of this program.
     """
+    from asperity.reporting.notebook import Result
     from asperity.results import read_result
 
-    return read_result(path)
+    return Result.of(read_result(path))
 
 
-def prepare(case: Case) -> Prepared:
-    """Prepare a case of any kind, see `asperity.scenarios.preparing.prepare`."""
+def prepare(case: Case, source: str = "case") -> Prepared:
+    """Prepare a case of any kind, called `source` in messages: `asperity.scenarios.preparing.prepare`."""
     from asperity.kinds.cases import kind_of
     from asperity.scenarios import preparing
 
-    return preparing.prepare(case, kind_of(case))
+    return preparing.prepare(case, kind_of(case), source)

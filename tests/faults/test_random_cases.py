@@ -9,7 +9,8 @@ from program import LONG
 
 import asperity
 from asperity.config.describing import entries
-from asperity.config.keys import Choice, Number, Quantity, extra_of, value_kind
+from asperity.config.form import extra_of
+from asperity.config.keys import Choice, Number, Quantity, value_kind
 from asperity.errors import AsperityError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of
@@ -88,7 +89,7 @@ def test_a_random_case_is_computed_or_refused(seed, tmp_path, monkeypatch):
     for _ in range(50):  # until one is legal
         case = random_case(source)
         try:
-            case_of(case, "", "case")
+            case_of(case)
         except AsperityError:
             continue
         break

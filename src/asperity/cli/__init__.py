@@ -126,7 +126,7 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> None:
 
     loaded = load_case(case)
     refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
-    show_plan(prepare(loaded), str(case))
+    show_plan(prepare(loaded, str(case)), str(case))
 
 
 @main.command()
@@ -140,7 +140,8 @@ def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> No
     from asperity.cli.running import run_into
     from asperity.kinds.cases import load_case
 
-    run_into(load_case(case), directory or Path("runs") / case.stem, report=report, overwrite=overwrite)
+    target = directory or Path("runs") / case.stem
+    run_into(load_case(case), target, source=str(case), report=report, overwrite=overwrite)
 
 
 @main.command()

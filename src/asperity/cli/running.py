@@ -13,7 +13,9 @@ from asperity.progress import progress_bar
 from asperity.terminal import say
 
 
-def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: bool = False) -> None:
+def run_into(
+    case: Case, directory: Path, *, source: str = "case", report: bool = True, overwrite: bool = False
+) -> None:
     """Compute a case and write its results.
 
     Parameters
@@ -22,6 +24,8 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
         The case.
     directory : Path
         Where ``run.nc``, ``report.html`` and the CSVs go.
+    source : str
+        Name of the case, for messages.
     report : bool
         Whether to write the page and the CSVs.
     overwrite : bool
@@ -35,17 +39,17 @@ def run_into(case: Case, directory: Path, *, report: bool = True, overwrite: boo
     refuse_folder(case, directory, overwrite=overwrite)
     with alone_in(directory):
         refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
-        _run_alone(case, directory, report=report)
+        _run_alone(case, directory, source, report=report)
 
 
-def _run_alone(case: Case, directory: Path, *, report: bool) -> None:
+def _run_alone(case: Case, directory: Path, source: str, *, report: bool) -> None:
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.kinds import report as reports
     from asperity.results import save
     from asperity.running import prepare, run
     from asperity.store import Store
 
-    prepared = prepare(case)
+    prepared = prepare(case, source)
     with progress_bar() as progress:
         announce_scan(prepared, progress)
         tree = run(prepared, progress=progress)
@@ -104,7 +108,7 @@ def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> No
             earlier = case_text(directory / "run.nc")
         except InputError:
             raise InputError(str(directory), "a run.nc that cannot be read", allowed, remedy) from None
-        if earlier.split() != case.text.split():
+        if earlier != case.text:
             raise InputError(str(directory), "the run of another case", allowed, remedy)
     elif (directory / "report.html").exists():
         raise InputError(str(directory), "a report.html without its run.nc", allowed, remedy)

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import BeforeValidator, PrivateAttr
+from pydantic import BeforeValidator
 
-from asperity.config.describing import parameters
-from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Section, Speed, key
+from asperity.config.content import described
+from asperity.config.describing import in_toml, parameters, refused
+from asperity.config.form import Section, key
+from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
 from asperity.config.sections import ContactCase, Index, Numerics, Surface
+from asperity.config.writing import toml_text
 from asperity.errors import InputError
 from asperity.laws import names
 from asperity.units import written
@@ -29,7 +32,8 @@ Law = Annotated[str, BeforeValidator(Choice(names))]
 class Case(Section):
     """A body rolls over a rough surface; each kind of case adds its bodies and its defaults.
 
-    Every length, time, force and so on is in SI here; units stand in the case file alone.
+    Every length, time, force and so on is in SI here. A case does not change; `with_` makes another one.
+    Cases are equal if all their keys are.
     """
 
     kind: str  # each kind declares its own
@@ -67,24 +71,51 @@ class Case(Section):
         contact: ContactCase
         numerics: Numerics
 
-    _text: str = PrivateAttr("")
-    _given: dict[str, Any] = PrivateAttr(default_factory=dict)
-    _source: str = PrivateAttr("case")
+    def with_(self, **changes: Any) -> Self:
+        """Return the same case with other values for some keys.
+
+        Parameters
+        ----------
+        **changes
+            Keys with their new values, in SI or as text with a unit; None takes a key out. A key of a section
+            is written ``**{"contact.spacing": 4e-6}``, or in a mapping of keys of the section, of which the
+            others stay: ``contact={"spacing": "4 um"}``.
+
+        Returns
+        -------
+        Case
+            A new case of the same kind.
+
+        Raises
+        ------
+        CaseError
+            With all errors at once, if the keys are wrong or do not fit together.
+        """
+        data = self.given()
+        for name, value in changes.items():
+            section, _, key_in_section = name.rpartition(".")
+            _change(data, {section: {key_in_section: value}} if section else {name: value})
+        return type(self)(**data)
+
+    def to_toml(self) -> str:
+        """Write the case as a case file: its kind, and all keys that are not at their defaults.
+
+        Returns
+        -------
+        str
+            TOML that reads as the same case, to the last bit.
+
+        Raises
+        ------
+        InputError
+            If a surface or a table stands in memory, which no case file can hold.
+        """
+        return toml_text({"kind": self.kind, **in_toml(self, in_memory=refused)})
 
     @property
     def text(self) -> str:
-        """The TOML text that this case was read from."""
-        return self._text
-
-    @property
-    def given(self) -> dict[str, Any]:
-        """The keys that its file holds, as TOML gives them."""
-        return self._given
-
-    @property
-    def source(self) -> str:
-        """The file that this case was read from; relative paths in it start at its folder."""
-        return self._source
+        """The case in TOML; what stands in memory is described, with its digest."""
+        return toml_text({"kind": self.kind, **in_toml(self, in_memory=lambda _, value: described(value))})
 
     def parameters(self) -> list[dict[str, Any]]:
         """List the keys that matter in this case, for people.
@@ -95,9 +126,7 @@ class Case(Section):
             For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
             ``note`` (what the key is).
         """
-        given = dict(self._given)
-        given.setdefault("laws", list(self.laws))
-        return parameters(self, given)
+        return parameters(self)
 
     @property
     def time_step(self) -> float:
@@ -136,6 +165,18 @@ class Case(Section):
         yield from problems_of_laws(self)
         yield from problems_of_sampling(self)
         yield from problem_of_steps(self, self.settled_time + self.rolled_time)
+
+
+def _change(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
+    """Put keys into the dicts of a case; None takes them out."""
+    for name, value in changes.items():
+        if value is None:
+            data.pop(name, None)
+        elif isinstance(value, Mapping) and isinstance(section := data.get(name, {}), dict):
+            data[name] = section = dict(section)
+            _change(section, value)
+        else:
+            data[name] = value
 
 
 def problems_of_laws(case: Case) -> Iterator[InputError]:

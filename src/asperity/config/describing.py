@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, NoReturn
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from asperity.config.keys import Quantity, allowed_in, extra_of, is_active, value_kind
-from asperity.units import factor
+from asperity.config.content import content, described, holds_memory
+from asperity.config.form import Section, extra_of, is_active
+from asperity.config.keys import GIVEN, Quantity, allowed_in, name_of_numbers, value_kind
+from asperity.errors import InputError
+from asperity.reference.materials import MATERIALS, Material
+from asperity.units import written
+
+_UNIT = re.compile(r"\d\.? ([^\"',\]]+)")  # in an example, as "25 mm" or ["0.2 m", "0.4 m"]
 
 
 class Entry(NamedTuple):
@@ -32,15 +40,8 @@ class Entry(NamedTuple):
         return str(extra_of(self.field)["otherwise"])
 
 
-def parameters(case: BaseModel, given: Mapping[str, Any]) -> list[dict[str, Any]]:
+def parameters(case: Section) -> list[dict[str, Any]]:
     """List the keys that matter in a case.
-
-    Parameters
-    ----------
-    case : pydantic model
-        The case.
-    given : mapping
-        The keys that its file holds, as TOML gives them.
 
     Returns
     -------
@@ -51,41 +52,105 @@ def parameters(case: BaseModel, given: Mapping[str, Any]) -> list[dict[str, Any]
     listed = []
     for entry in entries(type(case)):
         title, _, _ = entry.dotted.rpartition(".")
-        section = getattr(case, title) if title else case
-        written = given.get(title, {}) if title else given
+        section: Section = getattr(case, title) if title else case
         if not is_active(section, entry.name):
             continue
-        default = entry.otherwise if entry.default is None else _human(entry.default)
-        value, same = default, True
-        if entry.name in written:
-            value, same = _human(written[entry.name]), _is_default(entry, getattr(section, entry.name))
-        if value:
-            item = {"key": entry.dotted, "value": value, "default": default, "is_default": same}
-            listed.append({**item, "note": entry.field.description})
+        value, usual = getattr(section, entry.name), section.default_of(entry.name)
+        default = entry.otherwise if usual is None else in_words(usual, entry.field)
+        text = default if value is None else in_words(value, entry.field)
+        if text:
+            item = {"key": entry.dotted, "value": text, "default": default}
+            same = content(value) == content(usual)
+            listed.append({**item, "is_default": same, "note": entry.field.description})
     return listed
 
 
-def with_unit(value: float, field: FieldInfo) -> str:
-    """Write a value in the unit that the example of its key has.
+def in_words(value: object, field: FieldInfo) -> str:
+    """Write a value of a key for people, in the unit of its default or its example: ``"300 MN/m"``."""
+    if holds_memory(value):
+        return described(value)
+    if isinstance(value, tuple):
+        return ", ".join(in_words(item, field) for item in value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, Path):
+        return value.name
+    if isinstance(value, Material):
+        return words_of_material(_material(value, exactly=False))
+    return _quantity(value, field, exactly=False) if isinstance(value, float) else str(value)
 
-    Parameters
-    ----------
-    value : float
-        In SI.
-    field : pydantic field
-        The key.
 
-    Returns
-    -------
-    str
-        As ``"300 MN/m"``, or the number alone where the key has no unit.
+def words_of_material(value: str | dict[str, Any]) -> str:
+    """Write a material for people: its name, or its numbers."""
+    numbers = {} if isinstance(value, str) else {k: v for k, v in value.items() if k != "citation"}
+    return ", ".join(f"{name} {item}" for name, item in numbers.items()) or str(value)
+
+
+def in_toml(section: Section, in_memory: Callable[[str, Any], Any]) -> dict[str, Any]:
+    """Keys that are not at their defaults as they would stand in a case file, to the last bit.
+
+    `in_memory` says what stands for the surface or table that a dotted key has instead of a file.
     """
+    return _in_toml(section, section.given(), "", in_memory)
+
+
+def _in_toml(
+    section: Section, given: Mapping[str, Any], title: str, in_memory: Callable[[str, Any], Any]
+) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        inner = getattr(section, name)
+        if isinstance(inner, Section):
+            found[name] = _in_toml(inner, value, f"{name}.", in_memory)
+        elif holds_memory(value):
+            found[name] = in_memory(f"{title}{name}", value)
+        else:
+            found[name] = value_in_toml(value, type(section).model_fields[name])
+    return found
+
+
+def value_in_toml(value: Any, field: FieldInfo) -> Any:
+    """Write a value of a key as it would stand in a case file."""
+    if isinstance(value, tuple):
+        return [value_in_toml(item, field) for item in value]
+    if isinstance(value, Material):
+        return _material(value, exactly=True)
+    if isinstance(value, Path):
+        return str(value)
+    if isinstance(value, float) and isinstance(value_kind(field.annotation, field.metadata), Quantity):
+        return _quantity(value, field, exactly=True)
+    return value
+
+
+def refused(dotted: str, value: object) -> NoReturn:
+    """Refuse to write a case of something that stands in memory."""
+    remedy = 'Save it first, as np.save("map.npy", surface.heights), and name the file in the case.'
+    raise InputError(dotted, described(value), "a file, where a case shall be written", remedy)
+
+
+def _quantity(value: float, field: FieldInfo, *, exactly: bool) -> str:
+    """Write a number with its unit, if it has one."""
     kind = value_kind(field.annotation, field.metadata)
-    example = str(extra_of(field)["example"]).strip('"')
     if not isinstance(kind, Quantity):
-        return f"{value:.6g}"
-    unit = example.split(" ", 1)[1]
-    return f"{value / factor(unit, kind.dimension):.6g} {unit}"
+        return str(value)
+    example = extra_of(field)["example"] if extra_of(field)["default"] is None else extra_of(field)["default"]
+    unit = _UNIT.search(str(example))
+    return written(value, kind.dimension, unit[1] if unit else kind.dimension, exactly=exactly)
+
+
+def _material(value: Material, *, exactly: bool) -> str | dict[str, Any]:
+    """Write a material: the name of a known one, or its numbers."""
+    if MATERIALS.get(value.name) == value:
+        return value.name
+    named = {} if value.name == name_of_numbers(value.youngs_modulus) else {"name": value.name}
+    told = {} if value.citation == GIVEN else {"citation": value.citation}
+    return {
+        **named,
+        "youngs_modulus": written(value.youngs_modulus, "Pa", "GPa", exactly=exactly),
+        "poisson_ratio": value.poisson_ratio,
+        "density": written(value.density, "kg/m^3", "kg/m^3", exactly=exactly),
+        **told,
+    }
 
 
 def commented(model: type[BaseModel], written_out: Mapping[str, str]) -> str:
@@ -140,24 +205,5 @@ def entries(model: type[BaseModel], title: str = "") -> Iterator[Entry]:
         yield from entries(section, name)
 
 
-def _is_default(entry: Entry, value: object) -> bool:
-    kind = value_kind(entry.field.annotation, entry.field.metadata)
-    if entry.default is None or kind is None:
-        return False
-    if isinstance(entry.default, tuple):
-        return value == tuple(kind(item) for item in entry.default)  # type: ignore[call-arg]
-    return bool(value == kind(entry.default))  # type: ignore[call-arg]
-
-
 def _toml(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
-
-
-def _human(value: object) -> str:
-    if isinstance(value, list | tuple):
-        return ", ".join(map(_human, value))
-    if isinstance(value, Mapping):
-        return ", ".join(f"{name} {_human(item)}" for name, item in value.items())
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return str(value)

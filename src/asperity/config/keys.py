@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated, Any, NoReturn, get_args
+from typing import Annotated, Any, NoReturn, get_args, get_origin
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import (
+    BeforeValidator,
+    PlainValidator,
+    ValidationInfo,
+)
 from pydantic.fields import FieldInfo
 
 from asperity.arguments import nearest, no_file, shown
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
+from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import factor, quantity, written
 
 _WORDS = {
@@ -43,9 +50,14 @@ BACKSLASH = (
 )
 
 
+def needs_units(info: ValidationInfo | None) -> bool:
+    """Whether quantities must carry their units, as in a file; from Python they may be numbers in SI."""
+    return bool(info is not None and (info.context or {}).get("units"))
+
+
 @dataclass(frozen=True)
 class Quantity:
-    """A number with a unit, written as a string.
+    """A number with a unit, written as a string; from Python also a number in SI.
 
     Parameters
     ----------
@@ -71,17 +83,9 @@ class Quantity:
         infinite = ', or "inf"' if self.infinite else ""
         return f'{word}{_range(self.above, self.at_least)}{infinite}, with its unit, as "{example}"'
 
-    def __call__(self, value: object) -> float:
+    def __call__(self, value: object, info: ValidationInfo | None) -> float:
         """Return the value in SI."""
-        if isinstance(value, int | float) and not isinstance(value, bool):
-            given = "dB" if self.dimension == "dB" else f"SI units ({self.dimension})"
-            self._fail(value, f'Add unit and quotes: "{shown(value)} {self.dimension}" if it is in {given}.')
-        if not isinstance(value, str):
-            self._fail(value)
-        try:
-            number = quantity(value, self.dimension)
-        except InputError as error:
-            self._fail(value, error.remedy)
+        number = self._number(value.item() if isinstance(value, np.generic) else value, info)
         if not math.isfinite(number) and not (self.infinite and number > 0):
             self._fail(value, "Give a finite value.")
         if math.isfinite(number) and _is_absurd(number):
@@ -89,6 +93,21 @@ class Quantity:
         if _outside(number, self.above, self.at_least):
             self._fail(value)
         return number
+
+    def _number(self, value: object, info: ValidationInfo | None) -> float:
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            if not needs_units(info) and not (isinstance(value, int) and abs(value) > MOST):
+                return float(value)
+            if not needs_units(info):
+                self._fail("a huge number")
+            given = "dB" if self.dimension == "dB" else f"SI units ({self.dimension})"
+            self._fail(value, f'Add unit and quotes: "{shown(value)} {self.dimension}" if it is in {given}.')
+        if not isinstance(value, str):
+            self._fail(value)
+        try:
+            return quantity(value, self.dimension)
+        except InputError as error:
+            self._fail(value, error.remedy)
 
     def _fail(self, value: object, remedy: str = "") -> NoReturn:
         raise InputError("quantity", shown(value), self.allowed, remedy)
@@ -112,7 +131,8 @@ class Number:
 
     def __call__(self, value: object) -> float | int:
         """Return the number."""
-        if self.infinite and value in ("inf", math.inf):
+        value = value.item() if isinstance(value, np.generic) else value
+        if self.infinite and isinstance(value, str | float) and value in ("inf", math.inf):
             return math.inf
         kinds = int if self.whole else int | float
         if isinstance(value, bool) or not isinstance(value, kinds):
@@ -200,15 +220,48 @@ class LengthUnit:
 
 @dataclass(frozen=True)
 class File:
-    """An existing file; a relative path starts at the folder of the case."""
+    """An existing file, whose path starts at the folder of the case; from Python also what it would hold.
 
-    allowed = "the path of an existing file, relative to the case"
+    Parameters
+    ----------
+    held : tuple of types
+        Surfaces that may stand in its place.
+    columns : int
+        Number of columns of an array that may stand in its place; 0 for none.
+    """
 
-    def __call__(self, value: object, info: ValidationInfo) -> Path:
-        """Return the path."""
+    held: tuple[type, ...] = ()
+    columns: int = 0
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return "the path of an existing file, relative to the case"
+
+    def __call__(self, value: object, info: ValidationInfo) -> Any:
+        """Return the path, absolute, or what stands in its place."""
+        if self.held and isinstance(value, self.held):
+            return value
+        several = isinstance(value, list | tuple) and len(value) > 0
+        if HeightMap in self.held and several and all(isinstance(each, HeightMap) for each in value):  # type: ignore[attr-defined]
+            return tuple(value)  # type: ignore[arg-type]
+        if self.columns and isinstance(value, np.ndarray):
+            return self._table(value)
+        return self._path(value, info)
+
+    def _table(self, value: NDArray[Any]) -> NDArray[np.float64]:
+        if value.ndim != 2 or value.shape[1] != self.columns or value.dtype.kind not in "fiu":
+            allowed = f"an array of shape (n, {self.columns}) of real numbers in SI"
+            raise InputError("table", shown(value), allowed)
+        table = np.array(value, dtype=np.float64, order="C")
+        table.flags.writeable = False
+        return table
+
+    def _path(self, value: object, info: ValidationInfo) -> Path:
         if not isinstance(value, str | Path) or "\0" in str(value) or not str(value):
-            raise InputError("file", shown(value), self.allowed)
-        path = Path((info.context or {}).get("folder", ".")) / value
+            held = "" if needs_units(info) else "".join(f", or a {each.__name__}" for each in self.held)
+            raise InputError("file", shown(value), self.allowed + held)
+        path = (Path((info.context or {}).get("folder", ".")) / value).absolute()
         if reason := no_file(path):
             remedy = f"It is {reason}."
             if reason == "no such file":
@@ -224,18 +277,19 @@ class ChoiceOrFile:
 
     words: tuple[str, ...]
     content: str
+    columns: int = 0  # of an array that Python may hand over
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
         return f"{Choice(self.words).allowed}, or the path of {self.content}"
 
-    def __call__(self, value: object, info: ValidationInfo) -> str | Path:
-        """Return the word or the path."""
-        if value in self.words:
-            return str(value)
+    def __call__(self, value: object, info: ValidationInfo) -> Any:
+        """Return the word, the path or the array."""
+        if isinstance(value, str) and value in self.words:
+            return value
         try:
-            return File()(value, info)
+            return File(columns=self.columns)(value, info)
         except InputError as error:
             remedy = nearest(value, self.words) or error.remedy
             raise InputError("choice", error.received, self.allowed, remedy) from None
@@ -253,12 +307,13 @@ class MaterialOrName:
             'poisson_ratio = 0.33, density = "2700 kg/m^3" }'
         )
 
-    def __call__(self, value: object) -> Material:
+    def __call__(self, value: object, info: ValidationInfo | None) -> Material:
         """Return the material."""
         if isinstance(value, Material):
-            return value
+            known = MATERIALS.get(value.name) == value
+            return value if known else _own_material({k: v for k, v in asdict(value).items() if v}, None)
         if isinstance(value, Mapping):
-            return _own_material(value)
+            return _own_material(value, info)
         if not isinstance(value, str) or value not in MATERIALS:
             raise InputError("material", shown(value), self.allowed, nearest(value, tuple(MATERIALS)))
         return MATERIALS[value]
@@ -278,12 +333,21 @@ _PLAUSIBLE: dict[str, tuple[Limit, Limit, str]] = {
 }
 
 
-def _own_material(given: Mapping[Any, Any]) -> Material:
-    """Material of numbers with units, and of a name if there is one; all errors at once."""
-    allowed = ", ".join(("name", *_OF_A_MATERIAL))
+GIVEN = "given in the case"
+"""Source of a material that states none."""
+
+
+def name_of_numbers(youngs_modulus: float) -> str:
+    """Name of a material that states none."""
+    return f"{youngs_modulus / 1e9:.4g} GPa"
+
+
+def _own_material(given: Mapping[Any, Any], info: ValidationInfo | None) -> Material:
+    """Material of numbers with units, and of a name and a source if there are; all errors at once."""
+    allowed = ", ".join(("name", *_OF_A_MATERIAL, "citation"))
     errors = [
         InputError(str(name), "an unknown key", allowed, nearest(name, [*_OF_A_MATERIAL]))
-        for name in sorted(map(str, given.keys() - {"name", *_OF_A_MATERIAL}))
+        for name in sorted(map(str, given.keys() - {"name", "citation", *_OF_A_MATERIAL}))
     ]
     found: dict[str, float] = {}
     for name, kind in _OF_A_MATERIAL.items():
@@ -291,18 +355,20 @@ def _own_material(given: Mapping[Any, Any]) -> Material:
             errors.append(InputError(name, "nothing", kind.allowed))
             continue
         try:
-            found[name] = kind(given[name])
-            errors += _outside_of(name, found[name], kind, _PLAUSIBLE.get(name))
+            value = given[name]
+            found[name] = kind(value, info) if isinstance(kind, Quantity) else kind(value)
+            errors += outside_limits(name, found[name], kind, _PLAUSIBLE.get(name))
         except InputError as error:
             errors.append(InputError(name, error.received, error.allowed, error.remedy))
-    name = given.get("name", f"{found.get('youngs_modulus', 0.0) / 1e9:.4g} GPa")
-    try:
-        Text()(name)
-    except InputError as error:
-        errors.append(InputError("name", error.received, error.allowed))
+    words = {"name": name_of_numbers(found.get("youngs_modulus", 0.0)), "citation": GIVEN}
+    for name in words.keys() & given.keys():
+        try:
+            words[name] = Text()(given[name])
+        except InputError as error:
+            errors.append(InputError(name, error.received, error.allowed))
     if errors:
         raise Problems(errors)
-    return Material(name, **found, citation="given in the case")
+    return Material(words["name"], **found, citation=words["citation"])
 
 
 Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File | ChoiceOrFile | MaterialOrName
@@ -311,7 +377,7 @@ Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File | ChoiceOrFi
 def value_kind(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:
     """Find the kind inside an annotation such as ``tuple[Length, ...] | None``."""
     for item in metadata:
-        if isinstance(item, BeforeValidator) and isinstance(item.func, Kind):
+        if isinstance(item, BeforeValidator | PlainValidator) and isinstance(item.func, Kind):
             return item.func
     for inner in get_args(annotation):
         found = value_kind(inner, getattr(annotation, "__metadata__", ()))
@@ -325,75 +391,15 @@ def allowed_in(field: FieldInfo) -> str:
     kind = value_kind(field.annotation, field.metadata)
     if kind is None:
         return "a section"
-    several = "tuple" in str(field.annotation)
-    return f"a list, each {kind.allowed}" if several else kind.allowed
+    return f"a list, each {kind.allowed}" if is_list(field.annotation) else kind.allowed
 
 
-def key(
-    default: Any,
-    meaning: str,
-    *,
-    otherwise: str = "",
-    example: str = "",
-    goes_with: str = "",
-    within: tuple[Limit, Limit, str] | None = None,
-) -> Any:
-    """Describe a key of a case.
-
-    The default is as it would be written in TOML; without a fixed one it is None, `otherwise` says what
-    happens without the key, and `example` how it is written. `goes_with` is the key, ``key=value``, or keys
-    with " or " between them, without which this one has no meaning. `within` holds the least and the largest
-    plausible value, as they are written in TOML, and the reason.
-    """
-    extra = {"otherwise": otherwise, "example": example, "goes_with": goes_with, "default": default}
-    if within is not None:
-        extra["within"] = within
-    return Field(default, description=meaning, json_schema_extra=extra)
+def is_list(annotation: Any) -> bool:
+    """Whether a key takes a list of values, as ``tuple[Length, ...] | None`` does."""
+    return any(get_origin(each) is tuple for each in (annotation, *get_args(annotation)))
 
 
-def extra_of(field: FieldInfo) -> dict[str, Any]:
-    """What `key` was told beyond the default and the meaning."""
-    return field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
-
-
-class Section(BaseModel):
-    """A frozen section of a case: unknown keys are errors, and all errors are reported together."""
-
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", validate_default=True, arbitrary_types_allowed=True
-    )
-
-    def problems(self) -> Iterator[InputError]:
-        """Errors between keys that are right one by one."""
-        yield from ()
-
-    @model_validator(mode="after")
-    def _is_consistent(self) -> Section:
-        errors = [*_implausible(self)] or [*_lonely(self), *self.problems()]
-        if errors:
-            raise Problems(errors)
-        return self
-
-
-def is_active(section: BaseModel, name: str) -> bool:
-    """Whether the key that `name` goes with is there."""
-    companion, _, value = extra_of(type(section).model_fields[name]).get("goes_with", "").partition("=")
-    if not companion:
-        return True
-    if value:
-        return bool(getattr(section, companion) == value)
-    return any(getattr(section, each) is not None for each in companion.split(" or "))
-
-
-def _implausible(section: BaseModel) -> Iterator[InputError]:
-    """Errors about numbers that no case of this field has."""
-    for name, field in type(section).model_fields.items():
-        given, kind = getattr(section, name), value_kind(field.annotation, field.metadata)
-        for value in given if isinstance(given, tuple) else (given,):
-            yield from _outside_of(name, value, kind, extra_of(field).get("within"))
-
-
-def _outside_of(
+def outside_limits(
     name: str, value: object, kind: Kind | None, within: tuple[Limit, Limit, str] | None
 ) -> Iterator[InputError]:
     """Error about a number out of its limits; zero and infinity, where they may stand, may."""
@@ -409,18 +415,6 @@ def _outside_of(
 
 def _sentence(words: str) -> str:
     return f"{words[0].upper()}{words[1:]}."
-
-
-def _lonely(section: BaseModel) -> Iterator[InputError]:
-    for name in sorted(section.model_fields_set):
-        if not is_active(section, name):
-            companion, _, value = extra_of(type(section).model_fields[name])["goes_with"].partition("=")
-            wanted = f'{companion} = "{value}"' if value else companion
-            yield InputError(name, shown(_plain(getattr(section, name))), f"only together with {wanted}")
-
-
-def _plain(value: object) -> object:
-    return str(value) if isinstance(value, Path) else value
 
 
 def _is_text(value: str) -> bool:
@@ -467,7 +461,9 @@ Level = Annotated[float, BeforeValidator(Quantity("dB"))]
 LengthOrInfinite = Annotated[float, BeforeValidator(Quantity("m", above=0, infinite=True))]
 Stiffness = Annotated[float, BeforeValidator(Quantity("N/m", above=0))]
 OwnOrNamed = Annotated[Material, BeforeValidator(MaterialOrName())]
-ExistingFile = Annotated[Path, BeforeValidator(File())]
+MapFile = Annotated[Path | HeightMap | tuple[HeightMap, ...], PlainValidator(File(held=(HeightMap,)))]
+LineFile = Annotated[Path | HeightMap | Profile, PlainValidator(File(held=(HeightMap, Profile)))]
+SectionFile = Annotated[Path | Profile, PlainValidator(File(held=(Profile,)))]
 Name = Annotated[str, BeforeValidator(Text())]
 HeightUnit = Annotated[str, BeforeValidator(LengthUnit())]
 YesNo = Annotated[bool, BeforeValidator(Flag())]

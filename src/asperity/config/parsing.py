@@ -6,17 +6,18 @@ import os
 import re
 import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
 from asperity import decoding
-from asperity.arguments import nearest, shown
 from asperity.config.case import Case
-from asperity.config.keys import BACKSLASH, Problems, allowed_in
-from asperity.errors import CaseError, InputError
+from asperity.config.keys import BACKSLASH
+from asperity.config.messages import case_error
+from asperity.errors import InputError
 
 C = TypeVar("C", bound=Case)
 LARGEST_CASE = 2**20  # bytes
@@ -30,6 +31,33 @@ DEEPEST = 10  # sections and lists inside one another; those of a case are three
 _MANY_PARTS = re.compile(
     r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){%d}""" % MOST_PARTS  # noqa: UP031
 )
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where keys and values come from.
+
+    Attributes
+    ----------
+    source : str
+        Its name, for messages.
+    folder : Path
+        Where relative paths start.
+    units : bool
+        Whether quantities must carry their units, as in a file; from Python they may be numbers in SI.
+    """
+
+    source: str = "case"
+    folder: Path = Path()
+    units: bool = False
+
+    @classmethod
+    def file(cls, path: str | os.PathLike[str]) -> Origin:
+        """Origin of what stands in a file."""
+        return cls(str(path), Path(path).parent, units=True)
+
+
+FROM_PYTHON = Origin()
 
 
 def plain_data(value: Any, depth: int = 0) -> Any:
@@ -70,24 +98,8 @@ def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str,
         raise InputError(str(source), f"no TOML ({error})", allowed, remedy) from None
 
 
-def validated(model: type[C], data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> C:
-    """Make a case of a known kind from its keys and values.
-
-    Parameters
-    ----------
-    model : class of cases
-        Its kind.
-    data : dict
-        Keys and values as TOML gives them, sections as dicts.
-    text : str
-        The TOML text they come from.
-    source : str or path
-        Where that comes from, for messages; relative paths start at its folder.
-
-    Returns
-    -------
-    Case
-        The case, in SI.
+def validated(model: type[C], data: dict[str, Any], origin: Origin) -> C:
+    """Make a case of a known kind from its keys and values, sections as dicts; in SI.
 
     Raises
     ------
@@ -95,11 +107,9 @@ def validated(model: type[C], data: dict[str, Any], text: str, source: str | os.
         With all errors at once, if the keys are wrong.
     """
     try:
-        case = model.model_validate(data, context={"folder": Path(source).parent})
+        return model.model_validate(data, context={"folder": origin.folder, "units": origin.units})
     except ValidationError as error:
-        raise CaseError(str(source), _messages(error, model)) from None
-    case._text, case._given, case._source = text, data, str(source)
-    return case
+        raise case_error(error, model, origin.source) from None
 
 
 def refuse_vast(data: Mapping[str, Any], source: str) -> None:
@@ -121,66 +131,3 @@ def refuse_vast(data: Mapping[str, Any], source: str) -> None:
 def _too_deep(source: str) -> InputError:
     received = f"sections or lists more than {DEEPEST} deep inside one another"
     return InputError(source, received, "keys, sections, and lists of values")
-
-
-def _messages(error: ValidationError, model: type[BaseModel]) -> list[str]:
-    messages: list[str] = []
-    for item in error.errors(include_url=False):
-        name = _dotted(item["loc"])
-        cause = item.get("ctx", {}).get("error")
-        if isinstance(cause, Problems):
-            messages += [_message(".".join(filter(None, (name, each.what))), each) for each in cause.errors]
-        elif isinstance(cause, InputError):
-            messages.append(_message(name, cause))
-        elif item["type"] == "extra_forbidden":
-            messages.append(_unknown(item["loc"], model))
-        else:
-            received = "nothing" if item["type"] == "missing" else shown(item["input"])
-            messages.append(str(InputError(name, received, _allowed(item["loc"], model))))
-    return messages
-
-
-def _message(name: str, error: InputError) -> str:
-    return str(InputError(name or "the case", error.received, error.allowed, error.remedy))
-
-
-def _dotted(location: tuple[int | str, ...]) -> str:
-    text = ""
-    for part in location:
-        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}"
-    return text.lstrip(".")
-
-
-def _sections(model: type[BaseModel]) -> dict[str, type[BaseModel]]:
-    found: dict[str, type[BaseModel]] = {}
-    for name, field in model.model_fields.items():
-        if isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
-            found[name] = field.annotation
-    return found
-
-
-def _unknown(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
-    """Message about an unknown key: the nearest one here, or the section in which it would be known."""
-    *path, name = map(str, location)
-    sections = _sections(model)
-    here: type[BaseModel] = sections[path[0]] if path else model
-    place = f"keys of [{path[0]}]" if path else "keys at the top of a case"
-    remedy = nearest(name, list(here.model_fields))
-    homes = [f"[{title}]" for title, section in sections.items() if name in section.model_fields]
-    if path and name in model.model_fields:
-        homes.insert(0, "the top of the case, above the first section")
-    if homes:
-        remedy = f"Move it to {homes[0]}."
-    return str(
-        InputError(_dotted(location), "an unknown key", f"{place}: {', '.join(here.model_fields)}", remedy)
-    )
-
-
-def _allowed(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
-    here, names = model, [part for part in location if isinstance(part, str)]
-    sections = _sections(model)
-    if names[0] in sections:
-        if len(names) == 1:
-            return f"a section [{names[0]}]"
-        here = sections[names.pop(0)]
-    return allowed_in(here.model_fields[names[0]])

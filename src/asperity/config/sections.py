@@ -2,32 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, PlainValidator, model_validator
 
+from asperity.config.content import holds_memory
+from asperity.config.form import Section, key
 from asperity.config.keys import (
     Approach,
     Choice,
     Damping,
     Duration,
-    ExistingFile,
     Frequency,
     HeightUnit,
     Length,
+    LengthUnit,
     Level,
+    LineFile,
+    MapFile,
     Name,
     Number,
     Pressure,
-    Section,
+    Problems,
+    Quantity,
     YesNo,
-    key,
 )
 from asperity.errors import InputError
-from asperity.units import written
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.units import factor, written
 
 MOST_CELLS = 2048  # along one side of the window
 
@@ -37,7 +44,7 @@ Index = Annotated[int, BeforeValidator(Number(at_least=0, at_most=10**9, whole=T
 class MeasuredMap(Section):
     """A measured map, or an ensemble of them, and what its file does not say."""
 
-    file: ExistingFile | None = key(
+    file: MapFile | None = key(
         None, "measured map: the samples, and the path where it is long enough", example='"beam.x3p"'
     )
     array: Name | None = key(
@@ -70,11 +77,21 @@ class MeasuredMap(Section):
         "plane", "form that is removed from each measured map", goes_with="file"
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _maps_of_an_array(cls, data: Any) -> Any:
+        """Take an array of heights with its pixel, (nx, ny) or (maps, nx, ny), for height maps."""
+        return surfaces_of(data, "file", "pixel", "height_unit", (2, 3))
+
+    def problems_of_maps(self) -> Iterator[InputError]:
+        """A map in memory has its own points."""
+        yield from _foreign(self, "file", ("array", "height_unit", "pixel"))
+
 
 class MeasuredLine(Section):
     """A measured line, and what its file does not say."""
 
-    line: ExistingFile | None = key(
+    line: LineFile | None = key(
         None,
         "measured long line for the path; without one, a path longer than the map is synthesised from it",
         example='"line.csv"',
@@ -101,6 +118,54 @@ class MeasuredLine(Section):
         goes_with="line",
         within=("0.1 nm", "10 mm", "atoms are 0.1 nm apart, and contacts are smaller than 10 mm"),
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _lines_of_an_array(cls, data: Any) -> Any:
+        """Take an array of heights with its spacing, (n,) or lines side by side, for what was measured."""
+        return surfaces_of(data, "line", "line_spacing", "line_unit", (1, 2))
+
+    def problems_of_line(self) -> Iterator[InputError]:
+        """A line in memory has its own points."""
+        yield from _foreign(self, "line", ("line_array", "line_unit", "line_spacing"))
+
+
+def surfaces_of(data: Any, name: str, spacing: str, unit: str, dimensions: tuple[int, ...]) -> Any:
+    """Make height maps or a profile of the array that a key of a section holds, with its spacing and unit."""
+    if not isinstance(data, Mapping) or not isinstance(heights := data.get(name), np.ndarray):
+        return data
+    keys = dict(data)
+    errors = []
+    if heights.ndim not in dimensions:
+        shapes = " or ".join(f"{n} dimensions" if n > 1 else "one dimension" for n in dimensions)
+        errors.append(InputError(name, f"an array of shape {heights.shape}", f"an array of {shapes}"))
+    if heights.dtype.kind not in "fiu":
+        errors.append(InputError(name, f"data of type {heights.dtype}", "an array of real numbers"))
+    if keys.get(spacing) is None:
+        remedy = f"Give {spacing} beside the array, or hand over a HeightMap or a Profile."
+        errors.append(InputError(spacing, "nothing", "the distance of the points of an array", remedy))
+    if errors:
+        raise Problems(errors)
+    try:
+        step = Quantity("m", above=0)(keys.pop(spacing), None)
+        scale = factor(LengthUnit()(keys.pop(unit, None) or "m"), "m")
+        maps = heights if heights.ndim == 3 else [heights]
+        made = tuple(
+            HeightMap(each * scale, (step, step)) if each.ndim == 2 else Profile(each * scale, step)
+            for each in maps
+        )
+    except InputError as error:
+        raise Problems([InputError(name, error.received, error.allowed, error.remedy)]) from None
+    return keys | {name: made if len(made) > 1 else made[0]}
+
+
+def _foreign(section: Section, name: str, keys: tuple[str, ...]) -> Iterator[InputError]:
+    if not holds_memory(getattr(section, name)):
+        return
+    for key_of_file in keys:
+        if (value := getattr(section, key_of_file)) is not None:
+            remedy = "What stands in memory has its own points."
+            yield InputError(key_of_file, value, f"only together with a {name} on disk", remedy)
 
 
 class Surface(MeasuredLine, MeasuredMap):
@@ -140,7 +205,7 @@ class Surface(MeasuredLine, MeasuredMap):
         goes_with="rms",
         within=(0.01, 100, "a texture more drawn out than that is a line across"),
     )
-    spectrum: Annotated[str | Path, BeforeValidator(Choice(("iso3095",)))] | None = key(
+    spectrum: Annotated[str | Path | NDArray[np.float64], PlainValidator(Choice(("iso3095",)))] | None = key(
         None, "one-third-octave wavelength spectrum of the line of the path", example='"iso3095"'
     )
     level: Level = key(
@@ -177,6 +242,8 @@ class Surface(MeasuredLine, MeasuredMap):
 
     def problems_of_sources(self) -> Iterator[InputError]:
         """At most one source of samples, at most one of the path, and wavelengths in order."""
+        yield from self.problems_of_maps()
+        yield from self.problems_of_line()
         if self.file is not None and self.rms is not None:
             remedy = "Remove one: samples are either measured or synthesised."
             yield InputError("", "both file and rms", "one of them", remedy)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import TypeAdapter, ValidationError
@@ -12,7 +10,8 @@ from pydantic import TypeAdapter, ValidationError
 from asperity.arguments import nearest, shown
 from asperity.config.case import Case
 from asperity.config.describing import Entry, entries
-from asperity.config.keys import Number, Quantity, allowed_in, value_kind
+from asperity.config.keys import Number, Quantity, allowed_in, is_list, value_kind
+from asperity.config.parsing import Origin
 from asperity.errors import InputError
 
 
@@ -28,26 +27,13 @@ def entry_of(model: type[Case], dotted: str) -> Entry:
     raise InputError(dotted, "an unknown key", allowed, remedy)
 
 
-def reader_of(entry: Entry, source: str | os.PathLike[str]) -> Callable[[object], Any]:
-    """Make what reads values of a key.
-
-    Parameters
-    ----------
-    entry : Entry
-        The key.
-    source : str or path
-        The case file; relative paths start at its folder.
-
-    Returns
-    -------
-    callable
-        Takes a value as it stands in TOML and returns it in SI; raises an `InputError` if the key cannot
-        have it.
-    """
+def reader_of(entry: Entry, origin: Origin) -> Callable[[object], Any]:
+    """Make what reads values of a key: it returns them in SI, and raises an `InputError` if it cannot."""
     kind: Any = entry.field.annotation
     if entry.field.metadata:
         kind = Annotated[(kind, *entry.field.metadata)]
-    adapter, context = TypeAdapter(kind), {"folder": Path(source).parent}
+    adapter: TypeAdapter[Any] = TypeAdapter(kind)
+    context = {"folder": origin.folder, "units": origin.units}
 
     def value_of(value: object) -> Any:
         try:
@@ -64,7 +50,7 @@ def reader_of(entry: Entry, source: str | os.PathLike[str]) -> Callable[[object]
 def unit_of(entry: Entry) -> str | None:
     """SI unit of a key whose values are single numbers; None of any other key."""
     kind = value_kind(entry.field.annotation, entry.field.metadata)
-    if "tuple" in str(entry.field.annotation):
+    if is_list(entry.field.annotation):
         return None
     if isinstance(kind, Quantity):
         return kind.dimension

@@ -6,6 +6,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from asperity.config.content import described
+
 
 def toml_text(data: Mapping[str, Any]) -> str:
     """Write keys and values as TOML that reads as the same; those at the top come before the sections."""
@@ -33,4 +35,4 @@ def _value(value: object) -> str:
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, float):
         return repr(value)  # inf and nan, too, are spelled as in Python
-    return json.dumps(value, ensure_ascii=False, default=str).replace("\x7f", "\\u007f")
+    return json.dumps(value, ensure_ascii=False, default=described).replace("\x7f", "\\u007f")

@@ -10,8 +10,15 @@ from typing import Any
 from asperity.arguments import file_path, nearest, shown
 from asperity.config.case import Case
 from asperity.config.describing import commented
-from asperity.config.parsing import plain_data, read_definition, read_toml, refuse_vast, validated
-from asperity.config.writing import toml_text
+from asperity.config.parsing import (
+    FROM_PYTHON,
+    Origin,
+    plain_data,
+    read_definition,
+    read_toml,
+    refuse_vast,
+    validated,
+)
 from asperity.errors import CaseError, InputError
 from asperity.kinds import KINDS
 from asperity.scenarios.kind import Kind
@@ -36,8 +43,8 @@ def as_case(case: object) -> Case:
     Parameters
     ----------
     case : path, mapping or case object
-        A TOML file; or its keys and values, sections as mappings, quantities as text with units; relative
-        paths then start at the working folder.
+        A TOML file; or its keys and values, sections as mappings, quantities in SI or as text with units;
+        relative paths then start at the working folder.
 
     Returns
     -------
@@ -54,8 +61,7 @@ def as_case(case: object) -> Case:
     if isinstance(case, Case):
         return case
     if isinstance(case, Mapping):
-        data = plain_data(case)
-        return case_of(data, toml_text(data), "case")
+        return case_of(plain_data(case))
     allowed = "the path of a case file, its keys as a mapping, or a case object"
     return load_case(file_path("case", case, allowed))
 
@@ -82,25 +88,11 @@ def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    return case_of(read_toml(text, "case", source), text, source)
+    return case_of(read_toml(text, "case", source), Origin.file(source))
 
 
-def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> Case:
-    """Make a case of keys and values.
-
-    Parameters
-    ----------
-    data : dict
-        Keys and values as TOML gives them, sections as dicts.
-    text : str
-        The TOML text they come from.
-    source : str or path
-        Where that comes from, for messages; relative paths start at its folder.
-
-    Returns
-    -------
-    Case
-        Of the class of its kind, in SI.
+def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> Case:
+    """Make a case of keys and values, sections as dicts; in SI.
 
     Raises
     ------
@@ -109,12 +101,12 @@ def case_of(data: dict[str, Any], text: str, source: str | os.PathLike[str]) -> 
     CaseError
         With all errors at once, if the keys are wrong.
     """
-    refuse_vast(data, str(source))
+    refuse_vast(data, origin.source)
     try:
         kind = kind_named(data.get("kind"))
     except InputError as error:
-        raise CaseError(str(source), [str(error)]) from None
-    return validated(kind.case, data, text, source)
+        raise CaseError(origin.source, [str(error)]) from None
+    return validated(kind.case, data, origin)
 
 
 def kind_of(case: Case) -> Kind:

@@ -38,7 +38,7 @@ class Prepared:
     processor: float  # time, s
 
 
-def prepare(case: Case, kind: Kind) -> Prepared:
+def prepare(case: Case, kind: Kind, source: str = "case") -> Prepared:
     """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
     begin, spent = time.perf_counter(), time.process_time()
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
@@ -49,12 +49,12 @@ def prepare(case: Case, kind: Kind) -> Prepared:
         textures = tried(lambda: kind.textures_of(case))
         tried(thread_count)
         tried(find_device)
-        tried.refuse(case.source)
+        tried.refuse(source)
         assert bodies is not None
         assert shape is not None
         assert textures is not None
         tried.errors += _problems(case, shape, textures)
-        tried.refuse(case.source)
+        tried.refuse(source)
         kind.warn_of(case, shape, textures)
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
     return Prepared(case, kind, bodies, shape, textures, tuple(caught), seconds, processor)

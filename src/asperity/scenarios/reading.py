@@ -19,6 +19,13 @@ _LINE_KEYS = {"array": "line_array", "height_unit": "line_unit", "pixel": "line_
 def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
     """Read the map, or all maps of an ensemble, that the surface section names, as they lie in the file."""
     assert surface.file is not None
+    if not isinstance(surface.file, Path):
+        maps = surface.file if isinstance(surface.file, tuple) else (surface.file,)
+        if surface.index is not None and surface.index >= len(maps):
+            allowed = f"0 to {len(maps) - 1}, of the maps in memory"
+            raise InputError("surface.index", surface.index, allowed)
+        chosen = maps if surface.index is None else (maps[surface.index],)
+        return [each.filled() if surface.fill else each for each in chosen]
     with spelled(in_case("surface", _MAP_KEYS)):
         read = read_surfaces if surface.index is None else partial(read_surface, index=surface.index)
         found = read(
@@ -37,19 +44,21 @@ def read_lines(section: MeasuredLine, name: str) -> HeightMap | Profile:
     Lines side by side are a map; the distance across is not known to it.
     """
     assert section.line is not None
+    if not isinstance(section.line, Path):
+        return section.line
     with spelled(in_case(name, _LINE_KEYS)):
         return read_surface(
             section.line, array=section.line_array, height_unit=section.line_unit, pixel=section.line_spacing
         )
 
 
-def read_section(path: Path, key: str) -> Profile:
+def read_section(measured: Path | Profile, key: str) -> Profile:
     """Read a measured section of a body across the path.
 
     Parameters
     ----------
-    path : Path
-        Its file.
+    measured : Path or Profile
+        Its file, or itself.
     key : str
         The key that names it, for messages.
 
@@ -64,9 +73,9 @@ def read_section(path: Path, key: str) -> Profile:
         If the file does not hold one complete line.
     """
     with spelled(in_case(key.partition(".")[0], {})):
-        measured = read_surface(path)
-    if not isinstance(measured, Profile):
+        section = read_surface(measured) if isinstance(measured, Path) else measured
+    if not isinstance(section, Profile):
         raise InputError(key, "a map of heights", "one line across the path")
-    if measured.missing_share > 0.0:
+    if section.missing_share > 0.0:
         raise InputError(key, "points without a height", "a complete line", "Interpolate them in the file.")
-    return measured
+    return section

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +17,14 @@ from numpy.typing import NDArray
 from asperity import __version__
 from asperity.arguments import file_path, shown
 from asperity.config.case import Case
-from asperity.config.describing import Entry
-from asperity.config.parsing import plain_data, read_definition, read_toml
+from asperity.config.content import content, described, file_digest, holds_memory
+from asperity.config.describing import Entry, in_toml, value_in_toml
+from asperity.config.parsing import FROM_PYTHON, Origin, plain_data, read_definition, read_toml
 from asperity.config.single_keys import entry_of, reader_of, unit_of
 from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import case_of, kind_named
+from asperity.reference.materials import Material
 from asperity.store import content_key
 
 MOST_MEMBERS = 10_000
@@ -88,10 +90,14 @@ class Member:
 class Study:
     """A case, and lists of values for some of its keys."""
 
-    data: dict[str, Any]  # keys and values of the case, as TOML gives them
-    text: str  # TOML of the case
-    source: str  # its file, from whose folder relative paths start
+    data: dict[str, Any]  # keys and values of the case, sections as dicts
+    origin: Origin  # where they come from
     axes: tuple[Axis, ...]  # the keys that are swept
+
+    @property
+    def text(self) -> str:
+        """The case in TOML, without the keys that are swept; what stands in memory is described."""
+        return toml_text(self.data)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -105,22 +111,22 @@ class Study:
 
     def members(self) -> list[Member]:
         """List all cases; the last key varies fastest. A `CaseError` says that none is valid."""
-        digests: dict[Path, str] = {}
-        found = [self._member(index, digests) for index in np.ndindex(self.shape)]
+        digest_of = lru_cache(maxsize=None)(file_digest)
+        found = [self._member(index, digest_of) for index in np.ndindex(self.shape)]
         errors = [member.error for member in found if member.error is not None]
         if len(errors) == len(found):
             messages = dict.fromkeys(message for error in errors for message in error.errors)
-            raise CaseError(self.source, list(messages))
+            raise CaseError(self.origin.source, list(messages))
         return found
 
-    def _member(self, index: tuple[int, ...], digests: dict[Path, str]) -> Member:
+    def _member(self, index: tuple[int, ...], digest_of: Callable[[Path], str]) -> Member:
         values = {axis.name: axis.written[i] for axis, i in zip(self.axes, index, strict=True)}
         try:
-            case = case_of(_with_values(self.data, values), self.text, self.source)
+            case = case_of(_with_values(self.data, values), self.origin)
         except CaseError as error:
             return Member(index, values, None, error, "")
-        content = json.dumps(_content(case.model_dump(), digests), sort_keys=True)  # at once: there are many
-        return Member(index, values, case, None, content_key("member", FORMAT, __version__, content))
+        told = json.dumps(content(case, digest_of), sort_keys=True)  # at once: there are many
+        return Member(index, values, case, None, content_key("member", FORMAT, __version__, told))
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
@@ -141,11 +147,9 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         errors.append(str(InputError("case", received, allowed)))
     if errors:
         raise CaseError(str(path), sorted(errors))
-    source = Path(path)
     if isinstance(base, dict):
-        text = json.dumps(base, ensure_ascii=False, default=str)
-        return _checked(base, text, source, data.get("sweep", {}), source)
-    return _checked(*_read_case(source.parent / str(base)), data.get("sweep", {}), source)
+        return _checked(base, Origin.file(path), data.get("sweep", {}), path)
+    return _checked(*_read_case(Path(path).parent / str(base)), data.get("sweep", {}), path)
 
 
 def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Mapping[str, Any]) -> Study:
@@ -156,7 +160,7 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Map
     case : path, mapping or case object
         The case, as `asperity.run` takes it.
     sweep : mapping of str to list
-        Keys with lists of values as they stand in TOML, as ``{"contact.spacing": ["4 um", "8 um"]}``.
+        Keys with lists of values, in SI or as text with a unit: ``{"contact.spacing": ["4 um", "8 um"]}``.
 
     Returns
     -------
@@ -171,10 +175,11 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Map
         With all errors at once, if keys or values are wrong.
     """
     if isinstance(case, Case):
-        return _checked(case.given, case.text, Path(case.source), sweep, "study")
+        return _checked(
+            {"kind": case.kind, **in_toml(case, lambda _, value: value)}, FROM_PYTHON, sweep, "study"
+        )
     if isinstance(case, Mapping):
-        data = plain_data(case)
-        return _checked(data, toml_text(data), Path("case"), sweep, "study")
+        return _checked(plain_data(case), FROM_PYTHON, sweep, "study")
     allowed = "the path of a case file, its keys as a mapping, or a case object"
     return _checked(*_read_case(file_path("case", case, allowed)), sweep, "study")
 
@@ -187,17 +192,14 @@ def written_out(value: object) -> str:
         return ", ".join(map(written_out, value))
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {written_out(item)}" for name, item in value.items())
-    return json.dumps(value)
+    return described(value) if holds_memory(value) else json.dumps(value, default=str)
 
 
-def _read_case(path: Path) -> tuple[dict[str, Any], str, Path]:
-    text = read_definition(path, "case", "Check the path.")
-    return read_toml(text, "case", path), text, path
+def _read_case(path: Path) -> tuple[dict[str, Any], Origin]:
+    return read_toml(read_definition(path, "case", "Check the path."), "case", path), Origin.file(path)
 
 
-def _checked(
-    data: dict[str, Any], text: str, case_source: Path, sweep: object, source: str | os.PathLike[str]
-) -> Study:
+def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | os.PathLike[str]) -> Study:
     """Read the swept values, or say all that is wrong with them."""
     if not isinstance(sweep, Mapping) or not sweep:
         received = "nothing" if not sweep else shown(sweep)
@@ -214,7 +216,7 @@ def _checked(
                 raise InputError(
                     dotted, "the key more than once", "each key once", "Put all values into one list."
                 )
-            axes.append(_axis(data.get("kind"), dotted, values, case_source))
+            axes.append(_axis(data.get("kind"), dotted, values, origin))
         except InputError as error:
             name = error.what if error.what == "kind" else f"sweep.{error.what}"
             errors.append(str(InputError(name, error.received, error.allowed, error.remedy)))
@@ -225,7 +227,7 @@ def _checked(
         errors.append(str(InputError("sweep", received, f"at most {MOST_MEMBERS} members", remedy)))
     if errors:
         raise CaseError(str(source), list(dict.fromkeys(errors)))
-    return Study(data, text, str(case_source.resolve()), tuple(axes))
+    return Study(data, origin, tuple(axes))
 
 
 def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, Any]]:
@@ -237,27 +239,37 @@ def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, An
             yield f"{section}{name}", values
 
 
-def _axis(kind: object, dotted: str, values: object, source: Path) -> Axis:
+def _axis(kind: object, dotted: str, values: object, origin: Origin) -> Axis:
     if dotted == "kind":
         raise InputError("kind", "a swept key", "one kind of case in a study", "Write a study for each kind.")
     entry = entry_of(kind_named(kind).case, dotted)
+    if isinstance(values, np.ndarray) and values.ndim == 1:
+        values = values.tolist()
     if not isinstance(values, list | tuple):
         raise InputError(dotted, shown(values), "a list of values", "Put the values into [ ].")
     if not values:
         raise InputError(dotted, "an empty list", "one value or more", "Remove the key for that of the case.")
     if len(values) > MOST_MEMBERS:
         raise InputError(dotted, f"{len(values)} values", f"at most {MOST_MEMBERS}", "Split the study.")
-    read: dict[Any, None] = {}  # in their order
-    value_of = reader_of(entry, source)
+    read: dict[str, Any] = {}  # in their order
+    value_of = reader_of(entry, origin)
     for number, value in enumerate(values, 1):
         try:
             found = value_of(value)
         except InputError as error:
             raise InputError(f"{dotted}[{number}]", error.received, error.allowed, error.remedy) from None
-        if found in read:
+        told = json.dumps(content(found))
+        if told in read:
             raise InputError(dotted, f"{shown(value)} more than once", "each value once")
-        read[found] = None
-    return Axis(entry, tuple(values), tuple(read))
+        read[told] = found
+    written = (_in_toml(value, found, entry) for value, found in zip(values, read.values(), strict=True))
+    return Axis(entry, tuple(written), tuple(read.values()))
+
+
+def _in_toml(value: Any, found: Any, entry: Entry) -> Any:
+    """A swept value as it would stand in a file: as it was given, but for numbers in SI."""
+    bare = isinstance(value, int | float | np.generic | Material) and not isinstance(value, bool)
+    return value_in_toml(found, entry.field) if bare else value
 
 
 def _with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
@@ -270,17 +282,3 @@ def _with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
         elif isinstance(changed.setdefault(section, {}), Mapping):
             changed[section] = {**changed[section], name: value}
     return changed
-
-
-def _content(value: Any, digests: dict[Path, str]) -> Any:
-    """Values of a case with what its files hold in place of their names."""
-    if isinstance(value, Mapping):
-        return {name: _content(item, digests) for name, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_content(item, digests) for item in value]
-    if isinstance(value, Path):
-        if value not in digests:
-            with open(value, "rb") as file:
-                digests[value] = hashlib.file_digest(file, "sha256").hexdigest()
-        return digests[value]
-    return value

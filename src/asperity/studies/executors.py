@@ -88,7 +88,7 @@ def _ended(futures: Collection[Future[Outcome]], heart: Heart) -> Iterator[Futur
 
 def _submitted(executor: Executor, member: Member) -> Future[Outcome]:
     assert member.case is not None
-    return executor.submit(compute_member, member.key, member.case.given, member.case.source)
+    return executor.submit(compute_member, member.key, member.case)
 
 
 def locally(members: Sequence[Member], workers: int | None = None) -> Outcomes:

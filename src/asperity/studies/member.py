@@ -5,11 +5,14 @@ from __future__ import annotations
 import threading
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
 from asperity.errors import AsperityError, ComputationError
+
+if TYPE_CHECKING:
+    from asperity.config.case import Case
 
 _one_at_a_time = threading.Lock()
 """Warnings and threads of linear algebra belong to the whole process; a member has it for itself."""
@@ -31,12 +34,8 @@ class Failure:
         return cls(name, str(error) if isinstance(error, AsperityError) else f"{name}: {error}")
 
 
-def compute_member(key: str, data: dict[str, Any], source: str) -> dict[str, NDArray[Any]] | Failure:
-    """Compute a member, or take what an earlier study has kept of it under its key, `packed`.
-
-    Relative paths in the keys and values of its case start at the folder of `source`.
-    """
-    from asperity.kinds.cases import case_of
+def compute_member(key: str, case: Case) -> dict[str, NDArray[Any]] | Failure:
+    """Compute a member, or take what an earlier study has kept of it under its key, `packed`."""
     from asperity.running import run
     from asperity.store import Store
     from asperity.studies.kept import kept, packed
@@ -47,7 +46,7 @@ def compute_member(key: str, data: dict[str, Any], source: str) -> dict[str, NDA
         if found is not None:
             return found
         try:
-            found = packed(kept(run(case_of(data, "", source))))
+            found = packed(kept(run(case)))
         except Exception as error:  # whatever it is, it is the failure of this member alone
             return Failure.of(error)
         with suppress(ComputationError):  # a full disk here loses nothing: the result goes back

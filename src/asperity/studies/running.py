@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from asperity.arguments import shown, whole
 from asperity.config.case import Case
 from asperity.errors import ComputationError, InputError
+from asperity.progress import shown_progress
 from asperity.studies.definition import Member, Study, load_study, study_of
 from asperity.studies.executors import locally, through
 from asperity.studies.member import Failure
@@ -80,7 +81,8 @@ def study(
     def compute(waiting: Sequence[Member]) -> Outcomes:
         return locally(waiting, workers) if executor is None else through(executor, waiting)
 
-    results, failures = _outcomes(members, compute, progress or (lambda done, total, message: None))
+    with shown_progress(progress) as told:
+        results, failures = _outcomes(members, compute, told)
     if not results:
         first = next(iter(failures.values()))
         what = f"all {len(members)} members failed, the first one so: {first.message.rstrip('.')}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, model_validator
@@ -15,6 +15,7 @@ from asperity.config.case import (
     problems_of_laws,
     problems_of_sampling,
 )
+from asperity.config.form import Section, key
 from asperity.config.keys import (
     Choice,
     Duration,
@@ -26,8 +27,6 @@ from asperity.config.keys import (
     Number,
     OwnOrNamed,
     Position,
-    Section,
-    key,
 )
 from asperity.config.sections import ContactCase, Numerics
 from asperity.errors import InputError
@@ -154,14 +153,20 @@ class BallOnBeam(Case):
     @classmethod
     def _laws_that_the_surface_allows(cls, data: Any) -> Any:
         """Leave out of the default laws those that need more texture than there is."""
-        if not isinstance(data, dict) or "laws" in data or not isinstance(data.get("surface"), dict):
+        if not isinstance(data, Mapping) or "laws" in data:
             return data
-        surface = data["surface"]
-        if not {"line", "spectrum"} & surface.keys():
+        surface = data.get("surface")
+        keys = surface.given() if isinstance(surface, Section) else surface
+        if not isinstance(keys, Mapping):
             return data
-        rough = bool({"file", "rms"} & surface.keys())
-        allowed = _allowed(line=True, samples=rough)
-        return {**data, "laws": [*([] if rough else [SMOOTH]), *(law for law in ROLLED if law in allowed)]}
+        line, samples = ({*words} & keys.keys() for words in (("line", "spectrum"), ("file", "rms")))
+        return {**data, "laws": _rolled(line=bool(line), samples=bool(samples))}
+
+    def default_of(self, name: str) -> Any:
+        """Value of a key that is left out: laws as the surface allows them."""
+        if name == "laws":
+            return _rolled(line=self.surface.has_line, samples=self.surface.has_samples)
+        return super().default_of(name)
 
     @property
     def settled_time(self) -> float:
@@ -238,6 +243,14 @@ def _allowed(*, line: bool, samples: bool = True) -> list[str]:
 
 def _listed(*, line: bool, samples: bool = True) -> str:
     return ", ".join(f'"{name}"' for name in _allowed(line=line, samples=samples))
+
+
+def _rolled(*, line: bool, samples: bool) -> tuple[str, ...]:
+    """Laws of a case that names none."""
+    if not line:
+        return ROLLED
+    allowed = _allowed(line=True, samples=samples)
+    return (*(() if samples else (SMOOTH,)), *(law for law in ROLLED if law in allowed))
 
 
 CASE = BallOnBeam

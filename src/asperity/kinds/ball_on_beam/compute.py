@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from asperity.config.content import content
 from asperity.kinds.ball_on_beam.bodies import Bodies
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.compiling import compile_kernels
@@ -88,5 +89,5 @@ def _run_key(law: str, case: BallOnBeam, textures: Textures, duration: float) ->
         case.numerics.highest_frequency, case.contact.hardness, case.contact.damping,
         list(case.beam.sensor_positions),
     ]  # fmt: skip
-    sections = [case.ball.model_dump(mode="json"), case.beam.model_dump(mode="json")]
+    sections = [content(case.ball), content(case.beam)]
     return content_key(law, textures.path.rows(0, textures.path.shape[0]), scalars, sections)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -17,8 +16,9 @@ from asperity.config.case import (
     problems_of_sampling,
     time_step_on_grid,
 )
-from asperity.config.describing import with_unit
-from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed, key
+from asperity.config.describing import in_words
+from asperity.config.form import key
+from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import RailSurface
 from asperity.kinds.wheel_on_rail.tables import check_band_levels, read_levels
@@ -124,7 +124,7 @@ class WheelOnRail(Case):
                 value = getattr(track, name)
                 if value is None:
                     continue
-                text = with_unit(value, type(self.track).model_fields[name])
+                text = in_words(value, type(self.track).model_fields[name])
                 item = item | {"value": text, "default": text}
             listed.append(item)
         return listed
@@ -165,7 +165,7 @@ def _problems_of_levels(case: WheelOnRail) -> Iterator[InputError]:
         ("surface.spectrum", case.surface.spectrum, case.surface.level),
         ("wheel.roughness", case.wheel.roughness, case.wheel.roughness_level),
     ):
-        levels = read_levels(table)[1] if isinstance(table, Path) else np.zeros(1)
+        levels = np.zeros(1) if table is None or isinstance(table, str) else read_levels(table)[1]
         if table is not None:
             try:
                 check_band_levels(levels + level, name)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.config.content import content, file_digest
 from asperity.errors import UnconvergedWarning
 from asperity.kinds.wheel_on_rail.bodies import Bodies
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
@@ -99,8 +100,6 @@ def _run_key(law: str, case: WheelOnRail, textures: Textures) -> str:
     """Name of a run of a law that solves every step: everything that its motion depends on."""
     scalars = [case.speed, case.start, case.duration, case.settling, case.time_step, case.numerics.rtol]
     contact = [case.contact.hardness, case.contact.damping, case.contact.spacing]
-    sections = [s.model_dump(mode="json") for s in (case.wheel, case.track, case.numerics)]
-    files = [case.wheel.profile, case.track.rail_profile, case.wheel.modes, case.wheel.receptance]
-    content = [path.read_bytes().hex() for path in files if path is not None]
+    sections = [content(section, file_digest) for section in (case.wheel, case.track, case.numerics)]
     heights = textures.surface.rows(0, len(textures.line))
-    return content_key(f"{law}-rail", heights, scalars, contact, sections, content)
+    return content_key(f"{law}-rail", heights, scalars, contact, sections)

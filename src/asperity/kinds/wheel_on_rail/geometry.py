@@ -67,10 +67,10 @@ class _Section:
         return np.asarray(self._spline(y))
 
 
-def _section(path: Path | None, radius: float, key: str) -> _Section:
-    if path is None:
+def _section(measured: Path | Profile | None, radius: float, key: str) -> _Section:
+    if measured is None:
         return _Section(radius, None, key)
-    return _Section(radius, level(read_section(path, key)), key)
+    return _Section(radius, level(read_section(measured, key)), key)
 
 
 def _lowest_in_the_middle(tread: _Section, head: _Section, y: NDArray[np.float64]) -> NDArray[np.float64]:

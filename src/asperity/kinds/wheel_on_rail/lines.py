@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.config.content import name_of
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.kinds.wheel_on_rail.records import Grid, Record
 from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines, RailSurface
@@ -109,7 +110,7 @@ def _measured(section: MeasuredLines, name: str, *, degree: int) -> tuple[list[P
     done = [process(line, fill_gaps="fill" in section.processing, **steps) for line in raw]
     return [
         level(line, degree) for line, _ in done
-    ], f"{section.line.name}, {_done([how for _, how in done])}"
+    ], f"{name_of(section.line)}, {_done([how for _, how in done])}"
 
 
 def _done(steps: Sequence[Processing]) -> str:

@@ -6,37 +6,31 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated, ClassVar
 
-from pydantic import BeforeValidator
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, PlainValidator
 
-from asperity.config.keys import (
-    Choice,
-    ChoiceOrFile,
-    ExistingFile,
-    Length,
-    Number,
-    Position,
-    Section,
-    YesNo,
-    key,
-)
+from asperity.config.content import name_of
+from asperity.config.form import Section, key
+from asperity.config.keys import Choice, ChoiceOrFile, Length, LineFile, MapFile, Number, Position, YesNo
 from asperity.config.sections import MeasuredLine, Surface
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.tables import read_levels
+from asperity.kinds.wheel_on_rail.tables import TableSource, read_levels
 
 RAIL_SPECTRA = ("iso3095", "cnossos-average")
 PROCESSING = ("fill", "spikes", "curvature")
 TABLE_OF_LEVELS = "a table of wavelengths and levels"
 
-Spectrum = Annotated[str | Path, BeforeValidator(ChoiceOrFile(RAIL_SPECTRA, TABLE_OF_LEVELS))]
+Spectrum = Annotated[
+    str | Path | NDArray[np.float64], PlainValidator(ChoiceOrFile(RAIL_SPECTRA, TABLE_OF_LEVELS, columns=2))
+]
 Step = Annotated[str, BeforeValidator(Choice(PROCESSING))]
 
 
 class MeasuredLines(MeasuredLine):
     """Measured lines along a rail or around a tread."""
 
-    line: ExistingFile | None = key(
-        None, "measured long line, or several side by side", example='"lines.csv"'
-    )
+    line: LineFile | None = key(None, "measured long line, or several side by side", example='"lines.csv"')
     line_distance: Length | None = key(
         None,
         "distance across between neighbouring lines; a single line holds all across",
@@ -49,7 +43,7 @@ class MeasuredLines(MeasuredLine):
         (), "steps of EN 15610 that are applied to measured lines", goes_with="line"
     )
 
-    def problems_of_lines(self) -> Iterator[InputError]:
+    def problems_of_processing(self) -> Iterator[InputError]:
         """Each step of the processing once."""
         for step in sorted(set(self.processing)):
             if self.processing.count(step) > 1:
@@ -61,7 +55,7 @@ class RailSurface(MeasuredLines, Surface):
 
     synthesised_band: ClassVar = (20e-3, 1.25e-3)
 
-    file: ExistingFile | None = key(
+    file: MapFile | None = key(
         None, "measured map: the samples, and the path where it is long enough", example='"rail.x3p"'
     )
     longest: Length | None = key(
@@ -138,7 +132,7 @@ class RailSurface(MeasuredLines, Surface):
     def problems(self) -> Iterator[InputError]:
         """Sources and defects of the rail's texture that do not exclude one another."""
         yield from self.problems_of_sources()
-        yield from self.problems_of_lines()
+        yield from self.problems_of_processing()
         if self.smooth and self.has_texture:
             yield InputError("smooth", "true beside a texture", "one of them", "Remove smooth.")
         if self.corrugation is not None and self.corrugation_wavelength is None:
@@ -147,11 +141,14 @@ class RailSurface(MeasuredLines, Surface):
         yield from problems_of_table(self, "spectrum", read_levels)
 
 
-def problems_of_table(section: Section, name: str, read: Callable[[Path], object]) -> Iterator[InputError]:
+def problems_of_table(
+    section: Section, name: str, read: Callable[[TableSource], object]
+) -> Iterator[InputError]:
     """Say what is wrong with the table that a key names."""
-    path = getattr(section, name)
-    if isinstance(path, Path):
+    table = getattr(section, name)
+    if isinstance(table, Path | np.ndarray):
         try:
-            read(path)
+            read(table)
         except InputError as error:
-            yield InputError(name, f"{error.received} in {path.name}", error.allowed, error.remedy)
+            received = f"{error.received} in {name_of(table)}"
+            yield InputError(name, received, error.allowed, error.remedy)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import shown
+from asperity.config.content import name_of
 from asperity.decoding import number_in, read_text
 from asperity.errors import InputError
 from asperity.units import factor
@@ -22,6 +23,10 @@ FEWEST_LINES = 10  # of a receptance
 
 _UNIT = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 _BAND = 0.1  # of a decade
+
+
+TableSource = Path | NDArray[np.float64]
+"""A file, or from Python the array that it would hold."""
 
 
 class Column(NamedTuple):
@@ -36,50 +41,54 @@ MODES = (Column("frequency", "Hz"), Column("damping ratio", ""), Column("modal m
 RECEPTANCE = (Column("frequency", "Hz"), Column("real part", "m/N"), Column("imaginary part", "m/N"))
 
 
-def read_levels(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def read_levels(table: TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Read one-third-octave band levels of a texture over wavelength, from a table of two columns.
 
     Wavelengths (n,), m, unless the heading names another unit, falling, and levels (n,), dB re 1 µm; no band
     may be missing.
     """
-    wavelength, level = read_table(path, LEVELS).T
+    wavelength, level = read_table(table, LEVELS).T
     order = np.argsort(-wavelength)
     wavelength, level = wavelength[order], level[order]
     if wavelength[-1] <= 0:
-        raise InputError(path.name, f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0")
+        raise InputError(
+            name_of(table), f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0"
+        )
     for longer, shorter in pairwise(wavelength):
         step = math.log10(longer / shorter)
         if abs(step - _BAND) > _BAND / 5:
             kind = "a gap in the bands" if step > _BAND else "bands closer than one-third octaves"
             received = f"{kind} between {longer * 1e3:.4g} mm and {shorter * 1e3:.4g} mm"
             remedy = "Complete the table; nothing is filled in silently."
-            raise InputError(path.name, received, "every one-third octave of wavelength, each once", remedy)
+            raise InputError(
+                name_of(table), received, "every one-third octave of wavelength, each once", remedy
+            )
     return wavelength, level
 
 
-def read_modes(path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def read_modes(table: TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Read the modes of a wheel: frequencies, Hz, damping ratios and modal masses, kg, (n,) each."""
-    frequency, ratio, mass = read_table(path, MODES).T
+    frequency, ratio, mass = read_table(table, MODES).T
     for name, values, right, allowed in (
         ("frequency", frequency, frequency > 0, "greater than 0 Hz"),
         ("damping ratio", ratio, (ratio > 0) & (ratio < 1), "greater than 0 and less than 1"),
         ("modal mass", mass, mass > 0, "greater than 0 kg"),
     ):
         if not right.all():
-            raise InputError(path.name, f"a {name} of {values[~right][0]:g}", allowed)
+            raise InputError(name_of(table), f"a {name} of {values[~right][0]:g}", allowed)
     return frequency, ratio, mass
 
 
-def read_receptance(path: Path) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+def read_receptance(table: TableSource) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
     """Read the receptance of a wheel, (n,), m/N, e^{+iωt}, with its rising frequencies, Hz.
 
     A table of three columns: frequency, real and imaginary part.
     """
-    frequency, real, imaginary = read_table(path, RECEPTANCE).T
+    frequency, real, imaginary = read_table(table, RECEPTANCE).T
     if frequency.size < FEWEST_LINES:
-        raise InputError(path.name, f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
+        raise InputError(name_of(table), f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
     if frequency[0] <= 0 or (np.diff(frequency) <= 0).any():
-        raise InputError(path.name, "frequencies that do not rise", "rising frequencies, all above 0 Hz")
+        raise InputError(name_of(table), "frequencies that do not rise", "rising frequencies, all above 0 Hz")
     return frequency, real + 1j * imaginary
 
 
@@ -93,27 +102,31 @@ def check_band_levels(levels: NDArray[np.float64], name: str) -> None:
         raise InputError(name, received, allowed, remedy)
 
 
-def read_table(path: Path, columns: tuple[Column, ...]) -> NDArray[np.float64]:
+def read_table(table: TableSource, columns: tuple[Column, ...]) -> NDArray[np.float64]:
     """Read a table of numbers (lines, columns), in SI.
 
-    Columns are apart by comma, semicolon (with decimal commas) or white space; text from '#' on is left out.
-    A heading may name units in brackets, as ``wavelength (cm)``; without one, they are SI. A line that does
-    not hold one finite number for each column is refused.
+    An array is taken as it is. In a file, columns are apart by comma, semicolon (with decimal commas) or
+    white space; text from '#' on is left out. A heading may name units in brackets, as ``wavelength (cm)``;
+    without one, they are SI. A line that does not hold one finite number for each column is refused.
     """
     allowed = "a table with the columns " + ", ".join(
         f"{column.name} ({column.dimension or '1'})" for column in columns
     )
+    if isinstance(table, np.ndarray):
+        if not len(table) or not np.isfinite(table).all():
+            raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
+        return table
     scale, rows = [1.0] * len(columns), []
-    for number, cells in _lines(path, allowed):
+    for number, cells in _lines(table, allowed):
         values = [_number(cell) for cell in cells]
         if len(cells) == len(columns) and all(map(math.isfinite, values)):
             rows.append(values)
         elif len(cells) == len(columns) and not rows and all(map(math.isnan, values)):
-            scale = [_scale(cell, column, path) for cell, column in zip(cells, columns, strict=True)]
+            scale = [_scale(cell, column, table) for cell, column in zip(cells, columns, strict=True)]
         else:
-            raise InputError(path.name, f"'{', '.join(cells)[:40]}' in line {number}", allowed)
+            raise InputError(name_of(table), f"'{', '.join(cells)[:40]}' in line {number}", allowed)
     if not rows:
-        raise InputError(path.name, "no line of numbers", allowed)
+        raise InputError(name_of(table), "no line of numbers", allowed)
     return np.array(rows) * scale
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.config.content import name_of
 from asperity.errors import InputError, TruncatedContactWarning
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.defects import corrugated, defects
@@ -89,7 +90,7 @@ def _samples(
     if surface.file is not None:
         maps, missing = measured_maps(surface, contact.spacing)
         strips, origin = strips_of(maps, contact, seeds)
-        return maps, strips, missing, f"{len(maps)} samples measured, {surface.file.name}; {origin}"
+        return maps, strips, missing, f"{len(maps)} samples measured, {name_of(surface.file)}; {origin}"
     if surface.rms is not None:
         shape = (strip_rows(contact), window_cells(contact))
         strips = tuple(synthesised(surface, contact.spacing, shape, seed) for seed in seeds)

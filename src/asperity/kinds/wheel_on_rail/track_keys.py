@@ -7,11 +7,11 @@ from typing import Annotated
 
 from pydantic import BeforeValidator
 
+from asperity.config.form import Section, key
 from asperity.config.keys import (
     Choice,
     Damping,
     Duration,
-    ExistingFile,
     Force,
     Length,
     Mass,
@@ -19,9 +19,8 @@ from asperity.config.keys import (
     OwnOrNamed,
     Position,
     Quantity,
-    Section,
+    SectionFile,
     Stiffness,
-    key,
 )
 from asperity.config.sections import ContactCase, Numerics
 from asperity.errors import InputError
@@ -125,7 +124,7 @@ class TrackCase(Section):
     rail_head_radius: Length = key(
         "0.3 m", "radius of the rail head across the rail", within=("1 mm", "1 km", "rail heads lie between")
     )
-    rail_profile: ExistingFile | None = key(
+    rail_profile: SectionFile | None = key(
         None,
         "measured shape of the rail head across the rail, instead of rail_head_radius",
         example='"rail.csv"',

@@ -7,12 +7,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import BeforeValidator
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, PlainValidator
 
+from asperity.config.form import Section, key
 from asperity.config.keys import (
     Choice,
     ChoiceOrFile,
-    ExistingFile,
+    File,
     Force,
     Length,
     LengthOrInfinite,
@@ -20,8 +23,7 @@ from asperity.config.keys import (
     Mass,
     OwnOrNamed,
     Position,
-    Section,
-    key,
+    SectionFile,
 )
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import TABLE_OF_LEVELS, MeasuredLines, problems_of_table
@@ -32,7 +34,11 @@ WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")
 DEEPEST_FLAT = 0.01  # of the wheel's radius
 CLOSE_LENGTH = 0.05  # by which a measured length may differ from that of the chord
 
-WheelRoughness = Annotated[str | Path, BeforeValidator(ChoiceOrFile(WHEEL_ROUGHNESS, TABLE_OF_LEVELS))]
+WheelRoughness = Annotated[
+    str | Path | NDArray[np.float64],
+    PlainValidator(ChoiceOrFile(WHEEL_ROUGHNESS, TABLE_OF_LEVELS, columns=2)),
+]
+TableFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=3))]
 
 
 class WheelBody(Section):
@@ -53,18 +59,18 @@ class WheelBody(Section):
         "radius of the tread across the rail",
         within=("1 mm", "100 km", 'beyond that it is flat: write "inf"'),
     )
-    profile: ExistingFile | None = key(
+    profile: SectionFile | None = key(
         None,
         "measured shape of the tread across the rail, instead of transverse_radius",
         example='"tread.csv"',
     )
-    modes: ExistingFile | None = key(
+    modes: TableFile | None = key(
         None,
         "table of the wheel's modes: frequency (Hz), damping ratio, modal mass (kg)",
         otherwise="a rigid wheel",
         example='"modes.csv"',
     )
-    receptance: ExistingFile | None = key(
+    receptance: TableFile | None = key(
         None,
         "table of the wheel's receptance: frequency (Hz), real and imaginary part (m/N)",
         otherwise="a rigid wheel",
@@ -139,7 +145,8 @@ class WheelCase(MeasuredLines, WheelBody):
     def problems(self) -> Iterator[InputError]:
         """A sound body, one source of texture, and a flat that is small against the wheel."""
         yield from self.problems_of_body()
-        yield from self.problems_of_lines()
+        yield from self.problems_of_line()
+        yield from self.problems_of_processing()
         if self.roughness is not None and self.line is not None:
             yield InputError("", "both roughness and line", "one of them", "Remove one.")
         yield from self._problems_of_flat()

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.case import Case
+from asperity.config.content import name_of
 from asperity.errors import InputError
 from asperity.reference.cnossos import rail_roughness
 from asperity.scenarios.chain import warn_of_start
@@ -56,7 +57,7 @@ def gather(case: Case, margin: int) -> Textures:
         maps, missing = measured_maps(case.surface, spacing)
         strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
         path, path_origin = path_of(maps, (rows, ny), seeds[0], run_in=lead)
-        origin = f"{len(maps)} measured from {case.surface.file.name}; {strip_origin}; {path_origin}"
+        origin = f"{len(maps)} measured from {name_of(case.surface.file)}; {strip_origin}; {path_origin}"
     elif case.surface.rms is not None:
         size = (strip_rows(case.contact), ny)
         strips = tuple(synthesised(case.surface, spacing, size, seed) for seed in seeds[1:])
@@ -105,7 +106,7 @@ def _line(case: Case, rows: int, least: int, lead: int, seed: int) -> tuple[NDAr
             "Give a shorter duration, or a longer line.",
         )
     held = profile.heights[: rows + lead]
-    origin = f"path measured, {case.surface.line.name}{mirrored_words(held, rows + lead)}"
+    origin = f"path measured, {name_of(case.surface.line)}{mirrored_words(held, rows + lead)}"
     return mirrored_before(held, rows + lead), origin
 
 

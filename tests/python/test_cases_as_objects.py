@@ -1,0 +1,307 @@
+"""Cases as objects: SI numbers or text, changed by with_, told from the object, and the same in TOML."""
+
+import json
+import math
+import pickle
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+import asperity
+from asperity import BallOnBeam, HeightMap, Material, Profile, WheelOnRail
+from asperity.config.describing import entries
+from asperity.config.form import extra_of
+from asperity.config.keys import Choice, Flag, MaterialOrName, Number, Quantity, is_list, value_kind
+from asperity.errors import CaseError, InputError
+from asperity.kinds.cases import case_of, parse_case
+from asperity.units import quantity, written
+
+MAP = HeightMap(1e-7 * np.random.default_rng(1).normal(size=(40, 30)), 8e-6)
+ROUGH = BallOnBeam(surface={"rms": 0.5e-6})
+RAIL = WheelOnRail(surface={"spectrum": "iso3095"})
+BASES = {"ball-on-beam": ROUGH, "wheel-on-rail": RAIL}
+
+
+def listed(case, key):
+    return {item["key"]: item for item in case.parameters()}[key]
+
+
+class TestKeys:
+    def test_a_number_is_in_si_and_the_same_as_its_text(self):
+        number = BallOnBeam(speed=2, surface={"rms": 0.5e-6}, ball={"load": np.float32(5)})
+        text = BallOnBeam(speed="2000 mm/s", surface={"rms": "0.5 um"}, ball={"load": "5 N"})
+        assert number == text
+        assert hash(number) == hash(text)
+        assert number != ROUGH
+        assert (number.speed, number.ball.load) == (2.0, 5.0)
+
+    def test_a_file_needs_units_all_the_same(self):
+        with pytest.raises(CaseError, match='Add unit and quotes: "2 m/s" if it is in SI units'):
+            parse_case('kind = "ball-on-beam"\nspeed = 2\n[surface]\nrms = "1 um"\n')
+
+    def test_sections_are_mappings_or_objects(self):
+        assert BallOnBeam(surface=ROUGH.surface, ball=ROUGH.ball) == ROUGH
+        with pytest.raises(CaseError, match="Surface: 1 error\n  - rms: received -1"):
+            type(ROUGH.surface)(rms=-1)
+
+    def test_lists_may_be_arrays(self):
+        case = BallOnBeam(surface={"rms": 1e-6}, beam={"sensors": np.array([0.25, 0.5])})
+        assert case.beam.sensors == (0.25, 0.5)
+
+    def test_a_material_may_be_an_object(self):
+        brass = Material("brass", 100e9, 0.34, 8500.0, "a handbook")
+        case = ROUGH.with_(ball={"material": brass})
+        assert case.ball.material == brass
+        assert parse_case(case.to_toml()) == case
+        with pytest.raises(CaseError, match="youngs_modulus: received 1 Pa; allowed: 1 kPa to 10 TPa"):
+            ROUGH.with_(ball={"material": Material("fog", 1.0, 0.3, 1000.0)})
+
+    @pytest.mark.parametrize("value", [10**400, math.inf, math.nan, 1e31, True, None, [1], -1, 0])
+    def test_numbers_that_are_none_are_refused(self, value):
+        with pytest.raises(CaseError, match="- speed: received"):
+            BallOnBeam(speed=value, surface={"rms": 1e-6})
+
+    def test_all_errors_come_at_once(self):
+        with pytest.raises(CaseError) as caught:
+            BallOnBeam(speed=-1, surfac={}, beam={"hight": 1})
+        assert str(caught.value).startswith("BallOnBeam: 4 errors")
+        assert 'Did you mean "height"' in str(caught.value)
+
+    def test_a_case_does_not_change(self):
+        with pytest.raises(AttributeError, match=r"speed of BallOnBeam .*case.with_\(speed=…\)"):
+            ROUGH.speed = 2.0
+
+
+class TestWith:
+    def test_keys_of_sections_in_three_ways(self):
+        ways = (
+            ROUGH.with_(**{"ball.load": "5 N"}),
+            ROUGH.with_(ball={"load": 5}),
+            ROUGH.with_(ball=BallOnBeam(surface={"rms": 1e-6}, ball={"load": 5}).ball),
+        )
+        assert len(set(ways)) == 1
+        assert ways[0].surface.rms == 0.5e-6
+        assert ROUGH.ball.load is None
+
+    def test_none_takes_a_key_out(self):
+        case = BallOnBeam(speed=2, surface={"rms": 1e-6}, ball={"load": 5, "mass": 0.2})
+        assert case.with_(speed=None, **{"ball.load": None}) == BallOnBeam(
+            surface={"rms": 1e-6}, ball={"mass": 0.2}
+        )
+
+    def test_laws_follow_the_surface_until_they_are_chosen(self):
+        line = ROUGH.with_(surface={"rms": None, "spectrum": "iso3095"})
+        assert line.laws == ("hertz-filtered", "linear-filtered", "linear")
+        assert listed(line, "laws")["is_default"]
+        chosen = ROUGH.with_(laws=["areal"])
+        with pytest.raises(CaseError, match='"areal" with a path given as a line'):
+            chosen.with_(surface={"rms": None, "spectrum": "iso3095"})
+
+    @pytest.mark.parametrize("name", ["spede", "ball.lode", "bal.load", "kind", "a.b.c"])
+    def test_unknown_keys_are_refused(self, name):
+        with pytest.raises(CaseError, match=name.split(".")[0]):
+            ROUGH.with_(**{name: "wheel-on-rail"})
+
+    def test_what_a_case_says_of_itself_follows(self):
+        case = ROUGH.with_(speed="2 m/s", seed=7)
+        assert listed(case, "speed") == {
+            **{"key": "speed", "value": "2 m/s", "default": "1 m/s"},
+            **{"is_default": False, "note": "rolling speed"},
+        }
+        assert 'speed = "2 m/s"' in case.text
+        assert case.text == case.to_toml()
+        assert repr(case) == "BallOnBeam(speed='2 m/s', seed=7, surface={'rms': '0.5 um'})"
+        copied = ROUGH.model_copy(update={"speed": 3.0})
+        assert listed(copied, "speed")["value"] == "3 m/s"
+        assert "3 m/s" in copied.to_toml()
+
+
+class TestInMemory:
+    def test_an_array_needs_its_pixel_and_is_the_same_as_a_map(self):
+        case = BallOnBeam(surface={"file": MAP})
+        assert BallOnBeam(surface={"file": MAP.heights, "pixel": 8e-6}) == case
+        assert BallOnBeam(surface={"file": MAP.heights * 1e6, "pixel": "8 um", "height_unit": "um"}).laws
+        assert BallOnBeam(surface={"file": HeightMap(2 * MAP.heights, 8e-6)}) != case
+        assert hash(BallOnBeam(surface={"file": HeightMap(MAP.heights, 9e-6)})) != hash(case)
+        assert pickle.loads(pickle.dumps(case)) == case  # noqa: S301 (as executors do)
+        ensemble = BallOnBeam(surface={"file": np.stack([MAP.heights, -MAP.heights]), "pixel": 8e-6})
+        assert len(ensemble.surface.file) == 2
+        assert ensemble == BallOnBeam(surface={"file": [MAP, HeightMap(-MAP.heights, 8e-6)]})
+
+    def test_it_is_described_but_not_written(self):
+        case = BallOnBeam(surface={"file": MAP})
+        with pytest.raises(InputError, match=r"surface.file: received height map of 40 × 30 points.*np.save"):
+            case.to_toml()
+        digest = case.text.split("sha256 ")[1][:16]
+        assert digest in listed(case, "surface.file")["value"]
+        assert digest not in BallOnBeam(surface={"file": HeightMap(2 * MAP.heights, 8e-6)}).text
+        with pytest.raises(CaseError, match="no such file"):
+            parse_case(case.text)
+
+    @pytest.mark.parametrize(
+        ("surface", "message"),
+        [
+            ({"file": MAP.heights}, "surface.pixel: received nothing; allowed: the distance of the points"),
+            (
+                {"file": MAP, "pixel": 1e-6},
+                "surface.pixel: received 1e-06; allowed: only together with a file",
+            ),
+            ({"file": MAP.heights[0], "pixel": 1e-6}, "an array of 2 dimensions or 3 dimensions"),
+            ({"file": Profile(MAP.heights[0], 1e-6)}, "surface.file: .*or a HeightMap"),
+            ({"file": MAP.heights, "pixel": "8"}, "Add the unit"),
+            ({"file": np.array([["a", "b"]] * 2), "pixel": 1e-6}, "surface.file"),
+            ({"line": MAP.heights[0]}, "surface.line_spacing: received nothing"),
+            ({"file": [MAP, 3]}, "surface.file: received"),
+        ],
+    )
+    def test_what_is_wrong_with_it_is_told(self, surface, message):
+        with pytest.raises(CaseError, match=message):
+            BallOnBeam(surface=surface)
+
+    def test_a_map_gives_what_its_file_gives(self, tmp_path):
+        heights = 1e-7 * np.random.default_rng(3).normal(size=(300, 80))
+        np.save(tmp_path / "map.npy", heights)
+        on_disk = {"file": tmp_path / "map.npy", "pixel": "8 um", "height_unit": "m"}
+        case = BallOnBeam(
+            laws=["hertz"], duration=2e-3, start=0.0, surface=on_disk,
+            contact={"samples": 1, "window": 3e-4}, ball={"load": "5 N"},
+        )  # fmt: skip
+        held = {"file": HeightMap(heights, 8e-6), "pixel": None, "height_unit": None}
+        results = [asperity.run(each) for each in (case, case.with_(surface=held))]
+        one, other = (result["rolling/contact_force"].values for result in results)
+        np.testing.assert_array_equal(one, other)
+        assert np.ptp(one) > 0.0
+
+    def test_lines_and_tables_of_a_wheel(self, tmp_path):
+        bands = np.array([[0.1, 3.0], [0.08, 2.0], [0.063, 1.0]])
+        np.savetxt(tmp_path / "levels.csv", bands, delimiter=",")
+        modes = np.array([[1000.0, 1e-3, 300.0]])
+        case = WheelOnRail(surface={"spectrum": bands}, wheel={"modes": modes})
+        on_disk = WheelOnRail(surface={"spectrum": tmp_path / "levels.csv"})
+        from asperity.kinds.wheel_on_rail.records import rail_levels
+
+        for one, other in zip(
+            rail_levels(case.surface.spectrum), rail_levels(on_disk.surface.spectrum), strict=True
+        ):
+            if not isinstance(one, str):
+                np.testing.assert_allclose(one, other)
+        assert "table of 3 × 2 numbers" in case.text
+        turn = Profile(1e-6 * np.random.default_rng(0).normal(size=2890), 1e-3)
+        head = Profile(np.linspace(-0.02, 0.02, 41) ** 2 / -0.6, 1e-3)
+        WheelOnRail(wheel={"line": turn}, track={"rail_profile": head})
+        with pytest.raises(CaseError, match=r"an array of shape \(n, 3\)"):
+            case.with_(wheel={"modes": modes[:, :2]})
+        with pytest.raises(CaseError, match="a gap in the bands"):
+            case.with_(surface={"spectrum": bands[::2]})
+
+
+def values_of(entry):
+    """Strategy for legal values of a key alone, in SI; None for keys that name files or go with others."""
+    kind = value_kind(entry.field.annotation, entry.field.metadata)
+    extra = extra_of(entry.field)
+    if entry.name in ("kind", "laws", "smooth") or extra["goes_with"] or is_list(entry.field.annotation):
+        return None
+    if isinstance(kind, Choice) and entry.name != "spectrum":
+        return st.sampled_from(kind.known)
+    if isinstance(kind, Flag):
+        return st.booleans()
+    if isinstance(kind, MaterialOrName):
+        own = st.builds(
+            Material,
+            st.sampled_from(["brass", "Ω–metal", '"quoted"']),
+            st.floats(1e9, 9e11),
+            st.floats(0.0, 0.49),
+            st.floats(500.0, 9e3),
+            st.sampled_from(["", "a book"]),
+        )
+        return st.sampled_from(["steel", "aluminium"]) | own
+    usual = extra["default"] if extra["default"] is not None else extra["example"].strip('"')
+    if isinstance(kind, Number) and not kind.whole and isinstance(usual, int | float):
+        return st.floats(0.5, 1.0).map(lambda share: usual * share)
+    if isinstance(kind, Quantity) and usual != "inf" and "[" not in str(usual):
+        size = quantity(str(usual), kind.dimension)
+        return st.floats(0.9, 1.1).map(lambda share: size * share)
+    return None
+
+
+KNOWN = {
+    name: {e.dotted: found for e in entries(type(base)) if (found := values_of(e)) is not None}
+    for name, base in BASES.items()
+}
+
+
+@settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
+)
+@given(st.data())
+@pytest.mark.parametrize("kind", sorted(BASES))
+def test_a_case_that_is_written_and_read_is_the_same(kind, data):
+    known = KNOWN[kind]
+    assert len(known) > 20
+    chosen = data.draw(st.lists(st.sampled_from(sorted(known)), max_size=5, unique=True))
+    changes = {name: data.draw(known[name], label=name) for name in chosen}
+    try:
+        case = BASES[kind].with_(**changes)
+    except CaseError:
+        assume(False)
+    again = parse_case(case.to_toml())
+    assert again == case
+    assert hash(again) == hash(case)
+    assert again.parameters() == case.parameters()
+    assert again.to_toml() == case.to_toml() == case.text
+    assert eval(repr(case), {"BallOnBeam": BallOnBeam, "WheelOnRail": WheelOnRail}) == case  # noqa: S307
+    for name, value in changes.items():
+        section, _, key = name.rpartition(".")
+        if isinstance(value, float):
+            assert getattr(getattr(again, section) if section else again, key) == value
+
+
+@given(st.floats(1e-12, 1e12), st.sampled_from(["m", "N", "Pa", "m/s", "kg", "kg/m^3", "N s/m", "dB"]))
+def test_a_quantity_is_written_to_the_last_bit(value, dimension):
+    assert quantity(written(value, dimension, dimension, exactly=True), dimension) == value
+    assert quantity(written(value, dimension, dimension), dimension) == pytest.approx(value, rel=1e-5)
+
+
+def test_units_suit_their_numbers():
+    assert [written(v, "m", "mm") for v in (0.025, 1e-7, 2e-5, 300.0)] == [
+        "25 mm",
+        "100 nm",
+        "0.02 mm",
+        "300 m",
+    ]
+    assert written(0.0, "N s/m", "N s/m") == "0 N s/m"
+    assert written(3.0, "dB", "dB") == "+3 dB"
+    assert written(math.inf, "m", "m") == "inf"
+
+
+class TestStudies:
+    def test_of_an_object_with_numbers(self, tmp_path, monkeypatch):
+        from asperity.studies.definition import study_of
+
+        case = BallOnBeam(speed="2 m/s", laws=["hertz"], duration=5e-3, surface={"spectrum": "iso3095"})
+        plan = study_of(case, {"ball.load": [5, np.float64(6.0)], "seed": np.arange(1, 3)})
+        assert plan.sweep == {"ball.load": ["5 N", "6 N"], "seed": [1, 2]}
+        first = plan.members()[0]
+        assert first.case == case.with_(**{"ball.load": 5})
+        assert parse_case(plan.text) == case
+        table = asperity.study(case, {"ball.load": [5, 6]}, workers=1)
+        assert table["ball.load"].values.tolist() == [5.0, 6.0]
+        np.testing.assert_allclose(table["mean_force"].values.ravel(), [5.0, 6.0], rtol=0.3)
+        assert json.loads(table.attrs["sweep"]) == {"ball.load": ["5 N", "6 N"]}
+
+    def test_surfaces_in_memory_may_be_swept(self):
+        from asperity.studies.definition import study_of
+
+        other = HeightMap(-MAP.heights, 8e-6)
+        first, second = study_of(BallOnBeam(surface={"file": MAP}), {"surface.file": [MAP, other]}).members()
+        assert first.case.surface.file is MAP
+        assert second.case.surface.file is other
+        assert first.key != second.key
+        with pytest.raises(CaseError, match="more than once"):
+            study_of(ROUGH, {"surface.file": [MAP, HeightMap(MAP.heights, 8e-6)]})
+
+
+def test_a_mapping_from_python_takes_numbers_too():
+    assert case_of({"kind": "ball-on-beam", "speed": 2, "surface": {"rms": 1e-6}}).speed == 2.0
