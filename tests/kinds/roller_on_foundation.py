@@ -12,7 +12,8 @@ import numpy as np
 from pydantic import BeforeValidator
 
 from asperity.config.case import Case, Law
-from asperity.config.keys import Choice, Force, Length, Mass, OwnOrNamed, Section, Stiffness, key
+from asperity.config.form import Section, key
+from asperity.config.keys import Choice, Force, Length, Mass, OwnOrNamed, Stiffness
 from asperity.config.sections import ContactCase, Numerics
 from asperity.contact import Hertz
 from asperity.reference.materials import contact_modulus

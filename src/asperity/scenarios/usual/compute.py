@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from asperity.config.content import content, file_digest
 from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.rolling.pair import RolledPair, roll_pair
@@ -55,4 +56,4 @@ def _checkpoint(law: Law, prepared: Prepared, store: Store) -> Checkpoint | None
     if path is None or not spec_of(law.name).solved_every_step:
         return None
     rows = path.rows(0, path.shape[0])
-    return Checkpoint(store, content_key(law.name, rows, prepared.case.model_dump(mode="json")))
+    return Checkpoint(store, content_key(law.name, rows, content(prepared.case, file_digest)))
