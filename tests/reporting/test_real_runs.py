@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from real_runs import without
+from report_reading import Reader, read_csv
 
 from asperity.kinds import KINDS
 from asperity.kinds.report import page_of, parts_of
 from asperity.reporting.csv_files import columns_text
 from asperity.reporting.style import narrow_page, styled
 from asperity.results import read_result, save
-from report_reading import Reader, read_csv
 
 PARTS = {
     (kind, part.name): part for kind in KINDS for chapter in KINDS[kind].chapters for part in chapter.parts

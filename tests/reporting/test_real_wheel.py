@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from report_reading import HOSTILE, Reader, read_csv
 
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import chapters_of, page_of, parts_of
@@ -16,7 +17,6 @@ from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
 from asperity.kinds.wheel_on_rail.figures.motion import point_labels
 from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
 from asperity.laws import spec_of
-from report_reading import HOSTILE, Reader, read_csv
 
 PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from asperity.errors import InputError
 from asperity.reference import cnossos
 
-TRANSCRIPTION = Path(__file__).parents[2] / "shared" / "reference" / "railway_tables.json"
+TRANSCRIPTION = Path(__file__).parents[3] / "shared" / "reference" / "railway_tables.json"
 ALL = [
     *((cnossos.rail_roughness, n) for n in cnossos.RAIL_ROUGHNESS),
     *((cnossos.wheel_roughness, n) for n in cnossos.WHEEL_ROUGHNESS),

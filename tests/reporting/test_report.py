@@ -9,6 +9,8 @@ from io import BytesIO
 import numpy as np
 import pytest
 from matplotlib.text import Text
+from report_reading import HOSTILE, Reader, read_csv
+from report_tree import DATUM, LAWS, LOAD, report_tree
 
 from asperity.errors import ComputationError
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
@@ -24,8 +26,6 @@ from asperity.reporting.style import (
 from asperity.reporting.tables import reference_table, validity_table
 from asperity.reporting.texture import lines_picture, surface_picture
 from asperity.reporting.time_figures import piece
-from report_reading import HOSTILE, Reader, read_csv
-from report_tree import DATUM, LAWS, LOAD, report_tree
 
 PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.parts]
 
