@@ -67,6 +67,12 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     -------
     Path
         The file written.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> asperity.save(asperity.run(case), "runs/first/run.nc").name
+    'run.nc'
     """
     import numpy as np
 

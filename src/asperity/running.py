@@ -42,6 +42,15 @@ def run(
         If the case, or a file it names, is wrong.
     ComputationError
         If a computation fails.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> result = asperity.run(case)
+    >>> result["rolling/contact_force"].dims
+    ('law', 'time')
+    >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
+    1
     """
     from asperity.errors import PhysicsWarning
     from asperity.kinds.cases import as_case
@@ -92,6 +101,14 @@ def open_result(path: str | os.PathLike[str]) -> Result:
     ------
     InputError
         If the file is missing, damaged, too large or not a result of this program.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> result = asperity.run(case)
+    >>> path = asperity.save(result, "run.nc")
+    >>> asperity.open_result(path).identical(result)
+    True
     """
     from asperity.reporting.notebook import Result
     from asperity.results import read_result

@@ -1,4 +1,4 @@
-"""The command line of studies: study and sweep."""
+"""The command line of studies: of a file, and of a case with --vary."""
 
 import csv
 import shutil
@@ -132,9 +132,10 @@ def test_names_in_a_table_are_no_formulas_and_no_markup():
     assert rows[0][heading.index("completed [1]")] == "1"  # numbers stay as they are
 
 
-def test_speeds_and_loads_need_no_file():
+def test_a_case_may_be_varied_without_a_file():
     Path("small.toml").write_text(SMALL)
-    call("sweep", "small.toml", "--speed", "1 m/s, 7.2 km/h", "--load", "5 N,6 N", "--workers", "1")
+    vary = ["--vary", "speed=1 m/s, 7.2 km/h", "--vary", "ball.load = 5 N,6 N"]
+    call("study", "small.toml", *vary, "--workers", "1")
     with xr.open_dataset("runs/small/study.nc", engine="h5netcdf") as found:
         assert found["speed"].values.tolist() == [1.0, 2.0]
         assert found["ball.load"].values.tolist() == [5.0, 6.0]
@@ -161,19 +162,24 @@ def test_another_study_is_never_overwritten_unasked(out):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["sweep", "rail.toml"], "sweep: received nothing; allowed: --speed, --load or both"),
-        (["sweep", "rail.toml", "--speed", "20"], "sweep.speed[1]: received '20'; allowed: a speed"),
-        (["sweep", "rail.toml", "--speed", "20 m/s,"], "sweep.speed[2]: received ''"),
-        (["sweep", "rail.toml", "--speed", "-1 m/s"], "sweep.speed[1]: received '-1 m/s'"),
-        (["sweep", "rail.toml", "--load", "inf"], "sweep.wheel.load[1]: received 'inf'"),
         (
-            ["sweep", "rail.toml", "--load", "5 kN,5000 N"],
+            ["study", "rail.toml", "--vary", "speed"],
+            "--vary: received 'speed'; allowed: a key of the case, =,",
+        ),
+        (["study", "rail.toml", *["--vary", "seed=1"] * 2], "--vary: received seed more than once"),
+        (["study", "rail.toml", "--vary", "seed=1, 2.5"], "sweep.seed[2]: received 2.5"),
+        (["study", "rail.toml", "--vary", "speed=20"], "sweep.speed[1]: received 20; allowed: a speed"),
+        (["study", "rail.toml", "--vary", "speed=20 m/s,"], "sweep.speed[2]: received ''"),
+        (["study", "rail.toml", "--vary", "speed=-1 m/s"], "sweep.speed[1]: received '-1 m/s'"),
+        (["study", "rail.toml", "--vary", "wheel.load=inf"], "sweep.wheel.load[1]: received 'inf'"),
+        (
+            ["study", "rail.toml", "--vary", "wheel.load=5 kN,5000 N"],
             "wheel.load: received '5000 N' more than once",
         ),
         (["study", "absent.toml"], "absent.toml: received no such file; allowed: the path of a study file"),
         (["study", "rail.toml"], "case: received nothing"),
         (
-            ["sweep", "rail.toml", "--load", "5 kN", "--workers", "2", "--scheduler", "x"],
+            ["study", "rail.toml", "--vary", "wheel.load=5 kN", "--workers", "2", "--scheduler", "x"],
             "--workers: received",
         ),
     ],

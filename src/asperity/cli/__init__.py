@@ -146,47 +146,32 @@ def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> No
 
 @main.command()
 @click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "--vary",
+    multiple=True,
+    metavar="KEY=VALUES",
+    help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h'. May be repeated.",
+)
 @_study_options
 def study(
-    study: Path, directory: Path | None, workers: int | None, scheduler: str | None, overwrite: bool
-) -> None:
-    """Compute a case for every combination of the values of some keys: writes study.nc and study.csv.
-
-    'asperity new study' writes a commented study. Members that are finished are kept: the same command goes
-    on where it was, and tries members again that failed.
-    """
-    from asperity.cli.studying import study_into
-    from asperity.studies.definition import load_study
-
-    study_into(
-        load_study(study),
-        directory or Path("runs") / study.stem,
-        workers=workers,
-        scheduler=scheduler,
-        overwrite=overwrite,
-    )
-
-
-@main.command()
-@_case
-@click.option("--speed", "speeds", help="Speeds, as '20 m/s, 200 km/h'. [default: that of the case]")
-@click.option("--load", "loads", help="Loads, as '50 kN, 65 kN'. [default: that of the case]")
-@_study_options
-def sweep(
-    case: Path,
-    speeds: str | None,
-    loads: str | None,
+    study: Path,
+    vary: tuple[str, ...],
     directory: Path | None,
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
 ) -> None:
-    """Compute a case at several speeds and loads: a study without a file of its own."""
-    from asperity.cli.studying import speeds_and_loads, study_into
+    """Compute a case for every combination of the values of some keys: writes study.nc and study.csv.
+
+    'asperity new study' writes a commented study; with --vary, a case needs none. Members that are finished
+    are kept: the same command goes on where it was, and tries members again that failed.
+    """
+    from asperity.cli.studying import study_into, varied
+    from asperity.studies.definition import load_study
 
     study_into(
-        speeds_and_loads(case, speeds, loads),
-        directory or Path("runs") / case.stem,
+        varied(study, vary) if vary else load_study(study),
+        directory or Path("runs") / study.stem,
         workers=workers,
         scheduler=scheduler,
         overwrite=overwrite,

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext, suppress
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import shown
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable
-from asperity.kinds.cases import kind_of, load_case
 from asperity.progress import progress_bar
 from asperity.studies.definition import Study, study_of
 from asperity.terminal import say, say_table
@@ -73,15 +74,32 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
     say(f"Table:   {rows.resolve()}")
 
 
-def speeds_and_loads(case: Path, speeds: str | None, loads: str | None) -> Study:
-    """Make a study of speeds and loads from the words of the command line: values with units, and commas."""
-    body = kind_of(load_case(case)).rolling
-    given = {"speed": speeds, f"{body}.load": loads}
-    words = {name: text.split(",") for name, text in given.items() if text is not None}
-    sweep = {name: [word.strip() for word in values] for name, values in words.items()}
-    if not sweep:
-        raise InputError("sweep", "nothing", "--speed, --load or both", "Name what is swept.")
+def varied(case: Path, words: Sequence[str]) -> Study:
+    """Make a study of a case from the words of the command line, each ``KEY=VALUE, VALUE, …``."""
+    sweep: dict[str, list[Any]] = {}
+    for word in words:
+        name, mark, values = (part.strip() for part in word.partition("="))
+        if not mark or not name:
+            remedy = "Write, for instance, --vary 'speed = 20 m/s, 200 km/h'."
+            raise InputError("--vary", shown(word), "a key of the case, =, and its values", remedy)
+        if name in sweep:
+            raise InputError(
+                "--vary", f"{name} more than once", "each key once", "Put all values behind one."
+            )
+        sweep[name] = [_value(each.strip()) for each in values.split(",")]
     return study_of(case, sweep)
+
+
+def _value(word: str) -> Any:
+    """A number or a truth value as such, as TOML would read it; anything else as text."""
+    if word in ("true", "false"):
+        return word == "true"
+    try:
+        return int(word)
+    except ValueError:
+        with suppress(ValueError):
+            return word if "inf" in word.lower() else float(word)
+    return word
 
 
 def _refuse_to_overwrite(study: Study, directory: Path) -> None:

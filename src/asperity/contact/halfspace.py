@@ -54,6 +54,16 @@ class Contact:
         Largest complementarity residual relative to the largest overlap of the undeformed bodies.
     outcome : Outcome
         How the solution ended, with advice.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import HalfSpace
+    >>> x = 5e-6 * np.arange(-20, 21)
+    >>> ball = np.add.outer(x**2, x**2) / (2 * 10e-3)  # R = 10 mm
+    >>> contact = HalfSpace(ball.shape, (5e-6, 5e-6), 115e9).solve(ball, load=1.0)
+    >>> contact.pressure.shape, bool(contact.pressure.argmax() == contact.pressure.size // 2)
+    ((41, 41), True)
     """
 
     pressure: NDArray[np.float64]
@@ -109,6 +119,16 @@ class HalfSpace:
     Pressure is constant on each cell (Love 1929); valid while the contact is small against the bodies and
     slopes are small. Solved as 0 ≤ p ⟂ (K p + gap − approach) ≥ 0 by preconditioned projected conjugate
     gradients on the bounding box of the overlap, outside of which no pressure can act.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import HalfSpace
+    >>> x = 5e-6 * np.arange(-20, 21)
+    >>> ball = np.add.outer(x**2, x**2) / (2 * 10e-3)  # R = 10 mm
+    >>> contact = HalfSpace(ball.shape, (5e-6, 5e-6), 115e9).solve(ball, load=1.0)
+    >>> contact.converged, f"{contact.force:.3f} N", f"{contact.approach * 1e6:.2f} um"  # by Hertz 0.16 um
+    (True, '1.000 N', '0.16 um')
     """
 
     def __init__(

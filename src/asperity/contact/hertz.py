@@ -26,6 +26,13 @@ class Hertz:
     Notes
     -----
     K. L. Johnson, Contact Mechanics (1985), Eqs. 4.26–4.28, with e² = 1 − (b/a)². F = K_H δ^1.5.
+
+    Examples
+    --------
+    >>> from asperity import Hertz
+    >>> contact = Hertz(115e9, 25e-3, 25e-3)  # a steel ball on steel
+    >>> f"{contact.approach(5.0) * 1e6:.3f} um, {contact.semi_axes(contact.approach(5.0))[0] * 1e6:.1f} um"
+    '0.349 um, 93.4 um'
     """
 
     modulus: float

@@ -62,6 +62,13 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
         If `result` is none, or `path` is no path.
     ComputationError
         If a file cannot be written.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> page = asperity.report(asperity.run(case), "page")
+    >>> page.name, len(list(page.parent.glob("*.csv"))) > 3  # one for each figure
+    ('report.html', True)
     """
     if not isinstance(result, DataTree):
         raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")

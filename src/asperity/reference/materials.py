@@ -31,6 +31,13 @@ class Material:
     ------
     InputError
         If a value is outside what an elastic solid can have.
+
+    Examples
+    --------
+    >>> from asperity import Material
+    >>> brass = Material("brass", youngs_modulus=100e9, poisson_ratio=0.34, density=8500.0)
+    >>> brass.density
+    8500.0
     """
 
     name: str
@@ -91,6 +98,12 @@ def material(name: str) -> Material:
     ------
     InputError
         If there is none of that name; the nearest is named.
+
+    Examples
+    --------
+    >>> from asperity import material
+    >>> material("Steel").youngs_modulus
+    210000000000.0
     """
     key = name.strip().lower()
     if key in MATERIALS:

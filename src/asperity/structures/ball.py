@@ -31,6 +31,13 @@ class Ball:
     ------
     InputError
         If radius, load or mass is not a finite positive number.
+
+    Examples
+    --------
+    >>> from asperity import Ball, material
+    >>> ball = Ball(25e-3, material("steel"))
+    >>> round(ball.mass, 3), round(ball.static_load, 2)  # kg, N
+    (0.514, 5.04)
     """
 
     radius: float

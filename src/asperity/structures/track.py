@@ -73,6 +73,14 @@ class Track:
     pinned-pinned frequency of a UIC 60 rail at 0.6 m by a third (1420 for 1063 Hz); above about 5 kHz
     the section of a rail deforms. A constant loss factor is not causal: in time a causal track stands
     for it (`asperity.structures.causal_track`). Viscous damping is causal.
+
+    Examples
+    --------
+    >>> from asperity import Track
+    >>> track = Track.named("x2000", pad_stiffness=300e6)
+    >>> sleeper, mid_span = (abs(track.receptance(1000.0, x, x)) for x in (0.0, 0.3))
+    >>> bool(mid_span > sleeper)  # near the pinned-pinned frequency
+    True
     """
 
     bending_stiffness: float

@@ -47,6 +47,15 @@ class Wheel:
     -----
     The modes stand still in the contact: that a rotating wheel splits each of them in two, one revolution
     frequency times the number of nodal diameters up and down, is left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import Wheel
+    >>> wheel = Wheel.rigid(mass=600.0, load=65e3)
+    >>> omega = 2 * np.pi * 100.0
+    >>> bool(np.isclose(abs(wheel.receptance(np.array([100.0])))[0], 1 / (600.0 * omega**2)))
+    True
     """
 
     mass: float

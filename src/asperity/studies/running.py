@@ -70,6 +70,15 @@ def study(
     Results of members are kept in the store by all that they depend on: the same study again goes on
     where it was, and computes failed members again. Their digits do not depend on the executor or on the
     number of workers.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> with ThreadPoolExecutor(1) as here:  # by default processes of this machine
+    ...     table = asperity.study(case, {"speed": [1.0, "2 m/s"]}, executor=here)
+    >>> table["rms_force"].dims, table["speed"].values.tolist()
+    (('speed', 'law'), [1.0, 2.0])
     """
     plan = _planned(definition, sweep)
     if workers is not None:

@@ -31,6 +31,16 @@ class HeightMap:
     InputError
         If the heights are not a 2-D array of real numbers with at least two points along each axis, hold an
         infinite value or no value at all, or if a spacing is not positive and finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import HeightMap
+    >>> surface = HeightMap(1e-6 * np.array([[0.0, 1.0, 0.0], [1.0, 2.0, 1.0]]), (1e-3, 2e-3))
+    >>> surface.shape, surface.size
+    ((2, 3), (0.002, 0.006))
+    >>> (surface.line().heights * 1e6).tolist()  # along the rolling direction
+    [1.0, 2.0]
     """
 
     heights: NDArray[np.float64]
@@ -203,6 +213,13 @@ class Profile:
     InputError
         If the heights are not a 1-D array of at least two real numbers, hold an infinite value or no value at
         all, or if the spacing is not positive and finite.
+
+    Examples
+    --------
+    >>> from asperity import Profile
+    >>> line = Profile([0.0, 2e-6, 1e-6, 3e-6], 1e-3)
+    >>> line.size, len(line.levelled().heights)
+    (0.004, 4)
     """
 
     heights: NDArray[np.float64]

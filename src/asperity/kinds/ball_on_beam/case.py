@@ -116,6 +116,32 @@ class BallOnBeam(Case):
 
     Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
     default and allowed values are printed by ``asperity new ball-on-beam``.
+
+    Examples
+    --------
+    >>> from asperity import BallOnBeam
+    >>> case = BallOnBeam(speed=2, surface={"rms": "0.5 um"}, ball={"load": 5})  # SI, or with units
+    >>> case
+    BallOnBeam(speed='2 m/s', surface={'rms': '0.5 um'}, ball={'load': '5 N'})
+    >>> other = case.with_(seed=7, contact={"spacing": 4e-6}, **{"ball.load": None})
+    >>> print(other.to_toml())
+    kind = "ball-on-beam"
+    speed = "2 m/s"
+    seed = 7
+    <BLANKLINE>
+    [surface]
+    rms = "0.5 um"
+    <BLANKLINE>
+    [contact]
+    spacing = "4 um"
+    <BLANKLINE>
+
+    A measured map, or any array of heights, may stand where a case file names a file:
+
+    >>> import numpy as np
+    >>> heights = 1e-7 * np.random.default_rng(1).normal(size=(400, 100))
+    >>> BallOnBeam(surface={"file": heights, "pixel": "8 um"}).surface.file.shape
+    (400, 100)
     """
 
     kind: Annotated[str, BeforeValidator(Choice(("ball-on-beam",)))] = key("ball-on-beam", "what rolls")

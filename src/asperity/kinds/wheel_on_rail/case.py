@@ -39,6 +39,13 @@ class WheelOnRail(Case):
 
     Each key's meaning, default and allowed values are printed by ``asperity new wheel-on-rail``. Positions
     count along the rail, in m from a sleeper. Every law is allowed: textures are laid out as strips.
+
+    Examples
+    --------
+    >>> from asperity import WheelOnRail
+    >>> case = WheelOnRail(surface={"spectrum": "iso3095"}, track={"pad_stiffness": 150e6})
+    >>> case.with_(speed="200 km/h").track_model().pad_stiffness
+    150000000.0
     """
 
     kind: Annotated[str, BeforeValidator(Choice(("wheel-on-rail",)))] = key("wheel-on-rail", "what rolls")

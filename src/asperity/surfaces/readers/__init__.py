@@ -93,6 +93,15 @@ def read_surface(
     -----
     MissingPointsWarning
         If points have no height.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from asperity import read_surface
+    >>> np.save("map.npy", np.random.default_rng(1).normal(size=(40, 30)))
+    >>> surface = read_surface("map.npy", height_unit="um", pixel="1.5 um")
+    >>> surface.shape, surface.spacing
+    ((40, 30), (1.5e-06, 1.5e-06))
     """
     surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
     allowed = f"0 to {len(surfaces) - 1}"

@@ -1,0 +1,113 @@
+"""A result and the progress of a run as a notebook shows them."""
+
+import base64
+import json
+import re
+import sys
+import types
+
+import pytest
+import xarray as xr
+
+import asperity
+from asperity.progress import shown_progress
+from asperity.reporting.notebook import Result
+
+CASE = asperity.BallOnBeam(laws=["hertz", "linear"], duration=5e-3, surface={"spectrum": "iso3095"})
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
+        return asperity.run(CASE)
+
+
+def test_a_result_is_a_tree_that_shows_verdict_numbers_and_force(result):
+    assert isinstance(result, xr.DataTree)
+    page = result._repr_html_()
+    assert re.sub(r"\s", "", result.attrs["verdict"])[:40] in re.sub(r"\s", "", page)
+    mean = float(result["rolling/contact_force"].sel(law="hertz").mean())
+    assert f"<td>hertz</td><td>{mean:.2f} N</td>" in page
+    assert page.count("<tr>") == 3
+    (picture,) = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
+    assert base64.b64decode(picture)[:4] == b"\x89PNG"
+    assert "<summary>All data</summary>" in page
+    assert page.count("<div") == page.count("</div>")
+
+
+def test_what_it_shows_cannot_run_scripts(result):
+    hostile = Result.of(result.copy())
+    hostile.attrs["verdict"] = "<script>alert(1)</script>"
+    hostile.attrs["warnings"] = json.dumps([{"message": "<b>coarse</b>", "grade": "note"}])
+    assert "<summary>1 warning</summary><ul><li>Note: &lt;b&gt;coarse" in hostile._repr_html_()
+    assert "<p><strong>Steel ball on a steel beam.</strong> &lt;script&gt;" in hostile._repr_html_()
+
+
+def test_a_part_of_a_result_is_shown_as_a_tree(result):
+    assert "All data" not in result["rolling"]._repr_html_()
+    assert "All data" not in Result()._repr_html_()
+
+
+def test_it_survives_saving(result, tmp_path):
+    again = asperity.open_result(asperity.save(result, tmp_path / "run.nc"))
+    assert type(again) is Result
+    assert again.identical(result)
+    assert "All data" in again._repr_html_()
+
+
+@pytest.fixture
+def notebook(monkeypatch):
+    """An IPython that runs a notebook; returns what was displayed."""
+    shown = []
+
+    class Handle:
+        def update(self, thing):
+            shown.append(thing._repr_html_())
+
+    def display(thing, display_id):
+        assert display_id
+        shown.append(thing._repr_html_())
+        return Handle()
+
+    shell = types.SimpleNamespace(has_trait=lambda name: name == "kernel")
+    ipython = types.ModuleType("IPython")
+    ipython.get_ipython = lambda: shell
+    ipython.display = types.ModuleType("IPython.display")
+    ipython.display.display = display
+    monkeypatch.setitem(sys.modules, "IPython", ipython)
+    monkeypatch.setitem(sys.modules, "IPython.display", ipython.display)
+    return shown
+
+
+def test_a_run_shows_a_bar_in_a_notebook_and_takes_it_away(notebook, tmp_path, monkeypatch):
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
+    asperity.run(CASE)
+    assert notebook[0] == notebook[-1] == ""
+    assert any(
+        re.match(r'<progress value="\d+" max="\d+"></progress> .+: \d+ of \d+', bar) for bar in notebook
+    )
+
+
+def test_a_bar_is_drawn_now_and_then_and_escapes_its_words(notebook):
+    with shown_progress(None) as progress:
+        for done in range(1000):
+            progress(done, 1000, "<b>scan</b>")
+        progress(1000, 1000, "<b>scan</b>")
+    assert len(notebook) < 20
+    assert "&lt;b&gt;scan&lt;/b&gt;: 1000 of 1000" in notebook[-2]
+
+
+def test_a_progress_of_ones_own_is_the_only_one(notebook):
+    told = []
+    with shown_progress(lambda *step: told.append(step)) as progress:
+        progress(1, 2, "scan")
+    assert told == [(1, 2, "scan")]
+    assert notebook == []
+
+
+def test_elsewhere_nothing_is_shown(monkeypatch, capsys):
+    monkeypatch.delitem(sys.modules, "IPython", raising=False)
+    with shown_progress(None) as progress:
+        progress(1, 2, "scan")
+    assert capsys.readouterr() == ("", "")
