@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import BeforeValidator
 
-from asperity.config.content import described
+from asperity.config.content import described_value
 from asperity.config.describing import in_toml, parameters, refused
 from asperity.config.form import Section, key
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
@@ -115,7 +115,8 @@ class Case(Section):
     @property
     def text(self) -> str:
         """The case in TOML; what stands in memory is described, with its digest."""
-        return toml_text({"kind": self.kind, **in_toml(self, in_memory=lambda _, value: described(value))})
+        keys = in_toml(self, in_memory=lambda _, value: described_value(value))
+        return toml_text({"kind": self.kind, **keys})
 
     def parameters(self) -> list[dict[str, Any]]:
         """List the keys that matter in this case, for people.

@@ -70,10 +70,10 @@ def name_of(value: Path | InMemory | tuple[InMemory, ...]) -> str:
     return value.source or f"a {'height map' if isinstance(value, HeightMap) else 'profile'} in memory"
 
 
-def described(value: object) -> str:
+def described_value(value: object) -> str:
     """Say what stands in memory: what it is, how large, and the start of its digest."""
     if isinstance(value, list | tuple):
-        return "; ".join(map(described, value))
+        return "; ".join(map(described_value, value))
     if isinstance(value, np.ndarray):
         what = f"table of {' × '.join(map(str, value.shape))} numbers"
     elif isinstance(value, HeightMap):

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, NoReturn
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from asperity.config.content import content, described, holds_memory
+from asperity.config.content import content, described_value, holds_memory
 from asperity.config.form import Section, extra_of, is_active
 from asperity.config.keys import GIVEN, Quantity, allowed_in, name_of_numbers, value_kind
 from asperity.errors import InputError
@@ -68,7 +68,7 @@ def parameters(case: Section) -> list[dict[str, Any]]:
 def in_words(value: object, field: FieldInfo) -> str:
     """Write a value of a key for people, in the unit of its default or its example: ``"300 MN/m"``."""
     if holds_memory(value):
-        return described(value)
+        return described_value(value)
     if isinstance(value, tuple):
         return ", ".join(in_words(item, field) for item in value)
     if isinstance(value, bool):
@@ -125,7 +125,7 @@ def value_in_toml(value: Any, field: FieldInfo) -> Any:
 def refused(dotted: str, value: object) -> NoReturn:
     """Refuse to write a case of something that stands in memory."""
     remedy = 'Save it first, as np.save("map.npy", surface.heights), and name the file in the case.'
-    raise InputError(dotted, described(value), "a file, where a case shall be written", remedy)
+    raise InputError(dotted, described_value(value), "a file, where a case shall be written", remedy)
 
 
 def _quantity(value: float, field: FieldInfo, *, exactly: bool) -> str:

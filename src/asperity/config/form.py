@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 from pydantic.fields import FieldInfo
 
 from asperity.arguments import shown
-from asperity.config.content import content, described, holds_memory
+from asperity.config.content import content, described_value, holds_memory
 from asperity.config.keys import Limit, Problems, is_list, outside_limits, value_kind
 from asperity.errors import InputError
 
@@ -88,7 +88,7 @@ class Section(BaseModel, metaclass=_Form):
     def __repr__(self) -> str:
         from asperity.config.describing import in_toml
 
-        keys = in_toml(self, in_memory=lambda _, value: f"<{described(value)}>")
+        keys = in_toml(self, in_memory=lambda _, value: f"<{described_value(value)}>")
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in keys.items())})"
 
     __str__ = __repr__
@@ -165,4 +165,4 @@ def _lonely(section: BaseModel) -> Iterator[InputError]:
 
 
 def _plain(value: object) -> object:
-    return described(value) if holds_memory(value) else str(value) if isinstance(value, Path) else value
+    return described_value(value) if holds_memory(value) else str(value) if isinstance(value, Path) else value

@@ -81,7 +81,7 @@ class MeasuredMap(Section):
     @classmethod
     def _maps_of_an_array(cls, data: Any) -> Any:
         """Take an array of heights with its pixel, (nx, ny) or (maps, nx, ny), for height maps."""
-        return surfaces_of(data, "file", "pixel", "height_unit", (2, 3))
+        return surfaces_from(data, "file", "pixel", "height_unit", (2, 3))
 
     def problems_of_maps(self) -> Iterator[InputError]:
         """A map in memory has its own points."""
@@ -123,14 +123,14 @@ class MeasuredLine(Section):
     @classmethod
     def _lines_of_an_array(cls, data: Any) -> Any:
         """Take an array of heights with its spacing, (n,) or lines side by side, for what was measured."""
-        return surfaces_of(data, "line", "line_spacing", "line_unit", (1, 2))
+        return surfaces_from(data, "line", "line_spacing", "line_unit", (1, 2))
 
     def problems_of_line(self) -> Iterator[InputError]:
         """A line in memory has its own points."""
         yield from _foreign(self, "line", ("line_array", "line_unit", "line_spacing"))
 
 
-def surfaces_of(data: Any, name: str, spacing: str, unit: str, dimensions: tuple[int, ...]) -> Any:
+def surfaces_from(data: Any, name: str, spacing: str, unit: str, dimensions: tuple[int, ...]) -> Any:
     """Make height maps or a profile of the array that a key of a section holds, with its spacing and unit."""
     if not isinstance(data, Mapping) or not isinstance(heights := data.get(name), np.ndarray):
         return data

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from asperity.config.content import described
+from asperity.config.content import described_value
 
 
 def toml_text(data: Mapping[str, Any]) -> str:
@@ -35,4 +35,4 @@ def _value(value: object) -> str:
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, float):
         return repr(value)  # inf and nan, too, are spelled as in Python
-    return json.dumps(value, ensure_ascii=False, default=described).replace("\x7f", "\\u007f")
+    return json.dumps(value, ensure_ascii=False, default=described_value).replace("\x7f", "\\u007f")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from asperity import __version__
 from asperity.arguments import file_path, shown
 from asperity.config.case import Case
-from asperity.config.content import content, described, file_digest, holds_memory
+from asperity.config.content import content, described_value, file_digest, holds_memory
 from asperity.config.describing import Entry, in_toml, value_in_toml
 from asperity.config.parsing import FROM_PYTHON, Origin, plain_data, read_definition, read_toml
 from asperity.config.single_keys import entry_of, reader_of, unit_of
@@ -192,7 +192,7 @@ def written_out(value: object) -> str:
         return ", ".join(map(written_out, value))
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {written_out(item)}" for name, item in value.items())
-    return described(value) if holds_memory(value) else json.dumps(value, default=str)
+    return described_value(value) if holds_memory(value) else json.dumps(value, default=str)
 
 
 def _read_case(path: Path) -> tuple[dict[str, Any], Origin]:

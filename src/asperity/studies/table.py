@@ -12,7 +12,7 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity import __version__
-from asperity.config.content import described
+from asperity.config.content import described_value
 from asperity.results import variable
 from asperity.studies.definition import Member, Study
 from asperity.studies.member import Failure
@@ -113,7 +113,7 @@ def _attributes(
 
 
 def _json(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False, default=described)
+    return json.dumps(value, ensure_ascii=False, default=described_value)
 
 
 def _warnings(tables: Sequence[xarray.Dataset]) -> list[dict[str, Any]]:
