@@ -81,7 +81,7 @@ class TestResult:
                 assert values.attrs["long_name"], name
 
     def test_provenance(self, tree):
-        assert tree.attrs["case"].startswith("\nkind")
+        assert parse_case(tree.attrs["case"]) == case()
         assert tree.attrs["seed"] == 1
         assert tree.attrs["asperity_version"] == asperity.__version__
         assert any("Lundberg" in c for c in json.loads(tree.attrs["citations"]))

@@ -94,7 +94,7 @@ class TestRail:
     def test_wrong_unit_asks(self, folder):
         np.savez(folder / "lines.npz", rail=turn(6000)[None])
         surface = LINES.replace('"um"', '"m"')
-        with pytest.raises(InputError, match="Is the unit of the heights right"):
+        with pytest.raises(InputError, match="Is the unit right"):
             textures_of(case(folder, surface))
         assert textures_of(case(folder, surface + "accept_levels = true")).line.std() > 0.1
 

@@ -156,11 +156,15 @@ def svg(figure: Figure, name: str, title: str, colours: Mapping[str, str] = COLO
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
     head, inner = body.split(">", 1)
     box = re.search(r'viewBox="[^"]*"', head)
-    used = set(re.findall(r'(?:url\(|href=")#([^")]+)', inner))
+    # numbered as they appear: matplotlib's names hold digits that differ from one drawing to the next
+    used = {
+        found: f"{name}-{n}"
+        for n, found in enumerate(dict.fromkeys(re.findall(r'(?:url\(|href=")#([^")]+)', inner)))
+    }
 
     def rewritten(tag: re.Match[str]) -> str:  # tags only: the words of a label stay as they are
-        text = re.sub(r' id="([^"]*)"', lambda m: f' id="{name}-{m[1]}"' if m[1] in used else "", tag[0])
-        text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
+        text = re.sub(r' id="([^"]*)"', lambda m: f' id="{used[m[1]]}"' if m[1] in used else "", tag[0])
+        text = re.sub(r'(url\(|href=")#([^")]+)', lambda m: f"{m[1]}#{used[m[2]]}", text)
         for index, colour in enumerate(colours):
             text = text.replace(colour, f"var(--c{index})")
         text = re.sub(r"(\d\.\d\d)\d+", r"\1", text)  # a hundredth of a point is finer than any screen
