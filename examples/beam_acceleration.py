@@ -27,34 +27,18 @@ import xarray
 from matplotlib.figure import Figure
 
 import asperity
-from asperity.kinds.cases import parse_case
 from asperity.reference.materials import material
 from asperity.reporting.style import frequency_axis, sequence, styled
 from asperity.structures.beam import Beam
 
-CASE = """
-kind = "ball-on-beam"
-speed = "1 m/s"
-laws = ["areal"]
-start = "0.3 m"
-duration = "0.4 s"
-[surface]
-rms = "{rms}"
-longest = "0.4 mm"
-shortest = "32 um"
-[ball]
-radius = "10 mm"
-load = "5 N"
-[beam]
-length = "1 m"
-width = "50 mm"
-height = "10 mm"
-[contact]
-spacing = "8 um"
-window = "0.4 mm"
-samples = 2
-sample_length = "2 mm"
-"""
+CASE = asperity.BallOnBeam(
+    laws=["areal"],
+    start="0.3 m",
+    duration="0.4 s",
+    surface={"rms": "0.02 um", "longest": "0.4 mm", "shortest": "32 um"},
+    ball={"radius": "10 mm", "load": "5 N"},
+    contact={"window": "0.4 mm", "samples": 2, "sample_length": "2 mm"},
+)
 ROUGHNESS = {"smooth": "0.02 um", "rough": "0.2 um"}
 HIGHEST = 5000.0  # Hz
 BEAM = Beam.rectangular(1.0, 50e-3, 10e-3, material("steel"), highest_frequency=HIGHEST)
@@ -101,7 +85,7 @@ def draw(densities: dict[str, xarray.DataArray], file: Path) -> None:
 
 
 def main(folder: Path = Path()) -> dict[str, float]:
-    results = {name: asperity.run(parse_case(CASE.format(rms=rms))) for name, rms in ROUGHNESS.items()}
+    results = {name: asperity.run(CASE.with_(surface={"rms": rms})) for name, rms in ROUGHNESS.items()}
     densities = {name: spectra(result) for name, result in results.items()}
     draw(densities, folder / "beam_acceleration.png")
     smooth, rough = densities["smooth"], densities["rough"]

@@ -34,7 +34,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compute import Computed, compute
 from asperity.kinds.wheel_on_rail.linear_reference import mean_square_transfer
@@ -46,25 +45,16 @@ from asperity.reporting.style import band_axis, styled
 from asperity.running import prepare
 from asperity.spectra import band_levels, psd
 
-CASE = """
-kind = "wheel-on-rail"
-speed = "200 km/h"
-laws = ["shifted", "shifted-unfiltered", "printed", "printed-unfiltered", "linear"]
-duration = "1 s"
-settling = "0.2 s"
-[surface]
-spectrum = "iso3095"
-level = "{level:+g} dB"
-[wheel]
-roughness = "disc"
-roughness_level = "{level:+g} dB"
-[track]
-points = ["10 m"]
-[contact]
-linearise = "rough"
-[numerics]
-poles = 60
-"""
+CASE = WheelOnRail(
+    speed="200 km/h",
+    laws=["shifted", "shifted-unfiltered", "printed", "printed-unfiltered", "linear"],
+    settling="0.2 s",
+    surface={"spectrum": "iso3095"},
+    wheel={"roughness": "disc"},
+    track={"points": ["10 m"]},
+    contact={"linearise": "rough"},
+    numerics={"poles": 60},
+)
 LOWEST, HIGHEST = 63.0, 4000.0  # Hz, band centres
 STEADY = 125.0  # Hz; below, sleepers are passed and the resonance of the wheel on the track is sharp
 LINES = 5  # of the spectrum, drawn as one
@@ -112,8 +102,7 @@ def laws(computed: Computed) -> tuple[dict[str, Law], float, float]:
 
 
 def forces(level: float = 0.0) -> Forces:
-    case = parse_case(CASE.format(level=level))
-    assert isinstance(case, WheelOnRail)
+    case = CASE.with_(surface={"level": level}, wheel={"roughness_level": level})
     computed = compute(prepare(case), lambda done, total, message: None)
     compared, tangent, secant = laws(computed)
     segment = round(0.2 / case.time_step)

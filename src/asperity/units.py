@@ -102,11 +102,11 @@ def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -
         return "inf" if value > 0 else "-inf"
     unit = _suited(value, dimension, unit)
     sign = "+" if dimension == "dB" else ""
-    for digits, each in ((6, unit), (12, unit), (15, unit), (17, unit), (17, dimension)):
-        text = f"{value / factor(each, dimension):{sign}.{digits}g} {each}"
+    for form, each in (("g", unit), (".12g", unit), (".15g", unit), ("", unit), ("", dimension)):
+        text = f"{value / factor(each, dimension):{sign}{form}} {each}"
         if not exactly or quantity(text, dimension) == value:
             return text
-    raise AssertionError(f"{value!r} {dimension} cannot be written")  # 17 digits are every bit
+    raise AssertionError(f"{value!r} {dimension} cannot be written")  # the last form has every bit
 
 
 def _suited(value: float, dimension: str, unit: str) -> str:

@@ -272,6 +272,7 @@ def test_units_suit_their_numbers():
         "300 m",
     ]
     assert written(0.0, "N s/m", "N s/m") == "0 N s/m"
+    assert written(200 / 3.6, "m/s", "m/s", exactly=True) == "55.55555555555556 m/s"
     assert written(3.0, "dB", "dB") == "+3 dB"
     assert written(math.inf, "m", "m") == "inf"
 
