@@ -384,7 +384,7 @@ def test_help_imports_nothing_heavy():
         "print(sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert "Roll a ball" in done.stdout
+    assert "Roll a body" in done.stdout
     assert done.stdout.splitlines()[-1] == "[]"
 
 

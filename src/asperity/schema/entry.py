@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from asperity.errors import Grade, PhysicsWarning
 
 if TYPE_CHECKING:
@@ -38,6 +36,7 @@ class Entry:
 
     def variable(self, values: ArrayLike, **attributes: Any) -> xarray.Variable:
         """Make the variable; what is not a finite number is missing, and the variable says why."""
+        import numpy as np
         import xarray
 
         found = np.asarray(values)
