@@ -124,7 +124,7 @@ def value_in_toml(value: Any, field: FieldInfo) -> Any:
 
 def refused(dotted: str, value: object) -> NoReturn:
     """Refuse to write a case of something that stands in memory."""
-    remedy = 'Save it first, as np.save("map.npy", surface.heights), and name the file in the case.'
+    remedy = 'Save it first, as np.save("map.npy", heights), and name the file in the case.'
     raise InputError(dotted, described_value(value), "a file, where a case shall be written", remedy)
 
 
