@@ -4,6 +4,7 @@ import errno
 import subprocess
 import sys
 import zipfile
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -11,8 +12,19 @@ import pytest
 
 from asperity import files
 from asperity.errors import ComputationError, InputError
-from asperity.files import alone_in, atomic_write, is_sealed, left_overs, remove_left_overs, write_bytes
+from asperity.files import (
+    alone_in,
+    atomic_write,
+    discard,
+    is_sealed,
+    left_overs,
+    remove_left_overs,
+    write_bytes,
+)
 from asperity.store import Store, content_key
+
+if sys.platform != "win32":
+    import fcntl
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="open files cannot be removed there")
 
@@ -93,6 +105,23 @@ def test_a_part_that_is_being_written_is_no_left_over(tmp_path):
     path = atomic_write(tmp_path / "run.nc", write)
     assert found == [[]]
     assert path.read_bytes() == b"whole"
+
+
+@posix
+@pytest.mark.parametrize("remove", [remove_left_overs, lambda folder: sum(map(discard, left_overs(folder)))])
+def test_a_left_over_goes_while_it_is_locked(tmp_path, monkeypatch, remove):
+    """Else a writer that has made it, and is about to lock it, would write into a file without a name."""
+    unlink = Path.unlink
+
+    def locked_unlink(path, **options):
+        with open(path, "rb") as file, pytest.raises(BlockingIOError):
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        unlink(path, **options)
+
+    (tmp_path / ".run.nc.0123abcd.part").write_bytes(b"killed")
+    monkeypatch.setattr(Path, "unlink", locked_unlink)
+    assert remove(tmp_path) == 1
+    assert not list(tmp_path.iterdir())
 
 
 @posix

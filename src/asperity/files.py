@@ -10,7 +10,7 @@ import secrets
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -178,33 +178,45 @@ def is_part(path: Path) -> bool:
 
 def left_overs(folder: Path) -> list[Path]:
     """Files that an interrupted write left in a folder, and that nobody writes any more."""
-    try:
-        parts = [path for path in folder.iterdir() if is_part(path)]
-    except OSError:
-        return []
-    return sorted(part for part in parts if not _is_held(part))
-
-
-def _is_held(part: Path) -> bool:
-    """Whether a process writes a part; True as well where that cannot be known."""
-    if fcntl is None:
-        return False  # it cannot be removed then
-    try:
-        with open(part, "rb") as file:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return True
-    return False
+    left = []
+    for part in _parts(folder):
+        with suppress(OSError), _taken(part):
+            left.append(part)
+    return left
 
 
 def remove_left_overs(folder: Path) -> int:
     """Remove the left-overs of a folder; return how many there were."""
-    count = 0
-    for part in left_overs(folder):
-        with suppress(OSError):
-            part.unlink()
-            count += 1
-    return count
+    return sum(discard(part) for part in _parts(folder))
+
+
+def discard(path: Path) -> bool:
+    """Remove a file, if it can be; a part only where nobody writes it. Return whether it went."""
+    with suppress(OSError), _taken(path) if is_part(path) else nullcontext():
+        path.unlink()
+        return True
+    return False
+
+
+def _parts(folder: Path) -> list[Path]:
+    try:
+        return sorted(path for path in folder.iterdir() if is_part(path))
+    except OSError:
+        return []
+
+
+@contextmanager
+def _taken(part: Path) -> Iterator[None]:
+    """Hold a part that nobody writes; an OSError if somebody does, or if that cannot be known.
+
+    It must be removed while it is held: a writer may have made it and be about to lock it.
+    """
+    if fcntl is None:  # an open file cannot be removed then
+        yield
+        return
+    with open(part, "rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
 
 
 def _sweep_once(folder: Path) -> None:

@@ -10,7 +10,6 @@ import tempfile
 import warnings
 import zipfile
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -19,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import ComputationError, InputError
-from asperity.files import amount, atomic_write, is_sealed, left_overs
+from asperity.files import amount, atomic_write, discard, is_sealed, left_overs
 
 FORMAT = 1  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
@@ -165,8 +164,7 @@ class Store:
         """Delete all results, and what interrupted writes left; return how many results went."""
         files = self.files()
         for path in [*files, *self.left_overs()]:
-            with suppress(OSError):  # another process was faster
-                path.unlink(missing_ok=True)
+            discard(path)
         return len(files)
 
 

@@ -245,7 +245,7 @@ class TestTextures:
         np.testing.assert_array_equal(found.line, found.path.heights[:, found.path.shape[1] // 2])
 
     def test_levels_of_the_rail_are_those_of_its_spectrum(self):
-        long = parse_case(case(wheel="").text.replace('"40 ms"', '"0.8 s"'), "case.toml")
+        long = case(wheel="").with_(duration="0.8 s")
         rail = textures_of(long).parts["rail"]
         wavelength, level = band_levels_of(Profile(rail, 1e-3), shortest=4e-3, longest=0.1)
         given, wanted = rail_roughness("iso3095")
@@ -258,7 +258,7 @@ class TestTextures:
         assert not np.ptp(found.maps[0].heights)
 
     def test_path_shorter_than_the_strips_is_refused(self):
-        long = parse_case(case().text.replace('"60 mm"', '"9 m"'), "case.toml")
+        long = case().with_(contact={"sample_length": "9 m"})
         with pytest.raises(InputError, match=r"duration: received 0\.04 s, a path of"):
             textures_of(long)
 

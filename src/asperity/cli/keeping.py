@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from asperity.files import amount
+from asperity.files import amount, discard
 from asperity.kernels.folders import folders, kept_files
 from asperity.store import Store
 from asperity.terminal import say
@@ -23,8 +23,7 @@ def clear_kept() -> None:
     for what, where, files in _kept():
         size = _size(files)
         for file in files:
-            with suppress(OSError):  # another process was faster
-                file.unlink(missing_ok=True)
+            discard(file)
         say(f"{where}: {len(files)} {what} deleted, {amount(size)}")
 
 
