@@ -33,7 +33,7 @@ from asperity.kinds.ball_on_beam.roll import Rolling, roll_ball
 from asperity.kinds.cases import parse_case
 from asperity.laws import Law
 from asperity.progress import progress_bar
-from asperity.running import prepare
+from asperity.running import prepare_case
 from asperity.scenarios.laws import Workshop
 from asperity.store import Store
 
@@ -82,7 +82,7 @@ def prepared_case(load: float, rms: float, duration: float) -> Computed:
         """
     )
     with progress_bar() as progress:
-        return compute(prepare(case), progress)
+        return compute(prepare_case(case), progress)
 
 
 def direct_law(computed: Computed) -> Law:

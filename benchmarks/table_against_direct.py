@@ -28,7 +28,7 @@ from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.compute import Computed, compute
 from asperity.kinds.cases import parse_case
 from asperity.progress import progress_bar
-from asperity.running import prepare
+from asperity.running import prepare_case
 from asperity.spectra import band_levels, psd
 
 LAWS = [
@@ -134,7 +134,7 @@ def main() -> None:
         began = time.perf_counter()
         with warnings.catch_warnings(record=True) as messages, progress_bar() as progress:
             warnings.simplefilter("always", PhysicsWarning)
-            ensemble.add(compute(prepare(case_of(options, seed)), progress))
+            ensemble.add(compute(prepare_case(case_of(options, seed)), progress))
         caught.update(message.category.__name__ for message in messages)
         table = ensemble.differences[LAWS.index("table")]
         print(

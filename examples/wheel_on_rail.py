@@ -42,7 +42,7 @@ from asperity.kinds.wheel_on_rail.sound_power import rolling_sound_power
 from asperity.laws import Law, Linear, Printed
 from asperity.reference import cnossos
 from asperity.reporting.style import band_axis, styled
-from asperity.running import prepare
+from asperity.running import prepare_case
 from asperity.spectra import band_levels, psd
 
 CASE = WheelOnRail(
@@ -103,7 +103,7 @@ def laws(computed: Computed) -> tuple[dict[str, Law], float, float]:
 
 def forces(level: float = 0.0) -> Forces:
     case = CASE.with_(surface={"level": level}, wheel={"roughness_level": level})
-    computed = compute(prepare(case), lambda done, total, message: None)
+    computed = compute(prepare_case(case), lambda done, total, message: None)
     compared, tangent, secant = laws(computed)
     segment = round(0.2 / case.time_step)
     density = {}

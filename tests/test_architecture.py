@@ -76,10 +76,6 @@ KIND = {
 """What each kind of case offers under the same name, see `asperity.scenarios.kind.Kind`."""
 
 
-SHARED = {"Entry", "Prepared", "prepare"}
-"""What two rooms still call the same: laws and cases made ready, entries of results and keys of cases."""
-
-
 def has_its_own_name(module, name):
     """Whether a name is not one of those that several modules have to share."""
     inside = module.relative_to(SOURCE).parts
@@ -97,4 +93,4 @@ def test_public_names_are_unique():
             named = isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")
             if named and has_its_own_name(module, node.name):
                 homes.setdefault(node.name, []).append(str(module.relative_to(SOURCE)))
-    assert {name: where for name, where in homes.items() if len(where) > 1 and name not in SHARED} == {}
+    assert {name: where for name, where in homes.items() if len(where) > 1} == {}

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from asperity.config.case import Case
     from asperity.progress import Progress
     from asperity.reporting.notebook import Result
-    from asperity.scenarios.preparing import Prepared
+    from asperity.scenarios.preparing import PreparedCase
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Case | Prepared, progress: Progress | None = None
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case | PreparedCase, progress: Progress | None = None
 ) -> Result:
     """Compute a case.
 
@@ -26,7 +26,7 @@ def run(
     ----------
     case : path, mapping or case object
         A TOML case file; its keys and values, sections as mappings; a case object; or what
-        `prepare` made of one.
+        `prepare_case` made of one.
     progress : callable, optional
         ``progress(done, total, message)``, called during long work. In a notebook a bar is shown by default.
 
@@ -56,10 +56,10 @@ def run(
     from asperity.kinds.cases import as_case
     from asperity.progress import shown_progress
     from asperity.reporting.notebook import Result
-    from asperity.scenarios.preparing import Prepared
+    from asperity.scenarios.preparing import PreparedCase
     from asperity.threads import one_thread_in_linear_algebra
 
-    loaded = case if isinstance(case, Prepared) else as_case(case)
+    loaded = case if isinstance(case, PreparedCase) else as_case(case)
     if progress is not None and not callable(progress):
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
     try:
@@ -69,7 +69,7 @@ def run(
             shown_progress(progress) as told,
         ):
             warnings.simplefilter("always", PhysicsWarning)
-            prepared = loaded if isinstance(loaded, Prepared) else prepare(loaded)
+            prepared = loaded if isinstance(loaded, PreparedCase) else prepare_case(loaded)
             caught += prepared.caught
             result = prepared.kind.computed(prepared, told, caught)
     except ComputationError:
@@ -116,9 +116,9 @@ def open_result(path: str | os.PathLike[str]) -> Result:
     return Result.of(read_result(path))
 
 
-def prepare(case: Case, source: str = "case") -> Prepared:
-    """Prepare a case of any kind, called `source` in messages: `asperity.scenarios.preparing.prepare`."""
+def prepare_case(case: Case, source: str = "case") -> PreparedCase:
+    """Lay a case of any kind ready to be run or announced; messages call it `source`."""
     from asperity.kinds.cases import kind_of
     from asperity.scenarios import preparing
 
-    return preparing.prepare(case, kind_of(case), source)
+    return preparing.prepare_of_kind(case, kind_of(case), source)

@@ -479,7 +479,7 @@ def test_check_reads_the_measured_map():
 
 def test_the_plan_counts_contact_solutions(monkeypatch):
     from asperity.cli.planning import plan
-    from asperity.running import prepare
+    from asperity.running import prepare_case
     from asperity.scenarios.expecting import Work
     from asperity.scenarios.scan_sizes import scan_sizes
 
@@ -487,7 +487,7 @@ def test_the_plan_counts_contact_solutions(monkeypatch):
     contact = '[contact]\napproaches = ["0 um", "1 um"]\nsamples = 2\nsample_length = "1.5 mm"\n'
 
     def rows_of(text):
-        prepared = prepare(parse_case(text))
+        prepared = prepare_case(parse_case(text))
         scans = scan_sizes(prepared.case, prepared.shape, prepared.textures)
         return dict(plan(prepared, Work(scans, {"rolling": 40.0, "report": 4.0, "textures": 0.1})))
 

@@ -14,7 +14,7 @@ from asperity.kinds.ball_on_beam.geometry import ball_geometry
 from asperity.kinds.cases import parse_case
 from asperity.laws.layout import force
 from asperity.reporting.tables import homogeneity_table
-from asperity.running import prepare, run
+from asperity.running import prepare_case, run
 from asperity.scenarios.usual.textures import gather
 from asperity.spectra import nominal_frequency
 
@@ -411,7 +411,7 @@ class TestBands:
 class TestLinear:
     def laws(self, linearise, laws=("linear-filtered", "linear"), surface=SYNTHETIC):
         small = case(surface, laws=list(laws), contact=f'linearise = "{linearise}"')
-        return ball_on_beam.compute(prepare(small), lambda done, total, message: None).chain
+        return ball_on_beam.compute(prepare_case(small), lambda done, total, message: None).chain
 
     def test_the_filtered_linear_contact_is_linear(self):
         """The force grows with the approach by k alone, everywhere: the filter does not follow the state."""

@@ -10,7 +10,7 @@ from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail.compute import compute
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
 from asperity.kinds.wheel_on_rail.textures import textures_of
-from asperity.running import prepare, run
+from asperity.running import prepare_case, run
 from asperity.scenarios.laws import working_point
 from like_measured import either, wheel_lines, where_measured
 
@@ -166,7 +166,8 @@ def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, measured, 
         wheel='line = "wheels.npz"\nline_array = "flat"\nline_unit = "um"\nline_spacing = "1 mm"\n'
         'line_distance = "5 mm"\nprocessing = ["curvature"]',
     )  # fmt: skip
-    computed = compute(prepare(parse_case(text, folder / "case.toml")), lambda done, total, message: None)
+    prepared = prepare_case(parse_case(text, folder / "case.toml"))
+    computed = compute(prepared, lambda done, total, message: None)
     chain = computed.chain
     wheel = chain.runs["linear"]
     # the middle lines are lowest at 0.267 m; the wheel strikes where it reaches the flat's far end

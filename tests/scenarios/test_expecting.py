@@ -9,7 +9,7 @@ from asperity.kinds.ball_on_beam.compute import compute
 from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail import plan as rail_plan
 from asperity.kinds.wheel_on_rail.plan import TrackTrial, step_seconds, try_track
-from asperity.running import prepare
+from asperity.running import prepare_case
 from asperity.scenarios import expecting
 from asperity.scenarios.expecting import expect, expected_path_scan
 from asperity.scenarios.scan_sizes import scan_sizes
@@ -61,7 +61,7 @@ def _own_cache(monkeypatch, tmp_path):
 @pytest.mark.parametrize("spacing", ["10 um", "6 um"])
 def test_size_on_disk_and_number_of_positions(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
-    prepared = prepare(parse_case(CASE.format(spacing=spacing)))
+    prepared = prepare_case(parse_case(CASE.format(spacing=spacing)))
     expected = scan_sizes(prepared.case, prepared.shape, prepared.textures)["path"]
     scanned = compute(prepared, quiet).chain.scan
     states, positions = scanned.forces.shape
@@ -73,7 +73,7 @@ def test_size_on_disk_and_number_of_positions(spacing):
 
 
 def test_the_states_that_are_tried_are_much_like_those_of_the_run():
-    prepared = prepare(parse_case(CASE.format(spacing="10 um")))
+    prepared = prepare_case(parse_case(CASE.format(spacing="10 um")))
     tried = try_contacts(prepared, quiet)
     reduction = compute(prepared, quiet).chain.reduction
     reach = np.ptp(reduction.approaches)
@@ -98,7 +98,7 @@ def tried(monkeypatch):
 @pytest.mark.usefixtures("tried")
 def test_every_part_of_the_work_counts_once():
     text = CASE.format(spacing="10 um").replace('"table"', '"table", "direct", "areal"')
-    prepared = prepare(parse_case(text))
+    prepared = prepare_case(parse_case(text))
     work = expect(prepared, quiet)
     assert work.total == pytest.approx(sum(work.seconds.values()))
     scans, seconds = work.scans, work.seconds
@@ -116,20 +116,21 @@ def test_every_part_of_the_work_counts_once():
 
 @pytest.mark.usefixtures("tried")
 def test_kernel_and_passed_points_are_part_of_the_work():
-    work = expect(prepare(parse_case(RAIL.format(duration="40 ms"))), quiet)
+    work = expect(prepare_case(parse_case(RAIL.format(duration="40 ms"))), quiet)
     assert work.seconds["moving kernel"] == 11.0
     assert work.seconds["passed points"] == 2 * 13.0
     assert work.seconds["poles"] > 0.0
     three = RAIL.replace("[contact]", '[track]\npoints = ["1 m", "1.1 m", "1.2 m"]\n[contact]')
-    assert expect(prepare(parse_case(three.format(duration="40 ms"))), quiet).seconds["passed points"] == 39.0
+    work = expect(prepare_case(parse_case(three.format(duration="40 ms"))), quiet)
+    assert work.seconds["passed points"] == 39.0
 
 
 @pytest.mark.usefixtures("tried")
 def test_threads_share_scans_and_kernel(monkeypatch):
     text = CASE.format(spacing="10 um").replace("8 ms", "80 ms").replace("samples = 2", "samples = 4")
-    one = expect(prepare(parse_case(text)), quiet).seconds
+    one = expect(prepare_case(parse_case(text)), quiet).seconds
     monkeypatch.setenv("ASPERITY_THREADS", "4")
-    four = expect(prepare(parse_case(text)), quiet).seconds
+    four = expect(prepare_case(parse_case(text)), quiet).seconds
     for name in ("scanning for the path", "scanning for the filters"):
         assert four[name] == pytest.approx(one[name] / 4)
     assert four["pressing the samples"] == pytest.approx(4 * 3.0 + 5.0)
@@ -146,7 +147,7 @@ rail_loss_factor = 0.001
 @pytest.mark.parametrize("track", ["[contact]", SOFT])
 def test_the_length_of_a_kernel_is_found_before_it_is_computed(track):
     """Kernels grow from 0.12 s until they have died away: the less they are damped, the longer."""
-    prepared = prepare(parse_case(RAIL.replace("[contact]", track).format(duration="40 ms")))
+    prepared = prepare_case(parse_case(RAIL.replace("[contact]", track).format(duration="40 ms")))
     tried = try_track(prepared, quiet)
     kernel = moving_kernel(prepared.case.track_model(), prepared.case.speed, prepared.case.time_step)
     assert tried.length == pytest.approx(kernel.lag[-1], rel=0.02)
@@ -157,14 +158,14 @@ def test_the_length_of_a_kernel_is_found_before_it_is_computed(track):
 @pytest.mark.parametrize("kernel", ["poles", "scatter"])
 def test_rolling_is_tried_on_the_rail_of_the_case(kernel):
     text = RAIL.format(duration="40 ms") + f'kernel = "{kernel}"\n'
-    assert step_seconds(prepare(parse_case(text))) > 0.0
+    assert step_seconds(prepare_case(parse_case(text))) > 0.0
 
 
 def test_all_errors_come_at_once_and_a_single_one_as_it_is(monkeypatch):
     with pytest.raises(InputError, match=r"contact\.window: received 510 um") as single:
-        prepare(parse_case(CASE.format(spacing="10 um") + '[ball]\nload = "20 kN"\n'))
+        prepare_case(parse_case(CASE.format(spacing="10 um") + '[ball]\nload = "20 kN"\n'))
     assert not isinstance(single.value, CaseError)
     monkeypatch.setenv("ASPERITY_THREADS", "no")
     monkeypatch.setenv("ASPERITY_DEVICE", "abacus")
     with pytest.raises(CaseError, match=r"2 errors\n.*\$ASPERITY_THREADS: .*\n.*\$ASPERITY_DEVICE: "):
-        prepare(parse_case(CASE.format(spacing="10 um")))
+        prepare_case(parse_case(CASE.format(spacing="10 um")))

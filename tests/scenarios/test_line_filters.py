@@ -15,7 +15,7 @@ from asperity.kinds.report import parts_of
 from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
 from asperity.laws import Printed, Shifted
 from asperity.reduction.fir import response
-from asperity.running import prepare, run
+from asperity.running import prepare_case, run
 from asperity.scenarios.reducing import patch_planes
 
 BALL = """
@@ -68,7 +68,7 @@ def computed(case):
     kind = ball_on_beam if case.kind == "ball-on-beam" else wheel_on_rail
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)
-        return kind.compute(prepare(case), lambda done, total, message: None).chain
+        return kind.compute(prepare_case(case), lambda done, total, message: None).chain
 
 
 def at_load(tree):

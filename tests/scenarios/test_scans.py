@@ -9,7 +9,7 @@ from asperity.contact.scan import ScanJob, first_touch
 from asperity.errors import PhysicsWarning
 from asperity.kinds.ball_on_beam.compute import compute
 from asperity.kinds.cases import parse_case
-from asperity.running import prepare
+from asperity.running import prepare_case
 from asperity.scenarios import laws, reducing
 from asperity.scenarios.laws import table_stride
 
@@ -51,7 +51,7 @@ def test_first_touch_along_the_path_is_found_once(monkeypatch):
 
     for module in (laws, reducing):
         monkeypatch.setattr(module, "first_touch", counted)
-    prepared = prepare(parse_case(CASE))
+    prepared = prepare_case(parse_case(CASE))
     chain = compute(prepared, quiet).chain
     path, shape = prepared.textures.path, prepared.shape
     assert sum(surface is path for surface in looked_at) == 1
@@ -74,7 +74,7 @@ def test_every_scan_of_a_case_has_the_tolerance_of_its_key(monkeypatch):
     monkeypatch.setattr("asperity.contact.halfspace.MAX_ITERATIONS", 4)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        compute(prepare(parse_case(CASE)), quiet)
+        compute(prepare_case(parse_case(CASE)), quiet)
     assert asked == {1e-3 / 2.5, 0.1 * 1e-3 / 2.5}
     told = [str(w.message) for w in caught if issubclass(w.category, PhysicsWarning)]
     keys = {

@@ -13,7 +13,7 @@ from asperity.contact import HalfSpace
 from asperity.contact.flaws import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.kinds.cases import parse_case
-from asperity.running import prepare, run
+from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work, expect_area_ratio
 from asperity.scenarios.validity import SLOPE
 from asperity.surfaces.levelling import band_limit
@@ -108,7 +108,7 @@ class TestArea:
         text = CASE.format(
             surface=f'rms = "{rms} um"\nshortest = "60 um"', laws='["areal"]', spacing=10, window=0.66
         )
-        case = prepare(parse_case(text))
+        case = prepare_case(parse_case(text))
         found = run(case)["contact"].attrs["contact_area_ratio"]
         assert expect_area_ratio(case) == pytest.approx(found, abs=0.08)
         told = dict(plan(case, NO_WORK))["real contact"]
@@ -116,13 +116,13 @@ class TestArea:
         assert ("areal are out of range; take table" in told) == (expect_area_ratio(case) < 0.9)
 
     def test_check_expects_it_on_a_rail_too(self):
-        case = prepare(parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'))
+        case = prepare_case(parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\n'))
         assert 0.9 < expect_area_ratio(case) <= 1.0
         rough = parse_case('kind = "wheel-on-rail"\n[surface]\nspectrum = "iso3095"\nlevel = "+20 dB"\n')
-        assert expect_area_ratio(prepare(rough)) < 0.8
+        assert expect_area_ratio(prepare_case(rough)) < 0.8
 
     def test_a_line_without_samples_has_no_real_contact(self):
-        case = prepare(parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n'))
+        case = prepare_case(parse_case('kind = "ball-on-beam"\n[surface]\nspectrum = "iso3095"\n'))
         assert expect_area_ratio(case) is None
         assert "real contact" not in dict(plan(case, NO_WORK))
 

@@ -122,11 +122,11 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> None:
     from asperity.cli.planning import show_plan
     from asperity.cli.running import refuse_folder
     from asperity.kinds.cases import load_case
-    from asperity.running import prepare
+    from asperity.running import prepare_case
 
     loaded = load_case(case)
     refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
-    show_plan(prepare(loaded, str(case)), str(case))
+    show_plan(prepare_case(loaded, str(case)), str(case))
 
 
 @main.command()

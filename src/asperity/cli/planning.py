@@ -14,7 +14,7 @@ from asperity.terminal import say, say_table
 
 if TYPE_CHECKING:
     from asperity.scenarios.expecting import Work
-    from asperity.scenarios.preparing import Prepared
+    from asperity.scenarios.preparing import PreparedCase
     from asperity.scenarios.scan_sizes import Expected
 
 ANNOUNCED = 60.0  # s of a scan that is announced before it starts
@@ -22,7 +22,7 @@ ANNOUNCED_SOLUTIONS = 100_000  # of a scan that is tried to find out
 SMALL_PART = 0.05  # of the work: shorter parts are not named
 
 
-def show_plan(prepared: Prepared, source: str) -> None:
+def show_plan(prepared: PreparedCase, source: str) -> None:
     """Print the values of a case, and what will be computed from it."""
     from asperity.scenarios.expecting import expect
 
@@ -43,12 +43,12 @@ def show_plan(prepared: Prepared, source: str) -> None:
     say_table("What will be computed", (), plan(prepared, expected), width=120)
 
 
-def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
+def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
     """List what will be computed and how much work it is.
 
     Parameters
     ----------
-    prepared : Prepared
+    prepared : PreparedCase
         The case.
     expected : Work
         From `asperity.scenarios.expecting.expect`.
@@ -87,7 +87,7 @@ def plan(prepared: Prepared, expected: Work) -> list[tuple[str, str]]:
     ]
 
 
-def _real_contact(prepared: Prepared) -> list[tuple[str, str]]:
+def _real_contact(prepared: PreparedCase) -> list[tuple[str, str]]:
     """Expected real contact, and which laws it takes out of their range."""
     from asperity.scenarios.expecting import expect_area_ratio
     from asperity.scenarios.validity import AREA
@@ -127,7 +127,7 @@ def described_scan(scan: Expected) -> str:
     )
 
 
-def announce_scan(prepared: Prepared, progress: Progress) -> None:
+def announce_scan(prepared: PreparedCase, progress: Progress) -> None:
     """Before a long scan of a path starts, say what it takes; a few contacts are tried for that."""
     from asperity.scenarios.expecting import expected_path_scan
     from asperity.scenarios.scan_sizes import scan_sizes

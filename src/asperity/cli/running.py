@@ -46,10 +46,10 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool) -> Non
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.kinds import report as reports
     from asperity.results import save
-    from asperity.running import prepare, run
+    from asperity.running import prepare_case, run
     from asperity.store import Store
 
-    prepared = prepare(case, source)
+    prepared = prepare_case(case, source)
     with progress_bar() as progress:
         announce_scan(prepared, progress)
         tree = run(prepared, progress=progress)

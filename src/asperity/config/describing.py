@@ -21,7 +21,7 @@ from asperity.units import written
 _UNIT = re.compile(r"\d\.? ([^\"',\]]+)")  # in an example, as "25 mm" or ["0.2 m", "0.4 m"]
 
 
-class Entry(NamedTuple):
+class CaseKey(NamedTuple):
     """One key of a case."""
 
     dotted: str  # name with its section, as "contact.spacing"
@@ -175,7 +175,7 @@ def commented(model: type[BaseModel], written_out: Mapping[str, str]) -> str:
 _COLUMN = 32  # where comments start, if the value leaves room
 
 
-def _line(entry: Entry, written_out: Mapping[str, str]) -> str:
+def _line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
     value = written_out.get(entry.dotted)
     default = f"default: {entry.otherwise}" if entry.otherwise else "no default"
     if entry.default is not None:
@@ -193,14 +193,14 @@ def _line(entry: Entry, written_out: Mapping[str, str]) -> str:
     return f"{code:{_COLUMN - 2}}  # {entry.field.description} ({allowed}; {default})"
 
 
-def entries(model: type[BaseModel], title: str = "") -> Iterator[Entry]:
+def entries(model: type[BaseModel], title: str = "") -> Iterator[CaseKey]:
     """List all keys of a kind of case, those of its sections after those at the top."""
     sections = []
     for name, field in model.model_fields.items():
         if isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
             sections.append((name, field.annotation))
         else:
-            yield Entry(f"{title}.{name}".lstrip("."), name, field, model)
+            yield CaseKey(f"{title}.{name}".lstrip("."), name, field, model)
     for name, section in sections:
         yield from entries(section, name)
 

@@ -9,13 +9,13 @@ from pydantic import TypeAdapter, ValidationError
 
 from asperity.arguments import nearest, shown
 from asperity.config.case import Case
-from asperity.config.describing import Entry, entries
+from asperity.config.describing import CaseKey, entries
 from asperity.config.keys import Number, Quantity, allowed_in, is_list, value_kind
 from asperity.config.parsing import Origin
 from asperity.errors import InputError
 
 
-def entry_of(model: type[Case], dotted: str) -> Entry:
+def entry_of(model: type[Case], dotted: str) -> CaseKey:
     """Find a key of a kind of case by its name with its section, as ``"contact.spacing"``."""
     found = {entry.dotted: entry for entry in entries(model)}
     if dotted in found:
@@ -27,7 +27,7 @@ def entry_of(model: type[Case], dotted: str) -> Entry:
     raise InputError(dotted, "an unknown key", allowed, remedy)
 
 
-def reader_of(entry: Entry, origin: Origin) -> Callable[[object], Any]:
+def reader_of(entry: CaseKey, origin: Origin) -> Callable[[object], Any]:
     """Make what reads values of a key: it returns them in SI, and raises an `InputError` if it cannot."""
     kind: Any = entry.field.annotation
     if entry.field.metadata:
@@ -47,7 +47,7 @@ def reader_of(entry: Entry, origin: Origin) -> Callable[[object], Any]:
     return value_of
 
 
-def unit_of(entry: Entry) -> str | None:
+def unit_of(entry: CaseKey) -> str | None:
     """SI unit of a key whose values are single numbers; None of any other key."""
     kind = value_kind(entry.field.annotation, entry.field.metadata)
     if is_list(entry.field.annotation):

@@ -11,7 +11,7 @@ from asperity.config.case import Case
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.reduction.real_contact import expected_area_ratio
-from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.scan_sizes import Expected, scan_sizes
 from asperity.scenarios.trial import ContactTrial, timed, try_contacts
@@ -50,12 +50,12 @@ class Work:
         return sum(self.seconds.values())
 
 
-def expect(prepared: Prepared, progress: Progress) -> Work:
+def expect(prepared: PreparedCase, progress: Progress) -> Work:
     """Expect the work of a case, from small pieces of it that are computed here.
 
     Parameters
     ----------
-    prepared : Prepared
+    prepared : PreparedCase
         The case.
     progress : Progress
         Called between the pieces.
@@ -81,7 +81,7 @@ def expect(prepared: Prepared, progress: Progress) -> Work:
     return Work(scans, seconds)
 
 
-def expect_area_ratio(prepared: Prepared) -> float | None:
+def expect_area_ratio(prepared: PreparedCase) -> float | None:
     """Expect the real contact area under the working load over that of smooth bodies, from slopes.
 
     About what `asperity.scenarios.reducing.Reduction.area_ratio` will be; None without samples.
@@ -94,7 +94,7 @@ def expect_area_ratio(prepared: Prepared) -> float | None:
     return expected_area_ratio(slope, peak, shape.modulus)
 
 
-def expected_path_scan(prepared: Prepared, progress: Progress) -> Expected:
+def expected_path_scan(prepared: PreparedCase, progress: Progress) -> Expected:
     """Expect the size and time of the scan of a path alone, of a case that has one."""
     case = prepared.case
     with one_thread_in_linear_algebra():
@@ -111,7 +111,7 @@ def _timed_scan(name: str, scan: Expected, trial: ContactTrial) -> Expected:
 
 
 def _contact_seconds(
-    prepared: Prepared, trial: ContactTrial, scans: dict[str, Expected], pace: float
+    prepared: PreparedCase, trial: ContactTrial, scans: dict[str, Expected], pace: float
 ) -> dict[str, float]:
     """Time of pressing the samples, of the scans, and of textures averaged under the patch."""
     case, textures = prepared.case, prepared.textures
@@ -133,7 +133,7 @@ def _contact_seconds(
     return found
 
 
-def _rolling_seconds(prepared: Prepared, pace: float) -> dict[str, float]:
+def _rolling_seconds(prepared: PreparedCase, pace: float) -> dict[str, float]:
     """Time of rolling all laws, of their spectra and statistics, and of writing the report."""
     case = prepared.case
     steps, laws, states = steps_of(case), len(case.laws), STATES

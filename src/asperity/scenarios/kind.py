@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from asperity.progress import Progress
     from asperity.reporting.chapter import Chapter
     from asperity.scenarios.geometry import Geometry
-    from asperity.scenarios.preparing import Prepared
+    from asperity.scenarios.preparing import PreparedCase
     from asperity.scenarios.textures import Textures
 
 SHARED = (provenance, surface, contact, rolling, spectra)
@@ -114,7 +114,7 @@ class Kind:
         self.offers("compiling", "compile_kernels")(progress)
 
     def computed(
-        self, prepared: Prepared, progress: Progress, caught: list[warnings.WarningMessage]
+        self, prepared: PreparedCase, progress: Progress, caught: list[warnings.WarningMessage]
     ) -> xarray.DataTree:
         """Compute a case and lay out its result; warnings of laying out may be added to `caught`."""
         computed = self.offers("compute", "compute")(prepared, progress)

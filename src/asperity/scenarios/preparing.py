@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PreparedCase:
     """A case that can be computed."""
 
     case: Case
@@ -38,7 +38,7 @@ class Prepared:
     processor: float  # time, s
 
 
-def prepare(case: Case, kind: Kind, source: str = "case") -> Prepared:
+def prepare_of_kind(case: Case, kind: Kind, source: str = "case") -> PreparedCase:
     """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
     begin, spent = time.perf_counter(), time.process_time()
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
@@ -57,7 +57,7 @@ def prepare(case: Case, kind: Kind, source: str = "case") -> Prepared:
         tried.refuse(source)
         kind.warn_of(case, shape, textures)
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
-    return Prepared(case, kind, bodies, shape, textures, tuple(caught), seconds, processor)
+    return PreparedCase(case, kind, bodies, shape, textures, tuple(caught), seconds, processor)
 
 
 class _Attempts:

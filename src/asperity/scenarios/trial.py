@@ -23,7 +23,7 @@ from asperity.reduction.ensemble import patches
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.line_filters import filter_stride
-from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import (
     LIGHTEST_STATE,
     chosen_states,
@@ -71,7 +71,7 @@ def timed(task: Callable[[], T]) -> tuple[T, float]:
     return result, time.process_time() - begin
 
 
-def try_contacts(prepared: Prepared, progress: Progress) -> ContactTrial:
+def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     """Solve a few contacts of every kind that a case with samples needs."""
     case, shape, textures = prepared.case, prepared.shape, prepared.textures
     rtol = rtol_for(case.numerics.force_accuracy)
@@ -109,7 +109,7 @@ def try_contacts(prepared: Prepared, progress: Progress) -> ContactTrial:
 
 
 def _states(
-    prepared: Prepared, half_space: HalfSpace, samples: list[NDArray[np.float64]]
+    prepared: PreparedCase, half_space: HalfSpace, samples: list[NDArray[np.float64]]
 ) -> tuple[NDArray[np.float64], float, float]:
     """States much as the run will choose them, the working approach, and the time of finding them, s."""
     shape, given = prepared.shape, prepared.case.contact.approaches

@@ -18,7 +18,7 @@ from asperity import __version__
 from asperity.arguments import file_path, shown
 from asperity.config.case import Case
 from asperity.config.content import content, described_value, file_digest, holds_memory
-from asperity.config.describing import Entry, in_toml, value_in_toml
+from asperity.config.describing import CaseKey, in_toml, value_in_toml
 from asperity.config.parsing import FROM_PYTHON, Origin, plain_data, read_definition, read_toml
 from asperity.config.single_keys import entry_of, reader_of, unit_of
 from asperity.config.writing import toml_text
@@ -48,7 +48,7 @@ seed = [1, 2, 3]
 class Axis:
     """A key and its values."""
 
-    entry: Entry  # the key
+    entry: CaseKey  # the key
     written: tuple[Any, ...]  # as they stand in TOML
     values: tuple[Any, ...]  # the same in SI
 
@@ -266,7 +266,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> Axis:
     return Axis(entry, tuple(written), tuple(read.values()))
 
 
-def _in_toml(value: Any, found: Any, entry: Entry) -> Any:
+def _in_toml(value: Any, found: Any, entry: CaseKey) -> Any:
     """A swept value as it would stand in a file: as it was given, but for numbers in SI."""
     bare = isinstance(value, int | float | np.generic | Material) and not isinstance(value, bool)
     return value_in_toml(found, entry.field) if bare else value

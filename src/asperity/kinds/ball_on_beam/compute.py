@@ -20,7 +20,7 @@ from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 
 if TYPE_CHECKING:
-    from asperity.scenarios.preparing import Prepared
+    from asperity.scenarios.preparing import PreparedCase
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,13 +33,13 @@ class Computed:
     beam: Beam
 
 
-def compute(prepared: Prepared, progress: Progress) -> Computed:
+def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Reduce and roll.
 
     Parameters
     ----------
-    prepared : Prepared
-        A case from `asperity.scenarios.preparing.prepare`.
+    prepared : PreparedCase
+        A case from `asperity.running.prepare_case`.
     progress : Progress
         Called during long work.
 

@@ -9,7 +9,7 @@ import numpy as np
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
-from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
 
 
@@ -18,7 +18,7 @@ def records(case: Any) -> int:
     return 4 + len(case.beam.sensor_positions)
 
 
-def step_seconds(prepared: Prepared) -> float:
+def step_seconds(prepared: PreparedCase) -> float:
     """Time of a step of smooth bodies over a smooth path, s."""
     case: Any = prepared.case
     beam, ball = prepared.bodies.beam, prepared.bodies.ball

@@ -27,7 +27,7 @@ from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
 if TYPE_CHECKING:
-    from asperity.scenarios.preparing import Prepared
+    from asperity.scenarios.preparing import PreparedCase
 
 POLES = 100
 """Poles of a rail where the case says nothing, if its kernel has lags enough."""
@@ -47,8 +47,8 @@ class Computed:
     points: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
-def compute(prepared: Prepared, progress: Progress) -> Computed:
-    """Reduce and roll a case from `asperity.scenarios.preparing.prepare`."""
+def compute(prepared: PreparedCase, progress: Progress) -> Computed:
+    """Reduce and roll a case from `asperity.running.prepare_case`."""
     case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
     assert isinstance(case, WheelOnRail)
     assert isinstance(bodies, Bodies)

@@ -17,7 +17,7 @@ from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
-from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
 from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailPoles
@@ -61,7 +61,7 @@ def records(case: Any) -> int:
     return 4 + 2 * len(case.point_positions)
 
 
-def seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, float]:
+def seconds(prepared: PreparedCase, progress: Progress, pace: float) -> dict[str, float]:
     """Time of the moving kernel, its poles, and of the points that the wheel passes, s."""
     case: Any = prepared.case
     trial = try_track(prepared, progress)
@@ -73,7 +73,7 @@ def seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, fl
     }
 
 
-def step_seconds(prepared: Prepared) -> float:
+def step_seconds(prepared: PreparedCase) -> float:
     """Time of a step of smooth bodies over a smooth path, s."""
     case = prepared.case
     law = HertzLaw(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e3, -4e3))
@@ -82,7 +82,7 @@ def step_seconds(prepared: Prepared) -> float:
     return taken / STEPS
 
 
-def _rail_like(prepared: Prepared) -> RailPoles | MovingKernel:
+def _rail_like(prepared: PreparedCase) -> RailPoles | MovingKernel:
     """A rail that costs as much as that of a case, and hardly moves."""
     case: Any = prepared.case
     lags = round(SHORTEST / case.time_step)
@@ -94,7 +94,7 @@ def _rail_like(prepared: Prepared) -> RailPoles | MovingKernel:
     return RailPoles(kernel, poles, np.full((STARTS, count), 1e-20 + 0j), 0.0, 0.0)
 
 
-def try_track(prepared: Prepared, progress: Progress) -> TrackTrial:
+def try_track(prepared: PreparedCase, progress: Progress) -> TrackTrial:
     """Compute short moving kernels of a track, and let the wheel pass a point that remembers little."""
     case: Any = prepared.case
     track, speed, step = case.track_model(), case.speed, case.time_step
@@ -119,7 +119,7 @@ def try_track(prepared: Prepared, progress: Progress) -> TrackTrial:
     return TrackTrial(length, kernel, points)
 
 
-def _point_time(prepared: Prepared, length: float) -> float:
+def _point_time(prepared: PreparedCase, length: float) -> float:
     """Time of a passed point, from one whose responses are shorter: it grows with their length."""
     case: Any = prepared.case
     short = length / LAGS

@@ -9,7 +9,7 @@ from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.rolling.pair import RolledPair, roll_pair
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
-from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.usual.textures import recorded_time
 from asperity.store import Checkpoint, Store, content_key
 
@@ -18,12 +18,12 @@ from asperity.store import Checkpoint, Store, content_key
 class Computed:
     """Everything that was computed for a case, before it is laid out as a result."""
 
-    prepared: Prepared
+    prepared: PreparedCase
     chain: Chain[RolledPair]
 
 
-def compute(prepared: Prepared, progress: Progress) -> Computed:
-    """Reduce and roll a case from `asperity.scenarios.preparing.prepare`."""
+def compute(prepared: PreparedCase, progress: Progress) -> Computed:
+    """Reduce and roll a case from `asperity.running.prepare_case`."""
     case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
     store, watch = Store(), Stopwatch(textures=prepared.seconds)
     prepared.kind.compile_kernels(progress)  # not before the files are known to be right
@@ -50,7 +50,7 @@ def compute(prepared: Prepared, progress: Progress) -> Computed:
     )
 
 
-def _checkpoint(law: Law, prepared: Prepared, store: Store) -> Checkpoint | None:
+def _checkpoint(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
     """Where a law that is solved in every step is kept, by all that its motion depends on."""
     path = prepared.textures.path
     if path is None or not spec_of(law.name).solved_every_step:

@@ -8,7 +8,7 @@ from asperity.config.case import Case
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.rolling.pair import roll_pair
-from asperity.scenarios.preparing import Prepared
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
 
 REPORT = 7.5
@@ -25,12 +25,12 @@ def records(case: Case) -> int:
     return 4
 
 
-def seconds(prepared: Prepared, progress: Progress, pace: float) -> dict[str, float]:
+def seconds(prepared: PreparedCase, progress: Progress, pace: float) -> dict[str, float]:
     """Time of what is computed once for all laws, s: nothing."""
     return {}
 
 
-def step_seconds(prepared: Prepared) -> float:
+def step_seconds(prepared: PreparedCase) -> float:
     """Time of a step of smooth bodies over a smooth path, s."""
     case, bodies = prepared.case, prepared.bodies
     law = HertzLaw(prepared.shape.hertz.stiffness_constant)
