@@ -65,7 +65,7 @@ def test_every_key_of_the_interface_is_understood(map_file):
     text = case_with(
         'speed = "2 m/s"\nlaws = ["direct", "table"]\nseed = 7\nduration = "0.2 s"\nstart = "0.1 m"',
         'file = "map.npy"\narray = "polished"\nheight_unit = "um"\npixel = "1.5625 um"\nindex = 2\n'
-        "fill = true",
+        'fill = true\ndirection = "30 deg"',
         ball='radius = "12.5 mm"\nmaterial = "steel"\nmass = "60 g"\nload = "5 N"',
         beam='length = "0.8 m"\nwidth = "5 cm"\nheight = "1 cm"\nmaterial = "steel"\nsupport = "free"\n'
         'loss_factor = 0.01\nsuspension_frequency = "3 Hz"\nsensors = ["0 m", "0.8 m"]',
@@ -78,6 +78,7 @@ def test_every_key_of_the_interface_is_understood(map_file):
     assert case.surface.file == map_file.parent / "map.npy"
     assert (case.surface.array, case.surface.index, case.surface.fill) == ("polished", 2, True)
     assert case.surface.pixel == pytest.approx(1.5625e-6)
+    assert case.surface.direction == pytest.approx(math.pi / 6)
     assert case.laws == ("direct", "table")
     assert (case.ball.mass, case.ball.load) == pytest.approx((0.06, 5.0))
     assert (case.beam.support, case.beam.suspension_frequency) == ("free", 3.0)
@@ -391,6 +392,12 @@ def test_messages_of_the_top(top, message):
         ('file = "map.npy"\narray = ""', "a text in quotes"),
         ('file = "map.npy"\nfill = "yes"', "true or false"),
         ('file = "map.npy"\nindex = -1', "a whole number at least 0"),
+        ('file = "map.npy"\ndirection = 30', 'Add unit and quotes: "30 rad" if it is in SI units (rad)'),
+        ('file = "map.npy"\ndirection = "400 deg"', "surface.direction: received"),
+        (
+            'rms = "1 um"\ndirection = "90 deg"',
+            "surface.direction: received 1.5707963267948966; allowed: only",
+        ),
         ('rms = "1 um"\nhurst = 1.5', "a number greater than 0 and at most 1"),
         ('rms = "1 um"\nlongest = "10 um"', "surface.longest: received 10 um with shortest 16 um"),
         ('rms = "1 um"\nshortest = "10 um"', "surface.shortest: received 10 um on a spacing of 8 um"),

@@ -258,6 +258,30 @@ class TestTextures:
         rms = [float(found["surface/sample_heights"].std()) for found in (bare, limited)]
         assert rms[1] < 0.7 * rms[0]
 
+    def test_a_map_is_rolled_over_in_the_direction_asked_for(self, tmp_path):
+        """Grooves across the x axis: rough along it, smooth along the lay, in between with longer waves."""
+        x = np.arange(240) * 10e-6
+        noise = np.random.default_rng(0).normal(size=(240, 200))
+        np.savez(tmp_path / "map.npz", patch=0.04 * np.cos(2 * np.pi * x / 200e-6)[:, None] + 1e-4 * noise)
+        surface = 'file = "map.npz"\nheight_unit = "um"\npixel = "10 um"\n'
+
+        def textures(direction):
+            key = f'direction = "{direction}"'
+            return prepare_case(case(surface + key, laws=["linear"], source=tmp_path / "case.toml")).textures
+
+        bare, across, along, slanted = (textures(f"{angle} deg") for angle in (0, 180, 90, 60))
+        turned = across.maps[0].heights[::-1, ::-1]
+        np.testing.assert_allclose(turned, bare.maps[0].heights, atol=1e-15)
+        np.testing.assert_allclose(np.rot90(along.maps[0].heights), bare.maps[0].heights, atol=1e-15)
+        slopes = [np.std(np.diff(found.maps[0].heights, axis=0)) for found in (along, bare)]
+        assert slopes[0] < 0.02 * slopes[1]
+        spectrum = np.abs(np.fft.rfft(slanted.maps[0].heights[:, 20], 4096))
+        longest = 4096 * 20e-6 / np.argmax(spectrum)
+        assert longest == pytest.approx(200e-6 / np.cos(np.radians(60)), rel=0.03)
+        assert slanted.maps[0].size == pytest.approx((1.15e-3, 1.99e-3), abs=20e-6)  # 2.4 mm × 2 mm, turned
+        assert "rolled over at 60° to their x axis, on the largest rectangle inside: 1.1" in slanted.origin
+        assert "rolled over" not in bare.origin
+
     def test_map_smaller_than_the_window_is_refused(self, tmp_path):
         surface = self.map_file(tmp_path, (24, 24), pixel=20e-6)
         with pytest.raises(

@@ -38,6 +38,7 @@ _WORDS = {
     "kg/m": ("a mass per length", "60 kg/m"),
     "kg m": ("a rotary inertia per length", "0.24 kg m"),
     "dB": ("a level", "+0 dB"),
+    "rad": ("an angle", "30 deg"),
 }
 
 
@@ -458,6 +459,7 @@ Pressure = Annotated[float, BeforeValidator(Quantity("Pa", above=0))]
 Frequency = Annotated[float, BeforeValidator(Quantity("Hz", above=0))]
 Damping = Annotated[float, BeforeValidator(Quantity("N s/m", at_least=0))]
 Level = Annotated[float, BeforeValidator(Quantity("dB"))]
+Angle = Annotated[float, BeforeValidator(Quantity("rad"))]
 LengthOrInfinite = Annotated[float, BeforeValidator(Quantity("m", above=0, infinite=True))]
 Stiffness = Annotated[float, BeforeValidator(Quantity("N/m", above=0))]
 OwnOrNamed = Annotated[Material, BeforeValidator(MaterialOrName())]

@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, PlainValidator, model_validator
 from asperity.config.content import holds_memory
 from asperity.config.form import Section, key
 from asperity.config.keys import (
+    Angle,
     Approach,
     Choice,
     Damping,
@@ -75,6 +76,12 @@ class MeasuredMap(Section):
     fill: YesNo = key(False, "fill points without a height", goes_with="file")
     form: Annotated[str, BeforeValidator(Choice(("plane", "quadratic")))] = key(
         "plane", "form that is removed from each measured map", goes_with="file"
+    )
+    direction: Angle = key(
+        "0 deg",
+        "direction of rolling on measured maps, from their x axis towards their y axis",
+        goes_with="file",
+        within=("-360 deg", "360 deg", "more is a full turn and a direction"),
     )
 
     @model_validator(mode="before")

@@ -15,6 +15,7 @@ from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.reading import read_maps
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
+from asperity.surfaces.rotation import QUARTER, rotated
 from asperity.surfaces.strip import Raised, Strip
 from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
 
@@ -99,11 +100,30 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
                 ShortRecordWarning,
                 stacklevel=2,
             )
-        on_grid = level(resample(level(measured, degree), spacing), degree)
+        along = _in_direction(level(measured, degree), surface.direction, spacing)
+        on_grid = level(resample(along, spacing), degree)
         longest, shortest = surface.band
         limited = longest is not None or shortest is not None
         result.append(band_limit(on_grid, longest=longest, shortest=shortest) if limited else on_grid)
     return tuple(result), float(np.mean([m.missing_share for m in found]))
+
+
+def _in_direction(measured: HeightMap, direction: float, spacing: float) -> HeightMap:
+    """Turn a levelled map into the direction of rolling; no wave that the spacing, m, holds suffers."""
+    if direction % QUARTER:
+        measured = resample(measured, 0.5 * spacing)
+    return rotated(measured, direction)
+
+
+def direction_words(surface: Surface, maps: tuple[HeightMap, ...]) -> str:
+    """Say in which direction measured maps are rolled over, if not along x, and what is left of the first."""
+    if not surface.direction:
+        return ""
+    length, width = maps[0].size
+    return (
+        f", rolled over at {math.degrees(surface.direction):.4g}° to their x axis, on the largest rectangle "
+        f"inside: {1e3 * length:.3g} mm × {1e3 * width:.3g} mm"
+    )
 
 
 def strip_rows(contact: ContactCase) -> int:

@@ -20,6 +20,7 @@ from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.textures import (
     Textures,
+    direction_words,
     measured_maps,
     path_of,
     strip_rows,
@@ -90,7 +91,8 @@ def _samples(
     if surface.file is not None:
         maps, missing = measured_maps(surface, contact.spacing)
         strips, origin = strips_of(maps, contact, seeds)
-        return maps, strips, missing, f"{len(maps)} samples measured, {name_of(surface.file)}; {origin}"
+        measured = f"{len(maps)} samples measured, {name_of(surface.file)}"
+        return maps, strips, missing, f"{measured}{direction_words(surface, maps)}; {origin}"
     if surface.rms is not None:
         shape = (strip_rows(contact), window_cells(contact))
         strips = tuple(synthesised(surface, contact.spacing, shape, seed) for seed in seeds)

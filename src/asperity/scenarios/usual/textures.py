@@ -16,6 +16,7 @@ from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.reading import read_lines
 from asperity.scenarios.textures import (
     Textures,
+    direction_words,
     measured_maps,
     middle_line,
     mirrored_before,
@@ -57,7 +58,9 @@ def gather(case: Case, margin: int) -> Textures:
         maps, missing = measured_maps(case.surface, spacing)
         strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
         path, path_origin = path_of(maps, (rows, ny), seeds[0], run_in=lead)
-        origin = f"{len(maps)} measured from {name_of(case.surface.file)}; {strip_origin}; {path_origin}"
+        measured = f"{len(maps)} measured from {name_of(case.surface.file)}"
+        measured += direction_words(case.surface, maps)
+        origin = f"{measured}; {strip_origin}; {path_origin}"
     elif case.surface.rms is not None:
         size = (strip_rows(case.contact), ny)
         strips = tuple(synthesised(case.surface, spacing, size, seed) for seed in seeds[1:])
