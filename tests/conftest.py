@@ -5,6 +5,8 @@ import signal
 import tempfile
 from pathlib import Path
 
+import pytest
+
 # Both are set before asperity is imported. Kernels outlast a session: compiling them all takes minutes.
 os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pytest_cache" / "kernels"))
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
@@ -21,3 +23,17 @@ def pytest_configure():
 
 def pytest_unconfigure():
     _cache.cleanup()
+
+
+@pytest.fixture
+def own_cache(tmp_path, monkeypatch):
+    """Nothing that another test computed is found."""
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
+
+
+@pytest.fixture(scope="module")
+def cache_of_module(tmp_path_factory):
+    """What the tests of one module compute, they find again; others do not."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield

@@ -188,12 +188,7 @@ KEYS = {
 }
 
 
-@pytest.fixture
-def _own_cache(tmp_path, monkeypatch):
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
-
-
-@pytest.mark.usefixtures("_own_cache")
+@pytest.mark.usefixtures("own_cache")
 def test_a_mapping_of_keys_is_run_as_its_toml_text():
     from asperity.kinds.cases import parse_case
 
@@ -204,7 +199,7 @@ def test_a_mapping_of_keys_is_run_as_its_toml_text():
     assert 'spectrum = "iso3095"' in result.attrs["case"]
 
 
-@pytest.mark.usefixtures("_own_cache")
+@pytest.mark.usefixtures("own_cache")
 def test_a_study_of_a_mapping():
     found = study(KEYS, {"seed": [1, 2]}, workers=1)
     assert found["completed"].values.tolist() == [True, True]

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.usefixtures("own_cache")
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
 
 
@@ -21,11 +23,6 @@ def run(name: str, folder: Path) -> dict[str, Any]:
     numbers = module.main(folder)
     assert (folder / f"{name}.png").stat().st_size > 10_000
     return numbers
-
-
-@pytest.fixture(autouse=True)
-def _own_cache(tmp_path, monkeypatch):
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
 
 
 def test_rough_contact_is_softer_than_hertz(tmp_path):

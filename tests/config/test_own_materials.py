@@ -11,6 +11,8 @@ from asperity.kinds.cases import as_case, parse_case
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
 from asperity.studies.definition import study_of
 
+pytestmark = pytest.mark.usefixtures("own_cache")
+
 CASE = {
     "kind": "ball-on-beam",
     "duration": "4 ms",
@@ -25,11 +27,6 @@ TOML = '{ youngs_modulus = "70 GPa", poisson_ratio = 0.3, density = "2.7 g/cm^3"
 
 def with_beam_of(material):
     return CASE | {"beam": {"material": material}}
-
-
-@pytest.fixture(autouse=True)
-def _own_cache(tmp_path, monkeypatch):
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "cache"))
 
 
 def test_numbers_of_a_named_material_are_that_material():

@@ -18,6 +18,8 @@ from asperity.running import prepare_case, run
 from asperity.scenarios.usual.textures import gather
 from asperity.spectra import nominal_frequency
 
+pytestmark = pytest.mark.usefixtures("cache_of_module")
+
 CASE = """
 kind = "ball-on-beam"
 laws = {laws}
@@ -49,13 +51,6 @@ def case(surface=SYNTHETIC, contact="", laws=ALL, source="case.toml", **replace)
         lines = [f"{old} = {new}" if line.startswith(f"{old} =") else line for line in text.splitlines()]
         text = "\n".join(lines)
     return parse_case(text, source)
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 @pytest.fixture(scope="module")

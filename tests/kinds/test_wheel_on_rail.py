@@ -21,6 +21,8 @@ from asperity.studies.running import study
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
 
+pytestmark = pytest.mark.usefixtures("cache_of_module")
+
 CASE = """
 kind = "wheel-on-rail"
 laws = {laws}
@@ -54,13 +56,6 @@ def case(
     values = {"surface": surface, "wheel": wheel, "track": track, "spacing": spacing}
     text = CASE.format(laws=json.dumps(laws), **values)
     return parse_case(text, source)
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 @pytest.fixture(scope="module")

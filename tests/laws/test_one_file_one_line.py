@@ -1,6 +1,7 @@
 """A law is one file and one line: in a copy of the package, that is all that is added."""
 
 import ast
+import json
 import os
 import shutil
 import subprocess
@@ -12,6 +13,7 @@ import pytest
 import asperity
 from asperity import laws
 from asperity.reporting.style import COLOURS
+from small_cases import BALL
 
 FILE = '''
 """`cubic`: a law that did not come with the program."""
@@ -32,7 +34,7 @@ LAW = LawSpec(
     look=Look("#7f3b08", "-", "p"),
 )
 '''
-SCRIPT = '''
+SCRIPT = """
 import json, pathlib, sys
 from asperity.kinds.cases import parse_case, template
 from asperity.kinds.report import report
@@ -44,27 +46,7 @@ try:
     parse_case('kind = "ball-on-beam"\\nlaws = ["cubik"]')
 except ValueError as error:
     assert 'Did you mean "cubic"?' in str(error), error
-case = """
-kind = "ball-on-beam"
-laws = ["cubic", "areal", "linear"]
-start = "0.45 m"
-duration = "20 ms"
-settling = "0 s"
-[surface]
-rms = "0.04 um"
-longest = "0.4 mm"
-shortest = "60 um"
-[contact]
-spacing = "20 um"
-window = "0.66 mm"
-samples = 2
-sample_length = "1.4 mm"
-[ball]
-load = "30 N"
-[numerics]
-highest_frequency = "2 kHz"
-"""
-tree = run(parse_case(case))
+tree = run(json.loads(sys.argv[2]))
 force = tree["rolling/contact_force"]
 assert (force.sel(law="cubic").values == force.sel(law="areal").values).all()
 page = report(tree, sys.argv[1]).read_text(encoding="utf-8")
@@ -74,7 +56,7 @@ assert "<strong>cubic</strong>: A law from a file of its own." in page
 assert ":#7f3b08;" in page
 assert "cubic [N]" in (pathlib.Path(sys.argv[1]) / "force_piece.csv").read_text(encoding="utf-8")
 print("all follows")
-'''
+"""
 
 
 def test_a_law_is_one_file_and_one_line(tmp_path):
@@ -84,8 +66,9 @@ def test_a_law_is_one_file_and_one_line(tmp_path):
     lines = registry.read_text(encoding="utf-8").splitlines()
     lines.insert(lines.index('    "direct",') + 1, '    "cubic",')
     registry.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    case = json.dumps(BALL | {"laws": ["cubic", "areal", "linear"]})
     done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, str(tmp_path / "report")],
+        [sys.executable, "-c", SCRIPT, str(tmp_path / "report"), case],
         env=os.environ | {"PYTHONPATH": str(package.parent)}, capture_output=True, text=True,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

@@ -11,49 +11,11 @@ from numpy.testing import assert_array_equal
 
 from asperity import laws
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import parse_case, template
+from asperity.kinds.cases import as_case, parse_case, template
 from asperity.kinds.report import report
 from asperity.laws import LawSpec, Look, Need, Role, Variant
 from asperity.running import run
-
-BALL = """
-kind = "ball-on-beam"
-laws = {laws}
-start = "0.45 m"
-duration = "20 ms"
-settling = "0 s"
-[surface]
-rms = "0.04 um"
-longest = "0.4 mm"
-shortest = "60 um"
-[contact]
-spacing = "20 um"
-window = "0.66 mm"
-samples = 2
-sample_length = "1.4 mm"
-[ball]
-load = "30 N"
-[numerics]
-highest_frequency = "2 kHz"
-"""
-WHEEL = """
-kind = "wheel-on-rail"
-laws = {laws}
-duration = "40 ms"
-settling = "20 ms"
-[surface]
-spectrum = "iso3095"
-[wheel]
-roughness = "disc"
-[contact]
-spacing = "1 mm"
-samples = 2
-sample_length = "60 mm"
-[numerics]
-highest_frequency = "4 kHz"
-poles = 60
-"""
-CASES = {"ball-on-beam": BALL, "wheel-on-rail": WHEEL}
+from small_cases import CASES
 
 
 @pytest.fixture
@@ -129,7 +91,7 @@ SPRING = LawSpec("spring", "A spring without texture.", build_spring, may_pull=T
 
 
 def case(kind, *names):
-    return parse_case(CASES[kind].format(laws=json.dumps(names)))
+    return as_case(CASES[kind] | {"laws": names})
 
 
 @pytest.mark.parametrize("kind", CASES)
@@ -166,7 +128,7 @@ def test_a_law_of_the_test_runs_through_result_report_and_csv(kind, registered, 
 
 
 def test_a_case_file_knows_it_while_it_is_registered(registered):
-    text = CASES["ball-on-beam"].format(laws='["twin"]')
+    text = 'kind = "ball-on-beam"\nlaws = ["twin"]\n[surface]\nrms = "0.04 um"'
     with pytest.raises(CaseError, match="laws"):
         parse_case(text)
     registered(TWIN)
@@ -183,12 +145,11 @@ def test_a_case_file_knows_it_while_it_is_registered(registered):
 def test_what_a_law_needs_decides_where_it_may_stand(registered):
     registered(TWIN)
     registered(replace(SPRING, name="wide", needs=frozenset({Need.SURFACE})))
-    samples = 'rms = "0.04 um"\nlongest = "0.4 mm"\nshortest = "60 um"\n'
-    text = CASES["ball-on-beam"].replace(samples, 'spectrum = "iso3095"\n')
+    line = CASES["ball-on-beam"] | {"surface": {"spectrum": "iso3095"}}
     with pytest.raises(CaseError, match='"twin" without samples of the surface'):
-        parse_case(text.format(laws='["twin"]'))
+        as_case(line | {"laws": ["twin"]})
     with pytest.raises(CaseError, match='"wide" with a path given as a line'):
-        parse_case(text.format(laws='["wide"]'))
+        as_case(line | {"laws": ["wide"]})
 
 
 @pytest.mark.parametrize(

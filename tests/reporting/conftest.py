@@ -1,11 +1,11 @@
 """Real runs, made once for all tests of results and reports."""
 
 import pytest
-from real_runs import CASES
 
 import asperity
 from asperity.kinds import KINDS
 from asperity.kinds.report import report
+from small_cases import CASES
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""Reading a written report back: its page and its CSV files."""
+"""Reading a written report back, its page and its CSV files; results that lack something."""
 
 from __future__ import annotations
 
@@ -45,3 +45,10 @@ def read_csv(path):
         head, *rows = csv.reader(file)
     table = np.array([[float(field) if field else np.nan for field in row] for row in rows])
     return dict(zip(head, table.T, strict=True))
+
+
+def without(tree, group, *names):
+    """The result without some variables of a group."""
+    tree = tree.copy()
+    tree[group] = tree[group].to_dataset().drop_vars(names)
+    return tree

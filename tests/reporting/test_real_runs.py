@@ -8,8 +8,7 @@ import re
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from real_runs import without
-from report_reading import Reader, read_csv
+from report_reading import Reader, read_csv, without
 
 from asperity.kinds import KINDS
 from asperity.kinds.report import page_of, parts_of

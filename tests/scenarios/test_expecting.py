@@ -17,6 +17,8 @@ from asperity.scenarios.trial import ContactTrial, try_contacts
 from asperity.store import Store
 from asperity.structures.moving_kernel import moving_kernel
 
+pytestmark = pytest.mark.usefixtures("own_cache")
+
 CASE = """
 kind = "ball-on-beam"
 duration = "8 ms"
@@ -50,11 +52,6 @@ highest_frequency = "4 kHz"
 
 def quiet(done, total, message):
     """A progress that nobody sees."""
-
-
-@pytest.fixture(autouse=True)
-def _own_cache(monkeypatch, tmp_path):
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
 
 
 @pytest.mark.filterwarnings("ignore:the record starts 0 ms")

@@ -18,6 +18,8 @@ from asperity.reduction.fir import response
 from asperity.running import prepare_case, run
 from asperity.scenarios.reducing import patch_planes
 
+pytestmark = pytest.mark.usefixtures("cache_of_module")
+
 BALL = """
 kind = "ball-on-beam"
 laws = {laws}
@@ -85,13 +87,6 @@ def warned_of_filters(tree):
 
 def caption(tree, name):
     return next(part for part in parts_of(tree) if part.name == name).caption(tree)
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,8 @@ from asperity.running import prepare_case
 from asperity.scenarios import laws, reducing
 from asperity.scenarios.laws import table_stride
 
+pytestmark = pytest.mark.usefixtures("own_cache")
+
 CASE = """
 kind = "ball-on-beam"
 duration = "4 ms"
@@ -34,11 +36,6 @@ rtol = 1e-5
 
 def quiet(done, total, message):
     """A progress that nobody sees."""
-
-
-@pytest.fixture(autouse=True)
-def _own_cache(monkeypatch, tmp_path):
-    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
 
 
 @pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning")

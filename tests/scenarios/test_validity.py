@@ -20,6 +20,8 @@ from asperity.surfaces.levelling import band_limit
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for
 from asperity.surfaces.synthesis import self_affine
 
+pytestmark = pytest.mark.usefixtures("cache_of_module")
+
 NO_WORK = Work({}, {})
 MAPS = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"
 CASE = """
@@ -57,13 +59,6 @@ def validity(tree):
 
 def messages(tree, category="OutOfRangeWarning"):
     return [w for w in json.loads(tree.attrs["warnings"]) if w["category"] == category]
-
-
-@pytest.fixture(autouse=True, scope="module")
-def cache(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
-        yield
 
 
 class TestInRange:

@@ -24,10 +24,3 @@ WHEEL = {
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
 }
 CASES = {case["kind"]: case for case in (BALL, WHEEL)}
-
-
-def without(tree, group, *names):
-    """The result without some variables of a group."""
-    tree = tree.copy()
-    tree[group] = tree[group].to_dataset().drop_vars(names)
-    return tree
