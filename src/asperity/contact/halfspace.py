@@ -83,8 +83,27 @@ class Contact:
 
     @cached_property
     def gap(self) -> NDArray[np.float64]:
-        """Gap after deformation, m, shape (nx, ny)."""
+        """Gap after elastic deformation, m, shape (nx, ny).
+
+        Below zero only where the hardness caps the pressure.
+        """
         return self.undeformed_gap + self.half_space.displacement(self.pressure) - self.approach
+
+    @cached_property
+    def plastic_indentation(self) -> NDArray[np.float64]:
+        """Depth by which the surface has yielded for good, m ≥ 0, shape (nx, ny).
+
+        The overlap that the capped pressure leaves. Heights less this depth carry the same pressure without
+        yielding: a second loading is elastic.
+        """
+        capped = self.pressure >= self.half_space.pressure_cap
+        return np.where(capped, np.maximum(-self.gap, 0.0), 0.0)
+
+    @property
+    def yielded_share(self) -> float:
+        """Share of the real contact area whose pressure is at the hardness; one in full plasticity."""
+        capped = np.count_nonzero(self.pressure >= self.half_space.pressure_cap)
+        return float(capped / max(int(np.count_nonzero(self.pressure)), 1))
 
     @cached_property
     def stiffness(self) -> float:
@@ -248,7 +267,7 @@ class HalfSpace:
             approach = real("approach", approach, "a finite length, m")
             contact = self.at_approach(g, approach, p, rtol)
         else:
-            contact = self._at_load(g, self._checked_load(load), p, rtol)
+            contact = self.at_load(g, self.checked_load(load), p, rtol)
         if not contact.converged:
             _warn_unconverged(f"contact at approach {contact.approach:.4g} m", contact.outcome)
         return contact
@@ -319,12 +338,75 @@ class HalfSpace:
             self, surface, body, approaches, stride, rtol, force_accuracy, workers, cache, progress, device
         )
 
+    def run_in(
+        self,
+        surface: ArrayLike | HeightMap,
+        body: ArrayLike,
+        load: float,
+        passes: int | str = "shakedown",
+        stride: int = 1,
+        *,
+        tolerance: float | None = None,
+        workers: int | None = None,
+        cache: Cache | None = None,
+        progress: Progress | None = None,
+    ) -> HeightMap:
+        """Roll a body over a surface whose asperities flow at the hardness, and return what is left of it.
+
+        Parameters
+        ----------
+        surface : HeightMap, or array_like, shape (n, ny)
+            Heights, m, peaks positive, on the half-space's spacing; the first axis is the rolling direction.
+        body : array_like, shape (nx, ny)
+            Shape of the smooth body, m, zero at its lowest point.
+        load : float
+            Constant load, N.
+        passes : int or str
+            Number of passes; ``"shakedown"`` rolls until a pass lowers no place by more than the tolerance.
+        stride : int
+            Rows between positions: at most about an eighth of the contact's half width.
+        tolerance : float, optional
+            Lowering in a pass that counts as none, m; by default 1/1000 of the smooth bodies' approach.
+        workers, cache, progress : optional
+            As in `scan`.
+
+        Returns
+        -------
+        HeightMap
+            The surface after the passes; its heights are nowhere above those before.
+
+        Raises
+        ------
+        InputError
+            Without hardness, or for sizes that do not fit.
+
+        Notes
+        -----
+        Elastic–perfectly plastic: 0 ≤ p ≤ H; where the cap leaves an overlap, the surface is lowered by it.
+        Volume is not kept (no pile-up), and the body stays smooth: the surface takes all that yields.
+        The first and last half windows, over which the body's middle does not pass, are not run in.
+
+        Examples
+        --------
+        >>> x = 5e-6 * np.arange(-20, 21)
+        >>> ball = np.add.outer(x**2, x**2) / (2 * 10e-3)
+        >>> wave = 50e-9 * np.cos(2 * np.pi * np.arange(80) / 8)
+        >>> rough = np.repeat(wave[:, None], 41, axis=1)
+        >>> smoother = HalfSpace((41, 41), 5e-6, 115e9, hardness=0.4e9).run_in(rough, ball, load=0.5)
+        >>> f"crests {(rough - smoother.heights).max() * 1e9:.0f} nm lower"
+        'crests 23 nm lower'
+        """
+        from asperity.contact.running_in import run_in_surface
+
+        return run_in_surface(self, surface, body, load, passes, stride, tolerance, workers, cache, progress)
+
     @property
     def pressure_cap(self) -> float:
         """Largest pressure, Pa; infinite without hardness."""
         return math.inf if self.hardness is None else self.hardness
 
-    def _checked_load(self, load: float | None) -> float:
+    def checked_load(self, load: float | None) -> float:
+        """Check that a load, N, is one that the window carries."""
         load = real("load", load, "a force ≥ 0, N", at_least=0.0)
         largest = self.pressure_cap * self.cell_area * self.shape[0] * self.shape[1]
         if load >= largest:
@@ -428,10 +510,13 @@ class HalfSpace:
                 self._prepare(nx, ny, single)
         return block
 
-    def _at_load(
+    def at_load(
         self, gap: NDArray[np.float64], load: float, start: NDArray[np.float64] | None, rtol: float
     ) -> Contact:
-        """Solve at a given load, where the overlap at an estimated approach is all that needs a grid."""
+        """Solve at a given load as `solve` does, unchecked and silent: look at `converged`.
+
+        The overlap at an estimated approach is all that needs a grid.
+        """
         lowest = float(gap.min())
         if load == 0.0:
             return self.at_approach(gap, lowest, None, rtol)

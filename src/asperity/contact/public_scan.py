@@ -37,7 +37,7 @@ def scan_surface(
     device: str | None,
 ) -> xarray.DataArray:
     """Check the arguments of `HalfSpace.scan`, scan, and warn of flaws."""
-    heights = _heights(half_space, surface)
+    heights = heights_on(half_space, surface, "surface of the scan")
     job = ScanJob(
         half_space,
         Rows(heights - heights.mean()),
@@ -47,7 +47,7 @@ def scan_surface(
         _residual(rtol, force_accuracy),
         device=find_device(device),
     )
-    _check_settings(workers, cache, progress)
+    check_settings(workers, cache, progress)
     scanned = scan_forces(job, cache=cache, workers=workers, progress=progress)
     remedy = ""
     if scanned.counts.truncated:
@@ -59,9 +59,9 @@ def scan_surface(
     return _labelled(job, scanned)
 
 
-def _heights(half_space: HalfSpace, surface: ArrayLike | HeightMap) -> NDArray[np.float64]:
-    """Heights of what is scanned, complete."""
-    what, allowed = "surface of the scan", "a height map, or an array (n, ny) of finite lengths in m"
+def heights_on(half_space: HalfSpace, surface: ArrayLike | HeightMap, what: str) -> NDArray[np.float64]:
+    """Heights of a surface, complete and on the grid of a half-space, m; `what` names it in messages."""
+    allowed = "a height map, or an array (n, ny) of finite lengths in m"
     if isinstance(surface, Profile):
         raise InputError(what, "a line of heights", "a map of heights")
     if isinstance(surface, HeightMap):
@@ -97,7 +97,8 @@ def _residual(rtol: float | None, force_accuracy: float | None) -> float:
     return 1e-6 if rtol is None else real("rtol", rtol, allowed, above=0.0, at_most=BELOW_ONE)
 
 
-def _check_settings(workers: object, cache: object, progress: object) -> None:
+def check_settings(workers: object, cache: object, progress: object) -> None:
+    """Refuse what is no number of threads, no cache, or no progress."""
     if workers is not None:
         whole("workers", workers, "a number of threads, 1 or more, or None", at_least=1)
     if cache is not None and not (hasattr(cache, "get") and hasattr(cache, "put")):
