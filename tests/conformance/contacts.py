@@ -224,21 +224,42 @@ def peers():
     """Forces of tamaas and ContactMechanics, made by `make_peers.py` in an environment of their own."""
     stored = json.loads((DATA / "peers.json").read_text())
     problem = stored["problem"]
+    half_space, gaps = peers_problem(problem, None)
+    for peer, version in stored["versions"].items():
+        for m, force in enumerate(stored["forces"][peer]):
+            contact = half_space.solve(gaps[m], approach=problem["approach"], rtol=1e-10)
+            what = f"rough ball on {problem['cells']}² cells, position {m + 1}, at an approach: force"
+            yield Check(what, f"{peer} {version}, tolerance 1e-9", force, contact.force, 1e-6, "N")
+
+
+def plastic_peer():
+    """What ContactMechanics leaves of the same contacts with hardness, made by `make_plastic_peer.py`."""
+    stored = json.loads((DATA / "plastic_peer.json").read_text())
+    problem = json.loads((DATA / "peers.json").read_text())["problem"]
+    half_space, gaps = peers_problem(problem, stored["hardness"])
+    source = f"ContactMechanics {stored['version']}, tolerance 1e-10"
+    for m, found in enumerate(stored["contacts"]):
+        contact = half_space.solve(gaps[m], approach=problem["approach"], rtol=1e-10)
+        body = f"the same, position {m + 1}, with a hardness of {stored['hardness'] / 1e9:g} GPa"
+        yield Check(f"{body}: force", source, found["force"], contact.force, 1e-8, "N")
+        mark = contact.plastic_indentation
+        deepest = found["deepest"] * 1e6
+        yield Check(f"{body}: deepest plastic indentation", source, deepest, mark.max() * 1e6, 1e-8, "µm")
+        volume = mark.sum() * half_space.cell_area * 1e18
+        yield Check(f"{body}: volume of the marks", source, found["volume"] * 1e18, volume, 1e-8, "µm³")
+
+
+def peers_problem(problem, hardness):
+    """Half-space and gaps of the three contacts that the peers solved."""
     n, spacing = problem["cells"], problem["spacing"]
-    x = (np.arange(n) - n // 2) * spacing
-    body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * problem["radius"])
     heights = np.array(problem["waves"])
     rows = np.arange(n + 2 * problem["stride"])[:, None] * spacing
     columns = np.arange(n)[None, :] * spacing
     surface = sum(a * np.cos(kx * rows + ky * columns + phase) for a, kx, ky, phase in heights)
-    half_space = HalfSpace((n, n), (spacing, spacing), problem["modulus"])
-    for peer, version in stored["versions"].items():
-        for m, force in enumerate(stored["forces"][peer]):
-            first = m * problem["stride"]
-            gap = body - surface[first : first + n]
-            contact = half_space.solve(gap, approach=problem["approach"], rtol=1e-10)
-            what = f"rough ball on {n}² cells, position {m + 1}, at an approach: force"
-            yield Check(what, f"{peer} {version}, tolerance 1e-9", force, contact.force, 1e-6, "N")
+    body = ball_on_cells(n, spacing, problem["radius"])
+    starts = [m * problem["stride"] for m in range(3)]
+    half_space = HalfSpace((n, n), (spacing, spacing), problem["modulus"], hardness)
+    return half_space, [body - surface[first : first + n] for first in starts]
 
 
 # --- hardness, first touch, hard starts -------------------------------------------------------
@@ -271,6 +292,59 @@ def hardness():
         "µm",
         absolute=True,
     )
+
+
+def full_plasticity():
+    """A ball far beyond yield: F = H π a², and the displacement under uniform pressure on a circle."""
+    radius, cap, spacing, n, a = 1.0, 1e6, 1e-3, 81, 30e-3
+    gap = ball_on_cells(n, spacing, radius)
+    half_space = HalfSpace((n, n), (spacing, spacing), STEEL, cap)
+    contact = half_space.solve(gap, load=cap * np.pi * a**2, rtol=1e-9)
+    body = "ball far beyond yield, mark of 30 cells radius"
+    source = "closed form; tolerance: the cells of its rim"
+    mean = contact.force / contact.area
+    yield Check(f"{body}: mean pressure, the hardness", source, cap / 1e6, mean / 1e6, 0.01, "MPa")
+    depth = a**2 / (2 * radius) - (2 - 4 / np.pi) * cap * a / STEEL
+    what = f"{body}: its depth, a²/2R − (2 − 4/π) H a/E*"
+    obtained = contact.plastic_indentation[n // 2, n // 2]
+    yield Check(what, "Johnson 1985, Eqs. 3.29", depth * 1e6, obtained * 1e6, 5e-3, "µm")
+    elastic = HalfSpace((n, n), (spacing, spacing), STEEL)
+    lowered = gap + contact.plastic_indentation
+    again = elastic.solve(lowered, load=contact.force, rtol=1e-9).pressure.max() / 1e6
+    what = "the same mark loaded again without hardness: largest pressure"
+    yield Check(what, "a second loading is elastic", cap / 1e6, again, 1e-6, "MPa")
+
+
+def scratch_hardness():
+    """A ball that rolls far beyond yield rests on the half of its patch ahead: H = 8F/πw²."""
+    radius, cap, spacing, n, width = 1.0, 1e6, 1e-3, 61, 40e-3
+    half_space = HalfSpace((n, n), (spacing, spacing), STEEL, cap)
+    load = cap * np.pi * width**2 / 8
+    run_in = half_space.run_in(np.zeros((170, n)), ball_on_cells(n, spacing, radius), load, passes=1)
+    depth = -run_in.heights[105:120].mean(axis=0)
+    y = (np.arange(n) - n // 2) * spacing
+    deep = depth > 0.5 * depth.max()
+    slope, top = np.polyfit(y[deep] ** 2, depth[deep], 1)
+    what = "groove of a ball rolled far beyond yield: width, of 40 cells"
+    source = "scratch hardness, ASTM G171; tolerance: half a row"
+    yield Check(what, source, width * 1e3, 2e3 * np.sqrt(-top / slope), 0.025, "mm")
+
+
+def shakedown():
+    """A smooth ball above yield rolls itself a groove that carries it at the hardness."""
+    n, spacing, radius, load, cap = 41, 8e-6, 25e-3, 2.0, 0.18e9
+    gap = ball_on_cells(n, spacing, radius)
+    surface = HalfSpace((n, n), (spacing, spacing), 115e9, cap).run_in(np.zeros((120, n)), gap, load)
+    elastic = HalfSpace((n, n), (spacing, spacing), 115e9)
+    peak = max(elastic.solve(gap - surface.heights[m : m + n], load=load).pressure.max() for m in (30, 40))
+    what = "ball with Hertz's 0.201 GPa on steel of 0.18 GPa, run in to shakedown: largest elastic pressure"
+    source = "shakedown: p ≤ H; tolerance: 1/1000 of the approach"
+    yield Check(what, source, cap / 1e9, peak / 1e9, 0.01, "GPa")
+
+
+def ball_on_cells(n, spacing, radius):
+    x = (np.arange(n) - n // 2) * spacing
+    return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
 
 
 def first_touch():
@@ -315,5 +389,6 @@ def cold_start():
 
 CHECKS = (
     hertz_sphere, hertz_wheel_on_rail, sphere_on_the_grid, flat_punch, influence, traps_of_convolution,
-    contact_program, contact_test_bank, peers, hardness, first_touch, cold_start,
+    contact_program, contact_test_bank, peers, plastic_peer, hardness, full_plasticity, scratch_hardness,
+    shakedown, first_touch, cold_start,
 )  # fmt: skip
