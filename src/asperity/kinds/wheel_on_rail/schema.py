@@ -120,7 +120,7 @@ KERNEL_FIT_ERROR = _track_attribute(
 
 
 def _product(dim: str, what: str, condition: str = "") -> Entry:
-    long_name = BAND_TIME_PRODUCT.long_name.replace("time", what)
+    long_name = BAND_TIME_PRODUCT.long_name.replace("averaging time", f"averaging {what}")
     name = f"{dim}_{what}_product"
     return _spectra(name, (dim,), "1", long_name, condition, attributes=BAND_TIME_PRODUCT.attributes)
 
