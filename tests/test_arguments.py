@@ -20,7 +20,7 @@ BALL = np.add.outer(X**2, X**2) / 2e-4
 HALF_SPACE = HalfSpace((8, 8), MICROMETRE, 1e11)
 TRACK = Track.named("x2000")
 
-NO_NUMBERS = ["1 um", b"x", [], {}, object(), 1 + 2j, np.array(["x"]), len, float("nan"), True, (1, 2, 3)]
+NO_NUMBERS = ["1 um", b"x", [], {}, Ellipsis, 1 + 2j, np.array(["x"]), len, float("nan"), True, (1, 2, 3)]
 """Values that stand for no single number and for no pair of them."""
 
 
@@ -92,7 +92,7 @@ ARRAYS = {
 }
 
 
-@pytest.mark.parametrize("value", ["a", b"x", {}, object(), [1 + 2j], ["x"], len, [[1], [1, 2]]], ids=repr)
+@pytest.mark.parametrize("value", ["a", b"x", {}, Ellipsis, [1 + 2j], ["x"], len, [[1], [1, 2]]], ids=repr)
 @pytest.mark.parametrize("door", ARRAYS)
 def test_what_is_no_array_of_numbers_is_refused_by_name(door, value):
     with pytest.raises(InputError, match=rf"^{door}.*: received .*; allowed: "):
@@ -140,7 +140,7 @@ def test_settings_of_a_scan(change, message):
         scanned(**change)
 
 
-@pytest.mark.parametrize("value", [None, 1, [], object(), True, ""], ids=repr)
+@pytest.mark.parametrize("value", [None, 1, [], Ellipsis, True, ""], ids=repr)
 def test_what_is_no_path_is_refused(value):
     for door in (read_surface, asperity.open_result, asperity.run):
         with pytest.raises(InputError, match=r"received .*; allowed: the path of "):

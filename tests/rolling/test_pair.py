@@ -515,7 +515,9 @@ def test_a_compiled_law_goes_on_bit_by_bit(monkeypatch):
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e9, 1e13])
 @pytest.mark.parametrize("damping", [0.0, 1e3])
-@pytest.mark.parametrize("over", [Oscillator(1e-4, 1e5), SpringAndDamper(1e7), RigidGround()], ids=str)
+@pytest.mark.parametrize(
+    "over", [Oscillator(1e-4, 1e5), SpringAndDamper(1e7), RigidGround()], ids=lambda over: type(over).__name__
+)
 def test_no_step_of_a_pair_grows(over, stiffness, damping):
     step = 1e-4  # much too long for all of them
     texture = np.zeros(800)

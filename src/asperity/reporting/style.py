@@ -140,17 +140,17 @@ def svg(figure: Figure, name: str, title: str, colours: Mapping[str, str] = COLO
     Identifiers get the prefix `name`, `colours` become CSS variables, and everything that names
     another document (prolog, metadata, name spaces) is left out.
     """
-    FigureCanvasSVG(figure)
-    text = StringIO()
+    canvas, text = FigureCanvasSVG(figure), StringIO()
     coarser = {"path.simplify_threshold": 0.5} if is_narrow() else {}  # half a page needs fewer points
     with rc_context(RC | coarser):
         engine = figure.get_layout_engine()
-        if engine is not None:  # lay out once; saving with an engine would draw everything twice
+        if engine is not None:  # lay out once; `savefig` would draw everything twice
             with warnings.catch_warnings():  # names may be longer than a narrow page is wide
                 warnings.filterwarnings("ignore", "constrained_layout not applied", UserWarning)
                 engine.execute(figure)
             figure.set_layout_engine("none")
-        figure.savefig(text, format="svg", dpi=110, transparent=False, metadata={"Date": None})
+        figure.dpi = 110  # of the images in it
+        canvas.print_svg(text, metadata={"Date": None})
     body = text.getvalue()
     body = body[body.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
