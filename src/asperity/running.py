@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 
 def run(
-    case: str | os.PathLike[str] | Mapping[str, Any] | Case | PreparedCase, progress: Progress | None = None
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case | PreparedCase,
+    progress: Progress | None = None,
+    *,
+    converge: bool = False,
 ) -> Result:
     """Compute a case.
 
@@ -29,6 +32,9 @@ def run(
         `prepare_case` made of one.
     progress : callable, optional
         ``progress(done, total, message)``, called during long work. In a notebook a bar is shown by default.
+    converge : bool
+        Whether the case is computed again with each of its settings made finer in turn: the result then has
+        the group convergence, which says how far it depends on them.
 
     Returns
     -------
@@ -52,6 +58,7 @@ def run(
     >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
     1
     """
+    from asperity.convergence.running import with_convergence
     from asperity.errors import PhysicsWarning
     from asperity.kinds.cases import as_case
     from asperity.progress import shown_progress
@@ -72,6 +79,8 @@ def run(
             prepared = loaded if isinstance(loaded, PreparedCase) else prepare_case(loaded)
             caught += prepared.caught
             result = prepared.kind.computed(prepared, told, caught)
+            if converge:
+                result = with_convergence(prepared, result, told)
     except ComputationError:
         _warn_again(caught)  # they may say why
         raise

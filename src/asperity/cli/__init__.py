@@ -24,6 +24,11 @@ _overwrite = click.option("--overwrite", is_flag=True, help="Replace the run of 
 _report = click.option(
     "--report/--no-report", default=True, show_default=True, help="Write the HTML page and CSVs."
 )
+_converge = click.option(
+    "--converge",
+    is_flag=True,
+    help="Compute again with each setting made finer: grid, window, samples, …, and say what that changes.",
+)
 _device = click.option(
     "--device",
     type=click.Choice(["cpu", "gpu"]),
@@ -112,9 +117,10 @@ def new(kind: str) -> None:
 @main.command()
 @_case
 @_output
+@_converge
 @_device
 @_overwrite
-def check(case: Path, directory: Path | None, overwrite: bool) -> None:
+def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -> None:
     """Check a case: show its values, what will be computed, and how long that takes.
 
     Refuses whatever 'asperity run' would refuse, and tries small pieces of the work to expect its time.
@@ -126,22 +132,23 @@ def check(case: Path, directory: Path | None, overwrite: bool) -> None:
 
     loaded = load_case(case)
     refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
-    show_plan(prepare_case(loaded, str(case)), str(case))
+    show_plan(prepare_case(loaded, str(case)), str(case), converge=converge)
 
 
 @main.command()
 @_case
 @_output
 @_report
+@_converge
 @_device
 @_overwrite
-def run(case: Path, directory: Path | None, report: bool, overwrite: bool) -> None:
+def run(case: Path, directory: Path | None, report: bool, converge: bool, overwrite: bool) -> None:
     """Compute a case: writes run.nc, report.html and the CSV of every figure."""
     from asperity.cli.running import run_into
     from asperity.kinds.cases import load_case
 
     target = directory or Path("runs") / case.stem
-    run_into(load_case(case), target, source=str(case), report=report, overwrite=overwrite)
+    run_into(load_case(case), target, source=str(case), report=report, overwrite=overwrite, converge=converge)
 
 
 @main.command()

@@ -22,8 +22,8 @@ ANNOUNCED_SOLUTIONS = 100_000  # of a scan that is tried to find out
 SMALL_PART = 0.05  # of the work: shorter parts are not named
 
 
-def show_plan(prepared: PreparedCase, source: str) -> None:
-    """Print the values of a case, and what will be computed from it."""
+def show_plan(prepared: PreparedCase, source: str, *, converge: bool = False) -> None:
+    """Print the values of a case, and what will be computed from it, with convergence if it is asked for."""
     from asperity.scenarios.expecting import expect
 
     for warning in prepared.caught:
@@ -31,6 +31,7 @@ def show_plan(prepared: PreparedCase, source: str) -> None:
         say(f"{grade}: {warning.message}", err=True)
     with progress_bar() as progress:
         expected = expect(prepared, progress)
+        more = [("convergence", _described_convergence(prepared, expected, progress))] if converge else []
     items = prepared.case.parameters()
     defaults = ["" if item["is_default"] else item["default"] or "none" for item in items]
     values = [
@@ -40,7 +41,7 @@ def show_plan(prepared: PreparedCase, source: str) -> None:
     changed = {number for number, item in enumerate(items) if not item["is_default"]}
     headings = ("key", "value", "default", "what it is")
     say_table(f"{source}: a valid case", headings, values, width=120, bold=changed)
-    say_table("What will be computed", (), plan(prepared, expected), width=120)
+    say_table("What will be computed", (), [*plan(prepared, expected), *more], width=120)
 
 
 def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
@@ -111,6 +112,18 @@ def _described_work(expected: Work) -> str:
     named = ", ".join(f"{name} {duration(part)}" for name, part in longest)
     where = "" if find_device() is None else " if the processor solves all contacts"
     return f"about {duration(expected.total)}{where}, less what the cache holds" + f": {named}" * bool(named)
+
+
+def _described_convergence(prepared: PreparedCase, work: Work, progress: Progress) -> str:
+    """Time of computing a case again with each of its settings made finer."""
+    from asperity.convergence.cost import expected_convergence
+
+    parts = expected_convergence(prepared, work, progress)
+    times = {name: part for name, part in parts.items() if not isinstance(part, str)}
+    named = ", ".join(f"{name} {duration(part)}" for name, part in times.items())
+    text = f"about {duration(sum(times.values()))} more: {named}"
+    unchanged = [f"{name} ({part})" for name, part in parts.items() if isinstance(part, str)]
+    return f"{text}; not changed: {', '.join(unchanged)}" if unchanged else text
 
 
 def described_scan(scan: Expected) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from asperity.cli.planning import announce_scan
 from asperity.config.case import Case
@@ -12,9 +13,18 @@ from asperity.files import alone_in, refuse_unwritable, require_space
 from asperity.progress import progress_bar
 from asperity.terminal import say
 
+if TYPE_CHECKING:
+    from xarray import DataTree
+
 
 def run_into(
-    case: Case, directory: Path, *, source: str = "case", report: bool = True, overwrite: bool = False
+    case: Case,
+    directory: Path,
+    *,
+    source: str = "case",
+    report: bool = True,
+    overwrite: bool = False,
+    converge: bool = False,
 ) -> None:
     """Compute a case and write its results.
 
@@ -30,6 +40,8 @@ def run_into(
         Whether to write the page and the CSVs.
     overwrite : bool
         Whether the run of another case in `directory` may be replaced.
+    converge : bool
+        Whether it is computed again with each of its settings made finer, once its own results are written.
 
     Raises
     ------
@@ -39,36 +51,49 @@ def run_into(
     refuse_folder(case, directory, overwrite=overwrite)
     with alone_in(directory):
         refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
-        _run_alone(case, directory, source, report=report)
+        _run_alone(case, directory, source, report=report, converge=converge)
 
 
-def _run_alone(case: Case, directory: Path, source: str, *, report: bool) -> None:
+def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> None:
     """Compute a case and write its results, while no other run does into this folder."""
+    from asperity.convergence.running import with_convergence
     from asperity.kinds import report as reports
-    from asperity.results import save
     from asperity.running import prepare_case, run
     from asperity.store import Store
 
     prepared = prepare_case(case, source)
     with progress_bar() as progress:
         announce_scan(prepared, progress)
-        tree = run(prepared, progress=progress)
+        tree: DataTree = run(prepared, progress=progress)
     for warning in json.loads(tree.attrs.get("warnings", "[]")):
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
         grade = warning.get("grade", "warning").capitalize()
         say(f"{grade}: {warning['message']}{times}", err=True)
-    written = save(tree, directory / "run.nc")
     reports.remove_report(directory)
+    written = _written(tree, directory, report=report)
+    if converge:
+        with progress_bar() as progress:
+            tree = with_convergence(prepared, tree, progress)
+        written = _written(tree, directory, report=report)
     if verdict := tree.attrs.get("verdict"):
         say(verdict)
-    say(f"Results: {written.resolve()}")
-    if report:
-        page = reports.report(tree, directory)
-        say(f"Report:  {page.resolve()}")
+    for name, path in written.items():
+        say(f"{name}:{'':{8 - len(name)}}{path.resolve()}")
     store = Store()
     if size := store.size():
         kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"
         say(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
+
+
+def _written(tree: DataTree, directory: Path, *, report: bool) -> dict[str, Path]:
+    """Write a result, and its report if it is wanted; the paths, each with what it is."""
+    from asperity.kinds import report as reports
+    from asperity.results import save
+
+    written = {"Results": save(tree, directory / "run.nc")}
+    if report:
+        written["Report"] = reports.report(tree, directory)
+    return written
 
 
 def _expected_size(case: Case) -> float:

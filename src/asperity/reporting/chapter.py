@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from xarray import DataTree
 
+from asperity.reporting import convergence
 from asperity.reporting.contact_figures import CONTACT as CONTACT_PARTS
 from asperity.reporting.part import Part
 from asperity.reporting.tables import ReportTable, validity_table
@@ -23,3 +24,6 @@ class Chapter:
 
 
 CONTACT = Chapter("contact", "Contact", CONTACT_PARTS, (validity_table,))
+CONVERGENCE = Chapter(
+    "convergence", "Convergence", (), (convergence.settings_table, convergence.changes_table)
+)

@@ -43,6 +43,7 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         contact.DATUM_SAMPLES: reduction.datums["samples"],
         contact.DATUM_PATH: reduction.datums["path"],
         contact.WORKING_APPROACH: reduction.working_approach,
+        contact.WORKING_STIFFNESS: float(ensemble.curve.stiffness(ensemble.curve.inverse(shape.load))),
         contact.CONTACT_AREA: working.area,
         contact.CONTACT_AREA_RATIO: reduction.area_ratio,
         contact.ISOLATED_SHARE: reduction.isolated_share,
@@ -148,7 +149,11 @@ def _hertz_only(chain: Chain[Any], facts: dict[Attribute, Any]) -> xarray.Datase
             ),
         }
     )
-    facts |= {contact.DATUM: 0.0, contact.WORKING_APPROACH: hertz.approach(load)}
+    facts |= {
+        contact.DATUM: 0.0,
+        contact.WORKING_APPROACH: hertz.approach(load),
+        contact.WORKING_STIFFNESS: hertz.tangent_stiffness(hertz.approach(load)),
+    }
     return xarray.Dataset(laid_out, attrs=attributes(facts))
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from asperity.schema import Entry, contact, provenance, rolling, spectra, surface
+from asperity.schema import Entry, contact, convergence, provenance, rolling, spectra, surface
 
 if TYPE_CHECKING:
     import warnings
@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from asperity.reporting.chapter import Chapter
     from asperity.scenarios.geometry import Geometry
     from asperity.scenarios.preparing import PreparedCase
+    from asperity.scenarios.refining import Setting
     from asperity.scenarios.textures import Textures
 
-SHARED = (provenance, surface, contact, rolling, spectra)
+SHARED = (provenance, surface, contact, rolling, spectra, convergence)
 """What the results of all kinds hold."""
 USUAL = "asperity.scenarios.usual"
 """What a kind offers that says nothing of its own."""
@@ -58,6 +59,7 @@ class Kind:
         result     ``layout(computed, caught)``, the tree of a run
         schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
                    entries, each with the place on its dimensions if not all of it
+        refining   ``settings_of(case)``, how finely its bodies are resolved
         chapters   ``CHAPTERS`` of its report
         plan       ``rows(case)``, what will be computed, in words; ``seconds(prepared, progress, pace)`` by
                    part of the work, s; ``step_seconds(prepared)``; ``records(case)``; ``REPORT``, s
@@ -134,8 +136,15 @@ class Kind:
 
     @property
     def chapters(self) -> tuple[Chapter, ...]:
-        """Chapters of its report."""
+        """Chapters of its report, and the last one of all kinds."""
+        from asperity.reporting.chapter import CONVERGENCE
+
         found: tuple[Chapter, ...] = self.offers("chapters", "CHAPTERS")
+        return (*found, CONVERGENCE)
+
+    def settings_of(self, case: Case) -> list[Setting]:
+        """How finely its bodies are resolved, beside what all kinds have."""
+        found: list[Setting] = self.offers("refining", "settings_of")(case)
         return found
 
     def plan(self, name: str) -> Any:

@@ -42,7 +42,7 @@ def verdict(
     sentences += [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
     secant = " (linear with the stiffness F/r)" if chain.case.contact.linearise == "secant" else ""
     others = [law for law in baselines(chain.runs) if difference_to(law).name in spectra and law != main]
-    shown = _shown(spectra)
+    shown = compared_bands(spectra)
     if not shown.any():
         sentences.append("The record is too short to compare its one-third octaves with those of other laws")
     elif compared := list(_compared(spectra.isel(band=shown), main, others)):
@@ -70,7 +70,7 @@ def _doubts(chain: Chain[Any], found: Sequence[Finding]) -> Iterator[str]:
     yield f"{'Out of range' if out else 'Doubtful'} for {main}: {'; '.join([reasons, *instead[:1]])}"
 
 
-def _shown(spectra: xarray.Dataset) -> np.ndarray:
+def compared_bands(spectra: xarray.Dataset) -> np.ndarray:
     """Bands in which laws are compared: those that are averaged enough."""
     low, high = COMPARED
     band = spectra[BAND.name]

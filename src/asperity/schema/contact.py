@@ -84,6 +84,9 @@ HERTZ_RADIUS_ACROSS = _attribute("hertz_radius_across", "m", "semi-axis of Hertz
 HERTZ_CONSTANT = _attribute("hertz_constant", "N/m^1.5", "K of Hertz's F = K δ^1.5")
 WORKING_LOAD = _attribute("working_load", "N", "static load")
 WORKING_APPROACH = _attribute("working_approach", "m", "approach under the static load")
+WORKING_STIFFNESS = _attribute(
+    "working_stiffness", "N/m", "mean contact stiffness under the static load, dF/dr of the mean force"
+)
 CONTACT_MODULUS = _attribute("contact_modulus", "Pa", "E*, of both bodies")
 DATUM = _attribute("datum", "m", "d₀: the state r is the approach plus this")
 DATUM_FROM = _attribute("datum_from", "text", "where the datum was taken from", _SAMPLES)

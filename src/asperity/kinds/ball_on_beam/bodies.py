@@ -9,7 +9,7 @@ from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 
 MODES_BEYOND = 4.0
-"""Beam modes are kept up to this multiple of the highest frequency."""
+"""Beam modes are kept up to this multiple of the highest frequency, where the case says nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ def bodies_of(case: BallOnBeam) -> Bodies:
         case.beam.material,
         support=case.beam.support,
         loss_factor=case.beam.loss_factor,
-        highest_frequency=MODES_BEYOND * case.numerics.highest_frequency,
+        highest_frequency=highest_mode(case),
         suspension_frequency=case.beam.suspension_frequency,
     )
     return Bodies(ball_of(case), beam)
@@ -38,3 +38,8 @@ def bodies_of(case: BallOnBeam) -> Bodies:
 def ball_of(case: BallOnBeam) -> Ball:
     """Build the ball of a case."""
     return Ball(case.ball.radius, case.ball.material, case.ball.load, case.ball.mass)
+
+
+def highest_mode(case: BallOnBeam) -> float:
+    """Frequency up to which beam modes are kept, Hz."""
+    return case.beam.modes_up_to or MODES_BEYOND * case.numerics.highest_frequency

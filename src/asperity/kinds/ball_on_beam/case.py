@@ -84,6 +84,13 @@ class BeamCase(Section):
         goes_with="support=free",
         within=("1 mHz", "1 kHz", "a suspension is softer than the beam"),
     )
+    modes_up_to: Frequency | None = key(
+        None,
+        "natural frequency up to which bending modes are kept",
+        otherwise="four times the highest frequency of the spectra",
+        example='"20 kHz"',
+        within=("0.1 Hz", "100 MHz", "rolling is slower than ultrasound"),
+    )
     sensors: tuple[Position, ...] | None = key(
         None,
         "positions of the accelerometers from the beam's start",
@@ -221,6 +228,10 @@ class BallOnBeam(Case):
         yield from _problems_of_laws(self)
         yield from problems_of_sampling(self)
         yield from _problems_of_path(self)
+        highest, modes = self.numerics.highest_frequency, self.beam.modes_up_to
+        if modes is not None and modes < highest:
+            allowed = f"at least numerics.highest_frequency, {written(highest, 'Hz', 'kHz')}"
+            yield InputError("beam.modes_up_to", written(modes, "Hz", "kHz"), allowed)
         if self.contact.window > 2 * self.ball.radius:
             allowed = f"at most the ball's diameter, {2e3 * self.ball.radius:g} mm"
             yield InputError("contact.window", written(self.contact.window, "m", "mm"), allowed)

@@ -1,0 +1,111 @@
+"""The group of a result that says how far it depends on its settings, and the sentence about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.convergence.levels import Levels, motion_entry
+from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.refining import PATH_LENGTH
+from asperity.scenarios.verdict import compared_bands
+from asperity.schema import Entry, attributes, convergence, spectra, variables
+from asperity.spectra import nominal_frequency
+
+CONVERGED = 0.5
+"""Change of a level up to which a setting is fine enough, dB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """What a setting was changed by, and what that did."""
+
+    setting: str
+    words: str  # from what to what
+    limit: str  # why it was not changed; empty where it was
+    change: Levels  # of the finer computation over the coarser, on the bands of the result
+
+
+def convergence_group(
+    prepared: PreparedCase, result: DataTree, found: Sequence[Comparison]
+) -> xarray.Dataset:
+    """Lay out comparisons: changes by setting, law and band, the largest of the main law, and a sentence."""
+    held = result[spectra.BAND.group].to_dataset()
+    band, laws = held[spectra.BAND.name].values, [str(law) for law in held[spectra.LAW.name].values]
+    changes = [comparison.change for comparison in found]
+    shown = compared_bands(held)
+    largest = [_largest(change.force[0], shown) for change in changes]
+    laid_out: dict[Entry, object] = {
+        convergence.SETTING: [comparison.setting for comparison in found],
+        convergence.CHANGE: [comparison.words for comparison in found],
+        convergence.LIMIT: [comparison.limit for comparison in found],
+        convergence.LAW: laws,
+        convergence.BAND: band,
+        convergence.FORCE_LEVEL_CHANGE: [change.force for change in changes],
+        convergence.STIFFNESS_CHANGE: [change.stiffness for change in changes],
+        convergence.LARGEST_CHANGE: [size for size, _ in largest],
+        convergence.LARGEST_BAND: [band[at] if at is not None else np.nan for _, at in largest],
+    }
+    if (motion := motion_entry(prepared.kind)) is not None:
+        entry = convergence.MOTION_LEVEL_CHANGE
+        values = [change.motion for change in changes]
+        laid_out[entry] = entry.variable(values, quantity=motion.long_name)
+    group = xarray.Dataset(variables(laid_out))
+    return group.assign_attrs(attributes({convergence.SENTENCE: sentence(group, laws[0])}))
+
+
+def _largest(change: NDArray[np.float64], shown: NDArray[np.bool_]) -> tuple[float, int | None]:
+    """Largest size of a change in the bands that are compared, and its place."""
+    size = np.where(shown & np.isfinite(change), np.abs(change), -1.0)
+    at = int(size.argmax())
+    return (float(size[at]), at) if size[at] >= 0.0 else (np.nan, None)
+
+
+def sentence(group: xarray.Dataset, main: str) -> str:
+    """Say which setting matters most and how much, which others matter, and which were not changed."""
+    return " ".join(filter(None, _sentences(group, main)))
+
+
+def _sentences(group: xarray.Dataset, main: str) -> Iterator[str]:
+    names = [str(name) for name in group[convergence.SETTING.name].values]
+    words = dict(zip(names, map(str, group[convergence.CHANGE.name].values), strict=True))
+    limits = dict(zip(names, map(str, group[convergence.LIMIT.name].values), strict=True))
+    size = dict(zip(names, group[convergence.LARGEST_CHANGE.name].values.tolist(), strict=True))
+    known = sorted((name for name in names if np.isfinite(size[name])), key=lambda name: -size[name])
+    tried = [name for name in known if name != PATH_LENGTH]
+    if tried:
+        first, *others = tried
+        band = float(group[convergence.LARGEST_BAND.name].values[names.index(first)])
+        yield (
+            f"Of its settings, {first} ({words[first]}) changes the levels of {main} most, by up to "
+            f"{size[first]:.2f} dB ({nominal_frequency(band)})."
+        )
+        yield _told_of_others(first, others, size)
+        stiffness = dict(zip(names, group[convergence.STIFFNESS_CHANGE.name].values.tolist(), strict=True))
+        most = max(tried, key=lambda name: abs(stiffness[name]))
+        yield f"The mean contact stiffness depends most on {most} ({_percent(stiffness[most])})."
+    if PATH_LENGTH in known:
+        yield f"The first half of the record is up to {size[PATH_LENGTH]:.1f} dB from all of it."
+    if unchanged := [name for name in names if limits[name]]:
+        yield f"Not changed: {', '.join(unchanged)}."
+
+
+def _told_of_others(first: str, others: Sequence[str], size: dict[str, float]) -> str:
+    above = [name for name in others if size[name] > CONVERGED]
+    if size[first] <= CONVERGED:
+        return f"All are fine enough for {CONVERGED:g} dB."
+    if above:
+        named = ", ".join(f"{name} ({size[name]:.1f} dB)" for name in above)
+        return f"Above {CONVERGED:g} dB is also {named}."
+    if others:
+        return f"The others change them by up to {size[others[0]]:.2f} dB."
+    return ""
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:+.2f} %".replace("-", "−")
