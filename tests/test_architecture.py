@@ -71,7 +71,7 @@ def test_nothing_is_pickled_and_no_text_is_evaluated():
 
 KIND = {
     "Bodies", "Computed", "bodies_of", "compile_kernels", "compute", "geometry_of", "layout", "records",
-    "rows", "seconds", "settings_of", "step_seconds", "textures_of", "warn_of",
+    "rows", "seconds", "settings_of", "square_transfer", "step_seconds", "textures_of", "warn_of",
 }  # fmt: skip
 """What each kind of case offers under the same name, see `asperity.scenarios.kind.Kind`."""
 

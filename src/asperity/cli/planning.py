@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from functools import partial
 from typing import TYPE_CHECKING
 
 from asperity.config.case import Case
@@ -82,6 +83,7 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
         *_real_contact(prepared),
+        *_law_choice(prepared),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items()),
         *([("scan of the path", described_scan(scanned))] if scanned else []),
         ("work", _described_work(expected)),
@@ -101,6 +103,15 @@ def _real_contact(prepared: PreparedCase) -> list[tuple[str, str]]:
     if ratio < AREA[0] and averaged:
         text += f": below {100 * AREA[0]:.0f} % {', '.join(averaged)} are out of range; take table"
     return [("real contact", text)]
+
+
+def _law_choice(prepared: PreparedCase) -> list[tuple[str, str]]:
+    """Which law to take, and how far the laws are expected from `direct`."""
+    from asperity.scenarios.law_choice import law_choice
+
+    transfer = partial(prepared.kind.square_transfer, prepared.bodies)
+    choice = law_choice(prepared.case, prepared.shape, prepared.textures, transfer)
+    return [] if choice is None else list(choice.rows())
 
 
 def _described_work(expected: Work) -> str:

@@ -13,7 +13,9 @@ from asperity.schema import Entry, contact, convergence, provenance, rolling, sp
 if TYPE_CHECKING:
     import warnings
 
+    import numpy as np
     import xarray
+    from numpy.typing import NDArray
 
     from asperity.config.case import Case
     from asperity.progress import Progress
@@ -51,7 +53,8 @@ class Kind:
 
         ========== ===================================================================================
         case       ``CASE``, the class of its cases; ``WORDS`` and ``ROLLING``, the section of what rolls
-        bodies     ``bodies_of(case)``, built from the case; as usual what is rolled over and what rolls
+        bodies     ``bodies_of(case)``, built from the case; as usual what is rolled over and what rolls;
+                   ``square_transfer(bodies, stiffness, frequency)``, of their linear contact force
         geometry   ``geometry_of(case)``, what presses on what on the contact grid
         textures   ``textures_of(case)``; ``warn_of(case, shape, textures)``, before anything is computed
         compiling  ``compile_kernels(progress)``, of all that is stepped
@@ -96,6 +99,18 @@ class Kind:
     def bodies_of(self, case: Case) -> Any:
         """Build the bodies of a case."""
         return self.offers("bodies", "bodies_of")(case)
+
+    def square_transfer(
+        self, bodies: Any, stiffness: float, frequency: NDArray[np.float64]
+    ) -> NDArray[np.float64] | None:
+        """Mean square of the linear contact force per height of the texture (f,), (N/m)², if it is known.
+
+        Stiffness of the contact, N/m; frequencies (f,), Hz.
+        """
+        found: NDArray[np.float64] | None = self.offers("bodies", "square_transfer")(
+            bodies, stiffness, frequency
+        )
+        return found
 
     def geometry_of(self, case: Case) -> Geometry:
         """Lay out the bodies of a case on the contact grid."""

@@ -11,6 +11,7 @@ import xarray
 from asperity.errors import Grade
 from asperity.laws import baselines, names, spec_of
 from asperity.scenarios.chain import Chain, Run
+from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.tree import difference_to
 from asperity.scenarios.validity import Finding
 from asperity.schema.spectra import (
@@ -30,11 +31,12 @@ def verdict(
     found: Sequence[Finding],
     body: str,
     sound_power: xarray.DataArray | None = None,
+    choice: LawChoice | None = None,
 ) -> str:
     """Say in a sentence or two how the main law's contact went, and how far it is from the others.
 
     The main law is the first of the chain; `body` is what rolls: "ball" or "wheel"; sound power (laws,),
-    A-weighted, dB.
+    A-weighted, dB; choice of a law, from the law accuracy map.
     """
     main, run = next(iter(chain.runs.items()))
     dynamic = float(np.std(run.contact_force))
@@ -47,6 +49,8 @@ def verdict(
         sentences.append("The record is too short to compare its one-third octaves with those of other laws")
     elif compared := list(_compared(spectra.isel(band=shown), main, others)):
         sentences.append(f"Per one-third octave {main} is {' and '.join(compared)}{secant}")
+    if choice is not None and (told := choice.sentence(main)) is not None:
+        sentences.append(told)
     if sound_power is not None and others:
         own = sound_power.sel(law=main)
         changes = [f"{_signed(own - sound_power.sel(law=name))} over {name}" for name in others]

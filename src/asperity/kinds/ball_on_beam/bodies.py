@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 
 MODES_BEYOND = 4.0
 """Beam modes are kept up to this multiple of the highest frequency, where the case says nothing."""
+PLACES = (0.3, 0.37, 0.45, 0.5, 0.6)
+"""Places on the beam, in its lengths, over which a linear force is averaged: no mode has nodes at all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,3 +48,16 @@ def ball_of(case: BallOnBeam) -> Ball:
 def highest_mode(case: BallOnBeam) -> float:
     """Frequency up to which beam modes are kept, Hz."""
     return case.beam.modes_up_to or MODES_BEYOND * case.numerics.highest_frequency
+
+
+def square_transfer(bodies: Bodies, stiffness: float, frequency: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean square along the beam of the linear contact force per height of the texture (f,), (N/m)².
+
+    F/z = 1/(α_ball + 1/k + α_beam), the ball at rest at each of `PLACES`; stiffness k of the contact, N/m;
+    frequencies (f,), Hz.
+    """
+    beam = bodies.beam
+    carried = 1.0 / stiffness - 1.0 / (bodies.ball.mass * (2.0 * np.pi * frequency) ** 2)
+    places = [share * beam.length for share in PLACES]
+    squares = [np.abs(carried + beam.receptance(frequency, x, x)) ** -2.0 for x in places]
+    return np.asarray(np.mean(squares, axis=0))

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
+from functools import partial
 
 import xarray
 
 from asperity.kinds.ball_on_beam import schema
+from asperity.kinds.ball_on_beam.bodies import Bodies, square_transfer
 from asperity.kinds.ball_on_beam.compute import Computed
 from asperity.scenarios.contact_group import contact_group
+from asperity.scenarios.law_choice import law_choice
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import (
     assembled,
@@ -33,6 +36,8 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     over_frequency = _spectra(computed)
     found = findings(computed.chain)
     warn_of_findings(found)
+    transfer = partial(square_transfer, Bodies(computed.ball, computed.beam))
+    choice = law_choice(computed.case, computed.chain.shape, computed.chain.textures, transfer)
     groups = {
         "/surface": surface_group(computed.chain),
         "/contact": contact_group(computed.chain, found),
@@ -44,8 +49,8 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         groups,
         caught,
         title=_title(computed.case.ball.material.name, computed.case.beam.material.name),
-        verdict=verdict(computed.chain, over_frequency, found, "ball"),
-        numerics=_numerics(computed),
+        verdict=verdict(computed.chain, over_frequency, found, "ball", choice=choice),
+        numerics=(*_numerics(computed), *(choice.rows() if choice else ())),
     )
 
 

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.linear_reference import mean_square_transfer
 from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
@@ -33,3 +37,11 @@ def wheel_of(case: WheelOnRail) -> Wheel:
         measured = read_receptance(section.receptance)
         return Wheel.from_receptance(section.mass, section.load, *measured, highest_frequency=highest)
     return Wheel.rigid(section.mass, section.load)
+
+
+def square_transfer(bodies: Bodies, stiffness: float, frequency: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean square over a bay of the linear contact force per height of the texture (f,), (N/m)².
+
+    Stiffness of the contact, N/m; frequencies (f,), Hz.
+    """
+    return mean_square_transfer(frequency, bodies.wheel, bodies.track, stiffness, positions=4)

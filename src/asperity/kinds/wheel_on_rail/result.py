@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
+from functools import partial
 
 import xarray
 
 from asperity.kinds.wheel_on_rail import schema
+from asperity.kinds.wheel_on_rail.bodies import Bodies, square_transfer
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, error_of_losses
@@ -15,6 +17,7 @@ from asperity.kinds.wheel_on_rail.spectra import spectra_group
 from asperity.kinds.wheel_on_rail.track_group import track_group
 from asperity.reference.cnossos import CITATION
 from asperity.scenarios.contact_group import contact_group
+from asperity.scenarios.law_choice import law_choice
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import assembled, rolling_group
 from asperity.scenarios.validity import findings, warn_of_findings
@@ -32,6 +35,8 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     found = findings(computed.chain)
     warn_of_findings(found)
     warn_of_loss_factors(losses)
+    transfer = partial(square_transfer, Bodies(computed.wheel, computed.track))
+    choice = law_choice(computed.case, computed.chain.shape, computed.chain.textures, transfer)
     groups = {
         "/surface": surface_group(computed.chain),
         "/track": track_group(computed, losses),
@@ -44,8 +49,8 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         groups,
         caught,
         title=f"Wheel on rail at {computed.case.speed:.3g} m/s",
-        verdict=verdict(computed.chain, spectra, found, "wheel", _sound_power(spectra)),
-        numerics=_numerics(computed, losses),
+        verdict=verdict(computed.chain, spectra, found, "wheel", _sound_power(spectra), choice),
+        numerics=(*_numerics(computed, losses), *(choice.rows() if choice else ())),
         citations=(*computed.track.sources, CITATION),
     )
 

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from asperity.rolling.bodies import RolledOver, Rolls
 
@@ -13,3 +17,7 @@ class Bodies:
 
     over: RolledOver
     rolls: Rolls
+
+
+def square_transfer(bodies: Any, stiffness: float, frequency: NDArray[np.float64]) -> None:
+    """Nothing is known of the linear contact force of bodies that are known in time alone."""

@@ -1,0 +1,244 @@
+"""What the law accuracy map is published as: data in the package, a figure and tables in the docs."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from law_points import BALL, RECORD, SETTLING, WHEEL
+
+from asperity.reference.law_accuracy import LEAST, LawMap, Place, law_map_of
+from asperity.scenarios.law_choice import estimate
+
+ROOT = Path(__file__).parents[1]
+DATA = ROOT / "src/asperity/reference/law_accuracy.json"
+PAGE, FIGURE = ROOT / "docs/law_accuracy.md", ROOT / "docs/law_accuracy.png"
+CLAIM = 0.8
+"""Share of the cases in which the band shall hold."""
+MOSTLY = 0.3
+"""Share of the time out of contact from which contact counts as mostly lost."""
+SHOWN = ("table", "areal", "shifted", "linear-dprs", "linear-filtered", "linear-remington")
+LAWS = (
+    "table", "areal", "shifted", "printed", "hertz-filtered", "hertz", "linear-dprs", "linear-filtered",
+    "linear-remington", "linear-cnossos", "linear",
+)  # fmt: skip
+Record = Mapping[str, Any]
+
+
+def publish(parts: Mapping[str, Sequence[Record]]) -> None:
+    """Write the data, draw the figure, and fill the tables of the page."""
+    bands = parts["map"][0]["paths"][0]["centres"]
+    data: dict[str, Any] = {
+        "bands": [round(band, 1) for band in bands],
+        "claim": CLAIM,
+        "spread": {},
+        "points": [summary(record) for record in parts["map"]],
+        "aside": [summary(record, details=False) for record in parts["aside"]],
+        "fresh": [summary(record, details=False) for record in parts["fresh"]],
+    }
+    unspread = law_map_of(data)
+    data["spread"] = {law: spread(unspread, data["aside"], law) for law in LAWS}
+    text = json.dumps(data, separators=(",", ":")).replace('{"kind"', '\n{"kind"')
+    DATA.write_text(text + "\n", encoding="utf-8")
+    mapped = law_map_of(data)
+    draw(data)
+    fill({"errors": errors_table(data), "points": points_table(data), "hits": hits_table(mapped, data)})
+
+
+def summary(record: Record, *, details: bool = True) -> dict[str, Any]:
+    """What the package keeps of a point."""
+    point, paths = record["point"], record["paths"]
+    places = record["places"]
+    steps = paths[0]["steps"] * (RECORD + SETTLING) / RECORD
+    found: dict[str, Any] = {
+        "kind": point["kind"],
+        "asked": {name: _short(point[name]) for name in ("roughness", "correlation")},
+        "anisotropy": _short(point["anisotropy"]),
+        "load": _short(point["load"]),
+        "hurst": _short(point["hurst"]),
+        "place": {name: _short(np.mean([place[name] for place in places])) for name in places[0]},
+        "loss": _short(np.mean([path["laws"]["direct"]["loss"] for path in paths])),
+        "dynamic": _short(np.mean([path["dynamic"] for path in paths]) / point["load"]),
+        "area": _short(np.mean([path["area_ratio"] for path in paths])),
+        "step": round(1e6 * _seconds(paths, "direct") / steps),
+        "laws": {},
+    }
+    for law in LAWS:
+        rolled = [path["laws"] for path in paths if law in path["laws"]]
+        if rolled:
+            found["laws"][law] = _law(rolled, law, steps, point["load"], details)
+    return found
+
+
+def _law(paths: Sequence[Record], law: str, steps: float, load: float, details: bool) -> dict[str, Any]:
+    own, reference = (np.array([path[name]["energy"] for path in paths]) for name in (law, "direct"))
+    level = 10.0 * np.log10(own.mean(axis=0) / reference.mean(axis=0))
+    found = {"rms": round(float(np.sqrt(np.mean(level**2))), 3)}
+    if not details:
+        return found
+    single = 10.0 * np.log10(own / reference)
+    if len(paths) > 1:  # standard error of the mean of the paths, rms over the bands
+        variance = single.var(axis=0, ddof=1) / len(paths)
+        found["scatter"] = round(float(np.sqrt(variance.mean())), 2)
+    return found | {
+        "levels": [round(float(x), 1) for x in level],
+        "mean": _short(np.mean([path[law]["mean"] for path in paths]) / load - 1.0),
+        "loss": _short(np.mean([path[law]["loss"] for path in paths])),
+        "course": _short(np.mean([path[law]["course"] for path in paths])),
+        "step": _short(1e6 * _seconds([{"laws": path} for path in paths], law) / steps),
+    }
+
+
+def _seconds(paths: Sequence[Record], law: str) -> float:
+    return float(np.mean([path["laws"][law]["seconds"] for path in paths]))
+
+
+def _short(value: float) -> float:
+    return float(f"{float(value):.3g}")
+
+
+def spread(mapped: LawMap, aside: Sequence[Record], law: str) -> float:
+    """Deviations within which the error of a law stayed, in cases aside of the map, as often as is claimed.
+
+    The quantile of split conformal prediction: one more than the number of cases times the claim, rounded up.
+    """
+    off = sorted(abs(found) / deviation for found, deviation in _missed(mapped, aside, law))
+    rank = min(math.ceil((len(off) + 1) * CLAIM), len(off))
+    return round(off[rank - 1], 3)
+
+
+def _missed(mapped: LawMap, cases: Sequence[Record], law: str) -> list[tuple[float, float]]:
+    """Logarithm of the error found over that expected, and the deviation of the estimate."""
+    found = []
+    for case in cases:
+        if law in case["laws"]:
+            expected, deviation = estimate(mapped, case["kind"], Place(**case["place"]), law)
+            error = max(case["laws"][law]["rms"], LEAST)
+            found.append((math.log(error) - expected, deviation))
+    return found
+
+
+def draw(data: Record) -> None:
+    """Draw the errors over roughness and correlation length, one panel for each law and kind."""
+    from matplotlib.colors import BoundaryNorm
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11.5, 5.6), layout="constrained")
+    panels = figure.subplots(2, len(SHOWN), sharex=True, sharey="row")
+    norm = BoundaryNorm([0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0], 256)
+    for row, (kind, load) in zip(panels, ((BALL, 30.0), (WHEEL, 65e3)), strict=True):
+        points = [p for p in data["points"] if (p["kind"], p["load"], p["anisotropy"]) == (kind, load, 1.0)]
+        for axes, law in zip(row, SHOWN, strict=True):
+            image = _panel(axes, [p for p in points if law in p["laws"]], law, norm)
+        body = f"{'ball' if kind == BALL else 'wheel'}, {load:g} N" if load < 1e3 else "wheel, 65 kN"
+        row[0].set_ylabel(f"{body}\nrms / Hertz approach")
+    for axes, law in zip(panels[0], SHOWN, strict=True):
+        axes.set_title(law, fontsize=10)
+    figure.supxlabel("correlation length / length of the contact", fontsize=10)
+    bar = figure.colorbar(image, ax=panels, shrink=0.8)
+    bar.set_label("rms level difference to direct, 100 Hz to 5 kHz, dB")
+    figure.savefig(FIGURE, dpi=110)
+
+
+def _panel(axes: Any, points: Sequence[Record], law: str, norm: Any) -> Any:
+    """One law: a mark for each point, its error in it, grey letters where contact is mostly lost."""
+    x = [p["asked"]["correlation"] for p in points]
+    y = [p["asked"]["roughness"] for p in points]
+    error = [p["laws"][law]["rms"] for p in points]
+    image = axes.scatter(x, y, c=error, norm=norm, cmap="YlOrRd", s=330, marker="s", edgecolors="none")
+    for p, value in zip(points, error, strict=True):
+        words = f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
+        lost = p["loss"] > MOSTLY
+        axes.text(
+            p["asked"]["correlation"], p["asked"]["roughness"], words, ha="center", va="center", fontsize=7,
+            style="italic" if lost else "normal", color="white" if value > 8.0 else "#30363c",
+        )  # fmt: skip
+    axes.set(xscale="log", yscale="log", xlim=(0.05, 20), ylim=(0.016, 19))
+    axes.set_xticks([0.1, 1, 10], ["0.1", "1", "10"])
+    axes.set_yticks([0.03, 0.1, 0.3, 1, 3, 10], ["0.03", "0.1", "0.3", "1", "3", "10"])
+    axes.minorticks_off()
+    return image
+
+
+def fill(tables: Mapping[str, str]) -> None:
+    """Put tables between their marks in the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    for name, table in tables.items():
+        marks = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
+        assert marks.search(text), f"{PAGE} has no place for the table {name}"
+        text = marks.sub(lambda found, table=table: f"{found[1]}\n{table}\n{found[2]}", text, count=1)  # type: ignore[misc]
+    PAGE.write_text(text, encoding="utf-8")
+
+
+def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Write a Markdown table, all columns but the first to the right."""
+    lines = [f"| {' | '.join(line)} |" for line in (headings, *rows)]
+    lines.insert(1, f"|---|{'---:|' * (len(headings) - 1)}")
+    return "\n".join(lines) + "\n"
+
+
+def _decibels(value: float) -> str:
+    return f"{value:.2f}" if value < 0.995 else f"{value:.1f}"
+
+
+def errors_table(data: Record) -> str:
+    """Median and largest error of each law over groups of points."""
+    held = [p for p in data["points"] if p["loss"] < 0.01]
+    among = {
+        "within ≤ 0.1": [p for p in held if p["place"]["within"] <= 0.1],
+        "0.1 to 0.3": [p for p in held if 0.1 < p["place"]["within"] <= 0.3],
+        "above 0.3": [p for p in held if p["place"]["within"] > 0.3],
+        "lost 1 to 30 %": [p for p in data["points"] if 0.01 <= p["loss"] <= MOSTLY],
+        "mostly lost": [p for p in data["points"] if p["loss"] > MOSTLY],
+    }
+    rows = []
+    for law in LAWS:
+        row = [f"`{law}`"]
+        for points in among.values():
+            errors = [p["laws"][law]["rms"] for p in points if law in p["laws"]]
+            row.append(f"{_decibels(np.median(errors))} ({_decibels(max(errors))})" if errors else "–")
+        rows.append(row)
+    return table(["law", *(f"{name} [{len(points)}]" for name, points in among.items())], rows)
+
+
+def points_table(data: Record) -> str:
+    """All points: what was asked for, place, lost contact, errors, scatter, error of the mean force, cost."""
+    shown = ("table", "areal", "shifted", "hertz-filtered", "linear-filtered", "linear-dprs")
+    rows = []
+    for p in sorted(
+        data["points"], key=lambda p: (p["kind"], p["load"], p["anisotropy"], *p["asked"].values())
+    ):
+        place, areal = p["place"], p["laws"]["areal"]
+        load = f"{p['load']:g} N" if p["load"] < 1e3 else f"{p['load'] / 1e3:g} kN"
+        row = [f"{'ball' if p['kind'] == BALL else 'wheel'}, {load}"]
+        row += [f"{value:g}" for value in p["asked"].values()] + [f"{p['anisotropy']:.2g}"]
+        row += [f"{place['within']:.2g}", f"{place['dynamic']:.2g}", f"{100 * p['loss']:.0f}"]
+        row += [_decibels(p["laws"][law]["rms"]) if law in p["laws"] else "" for law in shown]
+        row += [f"{areal['scatter']:.1f}", f"{100 * areal['mean']:+.1f}", f"{p['step']}"]
+        rows.append(row)
+    headings = ["bodies", "rms", "length", "lay", "within", "dynamic", "lost, %"]
+    headings += [f"`{law}`" for law in shown]
+    return table([*headings, "scatter", "mean, %", "µs"], rows)
+
+
+def hits_table(mapped: LawMap, data: Record) -> str:
+    """How often the band held on the cases that were drawn afterwards."""
+    rows, met, tried = [], 0, 0
+    for law in LAWS:
+        missed = _missed(mapped, data["fresh"], law)
+        if not missed:
+            continue
+        factors = [mapped.spread[law] * deviation for _, deviation in missed]
+        held = sum(abs(off) <= factor for (off, _), factor in zip(missed, factors, strict=True))
+        met, tried = met + held, tried + len(missed)
+        middle = float(np.exp(np.mean([off for off, _ in missed])))
+        width = f"{np.exp(np.median(factors)):.2f}"
+        rows.append([f"`{law}`", width, f"{held} of {len(missed)}", f"{middle:.2f}"])
+    share = f"{100 * met / tried:.0f} %" if tried else "–"
+    rows.append(["all", "", f"{met} of {tried}, {share}", ""])
+    return table(["law", "band: times, divided by", "held in", "found over expected"], rows)

@@ -1,0 +1,195 @@
+"""The cases of the law accuracy map: from numbers without dimension to a case that all laws roll."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import time
+import warnings
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from practice_filters import practice
+from scipy.integrate import quad_vec
+from scipy.optimize import brentq
+from scipy.special import j0
+
+from asperity.config.case import Case
+from asperity.errors import PhysicsWarning
+from asperity.kinds.cases import kind_of, parse_case
+from asperity.laws.layout import force
+from asperity.progress import Progress
+from asperity.reference.law_accuracy import HIGH, LOW
+from asperity.running import prepare_case
+from asperity.scenarios.law_place import place_of
+from asperity.spectra import band_levels, psd
+from asperity.surfaces.correlation import CORRELATION_THRESHOLD
+
+BALL, WHEEL = "ball-on-beam", "wheel-on-rail"
+SPEED = {BALL: 1.0, WHEEL: 56.0}  # m/s
+SECTION = {BALL: "ball", WHEEL: "wheel"}
+DIAMETER = {BALL: None, WHEEL: 0.92}  # of a wheel, m
+LAWS = (
+    "direct", "areal", "shifted", "printed", "hertz-filtered", "hertz", "linear-filtered", "linear",
+)  # fmt: skip
+SCANNED = "table"
+"""Rolled over the first path of a point alone: its scan takes as long as `direct` over two."""
+RECORD, SETTLING, SEGMENT = 0.125, 0.03, 0.1  # s: record and run-in of a path, segments of its spectra
+CELLS, CELLS_PER_WAVE = 6, 4
+"""Least cells in a semi-axis of the smooth contact; cells of the shortest wave."""
+LEAST_LENGTH = 0.5
+"""Least correlation length, in shortest waves."""
+LONGEST_STEP = 28e-6  # s
+START = 0.3  # m, on the beam
+
+
+@dataclass(frozen=True)
+class Point:
+    """What a point is made of; lengths are relative to the smooth contact under the load."""
+
+    kind: str
+    roughness: float  # rms over Hertz's approach
+    correlation: float  # correlation length in the rolling direction over the length of the contact
+    anisotropy: float  # correlation length along over that across
+    load: float  # N
+    hurst: float = 0.8
+    seeds: int = 2
+    scanned: bool = True  # whether `table` is rolled
+
+    @property
+    def name(self) -> str:
+        """Unique among points, fit for a file."""
+        values = asdict(self).values()
+        return "_".join(f"{value:.6g}" if isinstance(value, float) else str(value) for value in values)
+
+
+def smooth_contact(kind: str, load: float) -> tuple[float, float]:
+    """Approach and semi-axis in the rolling direction of smooth bodies under a load, N; m."""
+    case = parse_case(f'kind = "{kind}"\n[surface]\nrms = "1 um"')
+    hertz = kind_of(case).geometry_of(case).hertz
+    return hertz.approach(load), hertz.semi_axes(hertz.approach(load))[0]
+
+
+def autocorrelation_at(lag: float, longest: float, shortest: float, hurst: float) -> float:
+    """Autocorrelation of an isotropic self-affine surface at a lag; lengths in m."""
+    low, high = 2.0 * math.pi / longest, 2.0 * math.pi / shortest
+
+    def moments(q: float) -> NDArray[np.float64]:
+        power = max(q, low) ** (-2.0 - 2.0 * hurst) * q
+        return np.array([power, power * j0(q * lag)])
+
+    whole, fallen = sum(quad_vec(moments, *ends)[0] for ends in ((0.0, low), (low, high)))
+    return float(fallen / whole)
+
+
+def longest_wave(length: float, shortest: float, hurst: float) -> float:
+    """Roll-off wavelength that gives an isotropic correlation length, at least half the shortest wave; m."""
+
+    def over(longest: float) -> float:
+        return autocorrelation_at(length, longest, shortest, hurst) - CORRELATION_THRESHOLD
+
+    return float(brentq(over, 1.0001 * shortest, 60.0 * length + 2.0 * shortest, rtol=1e-3))
+
+
+def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
+    """One path of a point."""
+    approach, semi_axis = smooth_contact(point.kind, point.load)
+    speed, section = SPEED[point.kind], SECTION[point.kind]
+    in_time = math.ceil(semi_axis / (LONGEST_STEP * speed))
+    spacing = semi_axis / max(CELLS, math.ceil(1.0 / point.correlation), in_time)
+    shortest = CELLS_PER_WAVE * spacing
+    length = 2.0 * semi_axis * point.correlation / math.sqrt(point.anisotropy)
+    longest = longest_wave(max(length, LEAST_LENGTH * shortest), shortest, point.hurst)
+    # rms of waves no longer than the window, by which the contact spreads
+    within = point.roughness * min(1.0, point.correlation**-point.hurst)
+    window = 2.0 * max(2.5, 1.1 * math.sqrt(2.0 + 5.0 * within)) * semi_axis
+    start = f'start = "{START} m"' if point.kind == BALL else ""
+    return parse_case(
+        f"""
+        kind = "{point.kind}"
+        speed = "{speed} m/s"
+        laws = [{", ".join(f'"{law}"' for law in laws)}]
+        seed = {seed}
+        duration = "{RECORD} s"
+        settling = "{SETTLING} s"
+        {start}
+        [surface]
+        rms = "{point.roughness * approach} m"
+        hurst = {point.hurst}
+        longest = "{longest} m"
+        shortest = "{shortest} m"
+        anisotropy = {point.anisotropy}
+        [{section}]
+        load = "{point.load} N"
+        [contact]
+        spacing = "{spacing} m"
+        window = "{window} m"
+        samples = 3
+        sample_length = "{6 * window} m"
+        [numerics]
+        time_step = "{spacing / speed} s"
+        """
+    )
+
+
+def rolled(case: Case, progress: Progress) -> dict[str, Any]:
+    """Roll one path with all laws of a case, and keep what the map needs of it."""
+    compute = importlib.import_module(f"asperity.kinds.{case.kind.replace('-', '_')}.compute").compute
+    prepared = prepare_case(case)
+    chain = compute(prepared, progress).chain
+    direct, step, kept = chain.runs["direct"], case.time_step, {}
+    reference = direct.contact_force
+    for name, run in chain.runs.items():
+        levels = band_levels(*psd(run.contact_force, step, segment=round(SEGMENT / step)), low=LOW, high=HIGH)
+        course = reference
+        if name != "direct":
+            course = force(chain.laws[name], direct.position, direct.relative_displacement)
+        kept[name] = {
+            "energy": (10.0 ** (levels[1] / 10.0)).tolist(),
+            "mean": float(run.contact_force.mean()),
+            "loss": run.contact_loss_share,
+            "correlation": float(np.corrcoef(run.contact_force, reference)[0, 1]),
+            "course": float(np.sqrt(np.mean((course - reference) ** 2)) / reference.std()),
+            "seconds": chain.seconds[f"law {name}"],
+            "unconverged": run.unconverged_steps,
+        }
+    return {
+        "laws": kept,
+        "steps": reference.size,
+        "centres": levels[0].tolist(),
+        "dynamic": float(reference.std()),
+        "area_ratio": chain.reduction.area_ratio,
+        "reduction_seconds": chain.seconds["reduction"],
+    }
+
+
+def place_on_map(point: Point, seed: int) -> dict[str, float]:
+    """Place of one path of a point on the map."""
+    prepared = prepare_case(case_of(point, seed, LAWS))
+    transfer = partial(prepared.kind.square_transfer, prepared.bodies)
+    place = place_of(prepared.textures.path, prepared.shape, prepared.case.speed, transfer)
+    assert place is not None
+    return asdict(place)
+
+
+def compute_point(point: Point, first_seed: int, progress: Progress) -> dict[str, Any]:
+    """Roll all paths of a point with every law, `table` over the first alone."""
+    paths, caught, began = [], Counter[str](), time.process_time()
+    for number in range(point.seeds):
+        names = (*LAWS, SCANNED) if number == 0 and point.scanned else LAWS
+        seed = first_seed + number
+        bare = case_of(point, seed, LAWS)
+        with warnings.catch_warnings(record=True) as messages:
+            warnings.simplefilter("always", PhysicsWarning)
+            with practice(kind_of(bare).geometry_of(bare), DIAMETER[point.kind]) as filters:
+                paths.append(rolled(case_of(point, seed, (*names, *filters)), progress))
+        caught.update(message.category.__name__ for message in messages)
+    return {
+        "point": asdict(point), "seed": first_seed, "paths": paths, "warnings": caught,
+        "processor": time.process_time() - began,
+    }  # fmt: skip

@@ -1,0 +1,187 @@
+"""Which law to take, and how far each is expected from `direct`: read from the law accuracy map.
+
+The error of a law is the rms, over the one-third octaves from 100 Hz to 5 kHz, of the level of its contact
+force less that of `direct`, dB. Between the points of the map its logarithm is the best linear estimate from
+all of them, for a random field whose correlation falls with distance (kriging; G. Matheron, Economic Geology
+58 (1963) 1246). Beside it stands a band as wide as the estimate is uncertain, the wider the farther the
+points are, scaled so that it held in four of five cases drawn at random aside of the map.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config.case import Case
+from asperity.errors import percent
+from asperity.reference.law_accuracy import LawMap, MappedPoint, Place, law_map
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.law_place import SquareTransfer, place_of
+from asperity.scenarios.textures import Textures
+
+MEANING = (
+    "rms over the one-third octaves from 100 Hz to 5 kHz of the force level less that of direct; in brackets "
+    "the band that held in four of five cases aside of the map"
+)
+WANTED = 1.0
+"""Error that a law is taken for, dB."""
+STEP = math.log(10.0) / 2.0
+"""Unit of distance on the map: half a decade, about the step of its grid."""
+OTHER_KIND = 1.0
+"""Distance between a ball on a beam and a wheel on a rail that are in the same place."""
+FAR = 1.0
+"""Distance to the nearest point beyond which a place is off the map."""
+SMALL = 0.1
+"""Distance within which a point counts as met."""
+REACH, TREND, NOISE = 2.0, 0.04, 0.1
+"""Distance over which errors are alike; shares of a trend across the map, and of what chance adds to a point,
+in the variance of their logarithms."""
+LONG, WIDE, TINY = 10.0, 1.0, 1e-4
+"""Lengths of correlation beyond which nothing changes, in contacts, along and across; least ratio of all."""
+LOST = 0.1
+"""Share of the time out of contact from which paths part and levels scatter."""
+CHEAP = ("areal", "table")
+"""Laws that are taken: the second scans the whole path, and is to be had wherever the first is."""
+
+
+@dataclass(frozen=True)
+class ExpectedError:
+    """The expected error of a law, dB, and the band that held in four of five cases aside of the map."""
+
+    law: str
+    error: float
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        return f"{self.law} {_db(self.error)} ({_db(self.low)} to {_db(self.high)})"
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """What the map says of a case."""
+
+    place: Place
+    expected: tuple[
+        ExpectedError, ...
+    ]  # of the laws of the case, and of those that may be taken; the best first
+    loss: float  # expected share of the time out of contact
+    distance: float  # to the nearest point, in half decades
+    nearest: MappedPoint
+    taken: str  # law to take
+
+    @property
+    def off_map(self) -> bool:
+        """Whether no point is near."""
+        return self.distance > FAR
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """Say which law to take, the errors to expect, and where the case lies: names and values."""
+        yield "law to take", self._advice()
+        yield "expected errors, dB", f"{', '.join(map(str, self.expected))}; {MEANING}"
+        place, near = self.place, self.nearest
+        off = ": off the map, so that the expected errors are guesses" if self.off_map else ""
+        yield (
+            "place on the map",
+            f"rms {place.roughness:.2g} approaches, {place.within:.2g} within the patch; correlation length "
+            f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load. Nearest "
+            f"point: {near.kind}, {_force(near.load)}, {self.distance:.1f} half decades away{off}",
+        )
+
+    def sentence(self, law: str) -> str | None:
+        """Say in a sentence how far a law is expected from `direct`; nothing of a law that was not mapped."""
+        found = next((expected for expected in self.expected if expected.law == law), None)
+        if found is None:
+            return None
+        instead = "" if law == self.taken or found.high <= WANTED else f"; take {self.taken}"
+        guess = "A guess, off the map of law errors" if self.off_map else "By the map of law errors"
+        return (
+            f"{guess}: {law} is {_db(found.error)} dB ({_db(found.low)} to {_db(found.high)}) from direct, "
+            f"rms over the one-third octaves{instead}"
+        )
+
+    def _advice(self) -> str:
+        found = {expected.law: expected for expected in self.expected}
+        cheap, sure = (found[law] for law in CHEAP)
+        if self.taken == cheap.law:
+            text = f"{cheap.law}: expected within {WANTED:g} dB of direct, without a scan of the path"
+        else:
+            leaves = "leaves its range" if cheap.error > WANTED else "may leave its range"
+            text = f"{sure.law}: {cheap.law} {leaves} ({_db(cheap.error)} dB, up to {_db(cheap.high)})"
+        if self.loss > LOST:
+            text += f"; with contact lost {percent(self.loss)} of the time, levels of short records scatter"
+        return text
+
+
+def law_choice(
+    case: Case, shape: Geometry, textures: Textures, square_transfer: SquareTransfer
+) -> LawChoice | None:
+    """Ask the map about a case; it knows nothing of lines alone, smooth paths, defects and other bodies."""
+    path = textures.path
+    if path is None or textures.defects is not None or not textures.areal:
+        return None
+    place = place_of(path, shape, case.speed, square_transfer)
+    return None if place is None else choose(law_map(), case.kind, place, case.laws)
+
+
+def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawChoice:
+    """Expect the errors of laws at a place on a map, and say which law to take."""
+    expected = {
+        law: expected_error(mapped, kind, place, law) for law in (*CHEAP, *laws) if law in mapped.spread
+    }
+    here = _coordinates(mapped, kind, place)
+    distances = [float(np.linalg.norm(_coordinates(mapped, p.kind, p.place) - here)) for p in mapped.points]
+    nearest = int(np.argmin(distances))
+    return LawChoice(
+        place,
+        tuple(sorted(expected.values(), key=lambda found: found.error)),
+        mapped.points[nearest].loss,
+        distances[nearest],
+        mapped.points[nearest],
+        next((law for law in CHEAP if expected[law].high <= WANTED), CHEAP[-1]),
+    )
+
+
+def expected_error(mapped: LawMap, kind: str, place: Place, law: str) -> ExpectedError:
+    """Expect the error of a law at a place."""
+    logarithm, deviation = estimate(mapped, kind, place, law)
+    error, factor = math.exp(logarithm), math.exp(mapped.spread[law] * deviation)
+    return ExpectedError(law, error, error / factor, error * factor)
+
+
+def estimate(mapped: LawMap, kind: str, place: Place, law: str) -> tuple[float, float]:
+    """Estimate the logarithm of the error of a law, and its standard deviation in those of the whole map."""
+    known = [point for point in mapped.points if law in point.errors]
+    at = np.array([_coordinates(mapped, point.kind, point.place) for point in known])
+    here = _coordinates(mapped, kind, place)[None]
+    logarithms = np.log([point.errors[law] for point in known])
+    mean, to_points = float(logarithms.mean()), _covariance(at, here)[:, 0]
+    weights = np.linalg.solve(_covariance(at, at) + NOISE * np.eye(len(at)), to_points)
+    variance = float(_covariance(here, here)[0, 0] + NOISE - weights @ to_points)
+    return mean + float(weights @ (logarithms - mean)), math.sqrt(variance)
+
+
+def _covariance(these: NDArray[np.float64], those: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Covariance (n, m) of logarithms at coordinates (n, c) and (m, c)."""
+    squares = np.sum((these[:, None] - those) ** 2, axis=-1)
+    return np.asarray(np.exp(-0.5 * squares / REACH**2) + TREND * these @ those.T)
+
+
+def _coordinates(mapped: LawMap, kind: str, place: Place) -> NDArray[np.float64]:
+    """Coordinates of a place; a contact feels no difference between lengths far beyond its own."""
+    lengths = (min(place.correlation, LONG), min(place.across, WIDE))
+    ratios = np.maximum([place.within, place.dynamic, *lengths], TINY)
+    kinds = [known == kind for known in sorted({point.kind for point in mapped.points})]
+    return np.append(np.log(ratios) / STEP, np.multiply(kinds, OTHER_KIND / math.sqrt(2.0)))
+
+
+def _db(error: float) -> str:
+    return f"{error:.1f}" if error < 9.95 else f"{error:.0f}"
+
+
+def _force(newtons: float) -> str:
+    return f"{newtons:.3g} N" if newtons < 1e3 else f"{newtons / 1e3:.3g} kN"

@@ -1,0 +1,181 @@
+"""The map of law errors: where a case lies on it, what it expects there, and what it says off it."""
+
+import json
+import math
+import re
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from asperity.cli.planning import plan
+from asperity.kinds.ball_on_beam.bodies import bodies_of, square_transfer
+from asperity.kinds.cases import kind_of, parse_case
+from asperity.reference.law_accuracy import Place, law_map
+from asperity.running import prepare_case, run
+from asperity.scenarios.expecting import Work
+from asperity.scenarios.law_choice import choose, law_choice
+from asperity.scenarios.law_place import place_of
+from asperity.surfaces.heightmap import HeightMap
+
+ROOT = Path(__file__).parents[2]
+CASE = """
+kind = "ball-on-beam"
+laws = {laws}
+start = "0.45 m"
+duration = "20 ms"
+settling = "5 ms"
+[surface]
+{surface}
+[ball]
+load = "30 N"
+[contact]
+spacing = "20 um"
+window = "0.9 mm"
+samples = 1
+sample_length = "4 mm"
+"""
+SMOOTH = 'rms = "0.03 um"\nlongest = "0.4 mm"\nshortest = "0.1 mm"'
+ROUGH = 'rms = "0.6 um"\nlongest = "0.4 mm"\nshortest = "0.1 mm"'
+
+
+def case_of(surface=SMOOTH, laws=("areal",)):
+    return parse_case(CASE.format(surface=surface, laws=json.dumps(list(laws))))
+
+
+@pytest.fixture(scope="module")
+def shape():
+    case = case_of()
+    return kind_of(case).geometry_of(case)
+
+
+def wave(shape, length, amplitude=1e-8, rows=4000):
+    """A wave along the path, the same all across."""
+    x = shape.spacing[0] * np.arange(rows)
+    line = amplitude * np.sin(2.0 * np.pi * x / length)
+    return HeightMap(np.repeat(line[:, None], shape.body.shape[1], axis=1), shape.spacing)
+
+
+def transfer_of(stiffness, frequency):
+    return np.full(frequency.shape, 1e14)  # (N/m)^2
+
+
+@pytest.mark.parametrize("waves_per_patch", [0.2, 0.7])
+def test_a_wave_has_the_place_of_the_closed_form(shape, waves_per_patch):
+    """Of a sine, the flat punch feels sin q/q; its correlation is a cosine."""
+    a, load = shape.semi_axes[0], shape.load
+    length, approach = 2.0 * a / waves_per_patch, shape.hertz.approach(load)
+    place = place_of(wave(shape, length), shape, 1.0, transfer_of)
+    q = 2.0 * np.pi * a / length
+    rms, felt = 1e-8 / math.sqrt(2.0), math.sin(q) / q
+    assert place.roughness == pytest.approx(rms / approach, rel=0.02)
+    assert place.within == pytest.approx(rms * (1.0 - felt) / approach, rel=0.04)
+    assert place.dynamic == pytest.approx(rms * felt * 1e7 / load, rel=0.04)
+    # the lag at which a cosine falls to 0.2; grid points are joined by lines
+    assert place.correlation == pytest.approx(math.acos(0.2) / (2.0 * np.pi) / waves_per_patch, rel=0.03)
+    # the same all across: as far as the window shows
+    assert place.across == pytest.approx(shape.body.shape[1] // 2 * shape.spacing[1] / (2.0 * a))
+
+
+def test_waves_that_excite_less_than_100_hz_have_no_place(shape):
+    fast, slow = wave(shape, 5e-3), wave(shape, 20e-3, amplitude=1e-6)
+    both = HeightMap(fast.heights + slow.heights, shape.spacing)
+    alone = place_of(fast, shape, 1.0, transfer_of)
+    assert place_of(both, shape, 1.0, transfer_of).roughness == pytest.approx(alone.roughness, rel=0.1)
+    # at 4 m/s the slow one is heard
+    assert place_of(both, shape, 4.0, transfer_of).roughness > 50.0 * alone.roughness
+    flat = HeightMap(np.zeros((400, shape.body.shape[1])), shape.spacing)
+    assert place_of(flat, shape, 1.0, transfer_of) is None
+    assert place_of(fast, shape, 1.0, lambda stiffness, frequency: None) is None
+
+
+def test_the_linear_force_is_that_of_a_mass_on_a_spring_on_a_stiff_beam(shape):
+    """A beam as stiff as a block leaves F/z = 1/(1/k - 1/(m w²))."""
+    case = parse_case(
+        'kind = "ball-on-beam"\n[surface]\nrms = "1 um"\n[ball]\nmass = "2 kg"\n'
+        '[beam]\nwidth = "2 m"\nheight = "60 mm"\nlength = "0.5 m"\n[numerics]\nhighest_frequency = "20 kHz"'
+    )
+    frequency = np.array([60.0, 200.0, 20e3])
+    k, w = 1e6, 2.0 * np.pi * frequency
+    found = square_transfer(bodies_of(case), k, frequency)
+    np.testing.assert_allclose(found, np.abs(1.0 / (1.0 / k - 1.0 / (2.0 * w**2))) ** 2, rtol=0.05)
+
+
+def test_a_mapped_point_expects_what_was_found_there():
+    mapped = law_map()
+    for point in mapped.points[::5]:
+        choice = choose(mapped, point.kind, point.place, ["shifted", "hertz", "no-such-law"])
+        assert {found.law for found in choice.expected} == {"table", "areal", "shifted", "hertz"}
+        assert (choice.distance, choice.nearest) == (0.0, point)
+        assert not choice.off_map
+        shifted = next(found for found in choice.expected if found.law == "shifted")
+        assert 1.0 < shifted.high / shifted.error == pytest.approx(shifted.error / shifted.low)
+        # what chance adds to a point is smoothed out between neighbours
+        assert 0.6 < shifted.error / point.errors["shifted"] < 1.6
+
+
+def test_off_the_map_it_says_so():
+    far = Place(roughness=300.0, correlation=1.0, across=1.0, within=100.0, dynamic=500.0)
+    choice = choose(law_map(), "wheel-on-rail", far, ["areal"])
+    assert choice.off_map
+    on_map = choose(law_map(), "wheel-on-rail", law_map().points[0].place, ["areal"])
+    areal, near = (next(e for e in c.expected if e.law == "areal") for c in (choice, on_map))
+    assert areal.high / areal.low > 1.5 * near.high / near.low
+    rows = dict(choice.rows())
+    assert rows["place on the map"].endswith("off the map, so that the expected errors are guesses")
+    assert choice.sentence("areal").startswith("A guess, off the map")
+    assert choice.sentence("own-law") is None
+
+
+def test_areal_is_taken_where_it_is_in_its_range_and_table_where_it_leaves_it():
+    smooth, rough = (
+        choose(law_map(), "wheel-on-rail", place, ["areal"])
+        for place in (Place(0.1, 1.0, 1.0, 0.03, 0.1), Place(1.0, 0.3, 0.3, 0.9, 2.0))
+    )
+    assert smooth.taken == "areal"
+    assert "expected within 1 dB of direct" in dict(smooth.rows())["law to take"]
+    assert rough.taken == "table"
+    assert "table: areal leaves its range" in dict(rough.rows())["law to take"]
+    assert rough.sentence("areal").endswith("; take table")
+
+
+def test_check_and_verdict_say_what_the_map_says():
+    case = case_of(ROUGH)
+    prepared = prepare_case(case)
+    rows = dict(plan(prepared, Work({}, {})))
+    assert rows["law to take"].startswith("table: areal leaves its range")
+    assert re.search(r"areal \d+(\.\d)? \(\d+(\.\d)? to \d+(\.\d)?\)", rows["expected errors, dB"])
+    result = run(prepared)
+    assert "areal is" in result.attrs["verdict"]
+    assert "; take table" in result.attrs["verdict"]
+    entries = json.loads(result["scenario"].attrs["numerics"])
+    numerics = {entry["name"]: entry["value"] for entry in entries}
+    assert numerics["law to take"] == rows["law to take"]
+
+
+@pytest.mark.parametrize("surface", ['line = "line.csv"', "smooth = true"])
+def test_nothing_is_said_where_the_map_knows_nothing(surface, tmp_path):
+    kind = "wheel-on-rail" if "smooth" in surface else "ball-on-beam"
+    (tmp_path / "line.csv").write_text("".join(f"{1e-8 * math.sin(x)}\n" for x in range(20000)))
+    surface = surface.replace("line.csv", str(tmp_path / "line.csv"))
+    if kind == "ball-on-beam":
+        surface += '\nline_unit = "m"\nline_spacing = "20 um"'
+    speed = 'laws = ["hertz"]\nduration = "0.1 s"\nsettling = "0.05 s"'
+    case = parse_case(f'kind = "{kind}"\n{speed}\n[surface]\n{surface}\n')
+    prepared = prepare_case(case)
+    transfer = partial(prepared.kind.square_transfer, prepared.bodies)
+    assert law_choice(case, prepared.shape, prepared.textures, transfer) is None
+    assert "law to take" not in dict(plan(prepared, Work({}, {})))
+
+
+def test_the_map_is_whole():
+    mapped = law_map()
+    file = ROOT / "src/asperity/reference/law_accuracy.json"
+    assert file.stat().st_size < 200_000
+    assert len(mapped.bands) == 18
+    assert mapped.claim == 0.8
+    assert all(0.0 < factor < 4.0 for factor in mapped.spread.values())
+    for point in mapped.points:
+        assert set(point.errors) <= set(mapped.spread)
+        assert all(len(found["levels"]) == 18 for found in point.details["laws"].values())
