@@ -21,6 +21,7 @@ _HOME = {
     "laws": "laws",
     "material": "reference.materials",
     "open_result": "running",
+    "prediction_band": "studies.ensemble",
     "read_surface": "surfaces.readers",
     "report": "kinds.report",
     "run": "running",

@@ -71,6 +71,23 @@ def out(computed, monkeypatch):
     return Path("out")
 
 
+def test_mean_and_band_over_the_seeds_are_written(computed):
+    folder, outcome = computed
+    with open(folder / "out" / "ensemble.csv", encoding="utf-8", newline="") as file:
+        heading, *rows = csv.reader(file)
+    assert heading[:4] == ["ball.load [N]", "law", "band [Hz]", "force_level [dB re 1 N]"]
+    assert heading[4:6] == ["force_level_low [dB re 1 N]", "force_level_high [dB re 1 N]"]
+    levels = xr.open_dataset(folder / "out" / "study.nc", engine="h5netcdf")["force_level"]
+    assert len(rows) == levels[0].size
+    mean, low, high = map(float, rows[0][3:6])
+    assert mean == pytest.approx(float(levels[:, 0, 0, 0].mean()))
+    assert low < mean < high
+    assert (folder / "out" / "ensemble.png").read_bytes().startswith(b"\x89PNG")
+    assert "prediction interval; it holds the value of one more seed with a" in " ".join(
+        outcome.stdout.split()
+    )
+
+
 def test_a_study_is_tabulated_and_written(computed):
     folder, outcome = computed
     assert "Study of 8 seed × 2 ball.load" in outcome.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from asperity.arguments import shown
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable
+from asperity.files import alone_in, refuse_unwritable, write_bytes
 from asperity.progress import progress_bar
 from asperity.studies.definition import Study, study_of
 from asperity.terminal import say, say_table
@@ -72,6 +73,45 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
     rows = write_csv(directory / "study.csv", *_table(table))
     say(f"Results: {written.resolve()}")
     say(f"Table:   {rows.resolve()}")
+    _ensemble(table, directory)
+
+
+def _ensemble(table: xarray.Dataset, directory: Path) -> None:
+    """Write mean and band over the seeds of a study, if it sweeps them, as CSV and as a figure."""
+    from asperity.laws import spec_of
+    from asperity.reporting.ensemble import ensemble_figure
+    from asperity.studies.ensemble import FEWEST, prediction_band
+
+    files = [directory / name for name in ("ensemble.csv", "ensemble.png")]
+    if table.sizes.get("seed", 0) < FEWEST:
+        for file in files:  # of an earlier study
+            file.unlink(missing_ok=True)
+        return
+    bands = prediction_band(table)
+    colours = {str(law): str(spec_of(str(law)).entry()["colour"]) for law in bands["law"].values}
+    swept = [name for name in json.loads(table.attrs["sweep"]) if name != "seed"]
+    write_csv(files[0], *_long_table(bands, [*swept, "law", "band"]))
+    image = io.BytesIO()
+    ensemble_figure(bands, colours).savefig(image, format="png", dpi=150)
+    write_bytes(files[1], image.getvalue())
+    say(f"Seeds:   {files[1].resolve()}, and as numbers {files[0].name}")
+    say(str(bands.attrs["meaning"]))
+
+
+def _long_table(bands: xarray.Dataset, axes: Sequence[str]) -> tuple[list[str], list[list[object]]]:
+    """Heading and rows of what has all these axes, one row for each place on them."""
+    held = {
+        str(name): values.transpose(*axes)
+        for name, values in bands.data_vars.items()
+        if set(values.dims) == set(axes)
+    }
+    heading = [_titled(bands[axis]) for axis in axes] + [_titled(values) for values in held.values()]
+    labels = [bands[axis].values.tolist() for axis in axes]
+    numbers = [values.values.ravel().tolist() for values in held.values()]
+    rows: list[list[object]] = [
+        [*place, *found] for place, found in zip(product(*labels), zip(*numbers, strict=True), strict=True)
+    ]
+    return heading, rows
 
 
 def varied(case: Path, words: Sequence[str]) -> Study:

@@ -72,20 +72,20 @@ def _finer_grid(case: Case, textures: Textures) -> Way:
         "contact.window": (4 * half + 1) * 0.5 * spacing,
         "numerics.time_step": case.time_step,
     }
-    return Way(f"{_um(spacing)} → {_um(0.5 * spacing)}", changes | _strip_length(textures))
+    return Way(f"{_length(spacing)} → {_length(0.5 * spacing)}", changes | _strip_length(textures))
 
 
 def _wider(case: Case, textures: Textures) -> Way:
     spacing, half = case.contact.spacing, window_cells(case.contact) // 2
     window = (4 * half + 1) * spacing
     kept = {name: max(length, 2.001 * window) for name, length in _strip_length(textures).items()}
-    return Way(f"{_um(case.contact.window)} → {_um(window)}", {"contact.window": window} | kept)
+    return Way(f"{_length(case.contact.window)} → {_length(window)}", {"contact.window": window} | kept)
 
 
 def _narrower(case: Case) -> Way:
     spacing, half = case.contact.spacing, window_cells(case.contact) // 2
     window = (2 * (half // 2) + 1) * spacing
-    words = f"{_um(case.contact.window)} → {_um(window)}"
+    words = f"{_length(case.contact.window)} → {_length(window)}"
     return Way(words, {"contact.window": window}, coarser=True)
 
 
@@ -114,8 +114,8 @@ def _shorter_step(case: Case) -> Way:
     return Way(f"{_us(step)} → {_us(0.5 * step)}", {"numerics.time_step": 0.5 * step})
 
 
-def _um(length: float) -> str:
-    return written(length, "m", "um").replace("um", "µm")
+def _length(length: float) -> str:
+    return written(length, "m", "um" if length < 1e-3 else "mm").replace("um", "µm")
 
 
 def _us(time: float) -> str:

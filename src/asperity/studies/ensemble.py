@@ -1,0 +1,110 @@
+"""Members of a study that differ by chance alone: their mean, and the band in which one more lies."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from scipy import stats
+
+from asperity.arguments import real, shown
+from asperity.errors import InputError
+from asperity.results import variable
+
+SHARE = 0.8
+"""Probability with which the band holds one more member."""
+FEWEST = 3
+"""Members of which a band says something."""
+BANDED = ("dB", "N")
+"""Beginnings of the units of what has a band: levels, and means and rms of forces."""
+
+
+def prediction_band(table: xarray.Dataset, over: str = "seed", share: float = SHARE) -> xarray.Dataset:
+    """Mean of the members of a study, and the band in which one more of them lies.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        From `asperity.study`.
+    over : str
+        The swept key by which members differ by chance alone.
+    share : float
+        Probability, above 0 and below 1, with which the band holds one more member.
+
+    Returns
+    -------
+    xarray.Dataset
+        Without the dimension `over`: for every level and every force of the table its mean over the members
+        that have one, and ``…_low`` and ``…_high``, the ends of the band; NaN where fewer than two have one.
+        The attributes say over what, of how many members, and what the band means.
+
+    Raises
+    ------
+    InputError
+        If the table has no such key, or fewer than three values of it, or the share is none.
+
+    Notes
+    -----
+    The band is a prediction interval, mean ± t s √(1 + 1/n), with the standard deviation s of the n members
+    and Student's t for n − 1 degrees of freedom: it holds one more member with the probability given, for any
+    n. G. J. Hahn and W. Q. Meeker, Statistical Intervals (1991), section 4.7. It is exact for normally
+    distributed values. Levels of noise whose power is averaged over B T, chi-square with 2 B T degrees of
+    freedom, are skew; their band of 80 % holds 79 % to 83 % of them, also where B T is one.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> with ThreadPoolExecutor(1) as here:
+    ...     table = asperity.study(case, {"seed": [1, 2, 3]}, executor=here)
+    >>> band = asperity.prediction_band(table)
+    >>> band["force_level_high"].dims, bool((band["rms_force_high"] > band["rms_force"]).all())
+    (('law', 'band'), True)
+    """
+    if not isinstance(table, xarray.Dataset) or over not in table.dims:
+        held = list(map(str, table.dims)) if isinstance(table, xarray.Dataset) else shown(table)
+        raise InputError("over", f"'{over}' for {held}", "a key that the study sweeps")
+    if table.sizes[over] < FEWEST:
+        received = f"{table.sizes[over]} values of {over}"
+        raise InputError("table of the study", received, f"at least {FEWEST}", "Compute more members.")
+    share = real("share", share, "a number above 0 and below 1", above=0.0)
+    if share >= 1.0:
+        raise InputError("share", share, "a number above 0 and below 1")
+    found: dict[str, xarray.Variable] = {}
+    for name, values in table.data_vars.items():
+        if over in values.dims and str(values.attrs.get("units", "")).startswith(BANDED):
+            found |= _band(str(name), values, over, share)
+    kept = {name: values.variable for name, values in table.coords.items() if name != over}
+    count = int(table["completed"].sum(over).max())
+    attrs = {"over": over, "members": count, "share": share, "meaning": meaning(over, count, share)}
+    if "band_time_product" in table:
+        found["band_time_product"] = table["band_time_product"].mean(over, keep_attrs=True).variable
+    return xarray.Dataset(found | kept, attrs=attrs)
+
+
+def _band(name: str, values: xarray.DataArray, over: str, share: float) -> dict[str, xarray.Variable]:
+    """Mean and ends of the band of a quantity."""
+    axis = values.dims.index(over)
+    numbers = np.where(np.isfinite(values.values), values.values, np.nan)
+    count = np.isfinite(numbers).sum(axis=axis)
+    enough = count >= 2
+    n = np.where(enough, count, 2)
+    mean = np.nansum(numbers, axis=axis) / np.maximum(count, 1)
+    square = np.nansum((numbers - np.expand_dims(mean, axis)) ** 2, axis=axis)
+    reach = stats.t.ppf(0.5 * (1.0 + share), n - 1) * np.sqrt(square / (n - 1) * (1.0 + 1.0 / n))
+    dims = [str(dim) for dim in values.dims if dim != over]
+    units, what = values.attrs["units"], values.attrs["long_name"]
+    told = {"missing": "fewer than two members have it"} if not enough.all() else {}
+    ends = {"": (mean, "mean"), "_low": (mean - reach, "low end"), "_high": (mean + reach, "high end")}
+    return {
+        f"{name}{end}": variable(dims, np.where(enough, of, np.nan), units, f"{what}, {which}", **told)
+        for end, (of, which) in ends.items()
+    }
+
+
+def meaning(over: str, count: int, share: float) -> str:
+    """Say what mean and band are."""
+    return (
+        f"Line: mean over {count} values of {over}. Band: prediction interval; it holds the value of one "
+        f"more {over} with a probability of {100 * share:g} %: mean ± t s √(1 + 1/n), Student's t with n − 1 "
+        "degrees of freedom (Hahn and Meeker 1991)."
+    )

@@ -1,0 +1,110 @@
+"""Mean and band over seeds: the band holds fresh members as often as it says."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+import xarray
+
+import asperity
+from asperity.errors import InputError
+from asperity.reporting.ensemble import ensemble_figure
+
+CASE = {
+    "kind": "ball-on-beam",
+    "laws": ["hertz", "linear"],
+    "start": "0.4 m",
+    "duration": "0.15 s",
+    "settling": "50 ms",
+    "surface": {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"},
+    "ball": {"load": "30 N"},
+    "contact": {"spacing": "40 um", "window": "0.76 mm", "samples": 1, "sample_length": "1.6 mm"},
+    "numerics": {"highest_frequency": "2 kHz"},
+}
+
+
+def table(levels, **coordinates):
+    """A table of levels (seed, …) as a study has it."""
+    dims = ["seed", *coordinates]
+    coords = {"seed": np.arange(len(levels)), **coordinates}
+    held = {"level": (dims, levels, {"units": "dB re 1 N", "long_name": "level"})}
+    held["completed"] = ("seed", np.isfinite(levels).reshape(len(levels), -1).any(axis=1).astype(np.int8))
+    return xarray.Dataset(held, coords)
+
+
+class TestBand:
+    def test_the_numbers_of_a_textbook(self):
+        """Hahn and Meeker's formula, with t(0.9; 4) = 1.533 from a table of Student's distribution."""
+        found = asperity.prediction_band(table(np.array([1.0, 2.0, 3.0, 4.0, 5.0])))
+        reach = 1.533 * np.sqrt(2.5) * np.sqrt(1.2)
+        assert float(found["level"]) == 3.0
+        assert float(found["level_low"]) == pytest.approx(3.0 - reach, abs=2e-3)
+        assert float(found["level_high"]) == pytest.approx(3.0 + reach, abs=2e-3)
+
+    @pytest.mark.parametrize("count", [3, 8, 30])
+    @pytest.mark.parametrize("freedom", [2, 20])
+    def test_levels_of_short_records_are_held_as_often_as_it_says(self, count, freedom):
+        """Levels of noise are chi-square with 2 B T degrees of freedom: 20 000 bands, one more level each."""
+        power = np.random.default_rng(0).chisquare(freedom, (count + 1, 20_000)) / freedom
+        level = 10 * np.log10(power)
+        found = asperity.prediction_band(table(level[:count], place=np.arange(20_000)))
+        held = (level[count] >= found["level_low"].values) & (level[count] <= found["level_high"].values)
+        assert held.mean() == pytest.approx(0.8, abs=0.04)
+
+    @pytest.mark.parametrize("share", [0.5, 0.95])
+    def test_another_share(self, share):
+        level = np.random.default_rng(1).normal(size=(7, 20_000))
+        found = asperity.prediction_band(table(level[:6], place=np.arange(20_000)), share=share)
+        held = (level[6] >= found["level_low"].values) & (level[6] <= found["level_high"].values)
+        assert held.mean() == pytest.approx(share, abs=0.01)
+
+    def test_failed_members_are_left_out(self):
+        level = np.array([[1.0, 1.0], [2.0, np.nan], [np.nan, np.nan], [4.0, -np.inf]])
+        found = asperity.prediction_band(table(level, place=[0.0, 1.0]))
+        assert float(found["level"][0]) == pytest.approx(7 / 3)
+        assert np.isnan(found["level"][1])
+        assert found["level"].attrs["missing"] == "fewer than two members have it"
+        assert found.attrs["members"] == 3
+
+    def test_it_says_what_is_wrong(self):
+        levels = table(np.zeros((4, 2)), place=[0.0, 1.0])
+        with pytest.raises(InputError, match="over: received 'speed' for"):
+            asperity.prediction_band(levels, over="speed")
+        with pytest.raises(InputError, match="received 2 values of place; allowed: at least 3"):
+            asperity.prediction_band(levels, over="place")
+        for share in (0.0, 1.0, "half"):
+            with pytest.raises(InputError, match="a number above 0 and below 1"):
+                asperity.prediction_band(levels, share=share)
+
+
+@pytest.fixture(scope="module")
+def study(cache_of_module):
+    """Thirty seeds of a cheap case over a rough surface."""
+    with ThreadPoolExecutor(1) as here:
+        return asperity.study(CASE, {"seed": list(range(1, 31))}, executor=here)
+
+
+def test_the_band_of_a_study_covers_fresh_seeds_as_often_as_it_claims(study):
+    """Ten seeds make the band, twenty fresh ones lie in it as often as it says, within ten points."""
+    found = asperity.prediction_band(study.isel(seed=slice(10)))
+    fresh = study["force_level"].isel(seed=slice(10, None))
+    held = (fresh >= found["force_level_low"]) & (fresh <= found["force_level_high"])
+    assert held.sizes["seed"] == 20
+    assert float(held.mean()) == pytest.approx(0.8, abs=0.1)
+    for law in ("hertz", "linear"):
+        assert float(held.sel(law=law).mean()) == pytest.approx(0.8, abs=0.1)
+    width = found["force_level_high"] - found["force_level_low"]
+    assert 1.0 < float(width.min()) < float(width.max()) < 20.0
+
+
+def test_the_figure_shows_mean_and_band_with_what_they_mean(study):
+    found = asperity.prediction_band(study)
+    figure = ensemble_figure(found, {"hertz": "#0067a5"})
+    (axes,) = figure.axes
+    drawn = {line.get_label(): line.get_ydata() for line in axes.lines if len(line.get_xdata()) > 2}
+    np.testing.assert_allclose(drawn["linear"], found["force_level"].sel(law="linear"))
+    assert len(axes.collections) >= 2
+    told = figure.get_supxlabel().replace("\n", " ")
+    assert told == found.attrs["meaning"]
+    assert "mean over 30 values of seed" in told
+    assert "it holds the value of one more seed with a probability of 80 %" in told
