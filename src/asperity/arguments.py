@@ -19,6 +19,8 @@ from asperity.errors import InputError
 LONGEST = 60  # characters of a received value that a message repeats
 LONGEST_WORD = 100  # characters of a word for which one like it is sought
 MOST_NAMES = 10  # of what is in a file, that a message lists
+SHAKEDOWN = "shakedown"  # stands for a number of passes: until one changes nothing any more
+MOST_PASSES = 100  # of running-in
 
 
 def shown(value: object) -> str:
@@ -77,6 +79,14 @@ def whole(what: str, value: object, allowed: str, *, at_least: int, at_most: flo
     if not (math.isfinite(number) and number == int(number) and at_least <= number <= at_most):
         raise InputError(what, shown(value), allowed)
     return int(number)
+
+
+def passes_of(value: object) -> int | None:
+    """Check a number of passes of running-in; None stands for as many as it takes to shakedown."""
+    if isinstance(value, str) and value == SHAKEDOWN:
+        return None
+    allowed = f'a whole number from 1 to {MOST_PASSES}, or "{SHAKEDOWN}"'
+    return whole("passes", value, allowed, at_least=1, at_most=MOST_PASSES)
 
 
 def two(what: str, value: object, allowed: str) -> tuple[Any, Any]:

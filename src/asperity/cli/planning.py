@@ -82,12 +82,28 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
         *prepared.kind.plan("rows")(case),
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
+        *_running_in(prepared),
         *_real_contact(prepared),
         *_law_choice(prepared),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items()),
         *([("scan of the path", described_scan(scanned))] if scanned else []),
         ("work", _described_work(expected)),
     ]
+
+
+def _running_in(prepared: PreparedCase) -> list[tuple[str, str]]:
+    """How often the body rolls before the record, so that asperities yield."""
+    from asperity.scenarios.running_in import running_in_passes, running_in_positions
+
+    passes, hardness = prepared.case.contact.running_in, prepared.case.contact.hardness
+    if passes is None or hardness is None:
+        return []
+    count = running_in_passes(prepared.case)
+    often = f"to shakedown, about {count}" if isinstance(passes, str) else f"{count}"
+    positions = running_in_positions(prepared.shape, prepared.textures)
+    words = f"{often} passes over {positions} positions"
+    text = f"{words} under {prepared.shape.load:.3g} N at {hardness / 1e9:.3g} GPa"
+    return [("running in", f"{text}; if interrupted, it goes on after its last pass")]
 
 
 def _real_contact(prepared: PreparedCase) -> list[tuple[str, str]]:

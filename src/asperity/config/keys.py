@@ -145,6 +145,29 @@ class Number:
         return value if self.whole else float(value)
 
 
+@dataclass(frozen=True)
+class NumberOrWord:
+    """A pure number, or one word."""
+
+    number: Number
+    word: str
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        return f'{self.number.allowed}, or "{self.word}"'
+
+    def __call__(self, value: object) -> float | int | str:
+        """Return the number or the word."""
+        if isinstance(value, str) and value == self.word:
+            return value
+        try:
+            return self.number(value)
+        except InputError as error:
+            remedy = nearest(value, (self.word,)) or error.remedy
+            raise InputError("number", error.received, self.allowed, remedy) from None
+
+
 class Problems(ValueError):
     """Several errors of one section, each an `InputError` about one key."""
 
@@ -372,7 +395,18 @@ def _own_material(given: Mapping[Any, Any], info: ValidationInfo | None) -> Mate
     return Material(words["name"], **found, citation=words["citation"])
 
 
-Kind = Quantity | Number | Choice | Flag | Text | LengthUnit | File | ChoiceOrFile | MaterialOrName
+Kind = (
+    Quantity
+    | Number
+    | NumberOrWord
+    | Choice
+    | Flag
+    | Text
+    | LengthUnit
+    | File
+    | ChoiceOrFile
+    | MaterialOrName
+)
 
 
 def value_kind(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:

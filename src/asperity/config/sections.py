@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, PlainValidator, model_validator
 
+from asperity.arguments import MOST_PASSES, SHAKEDOWN
 from asperity.config.content import holds_memory
 from asperity.config.form import Section, key
 from asperity.config.keys import (
@@ -28,6 +29,7 @@ from asperity.config.keys import (
     MapFile,
     Name,
     Number,
+    NumberOrWord,
     Pressure,
     Problems,
     Quantity,
@@ -309,6 +311,20 @@ class ContactCase(Section):
         otherwise="elastic contact",
         example='"3 GPa"',
         within=("1 kPa", "1 TPa", "no solid is as soft, or as hard"),
+    )
+    running_in: (
+        Annotated[
+            int | str,
+            BeforeValidator(NumberOrWord(Number(at_least=1, at_most=MOST_PASSES, whole=True), SHAKEDOWN)),
+        ]
+        | None
+    ) = key(
+        None,
+        "passes under the working load that samples and path have had before, in which asperities yielded, "
+        "or until a pass changes nothing",
+        otherwise="an untouched surface",
+        example='"shakedown"',
+        goes_with="hardness",
     )
     datum: Annotated[str, BeforeValidator(Choice(("samples", "path")))] = key(
         "samples",

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real, real_array, shown, whole
+from asperity.arguments import MOST_PASSES, SHAKEDOWN, passes_of, real, real_array, whole
 from asperity.contact.flaws import Counts, total, warn_of_flaws
 from asperity.contact.halfspace import HalfSpace
 from asperity.errors import Grade, InputError, TruncatedContactWarning, UnconvergedWarning, percent
@@ -20,12 +20,8 @@ from asperity.store import Cache, Checkpoint, content_key
 from asperity.surfaces.heightmap import HeightMap
 from asperity.threads import in_order
 
-SHAKEDOWN = "shakedown"
-"""What stands for a number of passes: until a pass changes nothing any more."""
 SETTLED_SHARE = 1e-3
 """Lowering in a pass, in approaches of the smooth bodies under the load, that counts as none."""
-MOST_PASSES = 100
-"""Passes after which it is given up."""
 PIECE = 256
 """Positions at least that are rolled one after the other before the next piece may be taken."""
 
@@ -213,7 +209,7 @@ def run_in_surface(
     force = half_space.checked_load(load)
     settled = tolerance_of(half_space, shape, force) if tolerance is None else tolerance
     settled = real("tolerance of running-in", settled, "a length above zero, m", above=0.0)
-    job = RunningIn(half_space, shape, force, _passes(passes), settled, step)
+    job = RunningIn(half_space, shape, force, passes_of(passes), settled, step)
     found = run_in(heights, job, cache=cache, workers=workers, progress=progress)
     warn_of_running_in(found, job, "rtol", "Enlarge the window.")
     number = f"{len(found.largest)} pass" + ("es" if len(found.largest) > 1 else "")
@@ -226,15 +222,6 @@ def tolerance_of(half_space: HalfSpace, body: NDArray[np.float64], load: float) 
     """Lowering that counts as none, m: `SETTLED_SHARE` of the approach of the smooth, elastic bodies."""
     elastic = HalfSpace(half_space.shape, half_space.spacing, half_space.modulus)
     return SETTLED_SHARE * elastic.at_load(body, load, None, 1e-4).approach
-
-
-def _passes(passes: object) -> int | None:
-    if passes == SHAKEDOWN:
-        return None
-    allowed = f'a whole number from 1 to {MOST_PASSES}, or "{SHAKEDOWN}"'
-    if isinstance(passes, str):
-        raise InputError("passes", shown(passes), allowed)
-    return whole("passes", passes, allowed, at_least=1, at_most=MOST_PASSES)
 
 
 def warn_of_running_in(found: RunInHeights, job: RunningIn, tolerance: str, remedy: str) -> None:

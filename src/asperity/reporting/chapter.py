@@ -10,6 +10,7 @@ from xarray import DataTree
 from asperity.reporting import convergence
 from asperity.reporting.contact_figures import CONTACT as CONTACT_PARTS
 from asperity.reporting.part import Part
+from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
 from asperity.reporting.tables import ReportTable, validity_table
 
 
@@ -23,7 +24,9 @@ class Chapter:
     tables: tuple[Callable[[DataTree], ReportTable | None], ...] = ()
 
 
-CONTACT = Chapter("contact", "Contact", CONTACT_PARTS, (validity_table,))
+CONTACT = Chapter(
+    "contact", "Contact", (*CONTACT_PARTS, HEIGHTS), (validity_table, condition_table, passes_table)
+)
 CONVERGENCE = Chapter(
     "convergence", "Convergence", (), (convergence.settings_table, convergence.changes_table)
 )

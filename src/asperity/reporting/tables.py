@@ -89,7 +89,7 @@ def homogeneity_table(tree: DataTree) -> ReportTable | None:
     rows = []
     for number, (variation, expected, p) in enumerate(zip(*columns, strict=True), start=1):
         same = bool(p > significance)
-        cells = [_percent(variation), _percent(expected), f"{p:.2g}"]
+        cells = [in_percent(variation), in_percent(expected), f"{p:.2g}"]
         look = "number" if same else "number off"
         told = "as far as chance tells" if same else "no"
         rows.append([Cell(str(number), "number"), *(Cell(text, look) for text in cells), text_cell(told)])
@@ -166,7 +166,8 @@ def _difference(value: float, doubt: bool) -> Cell:
     return Cell(signed(value), "number" + look)
 
 
-def _percent(share: float) -> str:
+def in_percent(share: float) -> str:
+    """Write a share in per cent."""
     return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
 
 
@@ -183,7 +184,7 @@ def loss_table(tree: DataTree) -> ReportTable | None:
     if not names:
         return None
     shown = {
-        rolling.CONTACT_LOSS_SHARE: ("time without contact", _percent),
+        rolling.CONTACT_LOSS_SHARE: ("time without contact", in_percent),
         rolling.CONTACT_LOSS_EVENTS: ("events", lambda events: f"{events:.0f}"),
         rolling.LONGEST_LOSS: ("longest", lambda time: engineering(time, "s") if time > 0 else "–"),
     }

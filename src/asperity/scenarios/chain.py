@@ -21,6 +21,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import Workshop
 from asperity.scenarios.line_filters import normalisations
 from asperity.scenarios.reducing import Reduction, patch_planes, reduce
+from asperity.scenarios.running_in import RunInCase, run_in_case
 from asperity.scenarios.textures import Textures
 from asperity.store import Store
 
@@ -67,6 +68,7 @@ class Chain(Generic[R]):
     laws: dict[str, Law]  # by name, in the order of the case
     runs: dict[str, R]  # time histories, by law
     scan: ScannedForces[Any] | None  # of the path
+    running_in: RunInCase | None  # what passes before did to the textures; None where there were none
     seconds: dict[str, float]  # wall time of each part, s
 
     def stacked(self, name: str) -> NDArray[np.float64]:
@@ -109,10 +111,15 @@ def reduce_and_roll(
     progress: Progress,
     watch: Stopwatch,
 ) -> Chain[R]:
-    """Reduce the samples, build the laws of a case and roll each of them, by the callable `roll`.
+    """Run the textures in where the case asks for it, reduce the samples, build its laws and roll each.
 
-    The store keeps finished scans; the stopwatch books the wall time.
+    `roll` rolls a law. The store keeps finished scans; the stopwatch books the wall time.
     """
+    ran = None
+    if case.contact.running_in is not None:
+        ran = run_in_case(case, textures, shape, store, progress)
+        textures = ran.textures
+        watch.lap("running in")
     planes = None if textures.path is None else patch_planes(textures.path, shape)
     reduction = None
     if textures.maps:
@@ -127,4 +134,4 @@ def reduce_and_roll(
         runs[name] = roll(laws[name])
         watch.lap(f"law {name}")
     scan = workshop.scan if Need.SCAN in needs_of(case.laws) else None
-    return Chain(case, textures, shape, reduction, laws, runs, scan, watch.seconds)
+    return Chain(case, textures, shape, reduction, laws, runs, scan, ran, watch.seconds)

@@ -14,6 +14,7 @@ from asperity.reduction.filter import punch_filter
 from asperity.reduction.fir import LineFilter, punch_taps, response
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.running_in import RunInCase
 from asperity.scenarios.validity import Finding, rms_slope_of
 from asperity.schema import Attribute, Entry, attributes, contact, variables
 
@@ -73,7 +74,28 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         contact.PRESSURE: working.pressure,
         contact.GAP: working.gap,
     }
+    if chain.running_in is not None:
+        laid_out |= _running_in(chain.running_in)
+        facts |= {
+            contact.YIELDED_SHARE: chain.running_in.yielded_share,
+            contact.SHAKEN_DOWN: int(chain.running_in.settled),
+        }
     return xarray.Dataset(variables(laid_out | _filters(chain)), attrs=attributes(facts))
+
+
+def _running_in(found: RunInCase) -> dict[Entry, Any]:
+    """What each pass of running-in did, and the surface before and after it."""
+    both = (found.before, found.after)
+    return {
+        contact.RUNNING_IN_PASS: np.arange(1, len(found.largest) + 1),
+        contact.RUNNING_IN_LOWERING: found.largest,
+        contact.RUNNING_IN_YIELDING: found.yielding,
+        contact.CONDITION: ["before", "after"],
+        contact.TRACK_RMS: [each.rms for each in both],
+        contact.TRACK_SLOPE: [each.slope for each in both],
+        contact.TRACK_AREA_RATIO: [each.area_ratio for each in both],
+        contact.TRACK_STIFFNESS: [each.stiffness for each in both],
+    }
 
 
 def _row(finding: Finding) -> dict[str, str]:

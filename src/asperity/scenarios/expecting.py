@@ -13,6 +13,7 @@ from asperity.progress import Progress
 from asperity.reduction.real_contact import expected_area_ratio
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import STATES
+from asperity.scenarios.running_in import running_in_passes, running_in_positions
 from asperity.scenarios.scan_sizes import Expected, scan_sizes
 from asperity.scenarios.trial import ContactTrial, timed, try_contacts
 from asperity.surfaces.statistics import rms_slope
@@ -126,6 +127,9 @@ def _contact_seconds(
         "averaging under the patch": touched * trial.touch + averaged * trial.average,
     }
     found |= {f"scanning for the {name}": scan.seconds for name, scan in scans.items()}
+    if case.contact.running_in is not None:
+        rolled = running_in_passes(case) * running_in_positions(prepared.shape, textures)
+        found["running in"] = rolled * trial.rolled / thread_count()
     if any(scan.single for scan in scans.values()):
         found["compiling"] = SINGLE_COMPILED * pace
     solved = [law for law in case.laws if spec_of(law).solved_every_step]

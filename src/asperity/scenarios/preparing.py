@@ -101,6 +101,11 @@ def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[Input
     path = scan_sizes(case, shape, textures).get("path")
     if path is not None:
         yield from problem_of_disk(path, Store().root)
+    if contact.running_in is not None and not textures.strips:
+        allowed = "only together with a surface that asperities are known of: file, or rms"
+        yield InputError(
+            "contact.running_in", str(contact.running_in), allowed, "Remove the key, or name one."
+        )
     if contact.hardness is not None:
         largest = contact.hardness * contact.spacing**2 * nx * ny
         needed = shape.load if contact.approaches is not None else shape.largest_force

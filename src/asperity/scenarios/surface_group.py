@@ -57,10 +57,13 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
             surface.PATH_Y: np.arange(piece.shape[1]) * dx,
             surface.PATH_HEIGHTS: piece,
         }
-    if chain.case.surface.file is not None and textures.maps is not textures.strips:
-        laid_out |= _homogeneity(textures.maps)
+    measured = textures.untouched or textures
+    if chain.case.surface.file is not None and measured.maps is not measured.strips:
+        laid_out |= _homogeneity(measured.maps)
     line = textures.followed[recorded]
     laid_out |= {surface.DISTANCE: np.arange(len(line)) * dx, surface.LINE: line}
+    if textures.untouched is not None:
+        laid_out[surface.LINE_UNTOUCHED] = textures.untouched.followed[recorded]
     path = _path(chain)
     laid_out |= _distribution(path) | _spectra(chain, path)
     statistics += path.statistics + _of_lines(textures)

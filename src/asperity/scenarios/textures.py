@@ -53,6 +53,7 @@ class Textures:
     areal: bool = True
     # measured ones that a texture is interpolated between, by the body that bears them, m
     lines: dict[str, tuple[Profile, ...]] = field(default_factory=dict)
+    untouched: Textures | None = None  # as they were before running-in; None where they still are
 
     @property
     def recorded(self) -> slice:
@@ -62,6 +63,8 @@ class Textures:
     @property
     def widest_window(self) -> float:
         """Widest window that measured samples allow, m; synthesised ones are as wide as is asked for."""
+        if self.untouched is not None:
+            return self.untouched.widest_window
         if self.maps is self.strips:
             return math.inf
         cells = min(min(sample.shape) for sample in self.maps)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from asperity.contact import HalfSpace
 from asperity.contact.accuracy import FILTER_SHARE, rtol_for
+from asperity.contact.running_in import run_in
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import PhysicsWarning
 from asperity.laws import Need, needs_of
@@ -30,6 +31,7 @@ from asperity.scenarios.reducing import (
     patch_planes,
     refuse_low_states,
 )
+from asperity.scenarios.running_in import running_in_job
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Rows, Strip
 
@@ -57,6 +59,7 @@ class ContactTrial:
     curve: float  # a loading curve
     filters: float  # a position of the scan, all states together; zero where there is no such scan
     path: float  # likewise
+    rolled: float  # a position of running-in; zero where there is none
     direct: float  # a solution from its neighbour's pressure
     touch: float  # a row in finding first touches
     average: float  # a row in averaging under one patch
@@ -96,6 +99,7 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     progress(3, 4, message)
     if Need.SCAN in needs_of(case.laws):
         path = _position_time(replace(job, surface=textures.surface, stride=table_stride(shape)), shape)
+    rolled = _rolled_time(prepared) if case.contact.running_in is not None else 0.0
     rows = _middle(textures.path or textures.strips[0], ROWS)
     _, touch = timed(lambda: first_touch(rows.heights[: nx + 100], shape.body))
     axes = (min(shape.semi_axes[0], 0.45 * rows.size[0]), min(shape.semi_axes[1], 0.5 * rows.size[1]))
@@ -105,7 +109,7 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     _, direct = timed(lambda: solve(approach=working, start=start))
     progress(4, 4, message)
     shared = touch / min(101, rows.shape[0] - nx + 1), average / (2 * rows.shape[0])
-    return ContactTrial(approaches, len(loaded), load, curve, filters, path, direct, *shared)
+    return ContactTrial(approaches, len(loaded), load, curve, filters, path, rolled, direct, *shared)
 
 
 def _states(
@@ -154,6 +158,17 @@ def _position_time(job: ScanJob, level_by: Geometry | None = None) -> float:
         if time.process_time() - begin > LONG:
             break
     return float(np.mean(found))
+
+
+def _rolled_time(prepared: PreparedCase) -> float:
+    """Time of a position of running-in, after a first pass over a piece of the samples."""
+    job = running_in_job(prepared.case, prepared.shape)
+    nx, heights = prepared.shape.body.shape[0], prepared.textures.strips[0].heights
+    piece = heights[: nx + POSITIONS * job.stride]
+    positions = (len(piece) - nx) // job.stride + 1
+    twice = replace(job, passes=2)
+    _, taken = timed(partial(run_in, piece, twice, workers=1))
+    return taken / (2 * positions)
 
 
 def _middle(strip: Strip, most: int) -> HeightMap:

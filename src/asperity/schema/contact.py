@@ -11,6 +11,7 @@ _attribute = partial(Attribute, "contact")
 _SAMPLES = "where there are samples"
 _PRINTED = "where a law follows the filter as printed beside others"
 _NO_FILTER = "the samples do not touch in these states, or have no waves of these lengths"
+_RUN_IN = "where the surface was run in"
 _STATES = ("approach", "wavenumber")
 
 APPROACH = _entry(
@@ -78,6 +79,35 @@ PRINTED_FILTER_APPLIED = _filter("printed_filter_applied", _MAGNITUDES["_applied
 PRINTED_FILTER_STD = _filter("printed_filter_std", _MAGNITUDES["_std"], _PRINTED)
 FILTERS = (FILTER, FILTER_RAW, FILTER_APPLIED, FILTER_STD)
 PRINTED_FILTERS = (PRINTED_FILTER, PRINTED_FILTER_RAW, PRINTED_FILTER_APPLIED, PRINTED_FILTER_STD)
+
+RUNNING_IN_PASS = _entry("running_in_pass", ("running_in_pass",), "1", "pass of running-in", _RUN_IN)
+RUNNING_IN_LOWERING = _entry(
+    "running_in_lowering", ("running_in_pass",), "m", "largest lowering of a place in the pass", _RUN_IN
+)
+RUNNING_IN_YIELDING = _entry(
+    "running_in_yielding", ("running_in_pass",), "1", "share of the touched area that yields in it", _RUN_IN
+)
+CONDITION = _entry("condition", ("condition",), "1", "before or after running-in", _RUN_IN)
+TRACK_RMS = _entry(
+    "track_rms", ("condition",), "m", "rms height on the track, as wide as the nominal patch", _RUN_IN
+)
+TRACK_SLOPE = _entry("track_slope", ("condition",), "1", "rms slope on the track", _RUN_IN)
+TRACK_AREA_RATIO = _entry(
+    "track_area_ratio",
+    ("condition",),
+    "1",
+    "area in contact under the load over that of smooth bodies",
+    _RUN_IN,
+)
+TRACK_STIFFNESS = _entry(
+    "track_stiffness", ("condition",), "N/m", "dF/dr under the load, elastic, mean of the samples", _RUN_IN
+)
+YIELDED_SHARE = _attribute(
+    "yielded_share", "1", "share of the touched area that was lowered in running-in", _RUN_IN
+)
+SHAKEN_DOWN = _attribute(
+    "shaken_down", "1", "one where the last pass lowered no place beyond the tolerance, else zero", _RUN_IN
+)
 
 HERTZ_RADIUS = _attribute("hertz_radius", "m", "semi-axis of Hertz's contact in rolling direction")
 HERTZ_RADIUS_ACROSS = _attribute("hertz_radius_across", "m", "semi-axis of Hertz's contact across")

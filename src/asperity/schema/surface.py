@@ -21,6 +21,13 @@ PATH_Y = _entry("path_y", ("path_y",), "m", "across", _PATH)
 PATH_HEIGHTS = _entry("path_heights", ("path_x", "path_y"), "m", "height of the path", _PATH)
 DISTANCE = _entry("distance", ("distance",), "m", "distance along the path")
 LINE = _entry("line", ("distance",), "m", "height along the middle of the path")
+LINE_UNTOUCHED = _entry(
+    "line_untouched",
+    ("distance",),
+    "m",
+    "height along the middle of the path before running-in",
+    "where the surface was run in",
+)
 PATH_HEIGHT = _entry("path_height", ("path_height",), "m", "height of the path about its mean", _ROUGH)
 PATH_HEIGHT_DENSITY = _entry(
     "path_height_density",

@@ -86,7 +86,7 @@ def _run_key(law: str, case: BallOnBeam, textures: Textures, duration: float) ->
     assert textures.path is not None
     scalars = [
         case.speed, case.record_start, case.settled_time, duration, case.time_step, case.numerics.rtol,
-        case.numerics.highest_frequency, case.contact.hardness, case.contact.damping,
+        case.numerics.highest_frequency, case.contact.hardness, case.contact.running_in, case.contact.damping,
         list(case.beam.sensor_positions),
     ]  # fmt: skip
     sections = [content(case.ball), content(case.beam)]

@@ -99,7 +99,9 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
 def _run_key(law: str, case: WheelOnRail, textures: Textures) -> str:
     """Name of a run of a law that solves every step: everything that its motion depends on."""
     scalars = [case.speed, case.start, case.duration, case.settling, case.time_step, case.numerics.rtol]
-    contact = [case.contact.hardness, case.contact.damping, case.contact.spacing]
+    contact = [
+        case.contact.hardness, case.contact.running_in, case.contact.damping, case.contact.spacing,
+    ]  # fmt: skip
     sections = [content(section, file_digest) for section in (case.wheel, case.track, case.numerics)]
     heights = textures.surface.rows(0, len(textures.line))
     return content_key(f"{law}-rail", heights, scalars, contact, sections)
