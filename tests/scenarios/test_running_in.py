@@ -158,14 +158,15 @@ class TestBallOnBeam:
         np.testing.assert_array_equal(tree["surface/line"], tree["surface/line_untouched"])
 
 
-class TestWheelOnRail:
-    @pytest.fixture(scope="class")
-    def tree(self):
-        return asperity.run(RAIL)
+@pytest.fixture(scope="module")
+def tree():
+    return asperity.run(RAIL)
 
+
+class TestWheelOnRail:
     def test_the_rail_takes_the_lowering(self, tree):
         lowering = (tree["surface/line_untouched"] - tree["surface/line"]).values
-        assert lowering.min() == 0.0
+        assert lowering.min() >= 0.0
         assert lowering.max() > 50e-9
         assert tree["contact"].sizes["running_in_pass"] == 1
         prepared = prepared_of(RAIL)
