@@ -218,6 +218,19 @@ def test_strips_and_their_spread():
     assert not estimate_filter(spectra[:1], [0.0], [5e6]).spread.any()
 
 
+@pytest.mark.parametrize("normalise", ["tangent", "low-wavenumber"])
+def test_a_strip_that_is_never_touched_lets_nothing_pass(normalise):
+    """On very rough surfaces the lowest states touch some strips nowhere: their force is zero throughout."""
+    forces, z, dx = synthetic()
+    touched, silent = filter_spectra(forces, z, dx), filter_spectra(0.0 * forces, z, dx)
+    alone = estimate_filter([touched], [0.0], [5e6], normalise=normalise)
+    both = estimate_filter([touched, silent], [0.0], [5e6], normalise=normalise)
+    halved = np.maximum(alone.magnitude / np.sqrt(2.0), FLOOR)
+    assert_allclose(both.magnitude, halved, rtol=1e-5)  # alone it is cut off at one
+    assert np.isfinite(design_fir(both, dx).taps).all()
+    assert (estimate_filter([silent], [0.0], [5e6], normalise=normalise).magnitude == FLOOR).all()
+
+
 def test_polynomial_as_printed():
     spectra = [filter_spectra(*synthetic(seed=s)) for s in range(4)]
     found = estimate_filter(spectra, [0.0], [5e6], normalise="low-wavenumber", asymptote=1e3, degree=6)

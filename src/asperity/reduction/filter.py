@@ -150,7 +150,9 @@ def estimate_filter(
     low = (k <= limit[:, None]) | (np.arange(k.size) < 3)
     anchored = np.sqrt((forces * low).sum(axis=2) / (lines * low).sum(axis=2))
     printed, whole = normalise == "low-wavenumber", lines.sum(axis=0)
-    forces = forces / np.where(printed, anchored, tangent)[:, :, None] ** 2
+    # a strip that is never touched in a state has no force to scale: what it lets pass is nothing
+    scale = np.where(printed, np.where(anchored > 0.0, anchored, 1.0), tangent)
+    forces = forces / scale[:, :, None] ** 2
     excited = _excited(k, whole[0] / strips[0].bins)
     known = np.where(excited, lines, np.nan)
     if degree is None:
