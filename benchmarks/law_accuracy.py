@@ -38,6 +38,8 @@ QUICK = 4
 """Points of the small part."""
 ASIDE, FRESH = (1, 16), (2026, 20)
 """Seed and number of the random cases that widen the band, and of those that test it."""
+SCANNED_OF_FOUR = {"aside": 4, "fresh": 2}
+"""How many of four random cases roll `table`."""
 
 
 def grid() -> list[Point]:
@@ -70,8 +72,8 @@ def grid() -> list[Point]:
     return found
 
 
-def drawn(seed: int, count: int) -> list[Point]:
-    """Cases drawn at random, balls and wheels in turn, inside the ranges of the map."""
+def drawn(seed: int, count: int, scanned: int) -> list[Point]:
+    """Cases drawn at random, balls and wheels in turn, inside the map; so many of four are scanned."""
     random, found = np.random.default_rng(seed), []
     for number in range(count):
         kind = BALL if number % 2 == 0 else WHEEL
@@ -83,7 +85,8 @@ def drawn(seed: int, count: int) -> list[Point]:
             if kind == BALL
             else random.uniform(25e3, 125e3)
         )
-        found.append(Point(kind, roughness, length, ratio, load, random.uniform(0.6, 1.0)))
+        hurst = random.uniform(0.6, 1.0)
+        found.append(Point(kind, roughness, length, ratio, load, hurst, scanned=number % 4 < scanned))
     return found
 
 
@@ -92,7 +95,8 @@ def points_of(part: str) -> list[tuple[int, Point]]:
     if part == "map":
         return [(1 + 100 * number, point) for number, point in enumerate(grid())]
     seed, count = ASIDE if part == "aside" else FRESH
-    return [(1 + 100 * number + 100000 * seed, point) for number, point in enumerate(drawn(seed, count))]
+    points = drawn(seed, count, SCANNED_OF_FOUR[part])
+    return [(1 + 100 * number + 100000 * seed, point) for number, point in enumerate(points)]
 
 
 def compute(part: str, folder: Path, *, quick: bool, share: str) -> None:
