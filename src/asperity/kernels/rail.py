@@ -206,28 +206,3 @@ def roll_rail(vehicle, motion, record, law, stop, largest):  # type: ignore[no-u
         if not abs(force) <= largest:
             return False
     return True
-
-
-@compiled(cache=True, **REASSOCIATE)
-def add_passing(displacement, forces, responses, places, begin):  # type: ignore[no-untyped-def]
-    """Add to the displacement of a fixed point, m, what forces moving through one bay do, N; (runs, n).
-
-    The responses (nodes + 3, taps), m/N, are those of the point to hats of unit force at the nodes −1 … nodes
-    + 1 of the bay; lag 0 is the rising half. `places` (k,) counts in nodes from 0 on, the first at the step
-    `begin`.
-    """
-    runs, samples = forces.shape
-    taps = responses.shape[1]
-    mixed = np.empty(taps)
-    for i in range(places.shape[0]):
-        node = min(int(places[i]), responses.shape[0] - 4)
-        w0, w1, w2, w3 = cubic_weights(places[i] - node)
-        for k in range(taps):
-            mixed[k] = w0 * responses[node, k] + w1 * responses[node + 1, k]
-            mixed[k] += w2 * responses[node + 2, k] + w3 * responses[node + 3, k]
-        step = begin + i
-        length = min(taps, samples - step)
-        for run in range(runs):
-            force = forces[run, step]
-            for k in range(length):
-                displacement[run, step + k] += force * mixed[k]

@@ -150,7 +150,7 @@ def svg(figure: Figure, name: str, title: str, colours: Mapping[str, str] = COLO
                 engine.execute(figure)
             figure.set_layout_engine("none")
         figure.dpi = 110  # of the images in it
-        canvas.print_svg(text, metadata={"Date": None})
+        canvas.print_svg(text, metadata={"Date": None})  # type: ignore[no-untyped-call]
     body = text.getvalue()
     body = body[body.index("<svg") :]
     body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)

@@ -157,7 +157,7 @@ def _weights(
     def row(start: int) -> NDArray[np.float64]:
         at = start + np.arange(taps) * (speed * time_step / spacing)  # in nodes
         base = np.floor(at).astype(int)
-        cubic, result = _cubic(at - base), np.zeros(taps)
+        cubic, result = lagrange_weights(at - base), np.zeros(taps)
         for bay in range(int(base[-1] + 2) // positions + 1):
             grid = near if bay == 0 else far
             outgoing, incoming = shapes[grid]
@@ -183,8 +183,8 @@ def _weights(
     return weights
 
 
-def _cubic(share: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Weights of the nodes −1, 0, 1, 2 for places between 0 and 1 (Lagrange)."""
+def lagrange_weights(share: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weights (4, ...) of the nodes −1, 0, 1, 2 for places (...) between 0 and 1, of a cubic."""
     before, after, beyond = share + 1.0, share - 1.0, share - 2.0
     return np.stack(
         [

@@ -31,4 +31,3 @@ def roll_a_wheel() -> None:
     for each in rails:
         law = HertzLaw(1e11, StateTexture.unfiltered(np.zeros(8), 0.2))
         roll_wheel(each, wheel, law, start=0.0, duration=4e-6, settling=0.0)
-    rail.add_passing(np.zeros((1, 4)), np.zeros((1, 4)), np.zeros((4, 2)), np.zeros(1), 0)

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.fft import irfft, next_fast_len, rfft
 
 from asperity.errors import InputError
-from asperity.kernels.rail import add_passing
 from asperity.kinds.wheel_on_rail.roll import WheelRolling
 from asperity.progress import Progress
 from asperity.structures.hat_response import ZONES, HatResponse
-from asperity.structures.moving_kernel import MovingKernel
+from asperity.structures.moving_kernel import MovingKernel, lagrange_weights
 
 NODES = 24
 """Places of the force in one bay; between them responses are interpolated by a cubic."""
@@ -44,8 +44,9 @@ def passed_points(
     first, stride = runs[0].history_start, kernel.speed * kernel.time_step
     settled = forces.shape[1] - len(runs[0].time)
     displacement = np.zeros((len(runs), len(places), forces.shape[1]))
+    near, far = (_Waves(kernel, zones) for zones in (ZONES, 1))
     for i, place in enumerate(places):
-        _pass(displacement[:, i], forces, _Point(kernel, float(place)), first, stride, progress)
+        _pass(displacement[:, i], forces, _Point(near, far, float(place)), first, stride, progress)
     padded = np.pad(displacement, ((0, 0), (0, 0), (3, 3)), mode="reflect", reflect_type="odd")
     velocity = np.zeros_like(displacement)
     for offset, weight in enumerate(DIFFERENCE):
@@ -76,38 +77,77 @@ def _pass(
             begin = max(0, math.ceil((begins - first) / stride))
             end = min(steps, math.ceil((begins + spacing - first) / stride))
             places = (first + stride * np.arange(begin, end) - begins) / spacing * NODES
-            add_passing(displacement, forces, responses, places, begin)
+            _add(displacement[:, begin:], forces[:, begin:end], responses, places)
             if progress is not None:
                 progress(done, bays[1] - bays[0] + 1, f"rail at {point.bay * spacing + point.at:.6g} m")
+
+
+def _add(
+    displacement: NDArray[np.float64],
+    forces: NDArray[np.float64],
+    responses: NDArray[np.float64],
+    places: NDArray[np.float64],
+) -> None:
+    """Add to the displacement of a point, m, what forces (runs, k), N, moving through one bay do from now on.
+
+    The responses (nodes + 3, taps), m/N, are those to hats of unit force at the nodes −1 … nodes + 1 of the
+    bay; places (k,) count in nodes from 0 on. Each force is shared by the four nodes around it, and what a
+    node gets is convolved with its response.
+    """
+    nodes, taps = responses.shape
+    node = np.minimum(places.astype(int), nodes - 4)
+    shares = lagrange_weights(places - node)
+    length = min(len(places) + taps - 1, displacement.shape[1])
+    period = next_fast_len(len(places) + taps - 1, real=True)
+    transfer = rfft(responses, period)
+    for run, force in enumerate(forces):
+        shared = np.zeros((nodes, len(places)))
+        for offset, share in enumerate(shares):
+            shared[node + offset, np.arange(len(places))] = share * force
+        spectrum = np.einsum("nf,nf->f", rfft(shared, period), transfer)
+        displacement[run, :length] += irfft(spectrum, period)[:length]
+
+
+class _Waves:
+    """Shapes of a track's waves at the nodes of a bay, with which responses to hats of force are found."""
+
+    def __init__(self, kernel: MovingKernel, zones: int) -> None:
+        taps = kernel.weights.shape[1]
+        self.grid = HatResponse(kernel.track, kernel.time_step, taps, zones)
+        self.waves = self.grid.waves
+        self.amplitude = self.grid.hat * self.waves.coefficients
+        nodes = kernel.spacing / NODES * np.arange(NODES)
+        self.outgoing = [self.waves.outgoing(x) for x in nodes]
+        self.incoming = [self.waves.incoming(x) for x in nodes]
 
 
 class _Point:
     """A point of the rail, m, and its responses to hats of force elsewhere, as long as a kernel."""
 
-    def __init__(self, kernel: MovingKernel, place: float) -> None:
-        self.spacing = kernel.spacing
+    def __init__(self, near: _Waves, far: _Waves, place: float) -> None:
+        self.spacing = near.waves.spacing
         self.bay = math.floor(place / self.spacing)
         self.at = place - self.bay * self.spacing
-        taps = kernel.weights.shape[1]
-        self.near, self.far = (
-            HatResponse(kernel.track, kernel.time_step, taps, zones) for zones in (ZONES, 1)
-        )
-        waves = self.far.waves
-        inside = [self.spacing / NODES * node for node in range(NODES)]
-        right = [waves.outgoing(x) for x in inside]
-        left = [waves.incoming(x) for x in inside]
-        factor = waves.multipliers  # of an outgoing wave over a bay; its inverse of an incoming one
-        amplitude = self.far.hat * waves.coefficients
-        right = [right[-1] / factor, *right, right[0] * factor, right[1] * factor]
-        left = [left[-1] * factor, *left, left[0] / factor, left[1] / factor]
-        self._right = amplitude * waves.incoming(self.at) * np.array(right)
-        self._left = amplitude * waves.outgoing(self.at) * np.array(left)
+        self._known = [
+            (of, of.amplitude * of.waves.incoming(self.at), of.amplitude * of.waves.outgoing(self.at))
+            for of in (near, far)
+        ]
 
     def responses(self, bay: int) -> NDArray[np.float64]:
-        """Responses, (nodes, taps), to forces at nodes −1 … NODES + 1 of a bay, counted from the point's."""
-        if abs(bay) > 1:
-            shapes = self._right if bay > 0 else self._left
-            return self.far.response((shapes * self.far.waves.multipliers ** abs(bay)).sum(axis=1))
-        places = [self.spacing * (bay + node / NODES) for node in range(-1, NODES + 2)]
-        waves = self.near.waves
-        return self.near.response(np.array([self.near.hat * waves.receptance(x, self.at) for x in places]))
+        """Responses, (nodes + 3, taps), to forces at nodes −1 … NODES + 1 of a bay; the point's is bay 0."""
+        of, incoming, outgoing = self._known[abs(bay) > 1]
+        right, left = {}, {}  # what the point and whole bays contribute
+        for bays in (bay - 1, bay, bay + 1):
+            over = of.waves.multipliers ** abs(bays)
+            right[bays], left[bays] = incoming * over, outgoing * over
+
+        def receptance(place: int) -> NDArray[np.complex128]:
+            bays, node = divmod(place, NODES)
+            if place * self.spacing >= NODES * self.at:
+                (first, second) = right[bays] * of.outgoing[node]
+            else:
+                (first, second) = left[bays] * of.incoming[node]
+            return first + second
+
+        places = range(bay * NODES - 1, (bay + 1) * NODES + 2)
+        return of.grid.response(np.array([receptance(place) for place in places]))
