@@ -36,6 +36,7 @@ highest_frequency = "2 kHz"
 def program(folder, *words, code=START, **more):
     """Start the program; its cache lies beside its results."""
     environment = os.environ | {"ASPERITY_CACHE": str(folder / "cache")} | more.pop("env", {})
+    environment.pop("COVERAGE_PROCESS_CONFIG", None)  # what measures it breaks by signals and full disks
     return subprocess.Popen(
         [sys.executable, "-c", code, *words],
         cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, **more,

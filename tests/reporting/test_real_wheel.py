@@ -43,8 +43,8 @@ def ticks_of(axes):
 
 
 def test_kind_of_case_chooses_the_chapters(real_runs, tree):
-    assert chapters_of(tree) == WHEEL_ON_RAIL
-    assert chapters_of(real_runs["ball-on-beam"]) == BALL_ON_BEAM
+    assert chapters_of(tree) == (*WHEEL_ON_RAIL, CONVERGENCE)
+    assert chapters_of(real_runs["ball-on-beam"]) == (*BALL_ON_BEAM, CONVERGENCE)
     ball = {part.name for chapter in BALL_ON_BEAM for part in chapter.parts}
     assert not {"receptance", "roughness", "sound_power", "displacement"} & ball
 
@@ -52,7 +52,7 @@ def test_kind_of_case_chooses_the_chapters(real_runs, tree):
 def test_result_without_a_kind_is_known_by_its_track(tree):
     tree = tree.copy()
     tree["scenario"].attrs = {}
-    assert chapters_of(tree) == WHEEL_ON_RAIL
+    assert chapters_of(tree) == (*WHEEL_ON_RAIL, CONVERGENCE)
 
 
 def test_numbers_survive_the_csv_files_to_the_last_bit(tree, folder):

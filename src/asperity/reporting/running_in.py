@@ -93,7 +93,9 @@ def condition_table(tree: DataTree) -> ReportTable | None:
         f"{in_percent(share)} of the area that carried pressure has yielded. Before: the first contact, with "
         "the pressure capped at the hardness. All else in this report is of the surface after running-in."
     )
-    return ReportTable("running_in", "Running-in", ["quantity", "before", "after", "change"], rows, note)
+    return ReportTable(
+        "running_in_statistics", "Running-in", ["quantity", "before", "after", "change"], rows, note
+    )
 
 
 def passes_table(tree: DataTree) -> ReportTable | None:
