@@ -17,6 +17,7 @@ from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
 from asperity.kinds.wheel_on_rail.figures.motion import point_labels
 from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
 from asperity.laws import spec_of
+from asperity.reporting.chapter import CONVERGENCE
 
 PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
 
