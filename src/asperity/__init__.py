@@ -19,6 +19,7 @@ _HOME = {
     "Track": "structures.track",
     "Wheel": "structures.wheel",
     "laws": "laws",
+    "listen": "reporting.sound",
     "material": "reference.materials",
     "open_result": "running",
     "prediction_band": "studies.ensemble",

@@ -85,6 +85,17 @@ def call(*arguments, code=0):
 # --- run and demo
 
 
+def test_a_run_is_written_as_sounds(ran):
+    folder, _ = ran
+    told = call("listen", str(folder / "run.nc")).stdout
+    files = list((folder / "sounds").glob("*.wav"))
+    assert f"{len(files)} files, all on one scale" in " ".join(told.split())
+    assert (
+        "received 'drums'; allowed: acceleration"
+        in call("listen", str(folder), "--what", "drums", code=2).stderr
+    )
+
+
 def test_run_writes_results_and_report(ran):
     folder, outcome = ran
     tree = read_result(folder)

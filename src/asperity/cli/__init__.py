@@ -241,6 +241,28 @@ def surface(
 
 
 @main.command()
+@click.argument("run", type=click.Path(path_type=Path))
+@click.option(
+    "--what", metavar="NAME", help="Variable of 'rolling' in the run. [default: acceleration, else velocity]"
+)
+@click.option(
+    "--matched", is_flag=True, help="Make all as loud as each other. [default: louder laws are louder]"
+)
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    type=click.Path(path_type=Path),
+    help="Folder of the sounds. [default: sounds, beside the run]",
+)
+def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> None:
+    """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz."""
+    from asperity.cli.listening import listen_into
+
+    listen_into(run, directory, what, matched=matched)
+
+
+@main.command()
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
 def cache(clear: bool) -> None:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left."""

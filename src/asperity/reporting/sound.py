@@ -1,0 +1,185 @@
+"""What a run sounds like: its signals as WAV files."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import wave
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, rfft, rfftfreq
+from xarray import DataArray, DataTree
+
+from asperity.arguments import file_path, shown
+from asperity.comma_separated import write_csv
+from asperity.errors import InputError
+from asperity.files import write_bytes
+from asperity.schema.rolling import LAW, TIME
+from asperity.spectra import a_weighting
+
+RATE = 48_000
+"""Samples of a WAV file per second."""
+PEAK = 10 ** (-1.0 / 20.0)
+"""Largest sample of all, as a share of what a file can hold: 1 dB is left for players that filter."""
+FADE = 0.01
+"""Time over which a sound begins and ends, s: a hard edge would click."""
+HEARD = ("m/s2", "m/s", "N")
+"""Units of what is listened to, the first that a run holds by default: displacements rumble below hearing."""
+TABLE = "sounds.csv"
+"""What each file is, and what its largest possible sample stands for."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sound:
+    """A signal at 48 kHz, without its mean."""
+
+    quantity: str  # name of the variable
+    law: str
+    place: str  # of the sensor or point, as ``"0.5 m"``; empty where there is one only
+    unit: str
+    samples: NDArray[np.float64]  # (n,), in its unit
+
+    @property
+    def file_name(self) -> str:
+        """Name of its file, which the names in a foreign result lead nowhere else."""
+        words = "-".join(filter(None, (self.quantity, self.law, self.place)))
+        return re.sub(r"[^\w.+-]", "_", words).lstrip(".") + ".wav"
+
+    @property
+    def weighted(self) -> float:
+        """Root mean square after A-weighting, in its unit."""
+        n = len(self.samples)
+        with np.errstate(over="ignore"):
+            gain = 10 ** (a_weighting(rfftfreq(n, 1.0 / RATE)) / 20.0)
+        return float(np.sqrt(np.mean(irfft(gain * rfft(self.samples), n) ** 2)))
+
+
+def listen(
+    result: DataTree, path: str | os.PathLike[str], *, what: str | None = None, matched: bool = False
+) -> list[Path]:
+    """Write what a run sounds like: a WAV file for each law and place, and a table of what they are.
+
+    Parameters
+    ----------
+    result : xarray.DataTree
+        The result of a run.
+    path : path
+        Folder that receives the files, mono, 48 kHz, 16 bits, and ``sounds.csv``, which says what a full
+        sample stands for. It is made where it is missing.
+    what : str, optional
+        A variable of the group ``rolling``, in m/s², m/s or N; by default an acceleration, else a velocity.
+    matched : bool
+        Make all as loud as each other, by A-weighted level. By default all have the same scale, so that
+        louder laws are heard as such.
+
+    Returns
+    -------
+    list of Path
+        The WAV files, by law and place.
+
+    Raises
+    ------
+    InputError
+        If the run holds nothing of that name, or `path` is no path.
+    ComputationError
+        If a file cannot be written.
+
+    Notes
+    -----
+    Vibration is heard as it is, neither radiated nor transmitted. Means are taken off; what lies above 24 kHz
+    is left out. Both ends fade over 10 ms.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> files = asperity.listen(asperity.run(case), "sounds")
+    >>> files[0].suffix
+    '.wav'
+    """
+    if not isinstance(result, DataTree):
+        raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
+    folder = file_path("sounds", path, "the path of a folder")
+    sounds = sounds_of(result, what)
+    loudest = max(sound.weighted for sound in sounds)
+    scale = {id(s): loudest / s.weighted if matched and s.weighted > 0.0 else 1.0 for s in sounds}
+    largest = max(scale[id(s)] * np.abs(s.samples).max() for s in sounds) or 1.0
+    full = [largest / PEAK / scale[id(sound)] for sound in sounds]
+    files = [
+        write_bytes(folder / sound.file_name, wav_bytes(sound.samples / each))
+        for sound, each in zip(sounds, full, strict=True)
+    ]
+    heading = ["file", "quantity", "law", "place", "unit", "full sample", "A-weighted rms"]
+    rows = [
+        [file.name, s.quantity, s.law, s.place, s.unit, each, s.weighted]
+        for file, s, each in zip(files, sounds, full, strict=True)
+    ]
+    write_csv(folder / TABLE, heading, rows)
+    return files
+
+
+def sounds_of(tree: DataTree, what: str | None = None) -> list[Sound]:
+    """Signals of a variable of the run in time, of each law and place."""
+    found = _heard(tree)
+    name = next(iter(found), None) if what is None else what
+    if name not in found:
+        allowed = ", ".join(found) or "nothing, for the run holds no signal of two samples or more"
+        raise InputError("what to listen to", shown(name), allowed)
+    values = found[name]
+    time = tree["rolling"].to_dataset()[TIME.name].values
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    places = [dim for dim in values.dims if dim not in (LAW.name, TIME.name)]
+    sounds = []
+    for index in product(range(values.sizes[LAW.name]), *(range(values.sizes[dim]) for dim in places)):
+        one = values.isel(dict(zip((LAW.name, *places), index, strict=True)))
+        where = (f"{float(one[dim]):.6g} {one[dim].attrs.get('units', '')}".strip() for dim in places)
+        samples = at_rate(one.values.astype(float), step)
+        law, unit = str(one[LAW.name].item()), str(values.attrs["units"])
+        sounds.append(Sound(name, law, ", ".join(where), unit, samples))
+    return sounds
+
+
+def _heard(tree: DataTree) -> dict[str, DataArray]:
+    """Variables that can be listened to, in the order of `HEARD`."""
+    if "rolling" not in tree.children or len(tree["rolling"].to_dataset().get(TIME.name, ())) < 2:
+        return {}
+    signals = [
+        values
+        for values in tree["rolling"].to_dataset().data_vars.values()
+        if {LAW.name, TIME.name} <= set(values.dims)
+        and values.attrs.get("units") in HEARD
+        and np.isfinite(values.values).all()
+    ]
+    return {str(v.name): v for v in sorted(signals, key=lambda v: HEARD.index(v.attrs["units"]))}
+
+
+def at_rate(signal: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+    """Signal (n,) of a time step, s, without its mean and with soft ends, at 48 kHz.
+
+    By its Fourier series: exact for what repeats in the record, and longer or shorter than it by less than a
+    sample, which changes pitch by less than that.
+    """
+    n = len(signal)
+    edge = min(round(FADE / step), n // 2)
+    rise = 0.5 - 0.5 * np.cos(np.pi * (np.arange(edge) + 0.5) / max(edge, 1))
+    soft = signal - signal.mean()
+    soft[:edge] *= rise
+    soft[n - edge :] *= rise[::-1]
+    wanted = max(round(n * step * RATE), 2)
+    return np.asarray(irfft(rfft(soft)[: wanted // 2 + 1], wanted) * (wanted / n))
+
+
+def wav_bytes(samples: Sequence[float] | NDArray[np.float64]) -> bytes:
+    """A mono WAV file, 48 kHz, 16 bits, of samples between −1 and 1."""
+    file = io.BytesIO()
+    with wave.open(file, "wb") as sound:
+        sound.setnchannels(1)
+        sound.setsampwidth(2)
+        sound.setframerate(RATE)
+        sound.writeframes(np.round(32767 * np.clip(samples, -1.0, 1.0)).astype("<i2").tobytes())
+    return file.getvalue()
