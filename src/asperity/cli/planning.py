@@ -100,8 +100,9 @@ def _running_in(prepared: PreparedCase) -> list[tuple[str, str]]:
         return []
     count = running_in_passes(prepared.case)
     often = f"to shakedown, about {count}" if isinstance(passes, str) else f"{count}"
+    often += " pass" if count == 1 else " passes"
     positions = running_in_positions(prepared.shape, prepared.textures)
-    words = f"{often} passes over {positions} positions"
+    words = f"{often} over {positions} positions"
     text = f"{words} under {prepared.shape.load:.3g} N at {hardness / 1e9:.3g} GPa"
     return [("running in", f"{text}; if interrupted, it goes on after its last pass")]
 
