@@ -74,11 +74,15 @@ def patches(
                 f"no more than the map's {heights.shape[0]} × {heights.shape[1]} cells at this spacing",
                 "Choose a smaller contact.window or provide larger maps.",
             )
-        share = count // len(maps) + (index < count % len(maps))
-        for i, j in _spread(spare, max(share, 1)):
+        for i, j in _spread(spare, samples_of_maps(len(maps), count)[index]):
             cut = heights[i : i + shape[0], j : j + shape[1]]
             result.append(cut - weighted_mean(cut, weights))
     return result
+
+
+def samples_of_maps(maps: int, count: int) -> list[int]:
+    """How many of at least so many samples are cut out of each of some maps."""
+    return [max(count // maps + (index < count % maps), 1) for index in range(maps)]
 
 
 def _spread(spare: tuple[int, int], count: int) -> list[tuple[int, int]]:

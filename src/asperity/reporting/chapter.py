@@ -11,7 +11,7 @@ from asperity.reporting import convergence
 from asperity.reporting.contact_figures import CONTACT as CONTACT_PARTS
 from asperity.reporting.part import Part
 from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
-from asperity.reporting.tables import ReportTable, validity_table
+from asperity.reporting.tables import ReportTable, population_table, validity_table
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,10 @@ class Chapter:
 
 
 CONTACT = Chapter(
-    "contact", "Contact", (*CONTACT_PARTS, HEIGHTS), (validity_table, condition_table, passes_table)
+    "contact",
+    "Contact",
+    (*CONTACT_PARTS, HEIGHTS),
+    (validity_table, population_table, condition_table, passes_table),
 )
 CONVERGENCE = Chapter(
     "convergence", "Convergence", (), (convergence.settings_table, convergence.changes_table)

@@ -102,6 +102,31 @@ def homogeneity_table(tree: DataTree) -> ReportTable | None:
     return ReportTable("homogeneity", "Homogeneity of the measured maps", head, rows, note)
 
 
+def population_table(tree: DataTree) -> ReportTable | None:
+    """Whether samples and path are one population and one stiffness is enough, and what follows in dB."""
+    found = json_list(tree, contact.POPULATION)
+    if not found:
+        return None
+    rows = [
+        [
+            text_cell(entry.get("question", "")),
+            Cell(str(entry.get("value", "")), _GRADED.get(str(entry.get("grade", "")), "")),
+            text_cell(entry.get("answer", "")),
+        ]
+        for entry in found
+    ]
+    note = (
+        "Stiffness: dF/dr of each sample under the load. Maps and parts of the path are told apart by "
+        "analysis of variance of their levels, at p ≤ 0.01. Direction: spectra of lines along the path over "
+        "those of lines across, for wavelengths from half the length of the contact up. Shaded: more than "
+        "1 dB, 3 dB."
+    )
+    return ReportTable("population", "One population?", ["question", "here", "answer"], rows, note)
+
+
+_GRADED = {"out of range": "far", "warning": "off"}
+
+
 def validity_table(tree: DataTree) -> ReportTable | None:
     """Quantities that bound the range in which the laws hold, with their limits."""
     found = json_list(tree, contact.VALIDITY)

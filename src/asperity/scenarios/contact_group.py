@@ -14,6 +14,7 @@ from asperity.reduction.filter import punch_filter
 from asperity.reduction.fir import LineFilter, punch_taps, response
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.population import Answer, answers
 from asperity.scenarios.running_in import RunInCase
 from asperity.scenarios.validity import Finding, rms_slope_of
 from asperity.schema import Attribute, Entry, attributes, contact, variables
@@ -51,6 +52,7 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         contact.RMS_SLOPE: rms_slope_of(chain),
         contact.VALIDITY: json.dumps([_row(finding) for finding in found], ensure_ascii=False),
         contact.SAMPLES: len(ensemble.forces),
+        contact.POPULATION: json.dumps([_asked(answer) for answer in answers(chain)], ensure_ascii=False),
     }
     state = ensemble.states
     safe = np.where(state > 0.0, state, np.inf)
@@ -104,6 +106,12 @@ def _row(finding: Finding) -> dict[str, str]:
         **{k: getattr(finding, k) for k in ("quantity", "value", "limit", "meaning", "remedy")},
         "grade": grade,
     }
+
+
+def _asked(answer: Answer) -> dict[str, Any]:
+    grade = "" if answer.grade is None else answer.grade.value
+    told = {name: getattr(answer, name) for name in ("question", "value", "answer")}
+    return told | {"effect": round(answer.effect, 3), "grade": grade}
 
 
 def _filters(chain: Chain[Any]) -> dict[Entry, Any]:

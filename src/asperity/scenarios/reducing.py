@@ -46,6 +46,7 @@ class Reduction:
     semi_axes: NDArray[np.float64]  # (k, 2), of the nominal patch at the mean force of each state, m
     filters: LineFilters  # of the states that carry load, on their own approaches, by normalisation
     working: Contact  # first sample under the working load
+    stiffnesses: NDArray[np.float64]  # (N,), tangent stiffness of each sample under the working load, N/m
     working_approach: float  # mean of the samples under the working load, m
     area_ratio: float  # contact area under the working load over that of smooth bodies, mean
     isolated_share: float  # of that load on cells that touch alone, mean
@@ -117,6 +118,7 @@ def reduce(
         np.array([shape.axes(f) for f in mean]),
         filters,
         contacts[0],
+        np.array([half_space.tangent_stiffness(c.pressure) for c in contacts]),
         working,
         float(np.mean([c.area for c in contacts])) / smooth.area,
         float(np.mean([isolated_share(c.pressure) for c in contacts])),

@@ -13,6 +13,7 @@ import numpy as np
 from asperity.errors import Grade, OutOfRangeWarning, percent
 from asperity.laws import spec_of
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.population import EFFECT, answers
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for
 
 _CUT_OFF = "share of contacts that the window cuts off"
@@ -52,9 +53,9 @@ class Finding:
 
 def findings(chain: Chain[Any]) -> list[Finding]:
     """Hold a case to the range in which its laws are known to hold; nothing is found without samples."""
-    return (
-        [] if chain.reduction is None else [_area(chain), _slope(chain), _isolated(chain), *_cut_off(chain)]
-    )
+    if chain.reduction is None:
+        return []
+    return [_area(chain), _slope(chain), _isolated(chain), *_cut_off(chain), *_populations(chain)]
 
 
 def warn_of_findings(found: list[Finding]) -> None:
@@ -171,6 +172,22 @@ def _cut_off(chain: Chain[Any]) -> Iterator[Finding]:
             "",
             (),
         )
+
+
+def _populations(chain: Chain[Any]) -> Iterator[Finding]:
+    """Samples and path that are not one population, so that what is reduced from samples does not fit all."""
+    for answer in answers(chain):
+        if answer.grade is not None:
+            yield Finding(
+                answer.question,
+                answer.value,
+                f"an effect of up to {EFFECT[0]:g} dB",
+                answer.grade,
+                answer.answer,
+                "Take more samples or a longer path; `table` has the stiffness of every place.",
+                answer.brief,
+                answer.laws,
+            )
 
 
 def _um(length: float, *, down: bool = False) -> str:

@@ -134,3 +134,9 @@ VALIDITY = _attribute(
     "validity", "JSON", "what bounds the range of the laws: quantity, value, limit, …", _SAMPLES
 )
 SAMPLES = _attribute("samples", "1", "number of samples", _SAMPLES)
+POPULATION = _attribute(
+    "population",
+    "JSON",
+    "whether samples and path are one population: question, value, answer, effect on levels in dB",
+    _SAMPLES,
+)
