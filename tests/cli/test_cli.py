@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import asperity
 from asperity.cli import main
 from asperity.kinds.cases import load_case, parse_case
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
@@ -83,6 +84,14 @@ def call(*arguments, code=0):
 
 
 # --- run and demo
+
+
+def test_what_to_cite_for_a_run_is_said(ran):
+    folder, _ = ran
+    told = call("cite", str(folder)).stdout.splitlines()
+    assert told[0].startswith(f"asperity {asperity.__version__}: ")
+    assert told[1:] == json.loads(read_result(folder).attrs["citations"])
+    assert any("Lundberg" in line for line in told)
 
 
 def test_a_run_is_written_as_sounds(ran):

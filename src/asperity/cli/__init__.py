@@ -263,6 +263,15 @@ def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -
 
 
 @main.command()
+@click.argument("run", type=click.Path(path_type=Path))
+def cite(run: Path) -> None:
+    """Say what to cite for a RUN (run.nc, or its folder): the program and its sources."""
+    from asperity.cli.citing import show_citations
+
+    show_citations(run)
+
+
+@main.command()
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
 def cache(clear: bool) -> None:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left."""
