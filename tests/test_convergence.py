@@ -275,6 +275,8 @@ class TestKept:
         table = changes_table(ball)
         assert table.head == ["band / Hz", *ball["convergence"]["setting"].values.tolist()]
         assert len(table.rows) == ball["spectra"].sizes["band"]
+        cells = [cell.text for row in table.rows for cell in row[1:]]
+        assert not {"+0.00", "−0.00"} & set(cells)
         assert ball["convergence"].attrs["verdict"] in ball.attrs["verdict"]
 
 

@@ -104,9 +104,7 @@ def _look(size: float) -> str:
 def _change(value: float, doubt: bool) -> Cell:
     if doubt:
         return Cell(f"({signed(value)})", "number faint")
-    return Cell(
-        f"{value:+.2f}".replace("-", "−") if np.isfinite(value) else "–", "number" + _look(abs(value))
-    )
+    return Cell(_signed(value) if np.isfinite(value) else "–", "number" + _look(abs(value)))
 
 
 def _percent(share: float) -> str:

@@ -37,7 +37,7 @@ FEWEST_REPEATED = 3
 """Samples beyond the first of each map, from which their scatter inside maps is known."""
 PIECE_LENGTHS = 4
 """Length of a piece in lengths of the contact: neighbours are then all but independent."""
-WAVES = 3
+WAVES = 2
 """Waves that a sample must hold along and across for its direction to be judged."""
 
 
@@ -240,7 +240,7 @@ def _direction(chain: Chain[Any]) -> Iterator[Answer]:
 def along_over_across(maps: Sequence[HeightMap], patch: float) -> tuple[float, tuple[float, float]] | None:
     """Mean level difference of the spectra along and across, dB, and the wavelengths it is taken over, m.
 
-    From a third of the shorter side of the samples to half the length of the contact, m, but no less than
+    From half the shorter side of the samples to half the length of the contact, m, but no less than
     four points; None where that is no octave.
     """
     longest = min(min(surface.size) for surface in maps) / WAVES
