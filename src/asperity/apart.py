@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import signal
 import subprocess
 import sys
 from typing import Any, BinaryIO
@@ -13,13 +14,16 @@ from asperity.errors import InputError
 from asperity.files import amount
 
 SECONDS = 20.0
-"""Time that a file has to be opened in, plus …"""
+"""Processor time that a file has to be opened in, plus …"""
 BYTES_PER_SECOND = 20e6
 """… its size over this."""
+PATIENCE = 5.0
+"""How many times as long that may take where other work is done beside it."""
 MEMORY = 8 * 2**30
 """Bytes of address space that opening a file may need."""
 _REFUSED = 2
 _FAILED = 3
+_OUT_OF_TIME = -getattr(signal, "SIGXCPU", 0) or None
 _MOST_WORDS = 300
 
 _START = (
@@ -42,13 +46,14 @@ def apart(function: str, arguments: list[Any], source: str, size: int, kind: str
     allowed = f"an intact {kind} file"
     try:
         done = subprocess.run(
-            command, input=request, capture_output=True, timeout=seconds, env=environment, check=False
+            command, input=request, capture_output=True, timeout=PATIENCE * seconds, env=environment, check=False
         )
     except subprocess.TimeoutExpired:
-        received = f"a file that takes more than {seconds:.0f} s to open"
-        raise InputError(source, received, allowed, _DAMAGED) from None
+        raise InputError(source, _too_long(PATIENCE * seconds), allowed, _DAMAGED) from None
     if done.returncode == 0:
         return done.stdout
+    if done.returncode == _OUT_OF_TIME:
+        raise InputError(source, _too_long(seconds), allowed, _DAMAGED)
     words = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
     if done.returncode == _REFUSED:
         raise InputError(*json.loads(words))
@@ -59,6 +64,10 @@ def apart(function: str, arguments: list[Any], source: str, size: int, kind: str
 
 
 _DAMAGED = "It is damaged, or not of this format; export it again."
+
+
+def _too_long(seconds: float) -> str:
+    return f"a file that takes more than {seconds:.0f} s to open"
 
 
 def answer() -> None:

@@ -270,11 +270,22 @@ def test_instrument_file_that_lacks_something(measured):
 def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, message):
     package(tmp_path, monkeypatch, code)
     monkeypatch.setattr("asperity.apart.SECONDS", 3.0)
+    monkeypatch.setattr("asperity.apart.PATIENCE", 1.0)
     (tmp_path / "a.plu").write_bytes(b"content")
     with pytest.raises(InputError, match=message) as caught:
         read_surface(tmp_path / "a.plu")
     assert len(str(caught.value)) < 700
     assert "a.plu: received" in str(caught.value)
+
+
+def test_other_work_on_the_machine_takes_no_time_from_a_file(tmp_path, monkeypatch):
+    """What is limited is the processor time: a file that only has to wait is read on."""
+    code = "import time\ndef open_topography(path): time.sleep(2.5); raise KeyError('read on')"
+    package(tmp_path, monkeypatch, code)
+    monkeypatch.setattr("asperity.apart.SECONDS", 1.5)
+    (tmp_path / "a.plu").write_bytes(b"content")
+    with pytest.raises(InputError, match="read on"):
+        read_surface(tmp_path / "a.plu")
 
 
 @pytest.mark.parametrize(

@@ -197,6 +197,7 @@ def study(
 @click.option("--decimal", metavar="MARK", help="Decimal mark of a text, '.' or ',', where it is in doubt.")
 @click.option("--transpose", is_flag=True, help="Exchange x and y: roll along the other direction.")
 @click.option("--fill", is_flag=True, help="Fill points without a height.")
+@click.option("--spikes", is_flag=True, help="Take spikes for points without a height.")
 @click.option(
     "--lines/--map",
     default=None,
@@ -219,6 +220,7 @@ def surface(
     decimal: str | None,
     transpose: bool,
     fill: bool,
+    spikes: bool,
     lines: bool | None,
     picture: Path | None,
 ) -> None:
@@ -237,6 +239,7 @@ def surface(
         decimal=decimal,
         transpose=transpose,
         fill=fill,
+        spikes=spikes,
     )
 
 

@@ -76,6 +76,11 @@ class MeasuredMap(Section):
         goes_with="file",
     )
     fill: YesNo = key(False, "fill points without a height", goes_with="file")
+    spikes: YesNo = key(
+        False,
+        "take points that stand out of their neighbours by 8 standard deviations for points without a height",
+        goes_with="file",
+    )
     form: Annotated[str, BeforeValidator(Choice(("plane", "quadratic")))] = key(
         "plane", "form that is removed from each measured map", goes_with="file"
     )

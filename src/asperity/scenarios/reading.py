@@ -12,7 +12,7 @@ from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.readers.spelling import in_case, spelled
 
-_MAP_KEYS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill")}
+_MAP_KEYS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill", "spikes")}
 _LINE_KEYS = {"array": "line_array", "height_unit": "line_unit", "pixel": "line_spacing"}
 
 
@@ -25,6 +25,8 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
             allowed = f"0 to {len(maps) - 1}, of the maps in memory"
             raise InputError("surface.index", surface.index, allowed)
         chosen = maps if surface.index is None else (maps[surface.index],)
+        if surface.spikes:
+            chosen = tuple(each.without_spikes() for each in chosen)
         return [each.filled() if surface.fill else each for each in chosen]
     with spelled(in_case("surface", _MAP_KEYS)):
         read = read_surfaces if surface.index is None else partial(read_surface, index=surface.index)
@@ -34,6 +36,7 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
             height_unit=surface.height_unit,
             pixel=surface.pixel,
             fill=surface.fill,
+            spikes=surface.spikes,
         )
     return found if isinstance(found, list) else [found]
 

@@ -121,6 +121,18 @@ class HeightMap:
 
         return fill(self)
 
+    def without_spikes(self) -> HeightMap:
+        """Return the map with its spikes as points without a height.
+
+        Returns
+        -------
+        HeightMap
+            See `asperity.surfaces.spikes.spikes`; `filled` interpolates the points.
+        """
+        from asperity.surfaces.spikes import without_spikes
+
+        return without_spikes(self)
+
     def band_limited(self, longest: float | None = None, shortest: float | None = None) -> HeightMap:
         """Return the map with only the wavelengths between two limits.
 

@@ -48,6 +48,7 @@ def read_surface(
     decimal: str | None = None,
     transpose: bool = False,
     fill: bool = False,
+    spikes: bool = False,
 ) -> HeightMap | Profile:
     """Read one measured surface or line.
 
@@ -77,6 +78,8 @@ def read_surface(
         Exchange x and y, so that the file's other direction is rolled along.
     fill : bool
         Interpolate missing points, see `HeightMap.filled`. They are reported in any case.
+    spikes : bool
+        Take spikes for points without a height, before those are filled: see `HeightMap.without_spikes`.
 
     Returns
     -------
@@ -111,7 +114,7 @@ def read_surface(
         raise InputError(str(path), received, "one sample", remedy)
     what = f"index of a sample in {path}"
     chosen = 0 if index is None else whole(what, index, allowed, at_least=0, at_most=len(surfaces) - 1)
-    return _finished([surfaces[chosen]], transpose, fill)[0]
+    return _finished([surfaces[chosen]], transpose, fill, spikes)[0]
 
 
 def read_surfaces(
@@ -124,6 +127,7 @@ def read_surfaces(
     decimal: str | None = None,
     transpose: bool = False,
     fill: bool = False,
+    spikes: bool = False,
 ) -> list[HeightMap]:
     """Read all samples of an ensemble of maps, as `read_surface` does: a list, of one for a single map.
 
@@ -133,7 +137,7 @@ def read_surfaces(
     maps = [surface for surface in surfaces if isinstance(surface, HeightMap)]
     if len(maps) < len(surfaces):
         raise InputError(str(path), "a line", "a height map", "Read it with read_surface, or give a map.")
-    return _finished(maps, transpose, fill)
+    return _finished(maps, transpose, fill, spikes)
 
 
 def _read(path: str | Path, hints: Hints) -> list[Surface]:
@@ -186,16 +190,26 @@ def _by_members(file: Path) -> Reader | None:
     return None
 
 
-def _finished(surfaces: list[S], transpose: bool, fill: bool) -> list[S]:
-    for name, flag in (("transpose", transpose), ("fill", fill)):
+def _finished(surfaces: list[S], transpose: bool, fill: bool, spikes: bool) -> list[S]:
+    for name, flag in (("transpose", transpose), ("fill", fill), ("spikes", spikes)):
         if not isinstance(flag, bool | np.bool_):
             raise InputError(name, shown(flag), "True or False")
-    _report_missing(surfaces, fill)
+    read = surfaces
+    if spikes:
+        surfaces = [_without_spikes(surface) for surface in surfaces]
+    _report_missing(read, surfaces, fill)
     if transpose:
         surfaces = [_transposed(surface) for surface in surfaces]
     if fill:
         surfaces = [surface.filled() if surface.missing_share else surface for surface in surfaces]
     return surfaces
+
+
+def _without_spikes(surface: S) -> S:
+    if isinstance(surface, Profile):
+        remedy = "Lines of a rail or a wheel have processing of their own."
+        raise InputError("spikes", f"a line, {surface.source}", "a height map", remedy)
+    return surface.without_spikes()
 
 
 def _transposed(surface: S) -> S:
@@ -204,15 +218,22 @@ def _transposed(surface: S) -> S:
     return surface.transposed()
 
 
-def _report_missing(surfaces: Sequence[Surface], fill: bool) -> None:
-    missing = sum(int(np.isnan(surface.heights).sum()) for surface in surfaces)
+def _missing_points(surfaces: Sequence[Surface]) -> int:
+    return sum(int(np.isnan(surface.heights).sum()) for surface in surfaces)
+
+
+def _report_missing(read: Sequence[Surface], surfaces: Sequence[Surface], fill: bool) -> None:
+    """Warn of points without a height in what was read, and of those that its spikes leave."""
+    missing = _missing_points(surfaces)
     if not missing:
         return
+    spikes = missing - _missing_points(read)
     share = missing / sum(surface.heights.size for surface in surfaces)
     left = (
         "interpolated from their neighbours" if fill else "left as NaN, which contact cannot be solved with"
     )
     remedy = "check the measurement" if fill else f"{spell('fill', True)} interpolates them"
-    what = f"{surfaces[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
+    what = f"{read[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
+    what += f" ({spikes} of them were spikes)" * bool(spikes)
     message = f"{what}; {left}; {remedy}"
     warnings.warn(message, MissingPointsWarning, stacklevel=4)

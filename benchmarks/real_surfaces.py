@@ -1,0 +1,233 @@
+"""Numbers of docs/real_surfaces.md: measured surfaces from their files to force and noise.
+
+    python benchmarks/real_surfaces.py FOLDER [NAME ...]     # writes NAME.json, and real_surfaces.png
+
+FOLDER holds the measured files, which are no part of the project; docs/real_surfaces.md says whose they are.
+Files that are not there are left out. `al3d` and `plu` need the extra `[readers]`.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+import asperity
+from asperity import HeightMap, read_surface
+from asperity.errors import PhysicsWarning
+from asperity.surfaces.spikes import spikes
+from asperity.surfaces.statistics import rms_slope
+
+BALL: dict[str, Any] = {
+    "kind": "ball-on-beam",
+    "laws": ["table"],
+    "start": "0.45 m",
+    "duration": "8 ms",
+    "settling": "4 ms",
+    "contact": {"samples": 2},
+    "numerics": {"highest_frequency": "4 kHz"},
+}
+FILES: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
+    # name: file, what its file does not say, case
+    "polished": (
+        "aa5754_um.npz",
+        {"array": "polished", "index": 0, "height_unit": "um", "pixel": "1.5625 um"},
+        {
+            "surface": {"shortest": "24 um"},
+            "ball": {"load": "20 N"},
+            "contact": {"spacing": "6 um", "window": "0.54 mm"},
+        },
+    ),
+    "rubber": (
+        "rubber_x3p.x3p",
+        {},
+        {
+            "surface": {"shortest": "24 um", "form": "quadratic"},
+            "ball": {"load": "20 N"},
+            "contact": {"spacing": "6 um", "window": "0.66 mm"},
+        },
+    ),
+    "plu": (
+        "plu-1.plu",
+        {},
+        {
+            "surface": {"shortest": "24 um", "form": "quadratic"},
+            "ball": {"load": "5 N"},
+            "contact": {"spacing": "6 um", "window": "0.42 mm"},
+        },
+    ),
+    "al3d": (
+        "al3d-1.al3d",
+        {},
+        {
+            "speed": "0.1 m/s",
+            "surface": {"shortest": "3 um", "form": "quadratic"},
+            "ball": {"radius": "1 mm", "load": "0.05 N"},
+            "contact": {"spacing": "0.75 um", "window": "51 um"},
+        },
+    ),
+}
+NOISE = (0.03e-6, 0.1e-6)  # m, rms of what is added to each point, as an instrument does
+WHEEL: dict[str, Any] = {
+    "kind": "wheel-on-rail",
+    "laws": ["areal", "linear"],
+    "speed": "40 m/s",
+    "duration": "0.15 s",
+    "settling": "0.1 s",
+    "surface": {"spectrum": "iso3095", "level": "-6 dB"},
+    "contact": {"spacing": "1 mm", "window": "24 mm", "samples": 2, "sample_length": "0.2 m"},
+    "numerics": {"highest_frequency": "4 kHz"},
+}
+
+
+def case_of(surface: HeightMap, own: dict[str, Any], **more: Any) -> dict[str, Any]:
+    """A case over a map, which is complete, with what is its own."""
+    merged = dict(BALL) | {"seed": 1}
+    for key, value in {**own, **more}.items():
+        merged[key] = {**merged.get(key, {}), **value} if isinstance(value, dict) else value
+    merged["surface"] = {**merged["surface"], "file": surface}
+    return merged
+
+
+def figures(tree: Any) -> dict[str, float]:
+    """What a run says of contact and force."""
+    contact, force = tree["contact"], tree["rolling/contact_force"].values[0]
+    working = contact.attrs["working_approach"]
+    secant = np.interp(working, contact["approach"], contact["stiffness"])
+    tangent = np.interp(working, contact["approach"], contact["tangent_stiffness"])
+    return {
+        "real contact area": contact.attrs["contact_area_ratio"],
+        "k_c / (MN/m)": float(secant) / 1e6,
+        "dF/dr / (MN/m)": float(tangent) / 1e6,
+        "force rms / N": float(force.std()),
+        "out of contact": float(tree["rolling/contact_loss_share"].values[0]),
+    }
+
+
+def walk(file: Path, hints: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
+    """One map from its file to the force of a ball, step by step, and what instrument noise does to it."""
+    raw = read_surface(file, **hints)
+    found = spikes(raw)
+    clean = raw.without_spikes().filled()
+    told: dict[str, Any] = {
+        "points": list(raw.shape),
+        "spacing / um": [1e6 * d for d in raw.spacing],
+        "missing": raw.missing_share,
+        "spikes": int(found.sum()),
+        "peak to valley / um": float(np.nanmax(raw.heights) - np.nanmin(raw.heights)) * 1e6,
+    }
+    steps = {
+        "mean": clean.levelled(0),
+        "plane": clean.levelled(1),
+        "quadratic": clean.levelled(2),
+    }
+    told["Sq / um"] = {name: float(each.heights.std()) * 1e6 for name, each in steps.items()}
+    bands = {"all": steps["quadratic"]}
+    for points in (4, 8, 16):
+        shortest = points * max(clean.spacing)
+        bands[f"{1e6 * shortest:.3g} um and longer"] = steps["quadratic"].band_limited(shortest=shortest)
+    told["Sdq"] = {name: rms_slope(each) for name, each in bands.items()}
+    first = asperity.run(case_of(clean, own))
+    told["clean"], levels = figures(first), first["spectra/force_level"].values[0]
+    told["as read, filled"] = change(asperity.run(case_of(raw.filled(), own)), levels)
+    for rms in NOISE:
+        noise = rms * np.random.default_rng(1).standard_normal(clean.shape)
+        noisy = HeightMap(clean.heights + noise, clean.spacing, clean.source)
+        told[f"noise of {1e9 * rms:g} nm"] = change(asperity.run(case_of(noisy, own)), levels)
+    return told
+
+
+def change(tree: Any, levels: Any) -> dict[str, float]:
+    """Figures of a run, and how far its force levels are from others."""
+    difference = tree["spectra/force_level"].values[0] - levels
+    return figures(tree) | {
+        "force level, mean of bands / dB": float(np.nanmean(difference)),
+        "force level, largest / dB": float(difference[np.nanargmax(np.abs(difference))]),
+    }
+
+
+def walk_wheel(file: Path) -> dict[str, Any]:
+    """Lines around a wheel, from their file to the change of rolling noise, step by step."""
+    lines = np.load(file)["flat0p2mm"]
+    told: dict[str, Any] = {
+        "lines": list(lines.shape),
+        "missing": float(np.isnan(lines).mean()),
+        "rms / um": float(np.nanstd(lines)),
+        "largest step / um": float(np.nanmax(np.abs(np.diff(lines, axis=1)))),
+    }
+    keys = {"line": file, "line_array": "flat0p2mm", "line_unit": "um", "line_spacing": "1 mm"}
+    keys |= {"line_distance": "5 mm"}
+    for name, processing in (("filled", ["fill"]), ("spikes, curvature", ["fill", "spikes", "curvature"])):
+        tree = asperity.run(WHEEL | {"wheel": keys | {"processing": processing}})
+        told[name] = of_wheel(tree)
+    rng = np.random.default_rng(1)
+    for rms in (0.3, 1.0):
+        noisy = Path(file.name).with_suffix(f".{rms:g}.npz")
+        np.savez(noisy, flat0p2mm=lines + rms * rng.standard_normal(lines.shape))
+        tree = asperity.run(
+            WHEEL
+            | {"wheel": keys | {"line": noisy.absolute(), "processing": ["fill", "spikes", "curvature"]}}
+        )
+        told[f"noise of {rms:g} um"] = of_wheel(tree)
+        noisy.unlink()
+    return told
+
+
+def of_wheel(tree: Any) -> dict[str, float]:
+    """Force and sound power of the first law."""
+    spectra = tree["spectra"]
+    power = spectra["sound_power_level_a"].sel(source="total")
+    return {
+        "force rms / kN": float(tree["rolling/contact_force"].values[0].std()) / 1e3,
+        "out of contact": float(tree["rolling/contact_loss_share"].values[0]),
+        "sound power / dB(A)": float(power.values[0]),
+        "linear / dB(A)": float(power.values[1]),
+    }
+
+
+def main(folder: Path, names: list[str]) -> None:
+    warnings.simplefilter("ignore", PhysicsWarning)  # the page says what they say
+    for name in names or [*FILES, "wheel"]:
+        file = folder / (FILES[name][0] if name in FILES else "wheel_lines_um_1mm.npz")
+        if not file.exists():
+            print(f"{file}: not there, left out", file=sys.stderr)
+            continue
+        told = walk(file, *FILES[name][1:]) if name in FILES else walk_wheel(file)
+        Path(f"{name}.json").write_text(json.dumps(told, indent=1), encoding="utf-8")
+        print(name, json.dumps(told, indent=1))
+    draw(folder)
+
+
+def draw(folder: Path) -> None:
+    """The maps as they are rolled over: levelled, spikes gone, filled."""
+    shown = [(name, *FILES[name][:2]) for name in FILES if (folder / FILES[name][0]).exists()]
+    if not shown:
+        return
+    figure = Figure(figsize=(3.1 * len(shown), 2.9), layout="constrained")
+    for axes, (name, file, hints) in zip(np.atleast_1d(figure.subplots(1, len(shown))), shown, strict=True):
+        surface = read_surface(folder / file, **hints).without_spikes().filled().levelled(2)
+        heights = 1e6 * surface.heights
+        reach = float(np.percentile(np.abs(heights), 99.5))
+        size = [1e6 * length for length in surface.size]
+        image = axes.imshow(
+            heights.T,
+            origin="lower",
+            cmap="cividis",
+            vmin=-reach,
+            vmax=reach,
+            extent=(0, size[0], 0, size[1]),
+        )
+        axes.set(title=name, xlabel="x / µm", ylabel="y / µm")
+        figure.colorbar(image, ax=axes, shrink=0.8, label="height / µm")
+    figure.savefig("real_surfaces.png", dpi=80)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    main(Path(sys.argv[1]), sys.argv[2:])
