@@ -1,4 +1,4 @@
-"""Numbers of docs/real_surfaces.md: measured surfaces from their files to force and noise.
+"""Numbers of docs/real_surfaces.md: measured surfaces from their files to contact and noise.
 
     python benchmarks/real_surfaces.py FOLDER [NAME ...]     # writes NAME.json, and real_surfaces.png
 
@@ -19,13 +19,18 @@ from matplotlib.figure import Figure
 
 import asperity
 from asperity import HeightMap, read_surface
+from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
+from asperity.kinds.cases import as_case
+from asperity.reduction.areal import punch_weights
+from asperity.reduction.ensemble import patches
+from asperity.running import prepare_case
 from asperity.surfaces.spikes import spikes
 from asperity.surfaces.statistics import rms_slope
 
 BALL: dict[str, Any] = {
     "kind": "ball-on-beam",
-    "laws": ["table"],
+    "laws": ["areal"],
     "start": "0.45 m",
     "duration": "8 ms",
     "settling": "4 ms",
@@ -72,6 +77,7 @@ FILES: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = {
         },
     ),
 }
+SAMPLES = 6
 NOISE = (0.03e-6, 0.1e-6)  # m, rms of what is added to each point, as an instrument does
 WHEEL: dict[str, Any] = {
     "kind": "wheel-on-rail",
@@ -94,61 +100,57 @@ def case_of(surface: HeightMap, own: dict[str, Any], **more: Any) -> dict[str, A
     return merged
 
 
-def figures(tree: Any) -> dict[str, float]:
-    """What a run says of contact and force."""
-    contact, force = tree["contact"], tree["rolling/contact_force"].values[0]
-    working = contact.attrs["working_approach"]
-    secant = np.interp(working, contact["approach"], contact["stiffness"])
-    tangent = np.interp(working, contact["approach"], contact["tangent_stiffness"])
+def pressed(surface: HeightMap, own: dict[str, Any]) -> dict[str, float]:
+    """Contact of a ball with the samples that a case takes from a map, under its load."""
+    prepared = prepare_case(as_case(case_of(surface, own)))
+    shape, maps = prepared.shape, prepared.textures.maps
+    weights = punch_weights(shape.spacing, shape.semi_axes)
+    samples = patches([each.heights for each in maps], shape.body.shape, SAMPLES, weights)
+    half_space = shape.half_space(None)
+    smooth = half_space.solve(shape.body, load=shape.load)
+    contacts = [half_space.solve(shape.body - sample, load=shape.load, rtol=1e-5) for sample in samples]
+    datum = -min(float(first_touch(sample, shape.body).min()) for sample in samples)
+    state = float(np.mean([contact.approach for contact in contacts])) + datum
     return {
-        "real contact area": contact.attrs["contact_area_ratio"],
-        "k_c / (MN/m)": float(secant) / 1e6,
-        "dF/dr / (MN/m)": float(tangent) / 1e6,
-        "force rms / N": float(force.std()),
-        "out of contact": float(tree["rolling/contact_loss_share"].values[0]),
+        "Sdq": float(np.sqrt(np.mean([rms_slope(each) ** 2 for each in maps]))),
+        "real contact area over smooth": float(np.mean([c.area for c in contacts])) / smooth.area,
+        "k_c / (MN/m)": shape.load / state / 1e6,
+        "dF/dr / (MN/m)": float(np.mean([c.stiffness for c in contacts])) / 1e6,
+        "dF/dr of smooth bodies / (MN/m)": smooth.stiffness / 1e6,
+        "largest pressure / GPa": float(np.mean([c.pressure.max() for c in contacts])) / 1e9,
     }
 
 
 def walk(file: Path, hints: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
-    """One map from its file to the force of a ball, step by step, and what instrument noise does to it."""
+    """One map from its file to the contact of a ball, step by step, and what instrument noise does to it."""
     raw = read_surface(file, **hints)
-    found = spikes(raw)
     clean = raw.without_spikes().filled()
     told: dict[str, Any] = {
         "points": list(raw.shape),
         "spacing / um": [1e6 * d for d in raw.spacing],
         "missing": raw.missing_share,
-        "spikes": int(found.sum()),
+        "spikes": int(spikes(raw).sum()),
         "peak to valley / um": float(np.nanmax(raw.heights) - np.nanmin(raw.heights)) * 1e6,
     }
-    steps = {
-        "mean": clean.levelled(0),
-        "plane": clean.levelled(1),
-        "quadratic": clean.levelled(2),
+    forms = {"mean": 0, "plane": 1, "quadratic": 2}
+    flat = {name: clean.levelled(degree) for name, degree in forms.items()}
+    told["Sq / um"] = {name: float(each.heights.std()) * 1e6 for name, each in flat.items()}
+    told["Sdq, from so many points on"] = {"2": rms_slope(flat["quadratic"])} | {
+        str(n): rms_slope(flat["quadratic"].band_limited(shortest=n * max(clean.spacing))) for n in (4, 8, 16)
     }
-    told["Sq / um"] = {name: float(each.heights.std()) * 1e6 for name, each in steps.items()}
-    bands = {"all": steps["quadratic"]}
-    for points in (4, 8, 16):
-        shortest = points * max(clean.spacing)
-        bands[f"{1e6 * shortest:.3g} um and longer"] = steps["quadratic"].band_limited(shortest=shortest)
-    told["Sdq"] = {name: rms_slope(each) for name, each in bands.items()}
-    first = asperity.run(case_of(clean, own))
-    told["clean"], levels = figures(first), first["spectra/force_level"].values[0]
-    told["as read, filled"] = change(asperity.run(case_of(raw.filled(), own)), levels)
+    all_waves = {**own, "surface": {k: v for k, v in own["surface"].items() if k != "shortest"}}
+    told["clean"] = pressed(clean, own)
+    told["spikes kept"] = pressed(raw.filled(), own)
+    told["all waves"] = pressed(clean, all_waves)
     for rms in NOISE:
         noise = rms * np.random.default_rng(1).standard_normal(clean.shape)
         noisy = HeightMap(clean.heights + noise, clean.spacing, clean.source)
-        told[f"noise of {1e9 * rms:g} nm"] = change(asperity.run(case_of(noisy, own)), levels)
+        told[f"noise of {1e9 * rms:g} nm"] = pressed(noisy, own)
+        told[f"noise of {1e9 * rms:g} nm, all waves"] = pressed(noisy, all_waves)
+    tree = asperity.run(case_of(clean, own))
+    told["force rms / N"] = float(tree["rolling/contact_force"].values[0].std())
+    told["out of contact"] = float(tree["rolling/contact_loss_share"].values[0])
     return told
-
-
-def change(tree: Any, levels: Any) -> dict[str, float]:
-    """Figures of a run, and how far its force levels are from others."""
-    difference = tree["spectra/force_level"].values[0] - levels
-    return figures(tree) | {
-        "force level, mean of bands / dB": float(np.nanmean(difference)),
-        "force level, largest / dB": float(difference[np.nanargmax(np.abs(difference))]),
-    }
 
 
 def walk_wheel(file: Path) -> dict[str, Any]:

@@ -46,7 +46,12 @@ def apart(function: str, arguments: list[Any], source: str, size: int, kind: str
     allowed = f"an intact {kind} file"
     try:
         done = subprocess.run(
-            command, input=request, capture_output=True, timeout=PATIENCE * seconds, env=environment, check=False
+            command,
+            input=request,
+            capture_output=True,
+            timeout=PATIENCE * seconds,
+            env=environment,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         raise InputError(source, _too_long(PATIENCE * seconds), allowed, _DAMAGED) from None
