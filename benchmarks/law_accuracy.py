@@ -36,10 +36,9 @@ from asperity.progress import progress_bar
 
 QUICK = 4
 """Points of the small part."""
-ASIDE, FRESH = (1, 16), (2026, 20)
-"""Seed and number of the random cases that widen the band, and of those that test it."""
-SCANNED_OF_FOUR = {"aside": 4, "fresh": 2}
-"""How many of four random cases roll `table`."""
+RANDOM = {"aside": ((1, 16, 4), (2026, 20, 2)), "fresh": ((2027, 20, 0),)}
+"""Sets of random cases, those that widen the band and those that test it: seed, number, and how many of four
+roll `table`. The second set was drawn to test a band from the first alone."""
 
 
 def grid() -> list[Point]:
@@ -94,9 +93,11 @@ def points_of(part: str) -> list[tuple[int, Point]]:
     """Points of a part of the study, each with the seed of its first path."""
     if part == "map":
         return [(1 + 100 * number, point) for number, point in enumerate(grid())]
-    seed, count = ASIDE if part == "aside" else FRESH
-    points = drawn(seed, count, SCANNED_OF_FOUR[part])
-    return [(1 + 100 * number + 100000 * seed, point) for number, point in enumerate(points)]
+    return [
+        (1 + 100 * number + 100000 * seed, point)
+        for seed, count, scanned in RANDOM[part]
+        for number, point in enumerate(drawn(seed, count, scanned))
+    ]
 
 
 def compute(part: str, folder: Path, *, quick: bool, share: str) -> None:

@@ -140,7 +140,7 @@ def draw(data: Record) -> None:
     for axes, law in zip(panels[0], SHOWN, strict=True):
         axes.set_title(law, fontsize=10)
     figure.supxlabel("correlation length / length of the contact", fontsize=10)
-    bar = figure.colorbar(image, ax=panels, shrink=0.8)
+    bar = figure.colorbar(image, ax=panels, shrink=0.8, format="%g")
     bar.set_label("rms level difference to direct, 100 Hz to 5 kHz, dB")
     figure.savefig(FIGURE, dpi=110)
 
@@ -156,7 +156,7 @@ def _panel(axes: Any, points: Sequence[Record], law: str, norm: Any) -> Any:
         lost = p["loss"] > MOSTLY
         axes.text(
             p["asked"]["correlation"], p["asked"]["roughness"], words, ha="center", va="center", fontsize=7,
-            style="italic" if lost else "normal", color="white" if value > 8.0 else "#30363c",
+            style="italic" if lost else "normal", color="white" if value > 4.0 else "#30363c",
         )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlim=(0.05, 20), ylim=(0.016, 19))
     axes.set_xticks([0.1, 1, 10], ["0.1", "1", "10"])
