@@ -96,3 +96,9 @@ def test_files_that_contributors_are_sent_to_are_there():
     assert len(names) > 20
     for name in names:
         assert any((place / name).exists() for place in places), name
+
+
+def test_no_two_files_of_tests_have_one_name():
+    """They are modules without packages: of two, one would be left out."""
+    names = [path.name for path in Path(__file__).parent.rglob("test_*.py")]
+    assert len(set(names)) == len(names)

@@ -87,7 +87,7 @@ def tried(monkeypatch):
     monkeypatch.setattr(expecting, "_pace", lambda: 1.0)
     for plan in (ball_plan, rail_plan):
         monkeypatch.setattr(plan, "step_seconds", lambda prepared: 1e-6)
-    contacts = ContactTrial(np.linspace(0, 1e-6, 14), 12, 3.0, 5.0, 0.01, 0.02, 7e-4, 1e-5, 1e-6)
+    contacts = ContactTrial(np.linspace(0, 1e-6, 14), 12, 3.0, 5.0, 0.01, 0.02, 0.03, 7e-4, 1e-5, 1e-6)
     monkeypatch.setattr(expecting, "try_contacts", lambda prepared, progress: contacts)
     monkeypatch.setattr(rail_plan, "try_track", lambda prepared, progress: TrackTrial(0.12, 11.0, 13.0))
 
