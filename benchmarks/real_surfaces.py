@@ -147,10 +147,23 @@ def walk(file: Path, hints: dict[str, Any], own: dict[str, Any]) -> dict[str, An
         noisy = HeightMap(clean.heights + noise, clean.spacing, clean.source)
         told[f"noise of {1e9 * rms:g} nm"] = pressed(noisy, own)
         told[f"noise of {1e9 * rms:g} nm, all waves"] = pressed(noisy, all_waves)
-    tree = asperity.run(case_of(clean, own))
-    told["force rms / N"] = float(tree["rolling/contact_force"].values[0].std())
-    told["out of contact"] = float(tree["rolling/contact_loss_share"].values[0])
+    told["rolled"] = {"clean": rolled(clean, own)}
+    for rms in NOISE:
+        noise = rms * np.random.default_rng(1).standard_normal(clean.shape)
+        noisy = HeightMap(clean.heights + noise, clean.spacing, clean.source)
+        told["rolled"][f"noise of {1e9 * rms:g} nm"] = rolled(noisy, own)
     return told
+
+
+def rolled(surface: HeightMap, own: dict[str, Any]) -> dict[str, float]:
+    """Force and noise of a ball rolling over a map: level of the beam's acceleration, of all bands."""
+    tree = asperity.run(case_of(surface, own))
+    level = tree["spectra/acceleration_level"].values[0]
+    return {
+        "force rms / N": float(tree["rolling/contact_force"].values[0].std()),
+        "out of contact": float(tree["rolling/contact_loss_share"].values[0]),
+        "acceleration / dB": float(10 * np.log10(np.nanmean(np.nansum(10 ** (level / 10), axis=-1)))),
+    }
 
 
 def walk_wheel(file: Path) -> dict[str, Any]:
