@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import _thread
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NoReturn
@@ -27,9 +28,12 @@ def interruptible() -> Iterator[None]:
             if signal.getsignal(number) is not signal.SIG_IGN:
                 earlier[number] = signal.signal(number, _interrupt)
     _received.clear()
+    told = sys.unraisablehook
+    sys.unraisablehook = lambda lost: _again(lost, told)
     try:
         yield
     finally:
+        sys.unraisablehook = told
         for number, handler in earlier.items():
             signal.signal(number, handler)
 
@@ -37,6 +41,24 @@ def interruptible() -> Iterator[None]:
 def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
     _received.append(number)
     raise KeyboardInterrupt
+
+
+def _again(lost: Any, otherwise: Callable[[Any], object]) -> None:
+    """Interrupt once more where Python lets no error through, as in callbacks of weak references."""
+    if lost.exc_type is None or not issubclass(lost.exc_type, KeyboardInterrupt):
+        otherwise(lost)
+        return
+    number = _received[-1] if _received else signal.SIGINT
+    again = threading.Timer(0.01, _raise_in_main, [number])
+    again.daemon = True
+    again.start()
+
+
+def _raise_in_main(number: int) -> None:
+    if sys.platform == "win32":
+        _thread.interrupt_main(number)
+    else:  # this wakes it from a system call as well
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
 
 
 def was_interrupted() -> bool:

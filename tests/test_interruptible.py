@@ -1,0 +1,40 @@
+"""Interrupts that come where Python lets no error through."""
+
+import signal
+import time
+import weakref
+
+import pytest
+
+from asperity.interrupts import interruptible
+
+
+class Thing:
+    """What a weak reference can point to."""
+
+
+def test_an_interrupt_in_a_callback_is_not_lost():
+    """Imports end in such callbacks: without another try the program would go on as if nothing had come."""
+    thing = Thing()
+    reference = weakref.ref(thing, lambda gone: signal.raise_signal(signal.SIGINT))
+
+    def work():
+        nonlocal thing
+        thing = None
+        time.sleep(5.0)
+
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        work()
+    assert reference() is None
+
+
+def test_other_errors_in_callbacks_are_told_as_before():
+    thing = Thing()
+    reference = weakref.ref(thing, lambda gone: 1 / 0)
+    with pytest.MonkeyPatch.context() as patch:
+        told = []
+        patch.setattr("sys.unraisablehook", told.append)
+        with interruptible():
+            del thing
+    assert reference() is None
+    assert [lost.exc_type for lost in told] == [ZeroDivisionError]
