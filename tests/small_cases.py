@@ -24,3 +24,13 @@ WHEEL = {
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
 }
 CASES = {case["kind"]: case for case in (BALL, WHEEL)}
+
+COARSE = {
+    "kind": "ball-on-beam",
+    "settling": "50 ms",
+    "surface": {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"},
+    "ball": {"load": "30 N"},
+    "contact": {"spacing": "40 um", "window": "0.76 mm"},
+    "numerics": {"highest_frequency": "2 kHz"},
+}
+"""A ball on a grid so coarse that many of them roll in a test."""

@@ -21,17 +21,14 @@ from asperity.scenarios.refining import Way
 from asperity.scenarios.restricting import restricted
 from asperity.schema import contents_of, convergence
 from asperity.surfaces.strip import LongStrip
+from small_cases import COARSE
 
-BALL = {
-    "kind": "ball-on-beam",
+BALL = COARSE | {
     "laws": ["areal", "linear"],
     "start": "0.45 m",
     "duration": "60 ms",
     "settling": "0 s",
-    "surface": {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"},
-    "ball": {"load": "30 N"},
-    "contact": {"spacing": "40 um", "window": "0.76 mm", "samples": 2, "sample_length": "3 mm"},
-    "numerics": {"highest_frequency": "2 kHz"},
+    "contact": COARSE["contact"] | {"samples": 2, "sample_length": "3 mm"},
 }
 WHEEL = {
     "kind": "wheel-on-rail",

@@ -11,6 +11,7 @@ from asperity.reporting.tables import population_table
 from asperity.scenarios.population import along_over_across, levels_along, told_apart
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.synthesis import self_affine
+from small_cases import COARSE
 
 UM = 1e-6
 PATH = 40_000
@@ -93,16 +94,11 @@ class TestDirection:
         assert along_over_across([narrow], 10 * UM) is None
 
 
-CASE = {
-    "kind": "ball-on-beam",
+CASE = COARSE | {
     "laws": ["shifted", "linear"],
     "start": "0.3 m",
     "duration": "0.3 s",
-    "settling": "50 ms",
-    "surface": {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"},
-    "ball": {"load": "30 N"},
-    "contact": {"spacing": "40 um", "window": "0.92 mm", "samples": 8, "sample_length": "2 mm"},
-    "numerics": {"highest_frequency": "2 kHz"},
+    "contact": COARSE["contact"] | {"window": "0.92 mm", "samples": 8, "sample_length": "2 mm"},
 }
 
 

@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
+from scipy.signal import resample
+from scipy.signal.windows import tukey
 from xarray import DataArray, DataTree
 
 from asperity.arguments import file_path, shown
@@ -55,8 +57,7 @@ class Sound:
     def weighted(self) -> float:
         """Root mean square after A-weighting, in its unit."""
         n = len(self.samples)
-        with np.errstate(over="ignore"):
-            gain = 10 ** (a_weighting(rfftfreq(n, 1.0 / RATE)) / 20.0)
+        gain = 10 ** (a_weighting(rfftfreq(n, 1.0 / RATE)) / 20.0)
         return float(np.sqrt(np.mean(irfft(gain * rfft(self.samples), n) ** 2)))
 
 
@@ -106,18 +107,18 @@ def listen(
         raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
     folder = file_path("sounds", path, "the path of a folder")
     sounds = sounds_of(result, what)
-    loudest = max(sound.weighted for sound in sounds)
-    scale = {id(s): loudest / s.weighted if matched and s.weighted > 0.0 else 1.0 for s in sounds}
-    largest = max(scale[id(s)] * np.abs(s.samples).max() for s in sounds) or 1.0
-    full = [largest / PEAK / scale[id(sound)] for sound in sounds]
+    heard = [sound.weighted for sound in sounds]
+    louder = [max(heard) / each if matched and each > 0.0 else 1.0 for each in heard]
+    largest = max(f * np.abs(s.samples).max() for f, s in zip(louder, sounds, strict=True)) or 1.0
+    full = [largest / PEAK / factor for factor in louder]
     files = [
         write_bytes(folder / sound.file_name, wav_bytes(sound.samples / each))
         for sound, each in zip(sounds, full, strict=True)
     ]
     heading = ["file", "quantity", "law", "place", "unit", "full sample", "A-weighted rms"]
     rows = [
-        [file.name, s.quantity, s.law, s.place, s.unit, each, s.weighted]
-        for file, s, each in zip(files, sounds, full, strict=True)
+        [file.name, s.quantity, s.law, s.place, s.unit, each, weighted]
+        for file, s, each, weighted in zip(files, sounds, full, heard, strict=True)
     ]
     write_csv(folder / TABLE, heading, rows)
     return files
@@ -165,13 +166,8 @@ def at_rate(signal: NDArray[np.float64], step: float) -> NDArray[np.float64]:
     sample, which changes pitch by less than that.
     """
     n = len(signal)
-    edge = min(round(FADE / step), n // 2)
-    rise = 0.5 - 0.5 * np.cos(np.pi * (np.arange(edge) + 0.5) / max(edge, 1))
-    soft = signal - signal.mean()
-    soft[:edge] *= rise
-    soft[n - edge :] *= rise[::-1]
-    wanted = max(round(n * step * RATE), 2)
-    return np.asarray(irfft(rfft(soft)[: wanted // 2 + 1], wanted) * (wanted / n))
+    soft = (signal - signal.mean()) * tukey(n, min(2.0 * FADE / (n * step), 1.0))
+    return np.asarray(resample(soft, max(round(n * step * RATE), 2)))
 
 
 def wav_bytes(samples: Sequence[float] | NDArray[np.float64]) -> bytes:
