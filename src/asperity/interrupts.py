@@ -9,10 +9,12 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import Any, NoReturn
+from typing import Any
 
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 _received: list[int] = []
+_held: list[int] = []
+_holding = 0
 
 
 @contextmanager
@@ -38,8 +40,11 @@ def interruptible() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
+def _interrupt(number: int, frame: FrameType | None) -> None:
     _received.append(number)
+    if _holding:
+        _held.append(number)
+        return
     raise KeyboardInterrupt
 
 
@@ -68,12 +73,23 @@ def was_interrupted() -> bool:
 
 @contextmanager
 def no_interrupt_for_children() -> Iterator[None]:
-    """Let processes started here receive neither Ctrl-C nor a hang-up; what comes meanwhile waits."""
-    if sys.platform == "win32":
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    """Let processes started here receive neither Ctrl-C nor a hang-up; what comes meanwhile waits.
+
+    They inherit the mask of this thread. A signal may still reach another thread, and its handler the main one:
+    half a start would leave a process that nobody knows.
+    """
+    global _holding
+    before = None
+    _holding += 1
     try:
+        if sys.platform != "win32":
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        if before is not None:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        _holding -= 1
+        if _held and not _holding:
+            number = _held[-1]
+            _held.clear()
+            _raise_in_main(number)

@@ -33,6 +33,25 @@ files.os.replace = killed
 from asperity.__main__ import start
 start()
 """
+AT_A_START = """
+import multiprocessing.util as util
+import os, signal, threading, time
+
+spawn = util.spawnv_passfds
+other = threading.Thread(target=time.sleep, args=(60.0,), daemon=True)
+other.start()
+
+def interrupted(path, words, *more):
+    number = spawn(path, words, *more)
+    if b"spawn_main" in os.fsencode(words[-2]):
+        signal.pthread_kill(other.ident, signal.SIGINT)
+        time.sleep(0.01)
+    return number
+
+util.spawnv_passfds = interrupted
+from asperity.__main__ import start
+start()
+"""
 
 
 @pytest.fixture(scope="module")
@@ -88,6 +107,15 @@ def test_every_interrupt_is_told_in_a_word(tmp_path, name, words):
         assert returned in (0, 130)
         assert returned == 0 or "interrupted" in told
     assert left(folder) == []
+
+
+def test_an_interrupt_while_a_process_starts_waits_for_it(tmp_path):
+    """It may fall to any thread, whichever signals the one that starts processes lets wait."""
+    folder = prepared(prepared(tmp_path), STUDY, "study.toml")
+    code, told = ended(program(folder, "study", "study.toml", code=AT_A_START))
+    promised(code, told)
+    assert code == 130
+    assert "interrupted" in told
 
 
 def test_two_runs_beside_each_other_are_the_same(whole, tmp_path):
