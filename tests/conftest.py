@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from browser import chromium
+
 # Both are set before asperity is imported. Kernels outlast a session: compiling them all takes minutes.
 os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pytest_cache" / "kernels"))
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
@@ -37,3 +39,9 @@ def cache_of_module(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """A browser that all tests of a session share; each opens a page of its own in it."""
+    yield from chromium()
