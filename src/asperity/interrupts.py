@@ -75,8 +75,8 @@ def was_interrupted() -> bool:
 def no_interrupt_for_children() -> Iterator[None]:
     """Let processes started here receive neither Ctrl-C nor a hang-up; what comes meanwhile waits.
 
-    They inherit the mask of this thread. A signal may still reach another thread, and its handler the main one:
-    half a start would leave a process that nobody knows.
+    They inherit the mask of this thread. A signal may still reach another thread, and its handler the main
+    one: half a start would leave a process that nobody knows.
     """
     global _holding
     before = None
