@@ -15,12 +15,12 @@ from asperity.arguments import listed, no_file, shown
 from asperity.config.describing import entries
 from asperity.config.keys import Quantity, value_kind
 from asperity.config.parsing import read_toml
+from asperity.config.tables import LEVELS, read_levels, read_table
 from asperity.decoding import number_in
 from asperity.errors import CaseError, ComputationError, InputError
 from asperity.files import alone_in, refuse_unwritable, write_bytes
 from asperity.kinds import KINDS
 from asperity.kinds.cases import as_case, load_case, parse_case
-from asperity.kinds.wheel_on_rail.tables import LEVELS, read_levels, read_table
 from asperity.results import GROUPS, read_result, save
 from asperity.schema import VERSION
 from asperity.store import Store

@@ -6,10 +6,11 @@ import tomllib
 import numpy as np
 import pytest
 
+from asperity.config.tables import read_levels, read_table
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import load_case, parse_case, template
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.tables import MODES, read_levels, read_modes, read_receptance, read_table
+from asperity.kinds.wheel_on_rail.tables import MODES, read_modes, read_receptance
 from asperity.laws import names
 
 INTERFACE = """

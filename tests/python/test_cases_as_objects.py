@@ -180,10 +180,10 @@ class TestInMemory:
         modes = np.array([[1000.0, 1e-3, 300.0]])
         case = WheelOnRail(surface={"spectrum": bands}, wheel={"modes": modes})
         on_disk = WheelOnRail(surface={"spectrum": tmp_path / "levels.csv"})
-        from asperity.kinds.wheel_on_rail.records import rail_levels
+        from asperity.scenarios.records import spectrum_levels
 
         for one, other in zip(
-            rail_levels(case.surface.spectrum), rail_levels(on_disk.surface.spectrum), strict=True
+            spectrum_levels(case.surface.spectrum), spectrum_levels(on_disk.surface.spectrum), strict=True
         ):
             if not isinstance(one, str):
                 np.testing.assert_allclose(one, other)

@@ -18,6 +18,7 @@ from asperity.config.keys import (
     Angle,
     Approach,
     Choice,
+    ChoiceOrFile,
     Damping,
     Duration,
     Frequency,
@@ -35,10 +36,12 @@ from asperity.config.keys import (
     Quantity,
     YesNo,
 )
+from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import factor, written
 
+LATERAL = (0.001, 1000000.0, 'beyond that it is the same all across: write "inf"')
 MOST_CELLS = 2048  # along one side of the window
 
 Index = Annotated[int, BeforeValidator(Number(at_least=0, at_most=10**9, whole=True))]
@@ -219,8 +222,21 @@ class Surface(MeasuredLine, MeasuredMap):
         goes_with="rms",
         within=(0.01, 100, "a texture more drawn out than that is a line across"),
     )
-    spectrum: Annotated[str | Path | NDArray[np.float64], PlainValidator(Choice(("iso3095",)))] | None = key(
-        None, "one-third-octave wavelength spectrum of the line of the path", example='"iso3095"'
+    spectrum: (
+        Annotated[
+            str | Path | NDArray[np.float64],
+            PlainValidator(ChoiceOrFile(("iso3095",), TABLE_OF_LEVELS, columns=2)),
+        ]
+        | None
+    ) = key(None, "one-third-octave wavelength spectrum of the line of the path", example='"iso3095"')
+    lateral: Annotated[float, BeforeValidator(Number(above=0, infinite=True))] | None = key(
+        None,
+        "correlation length across over that along the path, at every wavelength of the spectrum, from which "
+        "samples and path are then synthesised; inf: the same all across",
+        otherwise="nothing is known beside the line",
+        example="1.0",
+        goes_with="spectrum",
+        within=LATERAL,
     )
     level: Level = key(
         "+0 dB",
@@ -230,14 +246,19 @@ class Surface(MeasuredLine, MeasuredMap):
     )
 
     @property
+    def has_areal_spectrum(self) -> bool:
+        """Whether the spectrum is that of a surface, from which samples are cut."""
+        return self.spectrum is not None and self.lateral is not None
+
+    @property
     def has_samples(self) -> bool:
         """Whether there is a 3-D texture, from which stiffness and filters are reduced."""
-        return self.file is not None or self.rms is not None
+        return self.file is not None or self.rms is not None or self.has_areal_spectrum
 
     @property
     def has_line(self) -> bool:
         """Whether the path is given as a line, without the texture beside it."""
-        return self.line is not None or self.spectrum is not None
+        return self.line is not None or (self.spectrum is not None and not self.has_areal_spectrum)
 
     @property
     def band(self) -> tuple[float | None, float | None]:
@@ -253,6 +274,11 @@ class Surface(MeasuredLine, MeasuredMap):
         if not self.has_samples and not self.has_line:
             remedy = 'Name a measured map (file = "…") or synthesise one (rms = "0.5 um").'
             yield InputError("", "no texture", "file, rms, line or spectrum", remedy)
+        if self.has_areal_spectrum and (self.file is not None or self.rms is not None):
+            received = f"a number beside {'file' if self.rms is None else 'rms'}"
+            remedy = "Remove one: samples have one source."
+            yield InputError("lateral", received, "a spectrum alone", remedy)
+        yield from problems_of_table(self, "spectrum", read_levels)
 
     def problems_of_sources(self) -> Iterator[InputError]:
         """At most one source of samples, at most one of the path, and wavelengths in order."""

@@ -158,6 +158,25 @@ def strips_of(
     return strips, "filter strips synthesised in their likeness"
 
 
+def cut_from(path: NDArray[np.float64], contact: ContactCase, duration: float) -> tuple[HeightMap, ...]:
+    """Cut strips for stiffness and filters from a path (rows, ny), m, spread evenly; one flat one if it is.
+
+    The path of a run of a duration, s.
+    """
+    rows = strip_rows(contact)
+    if len(path) < rows:
+        raise InputError(
+            "duration",
+            f"{duration:g} s, a path of {len(path) * contact.spacing:.4g} m with its run-in",
+            f"at least {rows * contact.spacing:.4g} m, the strips from which filters are estimated",
+            "Roll longer, or lower contact.sample_length.",
+        )
+    count = contact.samples if path.any() else 1
+    firsts = np.linspace(0, len(path) - rows, count + 2)[1:-1].round().astype(int)
+    spacing = (contact.spacing, contact.spacing)
+    return tuple(level(HeightMap(path[i : i + rows], spacing)) for i in firsts)
+
+
 def path_of(
     maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int, run_in: int = 0
 ) -> tuple[Strip, str]:

@@ -19,9 +19,9 @@ from asperity.config.case import (
 from asperity.config.describing import in_words
 from asperity.config.form import key
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
+from asperity.config.tables import check_band_levels, read_levels
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import RailSurface
-from asperity.kinds.wheel_on_rail.tables import check_band_levels, read_levels
 from asperity.kinds.wheel_on_rail.track_keys import OVERRIDES, NoiseCase, RailContact, RailNumerics, TrackCase
 from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
 from asperity.scenarios.kind import Words

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -10,16 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, PlainValidator
 
-from asperity.config.content import name_of
-from asperity.config.form import Section, key
+from asperity.config.form import key
 from asperity.config.keys import Choice, ChoiceOrFile, Length, LineFile, MapFile, Number, Position, YesNo
-from asperity.config.sections import MeasuredLine, Surface
+from asperity.config.sections import LATERAL, MeasuredLine, Surface
+from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.tables import TableSource, read_levels
 
 RAIL_SPECTRA = ("iso3095", "cnossos-average")
 PROCESSING = ("fill", "spikes", "curvature")
-TABLE_OF_LEVELS = "a table of wavelengths and levels"
 
 Spectrum = Annotated[
     str | Path | NDArray[np.float64], PlainValidator(ChoiceOrFile(RAIL_SPECTRA, TABLE_OF_LEVELS, columns=2))
@@ -79,7 +77,7 @@ class RailSurface(MeasuredLines, Surface):
         1.0,
         "correlation length across over that along the rail, at every wavelength; inf: the same all across",
         goes_with="spectrum",
-        within=(0.001, 1000000.0, 'beyond that it is the same all across: write "inf"'),
+        within=LATERAL,
     )
     continuation: Annotated[str, BeforeValidator(Choice(("refuse", "mirror", "repeat")))] = key(
         "refuse", "how a record that is shorter than the run goes on"
@@ -139,16 +137,3 @@ class RailSurface(MeasuredLines, Surface):
             remedy = 'Add corrugation_wavelength = "40 mm", say.'
             yield InputError("corrugation", "no corrugation_wavelength", "both keys together", remedy)
         yield from problems_of_table(self, "spectrum", read_levels)
-
-
-def problems_of_table(
-    section: Section, name: str, read: Callable[[TableSource], object]
-) -> Iterator[InputError]:
-    """Say what is wrong with the table that a key names."""
-    table = getattr(section, name)
-    if isinstance(table, Path | np.ndarray):
-        try:
-            read(table)
-        except InputError as error:
-            received = f"{error.received} in {name_of(table)}"
-            yield InputError(name, received, error.allowed, error.remedy)

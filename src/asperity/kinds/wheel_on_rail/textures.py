@@ -10,16 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.content import name_of
-from asperity.errors import InputError, TruncatedContactWarning
+from asperity.config.tables import TableSource, read_levels
+from asperity.errors import TruncatedContactWarning
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.defects import corrugated, defects
 from asperity.kinds.wheel_on_rail.lines import rail_lines, wheel_lines
-from asperity.kinds.wheel_on_rail.records import Grid, Record, rail_levels, spectrum_strip, wheel_levels
 from asperity.laws import spec_of
+from asperity.reference import cnossos
 from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
+from asperity.scenarios.records import Grid, Record, spectrum_levels, spectrum_strip
 from asperity.scenarios.textures import (
     Textures,
+    cut_from,
     direction_words,
     measured_maps,
     path_of,
@@ -28,7 +31,6 @@ from asperity.scenarios.textures import (
     synthesised,
 )
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.levelling import level
 
 LEAST_LENGTH = 5.0
 """Synthesised strips are at least so long, m, so that they hold all bands of the spectra."""
@@ -52,7 +54,7 @@ def textures_of(case: WheelOnRail) -> Textures:
     around = (np.arange(rows) - before) % len(turn.heights)
     rough = rail.heights + turn.heights[around]
     if not maps or turn.heights.any():
-        maps = strips = _cut(rough, case)
+        maps = strips = cut_from(rough, case.contact, case.duration)
         sampled = f"{len(strips)} samples cut from the path"
     on_rail = corrugated(case, rows, seeds[2])
     path = HeightMap(rough + on_rail[:, None], (contact.spacing, contact.spacing))
@@ -103,7 +105,7 @@ def _samples(
 def _rail(case: WheelOnRail, grid: Grid, maps: tuple[HeightMap, ...], seed: int) -> Record:
     surface, shape = case.surface, (grid.rows, grid.lines)
     if surface.spectrum is not None:
-        wavelength, levels, name = rail_levels(surface.spectrum)
+        wavelength, levels, name = spectrum_levels(surface.spectrum)
         longer = Grid(max(grid.rows, math.ceil(LEAST_LENGTH / grid.spacing)), grid.lines, grid.spacing)
         levels = levels + surface.level
         strip = spectrum_strip(wavelength, levels, longer, lateral=surface.lateral, seed=seed, name=name)
@@ -125,7 +127,7 @@ def _wheel(case: WheelOnRail, grid: Grid, seed: int) -> Record:
     wheel = case.wheel
     turn = Grid(round(wheel.circumference / grid.spacing), grid.lines, grid.spacing)
     if wheel.roughness is not None:
-        wavelength, levels, name = wheel_levels(wheel.roughness)
+        wavelength, levels, name = _wheel_levels(wheel.roughness)
         levels = levels + wheel.roughness_level
         lateral = case.surface.lateral
         strip = spectrum_strip(wavelength, levels, turn, lateral=lateral, seed=seed, name=name)
@@ -135,20 +137,11 @@ def _wheel(case: WheelOnRail, grid: Grid, seed: int) -> Record:
     return Record(np.zeros((turn.rows, turn.lines)), "smooth", areal=False)
 
 
-def _cut(heights: NDArray[np.float64], case: WheelOnRail) -> tuple[HeightMap, ...]:
-    """Strips for stiffness and filters, spread evenly along the path; a single flat one if it is smooth."""
-    contact, rows = case.contact, strip_rows(case.contact)
-    if len(heights) < rows:
-        raise InputError(
-            "duration",
-            f"{case.duration:g} s, a path of {len(heights) * contact.spacing:.4g} m with its run-in",
-            f"at least {rows * contact.spacing:.4g} m, the strips from which filters are estimated",
-            "Roll longer, or lower contact.sample_length.",
-        )
-    count = contact.samples if heights.any() else 1
-    firsts = np.linspace(0, len(heights) - rows, count + 2)[1:-1].round().astype(int)
-    spacing = (contact.spacing, contact.spacing)
-    return tuple(level(HeightMap(heights[i : i + rows], spacing)) for i in firsts)
+def _wheel_levels(roughness: str | TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
+    """Band levels of a wheel, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
+    if not isinstance(roughness, str):
+        return *read_levels(roughness), name_of(roughness)
+    return *cnossos.wheel_roughness(roughness), roughness
 
 
 def warn_of(case: WheelOnRail, shape: Geometry, textures: Textures) -> None:

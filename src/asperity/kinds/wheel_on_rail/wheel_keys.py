@@ -25,9 +25,10 @@ from asperity.config.keys import (
     Position,
     SectionFile,
 )
+from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.surface_keys import TABLE_OF_LEVELS, MeasuredLines, problems_of_table
-from asperity.kinds.wheel_on_rail.tables import read_levels, read_modes, read_receptance
+from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines
+from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
 from asperity.units import written
 
 WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")

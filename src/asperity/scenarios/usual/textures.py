@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,13 @@ from numpy.typing import NDArray
 from asperity.config.case import Case
 from asperity.config.content import name_of
 from asperity.errors import InputError
-from asperity.reference.cnossos import rail_roughness
 from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.reading import read_lines
+from asperity.scenarios.records import Grid, Record, spectrum_levels, spectrum_strip
 from asperity.scenarios.textures import (
     Textures,
+    cut_from,
     direction_words,
     measured_maps,
     middle_line,
@@ -50,7 +52,7 @@ def gather(case: Case, margin: int) -> Textures:
     ny, spacing = window_cells(case.contact), case.contact.spacing
     lead = math.ceil(case.settled_time * case.speed / spacing)
     rows = lead + math.ceil(case.rolled_time * case.speed / spacing) + 1 + 2 * margin
-    missing, origin = 0.0, ""
+    missing, origin, areal = 0.0, "", True
     maps: tuple[HeightMap, ...] = ()
     strips: tuple[HeightMap, ...] = ()
     path: Strip | None = None
@@ -66,6 +68,12 @@ def gather(case: Case, margin: int) -> Textures:
         strips = tuple(synthesised(case.surface, spacing, size, seed) for seed in seeds[1:])
         maps, path = strips, synthesised_path(case.surface, spacing, (rows, ny), seeds[0])
         origin = "samples and path synthesised: self-affine, Gaussian"
+    elif case.surface.has_areal_spectrum:
+        record = _strip(case, Grid(rows, ny, spacing), seeds[0])
+        path = HeightMap(record.heights[:rows], (spacing, spacing))
+        maps = strips = cut_from(path.heights, case.contact, case.rolled_time)
+        origin = f"path of {record.origin}; {len(strips)} samples cut from it"
+        areal = record.areal
     if case.surface.has_line:
         line, line_origin = _line(case, rows - lead, 2 * margin + 2, lead, seeds[0])
         path, origin = None, "; ".join(filter(None, [origin, line_origin]))
@@ -73,15 +81,28 @@ def gather(case: Case, margin: int) -> Textures:
         line = middle_line(path)
     before = margin + lead
     start = case.record_start - before * spacing
-    return Textures(maps, strips, path, line, start, before, margin, missing, origin)
+    return Textures(maps, strips, path, line, start, before, margin, missing, origin, areal=areal)
+
+
+def _strip(case: Case, grid: Grid, seed: int) -> Record:
+    """Strip that closes on itself, of the areal spectrum: longer than the path and than the longest band."""
+    surface = case.surface
+    assert surface.spectrum is not None
+    assert surface.lateral is not None
+    wavelengths, levels, name = spectrum_levels(surface.spectrum)
+    rows = max(grid.rows, math.ceil(1.2 * wavelengths.max() / grid.spacing))
+    longer = Grid(rows, grid.lines, grid.spacing)
+    record = spectrum_strip(
+        wavelengths, levels + surface.level, longer, lateral=surface.lateral, seed=seed, name=name
+    )
+    return replace(record, origin=f"{record.origin}, {surface.level:+g} dB")
 
 
 def _line(case: Case, rows: int, least: int, lead: int, seed: int) -> tuple[NDArray[np.float64], str]:
     """Line of the path: `lead` points for the run-in, then `rows`, at least `least`, for the record."""
     spacing = case.contact.spacing
     if case.surface.spectrum is not None:
-        name = str(case.surface.spectrum)
-        table, every = rail_roughness(name)
+        table, every, name = spectrum_levels(case.surface.spectrum)
         fits = table / HALF_BAND > 2.06 * spacing  # as on a rail: bands that the grid can hold
         wavelengths, levels = table[fits], every[fits]
         # a line that closes on itself: longer than the path and than the longest band

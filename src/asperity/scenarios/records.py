@@ -1,4 +1,4 @@
-"""Textures of one body of a wheel-on-rail case, from band levels."""
+"""The texture of one body along a path, from band levels."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.config.content import name_of
+from asperity.config.tables import TableSource, read_levels
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.tables import TableSource, read_levels
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces.bands import strip_from_bands
@@ -63,15 +63,8 @@ def spectrum_strip(
     return Record(strip.heights, bands, areal=bool(np.isfinite(lateral)))
 
 
-def rail_levels(spectrum: str | TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
-    """Band levels of a rail, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
+def spectrum_levels(spectrum: str | TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
+    """Band levels of a path, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
     if not isinstance(spectrum, str):
         return *read_levels(spectrum), name_of(spectrum)
     return *cnossos.rail_roughness(spectrum), spectrum
-
-
-def wheel_levels(roughness: str | TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
-    """Band levels of a wheel, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
-    if not isinstance(roughness, str):
-        return *read_levels(roughness), name_of(roughness)
-    return *cnossos.wheel_roughness(roughness), roughness
