@@ -1,135 +1,77 @@
-"""The contact filter: a larger state hears less of a fine texture.
+"""
+The contact filter of a ball
+============================
 
-A steel ball at constant state r = approach + d0 is moved along rough strips, and its force is compared,
-wavenumber by wavenumber, with that of a point force on the line textures under the patch (Hann window, power
-of all lines and strips, averaged over a sixth of an octave). A patch of semi-axis a = sqrt(R approach)
-averages over its width, so the filter |H(k, r)| falls earlier the larger r is.
+A ball at constant state r = approach + d₀ is moved along rough strips, and its force is compared,
+wavenumber by wavenumber, with that of a point force on the line textures under the patch (Eqs. 2.4 to 2.6).
+A patch of semi-axis a = √(R approach) averages over its width, so the filter falls earlier the larger r is.
 
-What is asserted:
-
-- the wavenumbers at which the printed filter has fallen by 3 dB and by 10 dB are lower for each larger state;
-- so is, on average over the wavenumbers, the filter that is referred to the tangent stiffness.
-
-The printed normalisation (left) makes the filter one at the longest waves. It needs waves longer than the
-patch, and the texture here rolls off at 1 mm: the largest state has lost half its force there already
-(k_0/k_t = 0.54), which does not show. With a roll-off at 0.4 mm, shorter than the larger patches, k_0/k_t
-goes down to 0.28, and the wavenumbers no longer fall in order (10 dB at 2400, 1630, 4010 and 1850 cycles/m).
-Referred to the tangent stiffness (right), the filter says how much of the texture reaches the force in all.
-It starts below one, since this texture also varies across the path. Where sin q / q, q = 2 pi k a, the closed
-form for texture that is uniform across, goes through zero, it has a dip, and lobes beyond.
-
-Run: python contact_filter.py [FOLDER]
+As printed, the filter is one at the longest waves. Referred to the tangent stiffness k_t it starts below
+one on a texture that also varies across the path: what the patch averages across never reaches the force.
+Where sin q/q, q = 2π k a, the closed form for texture that is uniform across, goes through zero, it has a
+dip.
 """
 
-from __future__ import annotations
-
-import sys
-from pathlib import Path
-from typing import NamedTuple
-
+import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.figure import Figure
 
-from asperity.contact import HalfSpace, Hertz
-from asperity.contact.scan import first_touch
-from asperity.reduction.filter import ContactFilter, estimate_filter, filter_spectra, punch_filter
-from asperity.reduction.stiffness import ForceCurve
-from asperity.reference.materials import contact_modulus, material
-from asperity.reporting.style import sequence, styled, wavenumber_axis
-from asperity.surfaces.synthesis import self_affine
+import asperity
 
-STEEL = material("steel")
-BALL = Hertz(contact_modulus(STEEL, STEEL), 25e-3, 25e-3)  # radius 25 mm
-CELLS, SPACING, STRIDE = 81, 16e-6, 2  # m
-STATES = np.array([2.0, 3.0, 5.0, 9.0]) * 1e-6  # r, m
+case = asperity.BallOnBeam(
+    laws=["shifted", "printed"],
+    start="0.5 m",
+    duration="10 ms",
+    settling=0,
+    surface={"rms": "0.3 um", "longest": "1 mm", "shortest": "64 um"},
+    ball={"radius": "25 mm", "load": "30 N"},
+    contact={
+        "spacing": "16 um",
+        "window": "1.3 mm",
+        "samples": 3,
+        "sample_length": "11.5 mm",
+        "approaches": ["1.7 um", "2.7 um", "4.7 um", "8.7 um"],
+    },
+)
+contact = asperity.run(case)["contact"].to_dataset()
+state = contact.approach.values + contact.attrs["datum"]
+wavenumber = contact.wavenumber.values  # cycles/m
 
+# %%
+# Dotted: sin q/q, main lobe.
 
-class Filters(NamedTuple):
-    """Filters of one set of scans in both normalisations, and the semi-axis of the patch at each state, m."""
+figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.2), sharey=True, layout="constrained")
+shown = {
+    "as printed: one at the longest waves": "printed_filter",
+    "referred to the tangent stiffness": "filter",
+}
+for axes, (title, name) in zip(panels, shown.items(), strict=True):
+    for row, r in enumerate(state):
+        (line,) = axes.semilogx(wavenumber, 20 * np.log10(contact[name][row]), label=f"r = {r * 1e6:.1f} µm")
+        lobe = 2 * wavenumber * contact.contact_radius.values[row] < 0.99
+        theory = 20 * np.log10(np.abs(contact.filter_theory.values[row, lobe]))
+        axes.semilogx(wavenumber[lobe], theory, ":", color=line.get_color())
+    axes.set(title=title, xlabel="wavenumber / (cycles/m)", ylim=(-40, 5), xlim=(100, 1e4))
+panels[0].set_ylabel("contact filter |H| / dB")
+panels[0].legend(loc="lower left")
+plt.show()
 
-    printed: ContactFilter
-    tangent: ContactFilter
-    semi_axis: np.ndarray
-
-
-def filters(longest: float, strips: int = 3, rows: int = 720) -> Filters:
-    grid = (SPACING, SPACING)
-    x = (np.arange(CELLS) - CELLS // 2) * SPACING
-    body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * BALL.radius_x)
-    roughness = {"rms": 0.3e-6, "hurst": 0.8, "longest": longest, "shortest": 64e-6}
-    textures = [self_affine((rows, CELLS), grid, **roughness, seed=seed).heights for seed in range(strips)]
-    textures = [z - z.mean() for z in textures]
-    datum = -min(first_touch(z, body, STRIDE).min() for z in textures)
-    approaches = STATES - datum
-    semi_axis = np.array([BALL.semi_axes(approach)[0] for approach in approaches])
-    long_waves = 0.5 / (2 * np.pi * semi_axis)  # k a < 1/2, where sin q/q is one but for 4 %
-    under = (semi_axis / SPACING).astype(int)  # lines on either side of the middle
-    half_space = HalfSpace(body.shape, SPACING, BALL.modulus)
-    spectra, means = [], []
-    for z in textures:
-        forces = half_space.scan(z, body, approaches, STRIDE, rtol=1e-5).values
-        lines = z[CELLS // 2 :][: forces.shape[1] * STRIDE].T
-        spectra.append(filter_spectra(forces, lines, SPACING, under))
-        means.append(forces.mean(axis=1))
-    slope = ForceCurve.from_samples(approaches, np.mean(means, axis=0)).stiffness(approaches)
-    printed, tangent = (
-        estimate_filter(spectra, approaches, slope, normalise=normalise, asymptote=long_waves)
-        for normalise in ("low-wavenumber", "tangent")
-    )
-    return Filters(printed, tangent, semi_axis)
+# %%
+# A larger state hears less of a fine texture: the wavenumbers at which the printed filter has fallen by 3
+# and by 10 dB, and the mean level of the other one, are lower for each larger state.
 
 
-def falls_to(contact_filter: ContactFilter, level: float) -> np.ndarray:
-    """Wavenumber at which each filter first falls to a level in dB, cycles/m."""
+def falls_to(level: float) -> list[float]:
+    """Wavenumber at which each printed filter first falls to a level in dB, cycles/m."""
     found = []
-    for magnitude in contact_filter.magnitude:
-        loss = -decibels(magnitude)
-        i = int(np.argmax(loss > -level))
-        found.append(np.interp(-level, loss[i - 1 : i + 1], contact_filter.wavenumber[i - 1 : i + 1]))
-    return np.array(found)
+    for row in 20 * np.log10(contact.printed_filter.values):
+        first = int(np.argmax(row < level))
+        around = slice(first - 1, first + 1)
+        found.append(float(np.interp(-level, -row[around], wavenumber[around])))
+    return found
 
 
-def draw(found: Filters, file: Path) -> None:
-    with styled():
-        figure = Figure(figsize=(9.6, 4.4))
-        panels = figure.subplots(1, 2, sharey=True, gridspec_kw={"wspace": 0.08})
-        titles = ("As printed: one at the longest waves", "Referred to the tangent stiffness")
-        for axes, title, shown in zip(panels, titles, (found.printed, found.tangent), strict=True):
-            k = shown.wavenumber
-            rows = zip(
-                sequence(len(STATES)), STATES, found.semi_axis, shown.magnitude, shown.spread, strict=True
-            )
-            for colour, state, a, magnitude, spread in rows:
-                low, high = (decibels(np.maximum(magnitude + sign * spread, 1e-3)) for sign in (-1, 1))
-                axes.fill_between(k, low, high, color=colour, alpha=0.15, lw=0)
-                axes.plot(k, decibels(magnitude), color=colour, lw=2, label=f"r = {state * 1e6:g} µm")
-                main_lobe = np.geomspace(k[0], 0.499 / a, 200)
-                axes.plot(main_lobe, decibels(punch_filter(main_lobe, a)), ":", color=colour, lw=1.2)
-            axes.plot([], [], ":", color="0.3", label="sin q / q, main lobe")
-            axes.set_title(title, pad=8)
-            wavenumber_axis(axes, 100.0, 1e4)
-        panels[0].set(ylabel="contact filter |H| / dB", ylim=(-40, 5))
-        panels[0].legend(loc="lower left")
-        figure.savefig(file, dpi=150, facecolor="white")
-
-
-def decibels(magnitude: np.ndarray) -> np.ndarray:
-    return 20 * np.log10(np.maximum(magnitude, 1e-6))
-
-
-def main(folder: Path = Path(), longest: float = 1e-3) -> dict[str, list[float]]:
-    found = filters(longest)
-    draw(found, folder / "contact_filter.png")
-    numbers = {
-        "wavenumber_at_3_db": falls_to(found.printed, -3.0).tolist(),
-        "wavenumber_at_10_db": falls_to(found.printed, -10.0).tolist(),
-        "mean_level_from_tangent": decibels(found.tangent.magnitude).mean(axis=1).tolist(),
-    }
-    for name, values in numbers.items():
-        assert np.all(np.diff(values) < 0.0), f"{name} does not fall with the state: {values}"
-    return numbers
-
-
-if __name__ == "__main__":
-    for name, values in main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path()).items():
-        print(name, "=", ", ".join(f"{value:.4g}" for value in values))
+for level in (-3.0, -10.0):
+    print(f"{level:g} dB at " + ", ".join(f"{k:.0f}" for k in falls_to(level)) + " cycles/m")
+    assert np.all(np.diff(falls_to(level)) < 0.0)
+assert falls_to(-3.0)[-1] < 0.5 * falls_to(-3.0)[0]
+assert np.all(np.diff(20 * np.log10(contact["filter"]).mean("wavenumber")) < 0.0)

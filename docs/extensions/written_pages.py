@@ -1,0 +1,135 @@
+"""Pages that are written from what the project holds, so that nothing is told twice: before every build.
+
+Pages of the repository keep the links that lead somewhere there; here they lead to the page that holds the
+file, or to the file itself.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from asperity.cli import main
+from asperity.kinds import KINDS
+from asperity.kinds.cases import template
+from asperity.laws import Need, names, spec_of
+
+DOCS = Path(__file__).parents[1]
+ROOT, WRITTEN = DOCS.parent, DOCS / "generated"
+COPIED = {
+    "CONFORMANCE.md": "conformance",
+    "benchmarks/README.md": "benchmarks",
+    "ARCHITECTURE.md": "architecture",
+    "CONTRIBUTING.md": "contributing",
+    "CHANGELOG.md": "changelog",
+}
+"""Pages that stand elsewhere in the repository, and their names here."""
+HOMES = {ROOT / source: WRITTEN / f"{name}.md" for source, name in COPIED.items()} | {
+    ROOT / "README.md": DOCS / "index.md",
+    ROOT / "examples": WRITTEN / "gallery/index.rst",
+}
+NEEDS = {
+    Need.SAMPLES: "samples",
+    Need.DATUM: "the datum",
+    Need.FILTER: "the contact filter",
+    Need.AREAL: "texture beside the line",
+    Need.SCAN: "a scan of the whole path",
+    Need.SURFACE: "texture beside the line",
+}
+LINK = re.compile(r"\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)")
+KEY = re.compile(r"^(?P<unset># )?(?P<key>\w+) = (?P<value>.*?) +# (?P<note>.*)$")
+
+
+def relinked(text: str, place: Path, page: Path) -> str:
+    """Text of a file in the folder `place`, its links as they have to be on `page`."""
+
+    def leading(match: re.Match[str]) -> str:
+        target = (place / match[1]).resolve()
+        found = HOMES.get(target, target)
+        return f"]({Path(os.path.relpath(found, page.parent)).as_posix()}{match[2] or ''})"
+
+    return LINK.sub(leading, text)
+
+
+def copied() -> Iterator[tuple[str, str]]:
+    """Pages of the repository."""
+    for source, name in COPIED.items():
+        path = ROOT / source
+        yield name, relinked(path.read_text(encoding="utf-8"), path.parent, WRITTEN / f"{name}.md")
+
+
+def commands() -> str:
+    """Every command with its help."""
+    parts = ["# Commands", "What `asperity COMMAND --help` says.", *help_of(main, "asperity")]
+    for name, command in sorted(main.commands.items()):
+        parts += [f"## {name}", *help_of(command, f"asperity {name}")]
+    return "\n\n".join(parts)
+
+
+def help_of(command: click.Command, name: str) -> list[str]:
+    """Help of a command, as text."""
+    context = click.Context(command, info_name=name, max_content_width=90, terminal_width=90)
+    return [f"```text\n{command.get_help(context)}\n```"]
+
+
+def keys_of(kind: str) -> str:
+    """Every key of the case file of a kind."""
+    title, *lines = template(kind).splitlines()
+    parts = [f"# Keys of {kind}", title.lstrip("# ").split(". ")[0] + "."]
+    parts += [
+        f"`asperity new {kind}` writes this as a case file. Keys in *italics* have no fixed default: an "
+    ]
+    parts[-1] += "example stands there."
+    rows: list[str] = []
+    for line in lines:
+        if line.startswith("["):
+            section, meaning = line.split("]", 1)
+            parts += ["\n".join(rows)] * bool(rows)
+            parts += [f"## {section}]", meaning.lstrip(" #").capitalize() + "."]
+            rows = []
+        elif (found := KEY.match(line)) is not None:
+            rows += ["| key | value | meaning |", "|---|---|---|"] * (not rows)
+            name = f"*`{found['key']}`*" if found["unset"] else f"`{found['key']}`"
+            note = found["note"].replace("|", "\\|")
+            rows.append(f"| {name} | `{found['value']}` | {note} |")
+    return "\n\n".join([*parts, "\n".join(rows)])
+
+
+def laws() -> str:
+    """Every law and variant, as its specification states it."""
+    rows = ["| law | what it is | needs of the surface |", "|---|---|---|"]
+    for name in names():
+        spec = spec_of(name)
+        needs = ", ".join(NEEDS[need] for need in Need if need in spec.needs) or "the line alone"
+        rows.append(f"| `{name}` | {spec.meaning} | {needs} |")
+    return "\n".join(rows)
+
+
+def write(app: object) -> None:
+    """Write all pages whose text has changed."""
+    pages = dict(copied())
+    pages["commands"] = commands()
+    pages |= {f"keys-{kind}": keys_of(kind) for kind in KINDS}
+    pages["parts/laws"] = laws()
+    (WRITTEN / "parts").mkdir(parents=True, exist_ok=True)
+    for name, text in pages.items():
+        path = WRITTEN / f"{name}.md"
+        if not path.is_file() or path.read_text(encoding="utf-8") != text + "\n":
+            path.write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
+def relink(app: object, name: str, source: list[str]) -> None:
+    """Let the links of a page that is written by hand lead to pages."""
+    if not name.startswith("generated/"):
+        source[0] = relinked(source[0], (DOCS / name).parent, DOCS / name)
+
+
+def setup(app):
+    """Tell Sphinx."""
+    app.connect("builder-inited", write, priority=100)
+    app.connect("source-read", relink)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
