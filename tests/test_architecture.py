@@ -26,7 +26,18 @@ def test_imports_point_one_way():
 @pytest.mark.parametrize("statement", ["import asperity", "import asperity.cli"])
 def test_importing_is_light(statement):
     """Heavy packages are imported where they are used, not before."""
-    heavy = ("numba", "scipy", "xarray", "matplotlib", "pint", "pydantic", "rich", "jinja2")
+    heavy = (
+        "numba",
+        "scipy",
+        "xarray",
+        "matplotlib",
+        "pint",
+        "pydantic",
+        "rich",
+        "jinja2",
+        "starlette",
+        "uvicorn",
+    )
     code = f"import sys; {statement}; print([m for m in {heavy!r} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

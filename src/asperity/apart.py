@@ -106,14 +106,24 @@ def _leave(message: object, code: int) -> None:
 
 def _limit(memory: int, seconds: int) -> None:
     """Limit the memory and time of this process, where the system can."""
+    limit_memory(memory)
+    _limit_resource("RLIMIT_CPU", seconds)
+
+
+def limit_memory(memory: int) -> None:
+    """Limit the address space of this process, bytes, where the system can."""
+    _limit_resource("RLIMIT_AS", memory)
+
+
+def _limit_resource(name: str, value: int) -> None:
     try:
         import resource
     except ImportError:  # Windows; the time is limited from outside as well
         return
-    for kind, value in ((resource.RLIMIT_AS, memory), (resource.RLIMIT_CPU, seconds)):
-        _, hard = resource.getrlimit(kind)
-        if hard in (resource.RLIM_INFINITY,) or hard >= value:
-            resource.setrlimit(kind, (value, hard))
+    kind = getattr(resource, name)
+    _, hard = resource.getrlimit(kind)
+    if hard in (resource.RLIM_INFINITY,) or hard >= value:
+        resource.setrlimit(kind, (value, hard))
 
 
 def send(answers: BinaryIO, description: object, arrays: list[Any]) -> None:

@@ -275,6 +275,27 @@ def cite(run: Path) -> None:
 
 
 @main.command()
+@click.option("--port", type=int, default=0, help="Port of this machine. [default: one that is free]")
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    default=Path("asperity-page"),
+    show_default=True,
+    type=click.Path(path_type=Path),
+    help="Folder of surfaces and runs; those of an earlier time are found again.",
+)
+def serve(port: int, directory: Path) -> None:
+    """Serve a page on this machine: set cases, press the contact, roll, watch, compare and listen.
+
+    Prints the address, which holds a token: whoever has it may use the page. Needs the extra app.
+    """
+    from asperity.cli.serving import serve_page
+
+    serve_page(directory, port)
+
+
+@main.command()
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
 def cache(clear: bool) -> None:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left."""

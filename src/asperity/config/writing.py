@@ -19,20 +19,21 @@ def toml_text(data: Mapping[str, Any]) -> str:
 
 
 def _lines(data: Mapping[str, Any]) -> list[str]:
-    return [f"{_text(name)} = {_value(value)}" for name, value in data.items()]
+    return [f"{_text(name)} = {toml_value(value)}" for name, value in data.items()]
 
 
 def _text(name: str) -> str:
     bare = name.isascii() and name.replace("-", "_").isidentifier()
-    return name if bare else _value(name)
+    return name if bare else toml_value(name)
 
 
-def _value(value: object) -> str:
+def toml_value(value: object) -> str:
+    """Write one value as it stands behind the = of a key."""
     if isinstance(value, Mapping):
-        inside = ", ".join(f"{_text(name)} = {_value(item)}" for name, item in value.items())
+        inside = ", ".join(f"{_text(name)} = {toml_value(item)}" for name, item in value.items())
         return f"{{ {inside} }}"
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     if isinstance(value, float):
         return repr(value)  # inf and nan, too, are spelled as in Python
     return json.dumps(value, ensure_ascii=False, default=described_value).replace("\x7f", "\\u007f")

@@ -1,0 +1,226 @@
+"""The form in which a case is set on the page, made from the schema of its kind; what is typed into it."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from asperity.arguments import shown
+from asperity.config.describing import CaseKey, entries
+from asperity.config.form import extra_of
+from asperity.config.keys import (
+    Choice,
+    ChoiceOrFile,
+    File,
+    Flag,
+    MaterialOrName,
+    Number,
+    NumberOrWord,
+    allowed_in,
+    is_list,
+    value_kind,
+)
+from asperity.config.single_keys import entry_of
+from asperity.config.writing import toml_value
+from asperity.errors import InputError
+from asperity.kinds import KINDS
+from asperity.kinds.cases import kind_named
+
+LONGEST_VALUE = 2000
+"""Characters of one value: more than any list of a case needs."""
+YES, NO = "yes", "no"
+_KIND = "kind"
+
+
+@dataclass(frozen=True)
+class FormField:
+    """One key of a case as the form shows it."""
+
+    key: str  # with its section, as "contact.spacing"
+    name: str
+    meaning: str
+    allowed: str  # what may stand there, in words
+    otherwise: str  # what holds where nothing is typed
+    control: str  # "text", "choice" (one of them), "choices" (several) or "file"
+    choices: tuple[str, ...]
+    value: str  # what stands there at first
+    goes_with: str  # keys, with " or " between them, or "key=value", without which it has no meaning
+
+
+@dataclass(frozen=True)
+class FormGroup:
+    """The keys of one section."""
+
+    title: str  # name of the section; empty for the keys at the top
+    meaning: str
+    fields: tuple[FormField, ...]
+
+
+@dataclass(frozen=True)
+class CaseForm:
+    """All keys of a kind of case, section by section."""
+
+    kind: str
+    title: str  # what rolls over what
+    groups: tuple[FormGroup, ...]
+
+
+@lru_cache
+def forms() -> tuple[CaseForm, ...]:
+    """Make the form of each kind of case."""
+    return tuple(_form(name) for name in KINDS)
+
+
+def _form(name: str) -> CaseForm:
+    kind = kind_named(name)
+    groups = []
+    for title, found in groupby(entries(kind.case), lambda entry: entry.dotted.rpartition(".")[0]):
+        meaning = str(kind.case.model_fields[title].description) if title else kind.words.title.rstrip(".")
+        written_out = kind.words.written_out
+        fields = (_field(entry, title, written_out) for entry in found if entry.dotted != _KIND)
+        groups.append(FormGroup(title, meaning, tuple(fields)))
+    return CaseForm(name, kind.words.title.rstrip("."), tuple(groups))
+
+
+def _field(entry: CaseKey, title: str, written_out: Mapping[str, str]) -> FormField:
+    usual, written = entry.default, written_out.get(entry.dotted)
+    companion = str(extra_of(entry.field)["goes_with"])
+    control, choices = _control(entry)
+    return FormField(
+        entry.dotted,
+        entry.name,
+        str(entry.field.description),
+        allowed_in(entry.field).split(", with its unit")[0],
+        entry.otherwise if usual is None else typed(usual),
+        control,
+        choices,
+        "" if written is None else typed(tomllib.loads(f"v = {written}")["v"]),
+        " or ".join(f"{title}.{each}".lstrip(".") for each in companion.split(" or ")) if companion else "",
+    )
+
+
+def _control(entry: CaseKey) -> tuple[str, tuple[str, ...]]:
+    match value_kind(entry.field.annotation, entry.field.metadata):
+        case Choice() as choice:
+            return ("choices" if is_list(entry.field.annotation) else "choice"), choice.known
+        case Flag():
+            return "choice", (YES, NO)
+        case File():
+            return "file", ()
+        case ChoiceOrFile() as either:
+            return "file", either.words
+    return "text", ()
+
+
+def typed(value: object) -> str:
+    """Write a value of a case file as it would be typed into the form."""
+    if isinstance(value, bool):
+        return YES if value else NO
+    if isinstance(value, list | tuple):
+        return ", ".join(map(typed, value))
+    return toml_value(value) if isinstance(value, Mapping) else str(value)
+
+
+def case_data(
+    kind: object, values: Mapping[str, object], file_of: Callable[[str], Path | None]
+) -> dict[str, Any]:
+    """Make keys and values, as a case file has them, of what was typed into a form.
+
+    Parameters
+    ----------
+    kind : object
+        Name of the kind of case.
+    values : mapping
+        What was typed, by key with its section; empty text leaves a key out.
+    file_of : callable
+        Finds the file of an identifier; None where there is none.
+
+    Raises
+    ------
+    InputError
+        If a key or a file is unknown, or a value is no text.
+    """
+    model = kind_named(kind).case
+    data: dict[str, Any] = {_KIND: kind}
+    for dotted, text in values.items():
+        entry = entry_of(model, dotted)
+        if not isinstance(text, str) or len(text) > LONGEST_VALUE:
+            raise InputError(dotted, shown(text), f"a text of at most {LONGEST_VALUE} characters")
+        if text.strip():
+            title, _, name = dotted.rpartition(".")
+            section = data.setdefault(title, {}) if title else data
+            section[name] = _value(entry, text.strip(), file_of)
+    return data
+
+
+def _value(entry: CaseKey, text: str, file_of: Callable[[str], Path | None]) -> Any:
+    kind = value_kind(entry.field.annotation, entry.field.metadata)
+    if is_list(entry.field.annotation):
+        parts = (part.strip() for part in text.split(","))
+        return [_number(part) if isinstance(kind, Number) else part for part in parts if part]
+    match kind:
+        case Number() | NumberOrWord():
+            return _number(text)
+        case Flag():
+            return {YES: True, NO: False}.get(text, text)
+        case ChoiceOrFile() if text in kind.words:
+            return text
+        case File() | ChoiceOrFile():
+            found = file_of(text)
+            if found is None:
+                raise InputError(entry.dotted, shown(text), "a surface that was uploaded", "Upload it.")
+            return str(found)
+        case MaterialOrName() if text.startswith("{"):
+            return _table(entry, text)
+    return text
+
+
+def _number(text: str) -> int | float | str:
+    """The number that a text is; the text itself if it is none, of which the case will complain."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _table(entry: CaseKey, text: str) -> Any:
+    try:
+        return tomllib.loads(f"v = {text}")["v"]
+    except (ValueError, RecursionError):
+        raise InputError(entry.dotted, shown(text), allowed_in(entry.field)) from None
+
+
+def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> dict[str, str]:
+    """Write the keys and values of a case that is right as they would be typed into its form.
+
+    `id_of` finds the identifier of a file's path; an `InputError` names a file that has none.
+    """
+    model = kind_named(data.get(_KIND)).case
+    found = {}
+    for dotted, value in _flat(data):
+        if dotted == _KIND:
+            continue
+        kind = value_kind((field := entry_of(model, dotted).field).annotation, field.metadata)
+        named = isinstance(kind, File) or (isinstance(kind, ChoiceOrFile) and value not in kind.words)
+        text = id_of(str(value)) if named else typed(value)
+        if text is None:
+            remedy = "Upload it, and choose it in the form."
+            raise InputError(dotted, shown(Path(value).name), "a surface that was uploaded", remedy)
+        found[dotted] = text
+    return found
+
+
+def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Keys with their sections; a material of numbers is a value."""
+    for name, value in data.items():
+        if isinstance(value, Mapping):
+            yield from ((f"{name}.{inner}", each) for inner, each in value.items())
+        else:
+            yield name, value

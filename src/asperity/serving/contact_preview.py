@@ -1,0 +1,151 @@
+"""A contact to play with: one sample of a case's surface under its body, pressed by hand."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.config.case import Case
+from asperity.contact import Contact, HalfSpace
+from asperity.errors import CaseError, InputError
+from asperity.reduction.areal import punch_weights
+from asperity.reduction.ensemble import patches
+from asperity.running import prepare_case
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.textures import strip_rows
+
+MOST_CELLS_SHOWN = 129
+"""Cells along a side of the window that are solved; of wider ones every second, third, … is taken."""
+CURVE = 16
+"""States of the curve of k_c."""
+RTOL = 1e-5
+SPARE = 4.0
+"""Length of the path beyond a strip for the filters, in windows: one sample needs no longer one."""
+
+
+class PressedSample:
+    """One sample of a surface, which is pressed to one approach after the other, each from the last pressure.
+
+    Forces, pressures and k_c are those of `HalfSpace.solve`. r counts from the first touch of this sample;
+    in a run it counts from the highest one of all samples.
+    """
+
+    def __init__(self, case: Case) -> None:
+        prepared = _prepared(case)
+        shape = prepared.shape.within_window()
+        self.heights, gap, self.thinning = _laid_out(prepared)
+        self.spacing = tuple(self.thinning * d for d in shape.spacing)
+        self.load, self.hertz = shape.load, shape.hertz
+        self.half_space = HalfSpace(
+            (gap.shape[0], gap.shape[1]), (self.spacing[0], self.spacing[1]), shape.modulus,
+            case.contact.hardness,
+        )  # fmt: skip
+        self.gap = gap
+        self.source = (
+            prepared.textures.origin if prepared.textures.maps else "smooth bodies: no sample is given"
+        )
+        self.touch = float(gap.min())
+        self.last = self.half_space.solve(gap, load=self._largest(shape), rtol=RTOL)
+        self.deepest = self.last.approach
+        self.curve = [_state(self._at(d), self.touch) for d in self._states()]
+        self.working = self.half_space.solve(
+            gap, load=self.load, start=self.last.pressure, rtol=RTOL
+        ).approach
+
+    def _largest(self, shape: Geometry) -> float:
+        """Largest force, N, that the window holds and, with a hardness, carries."""
+        cells = self.gap.size
+        carried = 0.9 * self.half_space.pressure_cap * self.half_space.cell_area * cells
+        largest = min(shape.largest_force, carried)
+        if largest <= shape.load:
+            raise InputError(
+                "contact.hardness",
+                f"{self.half_space.pressure_cap / 1e9:.3g} GPa",
+                f"a hardness with which the window carries the load of {shape.load:.3g} N",
+            )
+        return largest
+
+    def _states(self) -> NDArray[np.float64]:
+        """Approaches (CURVE,), m, from the deepest to just above touch, denser there."""
+        share = np.linspace(1.0, 0.0, CURVE, endpoint=False) ** 1.5
+        return self.touch + (self.deepest - self.touch) * share
+
+    def _at(self, approach: float) -> Contact:
+        self.last = self.half_space.solve(self.gap, approach=approach, start=self.last.pressure, rtol=RTOL)
+        return self.last
+
+    def at(self, share: float | None) -> dict[str, Any]:
+        """Press to an approach: a share, 0 to 1, of the way from touch to the deepest; None to the load."""
+        reach = self.deepest - self.touch
+        wanted = self.working if share is None else self.touch + min(max(share, 0.0), 1.0) * reach
+        contact = self._at(wanted)
+        pressure = contact.pressure
+        smooth = self.hertz.force(max(contact.approach, 0.0))
+        return {
+            "share": (wanted - self.touch) / reach if reach else 0.0,
+            "pressure": pressure,
+            "largest_pressure": float(pressure.max()),
+            "area": contact.area,
+            "iterations": contact.iterations,
+            "converged": contact.converged,
+            "at_edge": contact.edge_share,
+            "smooth_force": float(smooth),
+            **_state(contact, self.touch),
+        }
+
+    def described(self) -> dict[str, Any]:
+        """What does not change while the slider moves."""
+        return {
+            "shape": list(self.gap.shape),
+            "spacing": list(self.spacing),
+            "thinning": self.thinning,
+            "heights": self.heights,
+            "source": self.source,
+            "load": self.load,
+            "touch": self.touch,
+            "deepest": self.deepest,
+            "working": self.working,
+            "curve": self.curve[::-1],
+        }
+
+
+def _state(contact: Contact, touch: float) -> dict[str, float]:
+    """Force and stiffness at an approach: k_c = F/r (Eq. 2.3), and dF/dδ."""
+    state = contact.approach - touch
+    secant = contact.force / state if state > 0.0 else 0.0
+    return {
+        "approach": contact.approach,
+        "state": state,
+        "force": contact.force,
+        "stiffness": secant,
+        "tangent_stiffness": contact.stiffness,
+    }
+
+
+def _prepared(case: Case) -> PreparedCase:
+    """Lay a case ready with a path as short as it may be; where none is allowed, with its own."""
+    contact = case.contact
+    length = strip_rows(contact) * contact.spacing + SPARE * contact.window
+    try:
+        return prepare_case(case.with_(duration=max(length / case.speed, 2.0 * case.time_step), settling=0.0))
+    except (InputError, CaseError):
+        return prepare_case(case)
+
+
+def _laid_out(prepared: PreparedCase) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
+    """Heights and gap (nx, ny), m, of the first sample, and how many cells apart their points are."""
+    shape, maps = prepared.shape, prepared.textures.maps
+    heights = np.zeros_like(shape.body)
+    if maps:
+        cells = (shape.body.shape[0], shape.body.shape[1])
+        weights = punch_weights(shape.spacing, shape.semi_axes)
+        heights = patches([m.heights for m in maps], cells, prepared.case.contact.samples, weights)[0]
+    step = math.ceil(max(heights.shape) / MOST_CELLS_SHOWN)
+    first = [(n // 2) % step for n in heights.shape]  # the middle cell stays
+    thinned = heights[first[0] :: step, first[1] :: step]
+    gap = shape.body[first[0] :: step, first[1] :: step] - thinned
+    return thinned, np.ascontiguousarray(gap), step

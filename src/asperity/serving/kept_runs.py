@@ -1,0 +1,113 @@
+"""Runs of the page on disk: a folder each, named at random, in which it can be seen what became of it."""
+
+from __future__ import annotations
+
+import json
+import re
+import secrets
+import shutil
+from collections.abc import Iterator
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from asperity.files import discard, write_bytes
+from asperity.printable import printable
+
+CASE, RESULT, REPORT, SOUNDS = "case.toml", "run.nc", "report.html", "sounds"
+_FACTS, _OUTCOME = "run.json", "outcome.json"
+_IDENTIFIER = re.compile(r"[0-9a-f]{16}")
+LONGEST_NAME = 80
+
+
+def new_identifier() -> str:
+    """Make a name that nobody can guess."""
+    return secrets.token_hex(8)
+
+
+def folder_of(root: Path, identifier: str) -> Path | None:
+    """Folder of what is kept under an identifier; None if there is none, or it is none."""
+    if not _IDENTIFIER.fullmatch(identifier):
+        return None
+    folder = root / identifier
+    return folder if folder.is_dir() and not folder.is_symlink() else None
+
+
+def kept_in(root: Path) -> Iterator[Path]:
+    """Folders that are kept there, the latest first."""
+    if not root.is_dir():
+        return
+    found = [
+        (folder.stat().st_mtime_ns, folder)
+        for each in root.iterdir()
+        if (folder := folder_of(root, each.name))
+    ]
+    yield from (folder for _, folder in sorted(found, reverse=True))
+
+
+def keep_run(root: Path, case: str, *, kind: str, name: str, changed: str) -> str:
+    """Make the folder of a new run with its case in TOML, and what a list of runs says of it."""
+    identifier = new_identifier()
+    facts = {
+        "kind": kind,
+        "name": shortened_name(name) or datetime.now().strftime("%d %b, %H:%M:%S"),
+        "changed": changed,
+        "created": datetime.now().astimezone().isoformat(timespec="seconds"),
+    }
+    write_bytes(root / identifier / _FACTS, json.dumps(facts, ensure_ascii=False).encode())
+    write_bytes(root / identifier / CASE, case.encode())
+    return identifier
+
+
+def shortened_name(text: str) -> str:
+    """Make a name that can be shown of what was typed."""
+    return printable(" ".join(text.split()))[:LONGEST_NAME]
+
+
+def told_of(folder: Path) -> dict[str, Any]:
+    """What a run is, and what became of it: done, failed, cancelled, or interrupted where nobody knows."""
+    facts = _read(folder / _FACTS)
+    outcome = _read(folder / _OUTCOME)
+    if (folder / RESULT).is_file():
+        outcome = {"state": "done"}
+    told = {
+        "kind": "",
+        "name": folder.name,
+        "changed": "",
+        "created": "",
+        "state": "interrupted",
+        "message": "",
+    }
+    return told | facts | outcome | {"id": folder.name}
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(file.read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def write_outcome(folder: Path, state: str, message: str = "") -> None:
+    """Write what became of a run that is not done, and why."""
+    text = json.dumps({"state": state, "message": message}, ensure_ascii=False)
+    write_bytes(folder / _OUTCOME, text.encode())
+
+
+def forget_outcome(folder: Path) -> None:
+    """Take back what became of a run, before it goes on."""
+    discard(folder / _OUTCOME)
+
+
+def remove_kept(folder: Path) -> None:
+    """Delete a run, or a surface, with all its files."""
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def file_of_run(folder: Path, name: str) -> Path | None:
+    """A file of a run that may be looked at: of its folder or its sounds, and nothing else."""
+    if not re.fullmatch(r"(sounds/)?[\w.+-]+\.(nc|toml|html|csv|wav|svg|png)", name) or ".." in name:
+        return None
+    file = folder / name
+    return file if file.is_file() and not file.is_symlink() else None

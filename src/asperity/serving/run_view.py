@@ -1,0 +1,208 @@
+"""What the page shows of runs: force and texture to watch, levels, sounds; and several beside each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.reporting.data import (
+    engineering,
+    json_list,
+    laws,
+    nominal_band,
+    number,
+    of_law,
+    present,
+    stated,
+    values,
+)
+from asperity.reporting.law_entries import law_colours, law_entries, law_entry
+from asperity.reporting.style import envelope
+from asperity.results import read_result
+from asperity.schema import contact, provenance, surface
+from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, POSITION, TIME
+from asperity.schema.spectra import BAND, FORCE_LEVEL
+from asperity.serving.kept_runs import SOUNDS
+from asperity.spectra import a_weighting, energy_sum
+
+PIECE = 20_000
+"""Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""
+COLUMNS = 900
+"""Stretches in which the whole record is drawn by its extremes."""
+LINE_POINTS = 20_000
+
+
+def viewed_run(path: str) -> dict[str, Any]:
+    """Everything that the page draws of a run, by the path of its ``run.nc``."""
+    tree = read_result(path)
+    colours = law_colours(tree)
+    return {
+        "title": stated(tree, provenance.TITLE) or "",
+        "verdict": stated(tree, provenance.VERDICT) or "",
+        "warnings": [
+            {"grade": str(each.get("grade", "warning")), "message": str(each.get("message", ""))}
+            for each in json_list(tree, provenance.WARNINGS)
+        ],
+        "laws": [
+            {"name": law.name, "meaning": law.meaning, "colour": law.colour, "dark": colours[law.colour]}
+            for law in law_entries(tree).values()
+        ],
+        "force": _force(tree),
+        "texture": _texture(tree),
+        "patch": {
+            "along": number(tree, contact.HERTZ_RADIUS),
+            "across": number(tree, contact.HERTZ_RADIUS_ACROSS),
+            "load": number(tree, contact.WORKING_LOAD),
+        },
+        "levels": _levels(tree),
+        "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
+    }
+
+
+def _force(tree: DataTree) -> dict[str, Any] | None:
+    """Force of each law: sample by sample over the texture that is kept, and all of it by its extremes."""
+    if not present(tree, CONTACT_FORCE, TIME, POSITION):
+        return None
+    time, position = values(tree, TIME, "time"), values(tree, POSITION, "time")
+    count = min(int(np.searchsorted(position - position[0], _watched(tree), side="right")), PIECE, len(time))
+    names = laws(tree, CONTACT_FORCE)
+    forces = {law: of_law(tree, CONTACT_FORCE, law, "time") for law in names}
+    extremes = {law: envelope(force, COLUMNS)[1:] for law, force in forces.items()}
+    return {
+        "duration": float(time[-1] - time[0]),
+        "watched": float(time[count - 1] - time[0]),
+        "distance": position[:count] - position[0],
+        "start": float(position[0]),
+        "pieces": {law: force[:count] for law, force in forces.items()},
+        "low": {law: each[0] for law, each in extremes.items()},
+        "high": {law: each[1] for law, each in extremes.items()},
+        "range": {law: [float(np.nanmin(force)), float(np.nanmax(force))] for law, force in forces.items()},
+        "pull": [law for law in names if law_entry(tree, law).may_pull],
+    }
+
+
+def _watched(tree: DataTree) -> float:
+    """Length of the texture that is kept, m; of a line, of its first points."""
+    along = surface.PATH_X if present(tree, surface.PATH_HEIGHTS) else surface.DISTANCE
+    if not present(tree, along):
+        return np.inf
+    return float(values(tree, along)[:LINE_POINTS][-1])
+
+
+def _texture(tree: DataTree) -> dict[str, Any] | None:
+    """Heights that are rolled over, seen from above; where there is only a line, that."""
+    if present(tree, surface.PATH_HEIGHTS):
+        heights = values(tree, surface.PATH_HEIGHTS, "path_x", "path_y")
+        dx, dy = (_spacing(values(tree, entry)) for entry in (surface.PATH_X, surface.PATH_Y))
+    elif present(tree, surface.LINE):
+        heights = values(tree, surface.LINE, "distance")[:LINE_POINTS, None]
+        dx, dy = _spacing(values(tree, surface.DISTANCE)), 0.0
+    else:
+        return None
+    return {"shape": list(heights.shape), "dx": dx, "dy": dy, "heights": heights - heights.mean()}
+
+
+def _spacing(coordinate: NDArray[np.float64]) -> float:
+    return float(coordinate[1] - coordinate[0]) if len(coordinate) > 1 else 0.0
+
+
+def _levels(tree: DataTree) -> dict[str, Any] | None:
+    if not present(tree, FORCE_LEVEL, BAND):
+        return None
+    bands = values(tree, BAND, "band")
+    levels = {law: _rounded(of_law(tree, FORCE_LEVEL, law, "band")) for law in laws(tree, FORCE_LEVEL)}
+    return {"bands": [nominal_band(band) for band in bands], "by_law": levels}
+
+
+def _rounded(levels: NDArray[np.float64]) -> list[float | None]:
+    """Levels in dB for a table; None where there is none."""
+    return [round(float(level), 1) if np.isfinite(level) else None for level in levels]
+
+
+def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
+    """Levels of the main laws by band, differences to the first run, and what differs in the cases."""
+    trees = [read_result(path) for path in paths]
+    mains = [(laws(tree, FORCE_LEVEL) or [""])[0] for tree in trees]
+    found = [_by_band(tree, law) for tree, law in zip(trees, mains, strict=True)]
+    bands = sorted({band for levels in found for band in levels})
+    first = found[0]
+    rows = []
+    for band in bands:
+        levels = [_level(each.get(band)) for each in found]
+        rows.append(
+            [nominal_band(band), *levels, *(_change(each.get(band), first.get(band)) for each in found[1:])]
+        )
+    heads = [f"{name}: {law}" for name, law in zip(names, mains, strict=True)]
+    differences = [f"{name} − {names[0]}" for name in names[1:]]
+    return {
+        "levels": {"head": ["Hz", *heads, *differences], "rows": [*rows, _weighted(found, bands)]},
+        "facts": {"head": ["", *names], "rows": _facts(trees, mains)},
+        "cases": {"head": ["key", *names], "rows": _differing(trees)},
+    }
+
+
+def _by_band(tree: DataTree, law: str) -> dict[float, float]:
+    if not law:
+        return {}
+    bands, levels = values(tree, BAND, "band"), of_law(tree, FORCE_LEVEL, law, "band")
+    return {
+        round(float(b), 6): float(level) for b, level in zip(bands, levels, strict=True) if np.isfinite(level)
+    }
+
+
+def _level(level: float | None) -> str:
+    return "–" if level is None else f"{level:.1f}".replace("-", "−")
+
+
+def _change(level: float | None, first: float | None) -> str:
+    return "–" if level is None or first is None else f"{level - first:+.1f}".replace("-", "−")
+
+
+def _weighted(found: list[dict[float, float]], bands: list[float]) -> list[str]:
+    """The row of A-weighted sums over the bands that all runs have."""
+    shared = [band for band in bands if all(band in levels for levels in found)]
+    if not shared:
+        return []
+    weights = a_weighting(np.array(shared))
+    sums = [float(energy_sum(np.array([levels[band] for band in shared]) + weights)) for levels in found]
+    return ["A-weighted sum", *map(_level, sums), *(_change(each, sums[0]) for each in sums[1:])]
+
+
+def _facts(trees: list[DataTree], mains: list[str]) -> list[list[str]]:
+    rows: list[list[str]] = [["main law", *mains]]
+    forces = [of_law(tree, CONTACT_FORCE, law, "time") for tree, law in zip(trees, mains, strict=True) if law]
+    if len(forces) == len(trees):
+        for what, of in (
+            ("mean force", np.nanmean),
+            ("rms about it", np.nanstd),
+            ("largest force", np.nanmax),
+        ):
+            rows.append([what, *(engineering(float(of(force)), "N") for force in forces)])
+        lost = [float(of_law(tree, CONTACT_LOSS_SHARE, law)) for tree, law in zip(trees, mains, strict=True)]
+        rows.append(["time without contact", *(f"{share:.2%}" for share in lost)])
+    stiffness = [number(tree, contact.WORKING_STIFFNESS) for tree in trees]
+    rows.append(
+        [
+            "contact stiffness dF/dr at the load",
+            *("–" if k is None else engineering(k, "N/m") for k in stiffness),
+        ]
+    )
+    return rows
+
+
+def _differing(trees: list[DataTree]) -> list[list[str]]:
+    """Keys whose values are not the same in all cases."""
+    cases = [
+        {str(each.get("key")): str(each.get("value")) for each in json_list(tree, provenance.PARAMETERS)}
+        for tree in trees
+    ]
+    keys = dict.fromkeys(key for case in cases for key in case)
+    return [
+        [key, *(case.get(key, "–") for case in cases)]
+        for key in keys
+        if len({case.get(key) for case in cases}) > 1
+    ]

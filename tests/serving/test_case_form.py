@@ -1,0 +1,91 @@
+"""The form on the page is the schema of the case: every key, and what is typed reads as a case file does."""
+
+import pytest
+
+from asperity.config.describing import entries
+from asperity.config.parsing import Origin, read_toml
+from asperity.errors import InputError
+from asperity.kinds import KINDS
+from asperity.kinds.cases import case_of, parse_case, template
+from asperity.serving.case_form import case_data, form_values, forms
+
+UNITS = Origin("the case", units=True)
+
+
+def no_file(identifier):
+    return None
+
+
+@pytest.mark.parametrize("form", forms(), ids=lambda form: form.kind)
+def test_the_form_holds_every_key_with_its_words(form):
+    fields = {field.key: field for group in form.groups for field in group.fields}
+    model = KINDS[form.kind].case
+    assert set(fields) == {entry.dotted for entry in entries(model)} - {"kind"}
+    assert all(field.meaning and field.allowed for field in fields.values())
+    keys = {group.title for group in form.groups for field in group.fields}
+    assert "" in keys
+    for field in fields.values():  # keys that go with others name keys of the form
+        for companion in filter(None, field.goes_with.split(" or ")):
+            assert companion.partition("=")[0] in fields, field
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_typed_reads_as_the_case_file_does(kind):
+    text = template(kind)
+    data = read_toml(text, "case", "case")
+    typed = form_values(data, lambda path: None)
+    assert case_of(case_data(kind, typed, no_file), UNITS) == parse_case(text)
+    assert all(isinstance(value, str) for value in typed.values())
+
+
+@pytest.mark.parametrize("form", forms(), ids=lambda form: form.kind)
+def test_the_form_as_it_opens_is_a_case(form):
+    values = {field.key: field.value for group in form.groups for field in group.fields}
+    assert case_of(case_data(form.kind, values, no_file), UNITS).kind == form.kind
+
+
+def test_lists_flags_numbers_and_materials_are_typed():
+    values = {
+        "laws": "hertz, linear",
+        "seed": "7",
+        "surface.rms": " 0.1 um ",
+        "beam.sensors": "0.2 m, 0.4 m",
+        "ball.material": '{ youngs_modulus = "72 GPa", poisson_ratio = 0.33, density = "2700 kg/m^3" }',
+        "contact.samples": "3",
+        "ball.load": "",
+    }
+    case = case_of(case_data("ball-on-beam", values, no_file), UNITS)
+    assert case.laws == ("hertz", "linear")
+    assert (case.seed, case.contact.samples, case.ball.load) == (7, 3, None)
+    assert case.beam.sensors == (0.2, 0.4)
+    assert case.ball.material.youngs_modulus == pytest.approx(72e9)
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"ball.load": "5"}, "ball.load: received '5'"),
+        ({"contact.samples": "many"}, "contact.samples: .*whole number"),
+        ({"contact.samplse": "3"}, "contact.samplse: received an unknown key"),
+        ({"surface.file": "/etc/passwd"}, "surface.file: .*uploaded"),
+        ({"surface.file": "../../x"}, "surface.file: .*uploaded"),
+        ({"seed": ["7"]}, "seed: received .*text"),
+        ({"seed": "7" * 3000}, "seed: received .*at most 2000"),
+        ({"ball.material": "{ density = "}, "ball.material: "),
+    ],
+)
+def test_what_is_wrong_is_said_of_its_key(values, words):
+    with pytest.raises(InputError, match=words):
+        case_of(case_data("ball-on-beam", {"surface.rms": "0.1 um"} | values, no_file), UNITS)
+
+
+@pytest.mark.parametrize("kind", ["roller", None, 3, ["ball-on-beam"]])
+def test_a_kind_that_is_none_is_refused(kind):
+    with pytest.raises(InputError, match="kind: received"):
+        case_data(kind, {}, no_file)
+
+
+def test_a_case_that_names_a_file_of_its_own_says_to_upload_it():
+    data = {"kind": "ball-on-beam", "surface": {"file": "/home/me/beam.x3p"}}
+    with pytest.raises(InputError, match=r"surface.file: received 'beam.x3p'.*Upload it"):
+        form_values(data, lambda path: None)

@@ -1,0 +1,281 @@
+"""The page in a real browser: contacts pressed, surfaces refused, runs rolled, cancelled, kept."""
+
+import http.client
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import closing
+from urllib.parse import urlsplit
+
+import numpy as np
+import psutil
+import pytest
+
+from small_cases import BALL
+
+pytest.importorskip("starlette", reason="the extra app is not installed")
+pytest.importorskip("uvicorn", reason="the extra app is not installed")
+
+import asperity
+from asperity.config.writing import toml_text
+from asperity.kinds.cases import load_case
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the server is ended by signals")
+
+SMALL = BALL | {"laws": ["shifted"], "duration": "10 ms"}
+PATIENCE = 60_000
+"""Time that anything may take on a machine that does other things beside it, ms."""
+
+
+class Served:
+    """The program as a user starts it."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.start()
+
+    def start(self):
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "asperity", "serve", "-o", str(self.folder)],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        self.address = self.process.stdout.readline().split()[-1]
+        self.port = urlsplit(self.address).port
+
+    def end(self, number=signal.SIGINT):
+        """End it; its exit code and all it said on standard error."""
+        self.process.send_signal(number)
+        _, told = self.process.communicate(timeout=60)
+        return self.process.returncode, told
+
+    def ask(self, path, method="GET", **headers):
+        """Status and text of an answer, without a browser."""
+        with closing(http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)) as connection:
+            connection.request(method, path, headers=headers)
+            found = connection.getresponse()
+            return found.status, found.read().decode()
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    found = Served(tmp_path_factory.mktemp("page") / "kept")
+    yield found
+    if found.process.poll() is None:
+        found.end()
+
+
+@pytest.fixture
+def tab(browser, served):
+    """A tab with the page, whose script has met no error."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, accept_downloads=True)
+    context.set_default_timeout(PATIENCE)
+    opened = context.new_page()
+    wrong = []
+    opened.on("pageerror", lambda error: wrong.append(str(error)))
+    opened.on("console", lambda message: wrong.append(message.text) if "Policy" in message.text else None)
+    opened.goto(served.address)
+    opened.wait_for_selector("body[data-first-picture]")
+    yield opened
+    assert wrong == []
+    context.close()
+
+
+def fill(tab, tmp_path, case):
+    """Open a case file in the form, and wait for its contact."""
+    file = tmp_path / "case.toml"
+    file.write_text(toml_text(case))
+    before = tab.evaluate("document.body.dataset.answers")
+    tab.set_input_files("#case-file", file)
+    tab.wait_for_function("before => document.body.dataset.answers !== before", arg=before)
+
+
+def roll(tab, name):
+    """Roll the case of the form, and return the row of the run."""
+    tab.fill("#run-name", name)
+    tab.click("#roll")
+    return tab.locator("#run-list li", has_text=name)
+
+
+def becomes(tab, name, state):
+    tab.wait_for_selector(f"#run-list li[data-state={state}]:has-text('{name}')")
+
+
+def number(tab, what):
+    """A number of the contact with its unit, as the page shows it."""
+    return tab.locator("#contact-numbers div", has_text=what).locator("dd").inner_text()
+
+
+def press(tab, share):
+    before = tab.evaluate("document.body.dataset.answers")
+    moved = "(it, share) => { it.value = 1000 * share; it.dispatchEvent(new Event('input')); }"
+    tab.locator("#approach").evaluate(moved, share)
+    tab.wait_for_function("before => document.body.dataset.answers !== before", arg=before)
+
+
+def test_pressure_and_stiffness_follow_the_slider(tab):
+    assert number(tab, "force F") == "5.04 N"  # the weight of a steel ball of 25 mm
+    seen = []
+    for share in (0.2, 0.9):
+        press(tab, share)
+        pixels = tab.evaluate("document.getElementById('pressure').toDataURL()")
+        seen.append((number(tab, "k_c = F/r"), number(tab, "force F"), pixels))
+    assert len({*seen[0], *seen[1]}) == 6
+    tab.click("#to-load")
+    tab.wait_for_function("() => document.querySelector('#contact-numbers').textContent.includes('5.04 N')")
+
+
+def test_a_wrong_value_is_said_beside_its_field(tab):
+    tab.fill("input[name='speed']", "fast")
+    wrong = tab.locator(".case-form:not([hidden]) .field[data-key=speed] .wrong")
+    wrong.wait_for(state="visible")
+    assert "received 'fast'; allowed: a speed" in wrong.inner_text()
+    assert tab.get_attribute("input[name='speed']", "aria-invalid") == "true"
+    tab.click("#roll")
+    assert tab.locator("#run-list li").count() == 0
+    tab.fill("input[name='speed']", "2 m/s")
+    wrong.wait_for(state="hidden")
+
+
+def test_a_bad_upload_is_refused_and_a_good_one_is_pressed(tab, served, tmp_path):
+    bad = tmp_path / "broken.x3p"
+    bad.write_bytes(b"PK\x03\x04 this is no archive")
+    tab.set_input_files("#surface-file", bad)
+    tab.wait_for_selector("#upload-state.alert")
+    assert "broken.x3p: received a zip archive without its directory" in tab.inner_text("#upload-state")
+    assert list((served.folder / "surfaces").iterdir()) == []
+    heights = 1e-1 * np.random.default_rng(1).normal(size=(80, 80)).cumsum(axis=0)
+    good = tmp_path / "good.txt"
+    good.write_text("# pixel: 8 um\n# z (um)\n" + "\n".join(" ".join(map(str, row)) for row in heights))
+    tab.set_input_files("#surface-file", good)
+    tab.wait_for_selector("#upload-state:not(.alert):has-text('map of 80 × 80 points')")
+    tab.wait_for_function(
+        "() => document.getElementById('contact-note').textContent.includes('measured from good.txt')"
+    )
+
+
+def test_a_gigabyte_is_refused(tab, served, tmp_path):
+    vast = tmp_path / "vast.npy"
+    with vast.open("wb") as file:
+        file.truncate(2**30)  # it takes no space
+    tab.set_input_files("#surface-file", vast)
+    tab.wait_for_selector("#upload-state.alert")
+    assert "received 1024 MiB; allowed: at most 256 MiB" in tab.inner_text("#upload-state")
+    head = (  # whoever does not ask the page first is told by the server, before anything is sent
+        f"POST {urlsplit(served.address).path}ask/surfaces?name=vast.npy HTTP/1.1\r\n"
+        f"Host: 127.0.0.1:{served.port}\r\nContent-Length: {2**30}\r\n\r\n"
+    )
+    with socket.create_connection(("127.0.0.1", served.port), timeout=30) as connection:
+        connection.sendall(head.encode())
+        assert b" 413 " in connection.recv(4096).split(b"\r\n")[0]
+
+
+def test_without_the_token_there_is_nothing(served, browser):
+    path = urlsplit(served.address).path
+    for asked in ("/", "/ask/runs", f"{path[:-3]}/ask/runs"):
+        status, words = served.ask(asked)
+        assert status == 403
+        assert "token" in words
+    assert served.ask(f"{path}ask/runs", Host="evil.example")[0] == 403
+    assert served.ask(f"{path}ask/runs", "POST", Origin="http://evil.example")[0] == 403
+    for away in ("runs/../../../etc/passwd", "runs/%2e%2e/x/run.nc", "../case_form.py", "case_form.py"):
+        assert served.ask(f"{path}{away}")[0] == 404
+    other = browser.new_context().new_page()
+    other.goto(f"http://127.0.0.1:{served.port}/")
+    assert "asperity serve" in other.inner_text("body")
+    other.context.close()
+
+
+def test_two_tabs_reload_cancel_and_go_on(tab, served, tmp_path):
+    fill(tab, tmp_path, SMALL)
+    other = tab.context.new_page()
+    other.goto(served.address)
+    other.wait_for_selector("body[data-first-picture]")
+    assert other.input_value("input[name='ball.load']") == ""  # each tab has a case of its own
+    roll(tab, "first")
+    becomes(other, "first", "running")
+    tab.reload()
+    becomes(tab, "first", "running")
+    assert tab.input_value("input[name='ball.load']") == "30 N"
+    other.click("button[aria-label='Cancel: first']")
+    becomes(tab, "first", "cancelled")
+    tab.click("button[aria-label='Go on: first']")
+    becomes(tab, "first", "done")
+    becomes(other, "first", "done")
+
+
+def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
+    fill(tab, tmp_path, SMALL | {"beam": {"loss_factor": 0.02}})
+    roll(tab, "<b>second</b>")
+    becomes(tab, "<b>second</b>", "done")
+    tab.wait_for_selector("#watch:not([hidden])")
+    assert tab.locator("#run b").count() == 0
+    before = tab.inner_text("#now")
+    tab.click("#play")
+    tab.wait_for_function("before => document.getElementById('now').textContent !== before", arg=before)
+    tab.locator("#player").evaluate("it => { it.preload = 'metadata'; }")
+    tab.wait_for_function("() => document.getElementById('player').duration > 0.01")  # it is a sound
+    with tab.expect_download() as taken:
+        tab.click("text=Download run.nc")
+    result = asperity.open_result(taken.value.path())
+    with tab.expect_download() as taken:
+        tab.click("text=Download the case")
+    (tmp_path / "taken.toml").write_bytes(taken.value.path().read_bytes())
+    assert load_case(tmp_path / "taken.toml").beam.loss_factor == 0.02
+    shown = float(number(tab, "largest pressure").split()[0]) * 1e6  # of the sample that the run shows
+    assert shown == pytest.approx(float(result["contact/pressure"].max()), rel=5e-3)
+    with tab.context.expect_page() as opened:
+        tab.click("#run-links >> text=Report")
+    assert "ball" in opened.value.inner_text("h1")
+    for box in tab.locator("#run-list input[type=checkbox]").all():
+        box.check()
+    tab.click("#compare")
+    tab.wait_for_selector("#comparison table")
+    words = tab.inner_text("#comparison")
+    assert "beam.loss_factor" in words
+    assert "0.02" in words
+    assert "A-weighted sum" in words
+
+
+def test_the_server_ends_quietly_and_its_runs_are_kept(tab, served, tmp_path):
+    fill(tab, tmp_path, SMALL | {"seed": 5})
+    roll(tab, "third")
+    becomes(tab, "third", "running")
+    children = psutil.Process(served.process.pid).children(recursive=True)
+    code, told = served.end()
+    assert code == 0
+    assert told.strip().endswith("Ended; runs and surfaces are kept.")
+    assert "Traceback" not in told
+    assert psutil.wait_procs(children, timeout=10)[1] == []
+    served.start()
+    tab.goto(served.address)
+    becomes(tab, "third", "interrupted")
+    assert tab.locator("#run-list li[data-state=done]").count() == 2
+    assert tab.is_visible("button[aria-label='Go on: third']")
+
+
+def test_a_killed_server_leaves_no_orphan(tab, served, tmp_path):
+    fill(tab, tmp_path, SMALL | {"seed": 6})
+    roll(tab, "fourth")
+    becomes(tab, "fourth", "running")
+    children = psutil.Process(served.process.pid).children(recursive=True)
+    assert len(children) >= 2
+    served.end(signal.SIGKILL)
+    assert psutil.wait_procs(children, timeout=10)[1] == []
+    served.start()
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (360, "dark")])
+def test_nothing_serious_bars_anybody(tab, width, scheme):
+    """The rules of axe-core, with a run that is done."""
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe-core is not installed")
+    tab.emulate_media(color_scheme=scheme)
+    tab.set_viewport_size({"width": width, "height": 800})
+    tab.locator("#run-list a.name").first.click()
+    tab.wait_for_selector("#watch:not([hidden])")
+    tab.evaluate("() => document.querySelectorAll('details').forEach((it) => { it.open = true; })")
+    found = axe.Axe().run(tab).response["violations"]
+    assert [
+        (each["id"], each["nodes"][0]["html"]) for each in found if each["impact"] in ("serious", "critical")
+    ] == []
+    assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth")
