@@ -237,6 +237,13 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     assert "A-weighted sum" in words
 
 
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_every_signal_ends_the_server_in_order(tmp_path, name):
+    served = Served(tmp_path / "kept")
+    assert served.ask(urlsplit(served.address).path)[0] == 200
+    assert served.end(getattr(signal, name))[0] == 0
+
+
 def test_the_server_ends_quietly_and_its_runs_are_kept(tab, served, tmp_path):
     fill(tab, tmp_path, SMALL | {"seed": 5})
     roll(tab, "third")

@@ -15,7 +15,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
@@ -25,8 +25,10 @@ from asperity.config.parsing import Origin, read_toml
 from asperity.errors import AsperityError, CaseError
 from asperity.kinds.cases import case_of, demo_case
 from asperity.serving.case_form import case_data, form_values
-from asperity.serving.contact_preview import PressedSample
 from asperity.serving.uploads import examined, identifier_of, surface_named
+
+if TYPE_CHECKING:
+    from asperity.serving.contact_preview import PressedSample
 
 KEPT = 4
 """Contacts that stay laid ready: as many tabs may be open."""
@@ -40,9 +42,18 @@ def _case(kind: str, values: dict[str, object], surfaces: str) -> Case:
     return case_of(data, Origin("the case", root, units=True))
 
 
-def warm_up() -> dict[str, Any]:
+def prepare_to_press() -> dict[str, Any]:
     """Press a sample once, so that the first one finds everything imported and compiled."""
+    from asperity.serving.contact_preview import PressedSample
+
     PressedSample(demo_case()).at(None)
+    return {}
+
+
+def prepare_to_show() -> dict[str, Any]:
+    """Import what shows runs."""
+    import asperity.serving.run_view  # noqa: F401
+
     return {}
 
 
@@ -58,6 +69,8 @@ def press_form(
     kind: str, values: dict[str, object], surfaces: str, share: float | None, whole: bool
 ) -> dict[str, Any]:
     """Press the first sample of a case; `whole` asks for what does not change with the approach as well."""
+    from asperity.serving.contact_preview import PressedSample
+
     key = json.dumps([kind, values], sort_keys=True)
     if key not in _pressed:
         _pressed[key] = PressedSample(_case(kind, values, surfaces))
@@ -76,9 +89,6 @@ def read_case_file(text: str, surfaces: str) -> dict[str, Any]:
     data = read_toml(text, "case", "the case")
     case_of(data, Origin("the case", root, units=True))
     return {"kind": data["kind"], "values": form_values(data, lambda path: identifier_of(root, path))}
-
-
-# What draws and reads results takes a while to import: the process that solves contacts needs none of it.
 
 
 def show_run(path: str) -> dict[str, Any]:
@@ -105,7 +115,8 @@ def write_report(path: str) -> dict[str, Any]:
 
 
 QUESTIONS: dict[str, Callable[..., dict[str, Any]]] = {
-    "warm": warm_up,
+    "prepare to press": prepare_to_press,
+    "prepare to show": prepare_to_show,
     "check": read_form,
     "press": press_form,
     "fill": read_case_file,

@@ -95,7 +95,7 @@ def _field(entry: CaseKey, title: str, written_out: Mapping[str, str]) -> FormFi
         entry.dotted,
         entry.name,
         str(entry.field.description),
-        allowed_in(entry.field).split(", with its unit")[0],
+        allowed_in(entry.field).split(", with its unit")[0].removesuffix(" in quotes"),
         entry.otherwise if usual is None else typed(usual),
         control,
         choices,

@@ -227,7 +227,7 @@ function greyOf(heights) {
   return (at) => { const grey = middle + Math.min(Math.max(heights[at] * scale, -62), 62); return [grey, grey, grey, 255]; };
 }
 
-function ticks(low, high, count = 4) {
+function ticks(low, high, count = 5) {
   const raw = (high - low) / count || 1, power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((each) => each * power).find((each) => each >= raw * 0.999);
   const found = [];
@@ -317,7 +317,7 @@ function told(milliseconds) {
   document.body.dataset.answers = String(++contact.asked);
   const unsure = state.converged ? "" : " – not converged";
   const edge = state.at_edge > 0.01 ? " – the contact reaches the edge of contact.window" : "";
-  find("contact-words").textContent = `${Math.round(milliseconds)} ms${unsure}${edge}`;
+  find("contact-words").textContent = `solved and drawn in ${Math.round(milliseconds)} ms${unsure}${edge}`;
   const of = [["approach δ", engineering(state.approach, "m")], ["state r", engineering(state.state, "m")], ["force F", engineering(state.force, "N")],
     ["k_c = F/r", engineering(state.stiffness, "N/m")], ["dF/dδ", engineering(state.tangent_stiffness, "N/m")],
     ["largest pressure", engineering(state.largest_pressure, "Pa")], ["area in contact", squareMicrometres(state.area)], ["smooth bodies (Hertz)", engineering(state.smooth_force, "N")]];
@@ -465,6 +465,9 @@ async function showRun(run) {
   Object.assign(shown, { id: run.id, view: null, at: 0, playing: false });
   find("run").hidden = false;
   find("run-title").textContent = run.name;
+  find("verdict").textContent = "Reading the run …";
+  for (const id of ["warnings", "watch", "listen", "levels"]) find(id).hidden = true;
+  play(false);
   const place = `runs/${run.id}/`, link = (name, words, properties) => make("a", { href: place + name, textContent: words, ...properties });
   find("run-links").replaceChildren(link("report.html", "Report", { target: "_blank", rel: "noopener", title: "It takes some seconds when it is opened first" }), link("run.nc", "Download run.nc", { download: "" }), link("case.toml", "Download the case", { download: "" }));
   try {
@@ -473,8 +476,8 @@ async function showRun(run) {
     shown.view = view;
     find("verdict").textContent = view.verdict;
     showWarnings(view.warnings);
-    if (view.force) takeForce(view);
     find("watch").hidden = !view.force;
+    if (view.force) takeForce(view);
     find("listen").hidden = view.sounds.length === 0;
     find("sound").replaceChildren(...view.sounds.map((name) => make("option", { value: name, textContent: name.replace(/\.wav$/, "").replaceAll("_", " ") })));
     hear();
@@ -546,7 +549,7 @@ function drawTexture(view, x, force) {
     view.image = view.dark === dark.matches && view.image || imageOf(texture.shape, greyOf(texture.heights));
     view.dark = dark.matches;
     pen.drawImage(view.image, toX(0), 0, texture.shape[0] * texture.dx * scale, height);
-    find("texture-words").textContent = "texture of the path from above, light is high; the ellipse is the nominal patch under the force of the law, dashed under the static load";
+    find("texture-words").textContent = "texture of the path from above, light is high, without waves much longer than the strip is wide; the ellipse is the nominal patch under the force of the law, dashed under the static load";
   } else if (texture) {
     drawProfile(pen, texture, x, length, toX, height);
     find("texture-words").textContent = "heights along the path; the bar is the nominal patch under the force of the law";
@@ -600,10 +603,9 @@ function drawRecord(view) {
   const [least, most] = rangeOf(...force.range[shown.law]), toY = (value) => height - (value - least) / (most - least) * height;
   pen.fillStyle = colour("--mark");
   pen.fillRect(0, 0, Math.max(3, width * force.watched / force.duration), height);
-  pen.strokeStyle = paintOf(shown.law); pen.lineWidth = Math.max(1, width / low.length);
-  pen.beginPath();
-  low.forEach((value, i) => { const x = (i + 0.5) / low.length * width; pen.moveTo(x, toY(value) + 0.5); pen.lineTo(x, toY(high[i]) - 0.5); });
-  pen.stroke();
+  const points = [];
+  low.forEach((value, i) => { const x = (i + 0.5) / low.length * width; points.push([x, toY(value)], [x, toY(high[i])]); });
+  line(pen, points, paintOf(shown.law), 1);
   const x = width * force.watched / force.duration * shown.at;
   line(pen, [[x, 0], [x, height]], colour("--ink"), 1.5);
 }

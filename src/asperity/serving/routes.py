@@ -60,7 +60,7 @@ class Server:
     @asynccontextmanager
     async def alive(self, app: Starlette) -> AsyncIterator[None]:
         """Get ready for the first contact, and end with the server all that it has started."""
-        ready = asyncio.create_task(self.contacts.ask("warm"))
+        ready = asyncio.create_task(self._prepare())
         try:
             yield
         finally:
@@ -69,6 +69,11 @@ class Server:
             await self.jobs.end()
             await self.contacts.end()
             await self.files.end()
+
+    async def _prepare(self) -> None:
+        """Have those who answer import what they need before they are asked, the contact first."""
+        await self.contacts.ask("prepare to press")
+        await self.files.ask("prepare to show")
 
     def app(self) -> Starlette:
         """The addresses, without token and guard."""

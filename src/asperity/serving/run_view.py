@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
 from asperity.reporting.data import (
@@ -34,6 +35,8 @@ PIECE = 20_000
 COLUMNS = 900
 """Stretches in which the whole record is drawn by its extremes."""
 LINE_POINTS = 20_000
+STRETCH = 4
+"""Length over which a texture that is looked at has no mean, in its widths."""
 
 
 def viewed_run(path: str) -> dict[str, Any]:
@@ -96,7 +99,7 @@ def _watched(tree: DataTree) -> float:
 def _texture(tree: DataTree) -> dict[str, Any] | None:
     """Heights that are rolled over, seen from above; where there is only a line, that."""
     if present(tree, surface.PATH_HEIGHTS):
-        heights = values(tree, surface.PATH_HEIGHTS, "path_x", "path_y")
+        heights = _about_long_waves(values(tree, surface.PATH_HEIGHTS, "path_x", "path_y"))
         dx, dy = (_spacing(values(tree, entry)) for entry in (surface.PATH_X, surface.PATH_Y))
     elif present(tree, surface.LINE):
         heights = values(tree, surface.LINE, "distance")[:LINE_POINTS, None]
@@ -104,6 +107,12 @@ def _texture(tree: DataTree) -> dict[str, Any] | None:
     else:
         return None
     return {"shape": list(heights.shape), "dx": dx, "dy": dy, "heights": heights - heights.mean()}
+
+
+def _about_long_waves(heights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Heights (nx, ny) about their mean over a stretch around each row: long waves would hide all others."""
+    stretch = min(STRETCH * heights.shape[1], len(heights))
+    return heights - uniform_filter1d(heights.mean(axis=1), stretch, mode="nearest")[:, None]
 
 
 def _spacing(coordinate: NDArray[np.float64]) -> float:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import signal
 import socket
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import uvicorn
@@ -15,6 +16,7 @@ from asperity.serving.guard import Guard, new_token
 from asperity.serving.routes import Server
 
 HOME = "127.0.0.1"
+ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 PATIENCE = 3
 """Time that requests have to be answered when the server ends, s."""
 
@@ -44,12 +46,29 @@ def serve_folder(folder: Path, port: int, announce: Callable[[str], None]) -> No
         token, port = new_token(), listener.getsockname()[1]
         app = Guard(Server(folder).app(), token, port)
         config = uvicorn.Config(
-            app, log_config=None, access_log=False, server_header=False, date_header=False, lifespan="on",
-            proxy_headers=False, ws="none", timeout_graceful_shutdown=PATIENCE,
+            app, log_config=None, log_level="critical", access_log=False, server_header=False,
+            date_header=False, lifespan="on", proxy_headers=False, ws="none",
+            timeout_graceful_shutdown=PATIENCE,
         )  # fmt: skip
         announce(f"http://{HOME}:{port}/{token}/")
-        with suppress(KeyboardInterrupt):  # how a server is meant to end
-            uvicorn.Server(config).run(sockets=[listener])
+        with suppress(KeyboardInterrupt):  # before it listens for signals, or after
+            _Ending(config).run(sockets=[listener])
+
+
+class _Ending(uvicorn.Server):
+    """A server that each signal that ends programs ends in order, for that is how it is meant to end."""
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """End when one of them comes; what is ignored, as with nohup, stays so."""
+        present = (getattr(signal, name) for name in ENDING if hasattr(signal, name))
+        heard = [number for number in present if signal.getsignal(number) is not signal.SIG_IGN]
+        earlier = {number: signal.signal(number, self.handle_exit) for number in heard}
+        try:
+            yield
+        finally:
+            for number, handler in earlier.items():
+                signal.signal(number, handler)
 
 
 def _listener(port: int) -> socket.socket:
