@@ -18,6 +18,7 @@ _HOME = {
     "Profile": "surfaces.heightmap",
     "Track": "structures.track",
     "Wheel": "structures.wheel",
+    "compare": "kinds.comparing",
     "laws": "laws",
     "listen": "reporting.sound",
     "material": "reference.materials",

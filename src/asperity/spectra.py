@@ -223,3 +223,14 @@ def a_weighting(frequency: ArrayLike) -> NDArray[np.float64]:
     gain = 12194.0**2 * f2 * f2 / (low * (f2 + 12194.0**2))
     with np.errstate(divide="ignore"):
         return 20.0 * np.log10(gain) + 2.000
+
+
+def a_weighted_total(levels: ArrayLike, centres: ArrayLike) -> NDArray[np.float64]:
+    """A-weighted level of one-third octaves, dB: 10 lg Σ 10^((L + A)/10) over the last axis.
+
+    Levels (..., bands) with one reference, dB; centres (bands,), Hz. Bands without a level add nothing; NaN
+    where none has one.
+    """
+    weighted = np.asarray(levels, dtype=np.float64) + a_weighting(centres)
+    total = energy_sum(np.where(np.isfinite(weighted), weighted, -np.inf))
+    return np.where(np.isfinite(total), total, np.nan)

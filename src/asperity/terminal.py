@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import errno
+import json
+import math
 import os
 import sys
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from dataclasses import dataclass, replace
 from typing import Any, TextIO
 
 from asperity.errors import ComputationError
@@ -16,12 +20,79 @@ _NOBODY_LISTENS = (errno.EPIPE, errno.EIO, errno.EBADF)
 """The reader of a pipe has ended, a terminal has gone, a stream is closed."""
 
 
+@dataclass(frozen=True)
+class Manner:
+    """How much is said while a command runs, and in which form."""
+
+    quiet: bool = False  # no progress and no remarks
+    verbose: bool = False  # also what each piece of the work took
+    document: bool = False  # standard output is one JSON document, and holds nothing else
+
+
+_USUAL = Manner()
+_manner: ContextVar[Manner] = ContextVar("manner", default=_USUAL)
+
+
+def manner() -> Manner:
+    """How much is said at present."""
+    return _manner.get()
+
+
+@contextmanager
+def speaking(wanted: Manner) -> Iterator[None]:
+    """Speak in a manner while the body of the ``with`` statement runs, until `change_manner` changes it."""
+    token = _manner.set(wanted)
+    try:
+        yield
+    finally:
+        _manner.reset(token)
+
+
+def change_manner(**changes: bool) -> None:
+    """Change what is said from here on."""
+    _manner.set(replace(manner(), **changes))
+
+
 def say(text: str, *, err: bool = False, lines: bool = False) -> None:
     """Print text on a line of its own, on standard output or error.
 
     What would control the terminal is spelled out; `lines` says whether line ends and tabs in it are meant.
+    Where standard output is a document, what is for people there is left out.
     """
-    write(sys.stderr if err else sys.stdout, text, lines=lines)
+    if err or not manner().document:
+        write(sys.stderr if err else sys.stdout, text, lines=lines)
+
+
+def remark(text: str) -> None:
+    """Say on standard error what is good to know, unless it shall be quiet."""
+    if not manner().quiet:
+        say(text, err=True)
+
+
+def detail(text: str) -> None:
+    """Say on standard error what only who asks for it wants to know."""
+    if manner().verbose:
+        say(text, err=True)
+
+
+def say_document(content: Mapping[str, Any]) -> None:
+    """Print one JSON document on standard output: ASCII, and null for what is no finite number."""
+    write(sys.stdout, json.dumps(json_ready(content), indent=2, allow_nan=False), lines=True)
+
+
+def json_ready(value: Any) -> Any:
+    """What JSON can hold of a value: numbers of numpy as such, paths as text, null for NaN and infinity."""
+    if isinstance(value, Mapping):
+        return {str(key): json_ready(item) for key, item in value.items()}
+    if isinstance(value, str | bool | None):
+        return value
+    if hasattr(value, "tolist"):  # numpy
+        return json_ready(value.tolist())
+    if isinstance(value, int | float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Iterable):
+        return [json_ready(item) for item in value]
+    return str(value)
 
 
 def write(stream: TextIO | None, text: str, *, lines: bool = False) -> None:
@@ -43,6 +114,8 @@ def say_table(
 
     `width` is the characters of a line where standard output is no terminal.
     """
+    if manner().document:
+        return
     from rich.console import Console
     from rich.table import Table
 

@@ -91,6 +91,12 @@ def quantity(text: str, dimension: str) -> float:
     return value
 
 
+def unit_in(text: str) -> str:
+    """Unit of a quantity as it is written, ``"km/h"`` of ``"50 km/h"``; empty if it names none."""
+    match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST_QUANTITY else None
+    return "" if match is None else match[2].strip()
+
+
 def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -> str:
     """Write a quantity in SI with its unit, as `quantity` reads it: ``"25 mm"``; infinity is ``"inf"``.
 

@@ -1,10 +1,12 @@
 """The command line: what it prints, what it writes, and its exit codes."""
 
+import csv
 import html
 import importlib
 import json
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -101,6 +103,40 @@ def test_a_run_is_written_as_sounds(ran):
     assert f"{len(files)} files, all on one scale" in " ".join(told.split())
     refused = call("listen", str(folder), "--what", "drums", code=2).stderr
     assert "received 'drums'; allowed: acceleration" in refused
+
+
+def test_runs_are_compared(ran):
+    """A page and a table, and what they say in short; with itself a run has no differences."""
+    folder, _ = ran
+    told = call("compare", str(folder), str(folder / "run.nc"), "-o", "both").stdout
+    assert "The cases are the same. " in told
+    assert "0.0 dB(A)" in told
+    assert Path("both/comparison.html").stat().st_size > 50_000
+    assert str(Path("both/comparison.csv").resolve()) in told
+    call("compare", str(folder), str(folder), "--law", "linear", "-o", "page.html")
+    assert Path("page.html").exists()
+    assert Path("page.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ["{run}"],
+            "runs to compare: received 1; allowed: two to 8 runs. Give a run.nc or its folder for",
+        ),
+        (["{run}", "absent"], "absent: received no such file; allowed: a result file that a run has written"),
+        (
+            ["{run}", "{run}", "--law", "areal"],
+            "law: received 'areal'; allowed: a law of the runs: hertz, linear",
+        ),
+        (["{run}", "{run}", "-o", "case.toml"], "folder of the comparison: received case.toml"),
+        ([], "Missing argument 'RUNS...'"),
+    ],
+)
+def test_what_cannot_be_compared_is_explained(ran, arguments, message):
+    words = [word.replace("{run}", str(ran[0])) for word in arguments]
+    assert message in call("compare", *words, code=2).stderr
 
 
 def test_run_writes_results_and_report(ran):
@@ -375,8 +411,12 @@ def test_the_module_is_the_program():
     [
         ("asperity new ", {"ball-on-beam", "wheel-on-rail", "study"}),
         ("asperity new w", {"wheel-on-rail"}),
+        ("asperity new --law sh", {"shifted", "shifted-unfiltered"}),
+        ("asperity compare --law dir", {"direct"}),
+        ("asperity study absent.toml --vary track.n", {"track.name="}),
+        ("asperity study case.toml --vary beam.support=free,cl", {"beam.support=free,clamped"}),
         ("asperity run --device ", {"cpu", "gpu"}),
-        ("asperity com", {"completion"}),
+        ("asperity com", {"compare", "completion"}),
     ],
 )
 def test_a_shell_completes(words, completions):
@@ -404,6 +444,37 @@ def test_help_imports_nothing_heavy():
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert "Roll a body" in done.stdout
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+COMMANDS = sorted(main.commands)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_teaches_with_examples_that_the_command_takes(command):
+    """Each example is a line that the program can read: its command and its options are there."""
+    told = call(command, "--help").stdout
+    examples = told.split("Examples:\n")[1].splitlines()
+    assert [line[:4] == "  # " for line in examples] == [True, False] * (len(examples) // 2)
+    for line in examples[1::2]:
+        words = shlex.split(re.split(r" [|>]+ |\)\"", line.partition("asperity ")[2])[0])
+        assert words[0] == command
+        known = {name for option in main.commands[command].params for name in option.opts}
+        assert {word for word in words if word.startswith("-")} <= known
+
+
+def test_help_lists_every_command_with_a_whole_sentence():
+    told = call("--help").stdout
+    for name, command in main.commands.items():
+        assert re.search(rf"^  {name} +{re.escape(command.short_help)}$", told, re.M)
+    assert "..." not in told.split("Begin:")[1]
+
+
+def test_laws_of_a_new_case_can_be_chosen():
+    Path("chosen.toml").write_text(call("new", "ball-on-beam", "--law", "table", "--law", "hertz").stdout)
+    assert load_case("chosen.toml").laws == ("table", "hertz")
+    refused = call("new", "ball-on-beam", "--law", "aerial", code=2).stderr
+    assert "law: received 'aerial'; allowed:" in refused
+    assert 'Did you mean "areal"?' in refused
 
 
 # --- new and check
@@ -694,7 +765,9 @@ def test_each_array_and_map_has_a_picture_of_its_own(ensemble):
 
 def test_titles_of_pictures_name_array_and_map(ensemble, monkeypatch):
     titles = []
-    monkeypatch.setattr("asperity.cli.inspecting.draw", lambda first, title, to: titles.append(title) or to)
+    monkeypatch.setattr(
+        "asperity.cli.inspecting.draw", lambda first, title, to, spectra: titles.append(title) or to
+    )
     call(*ensemble, "--array", "polished")
     call(*ensemble, "--array", "polished", "--index", "2")
     assert titles == ["maps.npz, polished, the first of 3 maps", "maps.npz, polished, map 2"]
@@ -766,6 +839,66 @@ def test_a_map_may_be_taken_for_lines(ensemble):
     assert "32 parallel lines, each of 40 points, 80 µm" in shown.replace("0.08 mm", "80 µm")
 
 
+def ridges(*arguments):
+    """What the command says of a wave along x, 2 µm in amplitude and 50 µm long."""
+    x = 2.0 * np.arange(200)
+    np.save("ridges.npy", np.tile(2.0 * np.sin(2 * np.pi * x / 50.0)[:, None], (1, 120)))
+    hints = ["--height-unit", "um", "--pixel", "2 um", "--map"]
+    return call("surface", "ridges.npy", *hints, *arguments).stdout
+
+
+def column(path, title):
+    with open(path, encoding="utf-8", newline="") as file:
+        found = [row[title] for row in csv.DictReader(file)]
+    return np.array([float(value) for value in found if value])
+
+
+def test_spectra_of_a_surface_are_written():
+    """The PSD of a wave of amplitude A has its peak at 1/λ and the integral A²/2."""
+    said = ridges("--psd")
+    assert str(Path("ridges-psd.csv").resolve()) in said
+    wavenumber = column("ridges-psd.csv", "wavenumber along x [1/m]")
+    density = column("ridges-psd.csv", "PSD along x [m³]")
+    assert wavenumber[density.argmax()] == pytest.approx(1 / 50e-6)
+    assert density.sum() * wavenumber[0] == pytest.approx(0.5 * (2e-6) ** 2, rel=1e-3)
+    across = column("ridges-psd.csv", "PSD along y [m³]")
+    assert across[2:].max() < 1e-12 * density.max()  # each line across is level, at a height of its own
+
+
+@pytest.mark.parametrize(("angle", "std"), [("90", 90), ("30 deg", 150), ("0.5235987756 rad", 150)])
+def test_a_map_is_turned(angle, std):
+    """What varies along x varies at 180° less the angle of the direction in which it is rolled over."""
+    np.save("ridges.npy", np.tile(np.repeat(np.random.default_rng(1).normal(size=100), 3)[:, None], (1, 240)))
+    hints = ["--height-unit", "um", "--pixel", "2 um", "--map"]
+    said = call("surface", "ridges.npy", *hints, "--rotate", angle).stdout
+    assert abs(int(re.search(r"Std +(\d+)°", said)[1]) - std) <= 2
+    if angle == "90":
+        assert "a map of 240 × 300 points" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["map.npy", "--rotate", "30 m"], "--rotate: received '30 m'; allowed: an angle, as 30 (degrees)"),
+        (["map.npy", "--rotate", "left"], "--rotate: received 'left'; allowed: an angle"),
+        (["map.npy", "--rotate", "nan"], "--rotate: received 'nan'; allowed: an angle"),
+        (["line.npy", "--rotate", "30"], "--rotate: received a line; allowed: a height map. Leave it out."),
+        (
+            ["hole.npy", "--psd"],
+            "--psd: received points without a height; allowed: complete heights. Fill",
+        ),
+    ],
+)
+def test_what_a_surface_cannot_do_is_explained(arguments, message):
+    heights = np.random.default_rng(0).normal(size=(40, 40))
+    np.save("map.npy", heights)
+    np.save("line.npy", heights.ravel())
+    heights[3, 3] = np.nan
+    np.save("hole.npy", heights)
+    hints = ["--height-unit", "um", "--pixel", "2 um"]
+    assert message in call("surface", *arguments, *hints, code=2).stderr
+
+
 def test_surface_writes_pictures_only(ensemble):
     message = "allowed: a name that ends in .png, .pdf, .svg"
     assert message in call(*ensemble, "--array", "polished", "-o", "picture.doc", code=2).stderr
@@ -818,4 +951,4 @@ def test_surface_says_whether_a_map_is_the_same_everywhere_and_which_way_it_runs
     np.save("hole.npy", ridges)
     hole = call("surface", "hole.npy", "--height-unit", "um", "--pixel", "2 um").stdout
     assert re.search(r"Std +–", hole)
-    assert "Homogeneity and Std are those of a complete map: --fill" in hole
+    assert "Homogeneity, Std and spectra are those of a complete map: --fill" in hole

@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 from asperity.cli import main
 from asperity.running import run
+from asperity.spectra import a_weighting
 from asperity.studies.definition import load_study
 
 BALL = 'kind = "ball-on-beam"\n[surface]\nrms = "0.5 um"\n'
@@ -91,10 +92,9 @@ def test_mean_and_band_over_the_seeds_are_written(computed):
 def test_a_study_is_tabulated_and_written(computed):
     folder, outcome = computed
     assert "Study of 8 seed × 2 ball.load" in outcome.stderr
-    for text in ("seed", "ball.load [N]", "contact_loss_share [1]", "hertz-filtered", "–"):
+    for text in ("8 values of seed", "ball.load [N]", "contact_loss_share [1]", "hertz-filtered", " ± ", "–"):
         assert text in outcome.stdout
-    assert "force_level" not in outcome.stdout
-    assert "… and 4 more rows, in study.csv" in outcome.stdout
+    assert "100 Hz" not in outcome.stdout
     assert str((folder / "out" / "study.nc").resolve()) in outcome.stdout
     with (folder / "out" / "study.csv").open(newline="", encoding="utf-8") as file:
         heading, *rows = csv.reader(file)
@@ -119,6 +119,69 @@ def test_a_member_is_what_a_run_of_its_case_is(out):
         member = found.sel({"seed": 3, "ball.load": 5.0})
         np.testing.assert_array_equal(member["contact_loss_share"], one["contact_loss_share"])
         np.testing.assert_array_equal(member["rms_force"], one["contact_force"].std("time"))
+
+
+def columns(path):
+    """Columns of a CSV file by their titles."""
+    with open(path, encoding="utf-8", newline="") as file:
+        heading, *rows = csv.reader(file)
+    return {name: [row[k] for row in rows] for k, name in enumerate(heading)}
+
+
+def test_levels_in_decibels_a_and_largest_forces_are_columns(computed):
+    """The totals are sums over the bands of the same row, with the weighting of IEC 61672."""
+    found = columns(computed[0] / "out" / "study.csv")
+    bands = {name: float(name.split()[1]) for name in found if name.startswith("force_level ")}
+    done = [k for k, whether in enumerate(found["completed [1]"]) if whether == "1"]
+    totals = {}
+    for k in done:
+        levels = {f: float(found[name][k]) for name, f in bands.items() if found[name][k]}
+        total = 10 * np.log10(sum(10 ** ((level + a_weighting(f)) / 10) for f, level in levels.items()))
+        assert float(found["force_level_a [dB(A) re 1 N]"][k]) == pytest.approx(
+            float(total),
+            abs=1e-4,  # frequencies in titles have six digits
+        )
+        totals[found["seed [1]"][k], found["law"][k]] = float(total)
+    for k in done:
+        change = float(found["force_level_a_difference_to_linear_filtered [dB]"][k])
+        own, practice = (totals[found["seed [1]"][k], law] for law in (found["law"][k], "linear-filtered"))
+        assert change == pytest.approx(own - practice, abs=2e-4)
+        assert float(found["peak_force [N]"][k]) > float(found["mean_force [N]"][k])
+
+
+def test_means_and_deviations_over_the_seeds_are_written(computed):
+    """By load and law, as numpy has them; the row of the load that failed is empty."""
+    every, mean = (columns(computed[0] / "out" / name) for name in ("study.csv", "study_mean.csv"))
+    name = "peak_force [N]"
+    for k, (load, law) in enumerate(zip(mean["ball.load [N]"], mean["law"], strict=True)):
+        forces = [
+            float(force)
+            for force, *own in zip(every[name], every["ball.load [N]"], every["law"], strict=True)
+            if own == [load, law] and force
+        ]
+        if load == "60000.0":
+            assert (mean[name][k], mean[f"± {name}"][k]) == ("", "")
+            continue
+        assert len(forces) == 8
+        assert float(mean[name][k]) == pytest.approx(np.mean(forces))
+        assert float(mean[f"± {name}"][k]) == pytest.approx(np.std(forces, ddof=1))
+
+
+def test_swept_keys_stand_in_the_units_that_were_typed_and_have_a_figure_each():
+    Path("small.toml").write_text(SMALL)
+    vary = ["--vary", "speed = 3.6 km/h, 7.2 km/h", "--vary", "ball.load=5 N,0.006 kN", "--vary", "seed=1"]
+    said = call("study", "small.toml", *vary, "-o", "out", "--workers", "1").stdout
+    found = columns("out/study.csv")
+    assert sorted(set(found["speed [km/h]"])) == ["3.6", "7.2"]
+    assert sorted(set(found["ball.load [N]"])) == ["5.0", "6.0"]  # the unit of the first value
+    assert "speed [km/h]" in said
+    with xr.open_dataset("out/study.nc", engine="h5netcdf") as table:
+        assert table["speed"].values.tolist() == pytest.approx([1.0, 2.0])
+        assert table["speed"].attrs["units"] == "m/s"
+    figures = sorted(path.name for path in Path("out").glob("*.png"))
+    assert figures == ["study-ball.load.png", "study-speed.png"]  # of one seed there is nothing to draw
+    assert all(Path("out", name).read_bytes().startswith(b"\x89PNG") for name in figures)
+    assert not Path("out/study_mean.csv").exists()
 
 
 def test_what_members_met_is_said_once(computed):

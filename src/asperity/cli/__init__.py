@@ -4,104 +4,110 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
 from asperity import __version__
 from asperity.cli.door import Door
+from asperity.cli.options import (
+    PATH,
+    complete_laws,
+    complete_sweep,
+    complete_templates,
+    converge,
+    device,
+    overwrite,
+    report,
+    run_folder,
+)
 from asperity.kinds import KINDS
 from asperity.terminal import say
 
-_case = click.argument("case", type=click.Path(path_type=Path))
-_output = click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=click.Path(path_type=Path),
-    help="Folder of the results. [default: runs/NAME]",
-)
-_overwrite = click.option("--overwrite", is_flag=True, help="Replace the run of another case in the folder.")
-_report = click.option(
-    "--report/--no-report", default=True, show_default=True, help="Write the HTML page and CSVs."
-)
-_converge = click.option(
-    "--converge",
-    is_flag=True,
-    help="Compute again with each setting made finer: grid, window, samples, …, and say what that changes.",
-)
-_device = click.option(
-    "--device",
-    type=click.Choice(["cpu", "gpu"]),
-    help="Where contacts are solved; gpu needs CuPy. [default: $ASPERITY_DEVICE, else cpu]",
-    callback=lambda context, option, name: _choose(name),
-    expose_value=False,
-)
-
-
-def _choose(device: str | None) -> None:
-    if device is not None:
-        from asperity.contact.device import choose_device
-
-        choose_device(device)
-
-
-def _study_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Options of the commands that compute a study."""
-    for option in (
-        _device,
-        click.option("--overwrite", is_flag=True, help="Replace another study in the folder."),
-        click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler."),
-        click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]"),
-        _output,
-    ):
-        command = option(command)
-    return command
-
-
 _HELP = f"""Roll a body over a rough surface: 3-D contact, reduced to a point force, and its vibration.
-
-Start with 'asperity demo', then 'asperity new {next(iter(KINDS))} > case.toml' and 'asperity run case.toml'.
 
 Kinds of case: {", ".join(KINDS)}.
 
 Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
+'asperity COMMAND --help' shows examples of each command.
 """
+_EXAMPLES = (
+    ("asperity demo", "see what comes out: a page to open in a browser"),
+    (f"asperity new {next(iter(KINDS))} > case.toml", "a commented case; change what you know"),
+    ("asperity check case.toml", "valid? how long will it take? which law?"),
+    ("asperity run case.toml", "results, report and CSVs in runs/case"),
+)
+_SECTIONS = {
+    "Begin": ("demo", "new", "surface"),
+    "Compute": ("check", "run", "study", "optimise"),
+    "Look, listen and compare": ("serve", "compare", "listen", "cite"),
+    "Around it": ("cache", "completion"),
+}
 
 
-@click.group(cls=Door, help=_HELP, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=Door,
+    help=_HELP,
+    sections=_SECTIONS,
+    examples=_EXAMPLES,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 @click.version_option(__version__, prog_name="asperity")
 @click.option("--debug", is_flag=True, help="Show where in the program an error arose.")
 def main(debug: bool) -> None:
     """Take the options that stand before a command."""
 
 
-@main.command()
+@main.command(
+    long_work=True,
+    short_help="Run a small example that needs no input.",
+    examples=[("asperity demo", "some seconds; open asperity-demo/report.html afterwards")],
+)
 @click.option(
     "-o",
     "--output",
     "directory",
     default=Path("asperity-demo"),
     show_default=True,
-    type=click.Path(path_type=Path),
+    type=PATH,
+    metavar="FOLDER",
+    help="Folder of the results.",
 )
-@_overwrite
+@overwrite
 def demo(directory: Path, overwrite: bool) -> None:
-    """Run a small example that needs no input, and say where its report lies."""
+    """Run a small example that needs no input, and say where its report lies.
+
+    A steel ball rolls over a rough steel beam: texture, contact, force, vibration and six contact laws.
+    """
     from asperity.cli.running import run_into
     from asperity.kinds.cases import demo_case
 
     run_into(demo_case(), directory, overwrite=overwrite)
 
 
-def _templates(context: click.Context, argument: click.Parameter, incomplete: str) -> list[str]:
-    """Complete what 'asperity new' can write."""
-    return [name for name in (*KINDS, "study") if name.startswith(incomplete)]
+@main.command(
+    short_help="Write a commented case, or a study, to begin with.",
+    examples=[
+        (f"asperity new {next(iter(KINDS))} > case.toml", "every key, with meaning, limits and default"),
+        (f"asperity new {list(KINDS)[-1]} --law areal --law linear > case.toml", "with laws of your choice"),
+        ("asperity new study > study.toml", "many cases: lists of values for some keys"),
+    ],
+)
+@click.argument("kind", metavar="|".join((*KINDS, "study")), shell_complete=complete_templates)
+@click.option(
+    "--law",
+    "laws",
+    multiple=True,
+    metavar="LAW",
+    shell_complete=complete_laws,
+    help="A law of the contact force, the first the main one. May be repeated.",
+)
+def new(kind: str, laws: tuple[str, ...]) -> None:
+    """Write a commented case, or a study of one, to standard output.
 
-
-@main.command()
-@click.argument("kind", metavar="|".join((*KINDS, "study")), shell_complete=_templates)
-def new(kind: str) -> None:
-    """Write a commented case, or a study of one, to standard output."""
+    Every key stands in it with its meaning, what is allowed and its default; keys that need not be given
+    stand behind a '#'.
+    """
     from asperity.kinds.cases import not_a_kind, template
 
     if kind not in (names := (*KINDS, "study")):
@@ -111,55 +117,95 @@ def new(kind: str) -> None:
 
         say(TEMPLATE, lines=True)
     else:
-        say(template(kind), lines=True)
+        say(template(kind, laws), lines=True)
 
 
-@main.command()
-@_case
-@_output
-@_converge
-@_device
-@_overwrite
-def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -> None:
-    """Check a case: show its values, what will be computed, and how long that takes.
+@main.command(
+    document=True,
+    long_work=True,
+    short_help="Is a case valid, what will it compute, and how long?",
+    examples=[
+        ("asperity check case.toml", "values (those that differ from the default in bold), work, time"),
+        ("asperity check case.toml --converge", "and the time of computing it with finer settings"),
+        ("asperity check case.toml --json | jq .work.seconds", "the expected seconds, for a script"),
+    ],
+)
+@click.argument("case", type=PATH)
+@run_folder()
+@converge
+@device
+@overwrite
+def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -> dict[str, Any]:
+    """Check a CASE: show its values, what will be computed, and how long that takes.
 
-    Refuses whatever 'asperity run' would refuse, and tries small pieces of the work to expect its time.
+    Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
+    which law to take and how far the others are off.
     """
     from asperity.cli.planning import show_plan
-    from asperity.cli.running import refuse_folder
+    from asperity.cli.running import prepared_case, refuse_folder
     from asperity.kinds.cases import load_case
-    from asperity.running import prepare_case
 
     loaded = load_case(case)
     refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
-    show_plan(prepare_case(loaded, str(case)), str(case), converge=converge)
+    return show_plan(prepared_case(loaded, str(case)), str(case), converge=converge)
 
 
-@main.command()
-@_case
-@_output
-@_report
-@_converge
-@_device
-@_overwrite
-def run(case: Path, directory: Path | None, report: bool, converge: bool, overwrite: bool) -> None:
-    """Compute a case: writes run.nc, report.html and the CSV of every figure."""
+@main.command(
+    document=True,
+    long_work=True,
+    short_help="Compute a case: results, report and CSVs.",
+    examples=[
+        ("asperity run case.toml", "into runs/case; the same command again goes on after an interruption"),
+        ("asperity run case.toml -o runs/stiff --converge", "and how far grid, window, time step … matter"),
+        ("asperity run case.toml --json | jq .verdict", "what it found, for a script"),
+    ],
+)
+@click.argument("case", type=PATH)
+@run_folder()
+@report
+@converge
+@device
+@overwrite
+def run(case: Path, directory: Path | None, report: bool, converge: bool, overwrite: bool) -> dict[str, Any]:
+    """Compute a CASE: writes run.nc, report.html and the CSV of every figure.
+
+    Finished pieces of work are kept: a run that was interrupted goes on where it was.
+    """
     from asperity.cli.running import run_into
     from asperity.kinds.cases import load_case
 
     target = directory or Path("runs") / case.stem
-    run_into(load_case(case), target, source=str(case), report=report, overwrite=overwrite, converge=converge)
+    return run_into(
+        load_case(case), target, source=str(case), report=report, overwrite=overwrite, converge=converge
+    )
 
 
-@main.command()
-@click.argument("study", type=click.Path(path_type=Path))
+@main.command(
+    document=True,
+    long_work=True,
+    short_help="Compute a case for every combination of values of some keys.",
+    examples=[
+        ('asperity study case.toml --vary "speed = 20 m/s, 200 km/h"', "two speeds, one table"),
+        (
+            'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "wheel.load = 50 kN, 65 kN"',
+            "mean and scatter over four textures, for two loads",
+        ),
+        ("asperity study study.toml -o runs/grid --workers 4", "a study file, on four processes"),
+    ],
+)
+@click.argument("study", type=PATH)
 @click.option(
     "--vary",
     multiple=True,
     metavar="KEY=VALUES",
+    shell_complete=complete_sweep,
     help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h'. May be repeated.",
 )
-@_study_options
+@run_folder()
+@click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]")
+@click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
+@click.option("--overwrite", is_flag=True, help="Replace another study in the folder.")
+@device
 def study(
     study: Path,
     vary: tuple[str, ...],
@@ -167,8 +213,11 @@ def study(
     workers: int | None,
     scheduler: str | None,
     overwrite: bool,
-) -> None:
-    """Compute a case for every combination of the values of some keys: writes study.nc and study.csv.
+) -> dict[str, Any]:
+    """Compute a case for every combination of the values of some keys, into one table.
+
+    Writes study.csv and study.nc: band levels, dB(A), peak force and lost contact of every law, swept keys in
+    the units you typed; a figure for each swept key; and with several seeds their mean and scatter.
 
     'asperity new study' writes a commented study; with --vary, a case needs none. Members that are finished
     are kept: the same command goes on where it was, and tries members again that failed.
@@ -176,7 +225,7 @@ def study(
     from asperity.cli.studying import study_into, varied
     from asperity.studies.definition import load_study
 
-    study_into(
+    return study_into(
         varied(study, vary) if vary else load_study(study),
         directory or Path("runs") / study.stem,
         workers=workers,
@@ -185,66 +234,114 @@ def study(
     )
 
 
-@main.command()
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option("--array", help="Name of the array, where the file holds several.")
-@click.option(
-    "--index", type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
+_surface_options: tuple[Callable[..., Any], ...] = (
+    click.option("--array", help="Name of the array, where the file holds several."),
+    click.option(
+        "--index", type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
+    ),
+    click.option("--height-unit", metavar="UNIT", help="Unit of heights that carry none, as 'um'."),
+    click.option("--pixel", metavar="LENGTH", help="Distance of points that carry none, as '1.5625 um'."),
+    click.option("--pixel-unit", metavar="UNIT", help="Unit of coordinates that carry none, as 'mm'."),
+    click.option("--decimal", metavar="MARK", help="Decimal mark of a text, '.' or ',', where in doubt."),
+    click.option("--transpose", is_flag=True, help="Exchange x and y: roll along the other direction."),
+    click.option(
+        "--rotate",
+        metavar="ANGLE",
+        help="Roll in this direction, from x towards y, as '30 deg'; a bare number is in degrees.",
+    ),
+    click.option("--fill", is_flag=True, help="Fill points without a height."),
+    click.option("--spikes", is_flag=True, help="Take spikes for points without a height."),
+    click.option(
+        "--lines/--map",
+        default=None,
+        help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
+    ),
+    click.option("--psd", is_flag=True, help="Write the spectra of the picture as CSV beside it."),
+    click.option(
+        "-o",
+        "--output",
+        "picture",
+        type=PATH,
+        help="The picture. [default: NAME-surface.png here, with array and index in its name]",
+    ),
 )
-@click.option("--height-unit", help="Unit of heights that carry none, as 'um'.")
-@click.option("--pixel", help="Distance of points that carry none, as '1.5625 um'.")
-@click.option("--pixel-unit", help="Unit of coordinates that carry none, as 'mm'.")
-@click.option("--decimal", metavar="MARK", help="Decimal mark of a text, '.' or ',', where it is in doubt.")
-@click.option("--transpose", is_flag=True, help="Exchange x and y: roll along the other direction.")
-@click.option("--fill", is_flag=True, help="Fill points without a height.")
-@click.option("--spikes", is_flag=True, help="Take spikes for points without a height.")
+
+
+def _with_surface_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    for option in reversed(_surface_options):
+        command = option(command)
+    return command
+
+
+@main.command(
+    document=True,
+    short_help="What is in a measured file: size, statistics, spectrum, picture.",
+    examples=[
+        ("asperity surface beam.x3p", "size, missing points, statistics, direction; a picture with spectrum"),
+        ("asperity surface maps.npz --array polished --index 2 --height-unit um --pixel '1.5 um'", "one map"),
+        ("asperity surface beam.x3p --rotate '30 deg' --psd", "turned to the lay; the spectra as CSV"),
+        ("asperity surface track.csv --decimal , --height-unit um --pixel '1 mm'", "decimal commas"),
+    ],
+)
+@click.argument("file", type=PATH)
+@_with_surface_options
+def surface(file: Path, picture: Path | None, **choices: Any) -> dict[str, Any]:
+    """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture.
+
+    The picture shows heights, their distribution and their power spectral density along x and along y. Std is
+    the direction in which the texture varies most (ISO 25178-2); the lay is at right angles to it.
+    """
+    from asperity.cli.inspecting import inspect
+
+    return inspect(file, picture, **choices)
+
+
+@main.command(
+    document=True,
+    short_help="What differs between runs: cases, levels, force, stiffness.",
+    examples=[
+        ("asperity compare runs/smooth runs/rough", "page and table in 'comparison'"),
+        ("asperity compare runs/a runs/b runs/c --law table -o what-if", "three runs, by one law"),
+    ],
+)
+@click.argument("runs", nargs=-1, type=PATH, required=True)
 @click.option(
-    "--lines/--map",
-    default=None,
-    help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
+    "--law",
+    "laws",
+    multiple=True,
+    metavar="LAW",
+    shell_complete=complete_laws,
+    help="Compare this law alone, the first as the main one. May be repeated. [default: all that runs have]",
 )
 @click.option(
     "-o",
     "--output",
-    "picture",
-    type=click.Path(path_type=Path),
-    help="The picture. [default: NAME-surface.png here, with array and index in its name]",
+    "directory",
+    type=PATH,
+    default=Path("comparison"),
+    show_default=True,
+    metavar="FOLDER",
+    help="Folder of comparison.html and comparison.csv, or the page itself, ….html.",
 )
-def surface(
-    file: Path,
-    array: str | None,
-    index: int | None,
-    height_unit: str | None,
-    pixel: str | None,
-    pixel_unit: str | None,
-    decimal: str | None,
-    transpose: bool,
-    fill: bool,
-    spikes: bool,
-    lines: bool | None,
-    picture: Path | None,
-) -> None:
-    """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture."""
-    from asperity.cli.inspecting import inspect
+def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> dict[str, Any]:
+    """Compare RUNS (run.nc, or their folders) with the first of them: one page and one table.
 
-    inspect(
-        file,
-        picture,
-        array=array,
-        index=index,
-        lines=lines,
-        height_unit=height_unit,
-        pixel=pixel,
-        pixel_unit=pixel_unit,
-        decimal=decimal,
-        transpose=transpose,
-        fill=fill,
-        spikes=spikes,
-    )
+    What differs in the cases; levels and their differences in each one-third octave and in dB(A); force, loss
+    of contact, stiffness, filters and verdicts.
+    """
+    from asperity.cli.comparing import compare_into
+
+    return compare_into(runs, directory, laws)
 
 
-@main.command()
-@click.argument("run", type=click.Path(path_type=Path))
+@main.command(
+    short_help="Write what a run sounds like, as WAV files.",
+    examples=[
+        ("asperity listen runs/case", "into runs/case/sounds, all on one scale"),
+        ("asperity listen runs/case --matched", "equally loud, so that only the sound differs"),
+    ],
+)
+@click.argument("run", type=PATH)
 @click.option(
     "--what", metavar="NAME", help="Variable of 'rolling' in the run. [default: acceleration, else velocity]"
 )
@@ -255,7 +352,8 @@ def surface(
     "-o",
     "--output",
     "directory",
-    type=click.Path(path_type=Path),
+    type=PATH,
+    metavar="FOLDER",
     help="Folder of the sounds. [default: sounds, beside the run]",
 )
 def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> None:
@@ -265,8 +363,11 @@ def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -
     listen_into(run, directory, what, matched=matched)
 
 
-@main.command()
-@click.argument("run", type=click.Path(path_type=Path))
+@main.command(
+    short_help="Say what to cite for a run.",
+    examples=[("asperity cite runs/case", "the program in its version, and the sources of the run")],
+)
+@click.argument("run", type=PATH)
 def cite(run: Path) -> None:
     """Say what to cite for a RUN (run.nc, or its folder): the program and its sources."""
     from asperity.cli.citing import show_citations
@@ -274,7 +375,16 @@ def cite(run: Path) -> None:
     show_citations(run)
 
 
-@main.command()
+@main.command(
+    short_help="A page in the browser: set cases, press, roll, watch, listen.",
+    examples=[
+        ("asperity serve", "open the address that it prints; Ctrl-C ends it"),
+        (
+            "asperity serve -o shared/bearing --port 8080",
+            "a folder and a port of your choice",
+        ),
+    ],
+)
 @click.option("--port", type=int, default=0, help="Port of this machine. [default: one that is free]")
 @click.option(
     "-o",
@@ -282,7 +392,8 @@ def cite(run: Path) -> None:
     "directory",
     default=Path("asperity-page"),
     show_default=True,
-    type=click.Path(path_type=Path),
+    type=PATH,
+    metavar="FOLDER",
     help="Folder of surfaces and runs; those of an earlier time are found again.",
 )
 def serve(port: int, directory: Path) -> None:
@@ -295,21 +406,37 @@ def serve(port: int, directory: Path) -> None:
     serve_page(directory, port)
 
 
-@main.command()
+@main.command(
+    short_help="Show or delete what is kept between runs.",
+    examples=[
+        ("asperity cache", "what is kept, where, and how much it is"),
+        ("asperity cache --clear", "delete it; it is computed again when it is needed"),
+    ],
+)
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
 def cache(clear: bool) -> None:
-    """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left."""
+    """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left.
+
+    Work is kept in $ASPERITY_CACHE, by default in the cache folder of the system.
+    """
     from asperity.cli.keeping import clear_kept, show_kept
 
     clear_kept() if clear else show_kept()
 
 
-@main.command()
+@main.command(
+    short_help="Let the shell complete commands, files, kinds and laws.",
+    examples=[
+        ("""echo 'eval "$(asperity completion bash)"' >> ~/.bashrc""", "bash 4.4 or later"),
+        ("""echo 'eval "$(asperity completion zsh)"' >> ~/.zshrc""", "zsh, below the line with compinit"),
+        ("asperity completion fish > ~/.config/fish/completions/asperity.fish", "fish"),
+    ],
+)
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 def completion(shell: str) -> None:
-    """Print what makes a shell complete commands: put 'eval "$(asperity completion bash)"' into ~/.bashrc.
+    """Print what makes a SHELL complete commands, options, files, kinds of case, keys and laws.
 
-    For fish: asperity completion fish > ~/.config/fish/completions/asperity.fish
+    It works in shells that are opened after one of the lines below.
     """
     from click.shell_completion import get_completion_class
 

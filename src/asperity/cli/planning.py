@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from asperity.config.case import Case
 from asperity.config.sections import MeasuredLine
@@ -23,8 +23,11 @@ ANNOUNCED_SOLUTIONS = 100_000  # of a scan that is tried to find out
 SMALL_PART = 0.05  # of the work: shorter parts are not named
 
 
-def show_plan(prepared: PreparedCase, source: str, *, converge: bool = False) -> None:
-    """Print the values of a case, and what will be computed from it, with convergence if it is asked for."""
+def show_plan(prepared: PreparedCase, source: str, *, converge: bool = False) -> dict[str, Any]:
+    """Print the values of a case, and what will be computed from it, with convergence if it is asked for.
+
+    Returns what a program wants to know of it.
+    """
     from asperity.scenarios.expecting import expect
 
     for warning in prepared.caught:
@@ -42,7 +45,19 @@ def show_plan(prepared: PreparedCase, source: str, *, converge: bool = False) ->
     changed = {number for number, item in enumerate(items) if not item["is_default"]}
     headings = ("key", "value", "default", "what it is")
     say_table(f"{source}: a valid case", headings, values, width=120, bold=changed)
-    say_table("What will be computed", (), [*plan(prepared, expected), *more], width=120)
+    planned = [*plan(prepared, expected), *more]
+    say_table("What will be computed", (), planned, width=120)
+    return {
+        "case": source,
+        "kind": prepared.case.kind,
+        "parameters": items,
+        "plan": [{"name": name, "value": value} for name, value in planned],
+        "work": {"seconds": expected.total, "parts": expected.seconds},
+        "warnings": [
+            {"grade": getattr(each.message, "grade", Grade.WARNING).value, "message": str(each.message)}
+            for each in prepared.caught
+        ],
+    }
 
 
 def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from asperity.cli.planning import announce_scan
 from asperity.config.case import Case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, require_space
-from asperity.progress import progress_bar
-from asperity.terminal import say
+from asperity.progress import COMPILATION, duration, progress_bar
+from asperity.schema import rolling, spectra
+from asperity.terminal import detail, remark, say
 
 if TYPE_CHECKING:
     from xarray import DataTree
+
+    from asperity.scenarios.preparing import PreparedCase
+
+READING = "reading and laying out the case"
 
 
 def run_into(
@@ -25,8 +31,8 @@ def run_into(
     report: bool = True,
     overwrite: bool = False,
     converge: bool = False,
-) -> None:
-    """Compute a case and write its results.
+) -> dict[str, Any]:
+    """Compute a case and write its results; return what a program wants to know of them.
 
     Parameters
     ----------
@@ -51,21 +57,34 @@ def run_into(
     refuse_folder(case, directory, overwrite=overwrite)
     with alone_in(directory):
         refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
-        _run_alone(case, directory, source, report=report, converge=converge)
+        return _run_alone(case, directory, source, report=report, converge=converge)
 
 
-def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> None:
+def prepared_case(case: Case, source: str) -> PreparedCase:
+    """Read and lay out all that a case needs, and say so if that takes long."""
+    from asperity.running import prepare_case
+
+    with progress_bar() as progress:
+        progress(0, 1, READING)
+        prepared = prepare_case(case, source)
+        progress(1, 1, READING)
+    return prepared
+
+
+def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> dict[str, Any]:
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.convergence.running import with_convergence
     from asperity.kinds import report as reports
-    from asperity.running import prepare_case, run
+    from asperity.running import run
     from asperity.store import Store
 
-    prepared = prepare_case(case, source)
+    before = time.monotonic(), COMPILATION.seconds
+    prepared = prepared_case(case, source)
     with progress_bar() as progress:
         announce_scan(prepared, progress)
         tree: DataTree = run(prepared, progress=progress)
-    for warning in json.loads(tree.attrs.get("warnings", "[]")):
+    warnings = json.loads(tree.attrs.get("warnings", "[]"))
+    for warning in warnings:
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
         grade = warning.get("grade", "warning").capitalize()
         say(f"{grade}: {warning['message']}{times}", err=True)
@@ -79,10 +98,54 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, conver
         say(verdict)
     for name, path in written.items():
         say(f"{name}:{'':{8 - len(name)}}{path.resolve()}")
+    _say_time(before)
     store = Store()
     if size := store.size():
         kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"
-        say(f"Kept:    {kept} (asperity cache --clear deletes it)", err=True)
+        remark(f"Kept:    {kept} (asperity cache --clear deletes it)")
+    return {
+        "case": source,
+        "kind": case.kind,
+        "verdict": tree.attrs.get("verdict", ""),
+        "laws": law_summaries(tree),
+        **band_summaries(tree),
+        "warnings": [{"grade": "warning", **warning} for warning in warnings],
+        "files": {name.lower(): str(path.resolve()) for name, path in written.items()},
+    }
+
+
+def _say_time(before: tuple[float, float]) -> None:
+    """Say what all took, and how much of it was compiling, which later runs need not do."""
+    whole, compiling = time.monotonic() - before[0], COMPILATION.seconds - before[1]
+    told = f", of which {duration(compiling)} compiled {COMPILATION.functions} functions" if compiling else ""
+    detail(f"Time:    {duration(whole)}{told}")
+
+
+def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
+    """Numbers of each law's force, in SI: mean, rms about it, largest, and losses of contact."""
+    found = []
+    group = tree["rolling"].to_dataset()
+    for law in group["law"].values.tolist():
+        here = group.sel(law=law)
+        force = here[rolling.CONTACT_FORCE.name]
+        numbers = {"mean_force": force.mean(), "rms_force": force.std(), "peak_force": force.max()}
+        lost = (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS)
+        numbers |= {entry.name: here[entry.name] for entry in lost if entry.name in here}
+        found.append({"law": law} | {name: float(value) for name, value in numbers.items()})
+    return found
+
+
+def band_summaries(tree: DataTree) -> dict[str, Any]:
+    """Centres of the one-third octaves, Hz, and the force level of each law in them, dB re 1 N."""
+    group = tree["spectra"].to_dataset()
+    if spectra.FORCE_LEVEL.name not in group:
+        return {"bands": [], "force_level": {}}
+    level = group[spectra.FORCE_LEVEL.name]
+    bands = group[spectra.BAND.name].values
+    return {
+        "bands": bands,
+        "force_level": {str(law): level.sel(law=law).values for law in level["law"].values},
+    }
 
 
 def _written(tree: DataTree, directory: Path, *, report: bool) -> dict[str, Path]:

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from asperity.arguments import shown
+from asperity.cli.study_files import SEED, write_ensemble, write_figures, write_mean
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable, write_bytes
+from asperity.files import alone_in, refuse_unwritable
 from asperity.progress import progress_bar
+from asperity.schema import rolling, spectra
+from asperity.studies.columns import axes_of, columns_of
 from asperity.studies.definition import Study, study_of
-from asperity.terminal import say, say_table
+from asperity.studies.ensemble import SCATTER, mean_and_scatter
+from asperity.terminal import remark, say, say_table
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -37,8 +36,8 @@ def study_into(
     workers: int | None = None,
     scheduler: str | None = None,
     overwrite: bool = False,
-) -> None:
-    """Compute a study and write ``study.nc`` and ``study.csv`` to a folder.
+) -> dict[str, Any]:
+    """Compute a study and write its tables and figures to a folder; return what a program wants to know.
 
     Either processes of this machine compute it, one per processor by default, or the workers of the Dask
     scheduler at an address. `overwrite` says whether another study in the folder may be replaced.
@@ -49,10 +48,10 @@ def study_into(
     with alone_in(directory):
         if not overwrite:
             _refuse_to_overwrite(study, directory)
-        _study_alone(study, directory, workers, scheduler)
+        return _study_alone(study, directory, workers, scheduler)
 
 
-def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: str | None) -> None:
+def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: str | None) -> dict[str, Any]:
     """Compute a study and write its table, while no other run does into this folder."""
     from xarray import DataTree
 
@@ -61,57 +60,32 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
     from asperity.studies.running import study as computed
 
     size = " × ".join(f"{len(axis.values)} {axis.name}" for axis in study.axes)
-    say(f"Study of {size}", err=True)
+    remark(f"Study of {size}")
     place: AbstractContextManager[Executor | None] = nullcontext()
     if scheduler is not None:
         place = cluster(scheduler)
     with place as executor, progress_bar() as progress:
         table = computed(study, executor=executor, workers=workers, progress=progress)
-    _show(table)
+    means = mean_and_scatter(table) if table.sizes.get(SEED, 0) > 1 else None
+    _show(table if means is None else means)
     _report(table)
     written = save(DataTree(table), directory / "study.nc")
-    rows = write_csv(directory / "study.csv", *_table(table))
+    files = {"results": written, "table": write_csv(directory / "study.csv", *columns_of(table))}
     say(f"Results: {written.resolve()}")
-    say(f"Table:   {rows.resolve()}")
-    _ensemble(table, directory)
-
-
-def _ensemble(table: xarray.Dataset, directory: Path) -> None:
-    """Write mean and band over the seeds of a study, if it sweeps them, as CSV and as a figure."""
-    from asperity.laws import spec_of
-    from asperity.reporting.ensemble import ensemble_figure
-    from asperity.studies.ensemble import FEWEST, prediction_band
-
-    files = [directory / name for name in ("ensemble.csv", "ensemble.png")]
-    if table.sizes.get("seed", 0) < FEWEST:
-        for file in files:  # of an earlier study
-            file.unlink(missing_ok=True)
-        return
-    bands = prediction_band(table)
-    colours = {str(law): str(spec_of(str(law)).entry()["colour"]) for law in bands["law"].values}
-    swept = [name for name in json.loads(table.attrs["sweep"]) if name != "seed"]
-    write_csv(files[0], *_long_table(bands, [*swept, "law", "band"]))
-    image = io.BytesIO()
-    ensemble_figure(bands, colours).savefig(image, format="png", dpi=150)
-    write_bytes(files[1], image.getvalue())
-    say(f"Seeds:   {files[1].resolve()}, and as numbers {files[0].name}")
-    say(str(bands.attrs["meaning"]))
-
-
-def _long_table(bands: xarray.Dataset, axes: Sequence[str]) -> tuple[list[str], list[list[object]]]:
-    """Heading and rows of what has all these axes, one row for each place on them."""
-    held = {
-        str(name): values.transpose(*axes)
-        for name, values in bands.data_vars.items()
-        if set(values.dims) == set(axes)
+    say(f"Table:   {files['table'].resolve()}")
+    files |= write_mean(means, directory) | write_figures(table, means, directory)
+    files |= write_ensemble(table, directory)
+    heading, rows = columns_of(table, bands=False)
+    return {
+        "sweep": study.sweep,
+        "members": int(table["completed"].size),
+        "completed": int(table["completed"].sum()),
+        "columns": heading,
+        "rows": rows,
+        "warnings": json.loads(table.attrs["warnings"]),
+        "failures": json.loads(table.attrs["failures"]),
+        "files": {name: str(path.resolve()) for name, path in files.items()},
     }
-    heading = [_titled(bands[axis]) for axis in axes] + [_titled(values) for values in held.values()]
-    labels = [bands[axis].values.tolist() for axis in axes]
-    numbers = [values.values.ravel().tolist() for values in held.values()]
-    rows: list[list[object]] = [
-        [*place, *found] for place, found in zip(product(*labels), zip(*numbers, strict=True), strict=True)
-    ]
-    return heading, rows
 
 
 def varied(case: Path, words: Sequence[str]) -> Study:
@@ -161,49 +135,41 @@ def _refuse_to_overwrite(study: Study, directory: Path) -> None:
         raise InputError(str(directory), "the study.nc of another study", allowed, remedy)
 
 
-def _table(found: xarray.Dataset, *, bands: bool = True) -> tuple[list[str], list[list[object]]]:
-    """Heading and rows of a study, with or without the quantities that have bands."""
-    axes = [*json.loads(found.attrs["sweep"]), *(["law"] if "law" in found.dims else [])]
-    heading = [_titled(found[axis]) for axis in axes]
-    chosen: list[tuple[list[str], NDArray[Any]]] = []
-    for name, values in found.data_vars.items():
-        others = [str(dim) for dim in values.dims if dim not in axes]
-        if len(others) > (1 if bands else 0):
-            continue
-        own = [axis for axis in axes if axis in values.dims]
-        chosen.append((own, values.transpose(*own, *others).values))
-        if not others:
-            heading.append(_titled(values))
-        for place in found[others[0]].values.tolist() if others else ():
-            shown = place if isinstance(place, str) else f"{place:.6g} {_unit(found[others[0]])}".strip()
-            heading.append(f"{name} {shown} [{values.attrs['units']}]")
-    labels = {axis: found[axis].values.tolist() for axis in axes}
-    rows: list[list[object]] = []
-    for places in product(*(range(found.sizes[axis]) for axis in axes)):
-        here = dict(zip(axes, places, strict=True))
-        row: list[object] = [labels[axis][place] for axis, place in here.items()]
-        for own, numbers in chosen:
-            row += np.atleast_1d(numbers[tuple(here[axis] for axis in own)]).tolist()
-        rows.append(row)
-    return heading, rows
-
-
-def _unit(values: xarray.DataArray) -> str:
-    return "" if values.attrs["units"] == "1" else str(values.attrs["units"])
-
-
-def _titled(values: xarray.DataArray) -> str:
-    words = values.dtype.kind == "U"
-    return str(values.name) if words else f"{values.name} [{values.attrs['units']}]"
+PRINTED = (
+    f"{spectra.FORCE_LEVEL.name}_a",
+    *(f"{spectra.FORCE_LEVEL.name}_a_difference_to_{to}" for to in ("linear_filtered", "linear")),
+    "rms_force",
+    "peak_force",
+    rolling.CONTACT_LOSS_SHARE.name,
+)
+"""Quantities that are printed; the file has all."""
 
 
 def _show(found: xarray.Dataset) -> None:
-    """Print the quantities of a study that have no bands."""
-    heading, rows = _table(found, bands=False)
-    shown = ([item if isinstance(item, str) else _short(item) for item in row] for row in rows[:MOST_ROWS])
-    say_table("Study", heading, shown, width=200)
+    """Print the quantities that matter most, with ± where they are means over seeds."""
+    names = [name for name in PRINTED if name in found]
+    held = [name for name in (*names, *(f"{name}{SCATTER}" for name in names)) if name in found]
+    heading, rows = columns_of(found[held].assign_attrs(found.attrs), bands=False)
+    keys = len(axes_of(found))
+    paired = len(held) > len(names)
+    shown = [_printed_row(row, keys, paired=paired) for row in rows[:MOST_ROWS]]
+    title = "Study"
+    if paired:
+        heading = [*heading[:keys], *heading[keys::2]]
+        title = (
+            f"Study: mean ± standard deviation over {found.attrs['members']} values of {found.attrs['over']}"
+        )
+    say_table(title, heading, shown, width=200)
     if len(rows) > MOST_ROWS:
         say(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
+
+
+def _printed_row(row: Sequence[object], keys: int, *, paired: bool) -> list[str]:
+    words = [item if isinstance(item, str) else _short(item) for item in row]
+    if not paired:
+        return words
+    pairs = zip(words[keys::2], words[keys + 1 :: 2], strict=True)
+    return [*words[:keys], *(mean if scatter == "–" else f"{mean} ± {scatter}" for mean, scatter in pairs)]
 
 
 def _short(number: object) -> str:

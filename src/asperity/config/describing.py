@@ -179,8 +179,9 @@ def _line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
     value = written_out.get(entry.dotted)
     default = f"default: {entry.otherwise}" if entry.otherwise else "no default"
     if entry.default is not None:
-        default = "default"
-        value = _toml(entry.default) if value is None else value
+        usual = _toml(entry.default)
+        default = "default" if value in (None, usual) else f"default: {usual}"
+        value = usual if value is None else value
     companion = extra_of(entry.field)["goes_with"]
     home = entry.dotted.rpartition(".")[0]
     lonely = companion and f"{home}.{companion}" not in written_out

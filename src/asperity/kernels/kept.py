@@ -24,6 +24,7 @@ from numba.core.serialize import dumps
 
 from asperity.files import replace
 from asperity.kernels.folders import STAMP, VARIABLE, folders
+from asperity.progress import COMPILATION
 from asperity.store import is_private
 
 DIGEST = 32
@@ -63,13 +64,18 @@ class Kept:
     def load_overload(self, signature: Any, context: Any) -> Any:
         """Load the machine code of a signature; None if it has to be compiled."""
         context.refresh()
-        return _loaded(self.file_name(signature, context.codegen()), context)
+        name = self.file_name(signature, context.codegen())
+        found = _loaded(name, context)
+        if found is None:
+            COMPILATION.begin(name)
+        return found
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep the machine code of a signature, in the first folder that takes it."""
+        name = self.file_name(signature, result.codegen)
+        COMPILATION.end(name)
         if result.lifted or result.library.has_dynamic_globals:  # holds objects or addresses of this process
             return
-        name = self.file_name(signature, result.codegen)
         linked = result.library._linking_libraries
         called = [kernel for kernel, library in _CALLED.items() if library in linked]
         payload = dumps((called, result._reduce()))

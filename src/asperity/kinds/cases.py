@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from importlib import resources
@@ -21,6 +22,7 @@ from asperity.config.parsing import (
 )
 from asperity.errors import CaseError, InputError
 from asperity.kinds import KINDS
+from asperity.laws import spec_of
 from asperity.scenarios.kind import Kind
 
 _HEAD = """\
@@ -145,11 +147,16 @@ def not_a_kind(kind: object, names: Sequence[str]) -> InputError:
     return InputError("kind", shown(kind), allowed, nearest(kind, list(names)))
 
 
-def template(kind: str) -> str:
-    """Write a commented case of a kind: each key with its value, meaning, what is allowed and default."""
+def template(kind: str, laws: Sequence[str] = ()) -> str:
+    """Write a commented case of a kind: each key with its value, meaning, what is allowed and default.
+
+    With laws of one's own instead of the usual ones, where any are given.
+    """
     found = kind_named(kind)
+    chosen = [spec_of(law).name for law in laws]
     head = _HEAD.format(title=found.words.title, source=found.words.sources)
-    return head + commented(found.case, found.words.written_out)
+    own = {"laws": json.dumps(chosen)} if chosen else {}
+    return head + commented(found.case, {**found.words.written_out, **own})
 
 
 def demo_case() -> Case:

@@ -10,6 +10,7 @@ import xarray
 from matplotlib.figure import Figure
 
 from asperity.reporting.style import INK, MUTED, band_axis, new_figure, shade_doubtful, styled
+from asperity.reporting.typed import typed_words
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW
 from asperity.spectra import LEAST_PRODUCT
 
@@ -51,6 +52,5 @@ def ensemble_figure(bands: xarray.Dataset, colours: Mapping[str, str]) -> Figure
 
 
 def _valued(key: xarray.DataArray) -> str:
-    """A swept key with its value and unit."""
-    value = f"{float(key):.4g} {key.attrs['units']}" if key.dtype.kind in "fi" else str(key.values)
-    return f"{key.name} = {value.removesuffix(' 1')}"
+    """A swept key with its value and unit, as it was typed."""
+    return f"{key.name} = {typed_words(key.expand_dims('place'))[0]}"

@@ -111,7 +111,8 @@ _UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
 
 
 @cache
-def _template() -> Template:
+def page_template(name: str) -> Template:
+    """A template of this package, which writes text of others so that it is seen and does nothing."""
     environment = Environment(
         loader=PackageLoader("asperity.reporting", ""),
         autoescape=True,
@@ -120,7 +121,7 @@ def _template() -> Template:
         lstrip_blocks=True,
     )
     environment.filters["unbroken"] = _unbroken
-    return environment.get_template("report.html.jinja")
+    return environment.get_template(name)
 
 
 def _unbroken(text: str) -> str:
@@ -135,7 +136,7 @@ def page(tree: DataTree, chapters: Sequence[Chapter]) -> str:
     """
     kind, parameters = stated(tree, provenance.KIND), json_list(tree, provenance.PARAMETERS)
     warnings = _warnings(tree)
-    return _template().render(
+    return page_template("report.html.jinja").render(
         title=stated(tree, provenance.TITLE) or kind or "Rolling contact",
         verdict=stated(tree, provenance.VERDICT) or "",
         version=stated(tree, provenance.ASPERITY_VERSION) or "unknown",

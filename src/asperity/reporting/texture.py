@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -297,9 +298,18 @@ TEXTURE = (
 )
 
 
+NamedSpectra = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+"""Wavenumbers above zero, cycles/m, and one-sided PSD, m³, by name."""
+
+
 @styled()
-def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], title: str) -> Figure:
-    """Draw what a surface file holds: its map and the distribution of its heights.
+def surface_picture(
+    heights: NDArray[np.float64],
+    spacing: tuple[float, float],
+    title: str,
+    spectra: NamedSpectra = MappingProxyType({}),
+) -> Figure:
+    """Draw what a surface file holds: its map, the distribution of its heights, and its spectra.
 
     Heights (nx, ny), or (n,) for a line, and distances along x and y, m, positive out of the material; NaN
     where missing.
@@ -307,9 +317,11 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
     heights = np.asarray(heights, dtype=np.float64)
     size, symbol, colours = height_scale(heights)
     length = np.asarray(heights.shape, dtype=np.float64) * spacing[: heights.ndim]
-    figure, left, right = _map_and_histogram(heights.ndim == 1 or bool(length[0] > SLENDER * length[1]))
-    figure.set_facecolor("white")  # it goes to a file of its own
-    figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+    if heights.ndim == 1 or length[0] > SLENDER * length[1]:
+        figure, left, right = _picture_panels(4.6, (1, 1.4), spectra, stacked=True)
+    else:
+        figure, left, right = _picture_panels(4.2, (1.25, 1), spectra, stacked=False)
+    _titled(figure, title)
     x = spacing[0] * np.arange(heights.shape[0], dtype=np.float64)
     unit = length_unit(np.ptp(x))
     if heights.ndim == 1:
@@ -327,18 +339,60 @@ def surface_picture(heights: NDArray[np.float64], spacing: tuple[float, float], 
     return figure
 
 
+def _titled(figure: Figure, title: str) -> None:
+    figure.set_facecolor("white")  # it goes to a file of its own
+    figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+
+
+def _picture_panels(
+    height: float, ratios: tuple[float, float], spectra: NamedSpectra, *, stacked: bool
+) -> tuple[Figure, Axes, Axes]:
+    """Figure of a file with two panels, side by side or stacked, above its spectra, if there are any."""
+    held = {name: pair for name, pair in spectra.items() if (pair[1] > 0).sum() > 1}
+    below = 3.2 if held else 0.0
+    figure = new_figure(height + below)
+    grid = figure.add_gridspec(2 if held else 1, 1, height_ratios=[height, below] if held else [height])
+    if stacked:
+        inner = grid[0].subgridspec(2, 1, height_ratios=ratios)
+    else:
+        inner = grid[0].subgridspec(1, 2, width_ratios=ratios)
+    first, second = (figure.add_subplot(inner[n]) for n in range(2))
+    if held:
+        _draw_spectra(figure.add_subplot(grid[1]), held)
+    return figure, first, second
+
+
+def _draw_spectra(axes: Axes, spectra: NamedSpectra) -> None:
+    for (name, (wavenumber, density)), colour in zip(
+        spectra.items(), cycle((BLUE, VERMILLION)), strict=False
+    ):
+        drawn = density > 0
+        axes.loglog(*smooth_on_log_axis(wavenumber[drawn], density[drawn]), color=colour, label=name)
+    level = np.concatenate([density[density > 0] for _, density in spectra.values()])
+    axes.set_ylim(max(level.min() / 2, level.max() * 1e-10), level.max() * 4)
+    ends = [wavenumber for wavenumber, _ in spectra.values()]
+    wavenumber_axis(axes, min(k[0] for k in ends), max(k[-1] for k in ends))
+    power_axis(axes.yaxis)
+    axes.set_ylabel("one-sided PSD / m³")
+    axes.legend(loc="lower left")
+
+
 @styled()
-def lines_picture(lines: Sequence[NDArray[np.float64]], spacing: float, title: str) -> Figure:
-    """Draw lines that were measured side by side, one above the other, and the distribution of their heights.
+def lines_picture(
+    lines: Sequence[NDArray[np.float64]],
+    spacing: float,
+    title: str,
+    spectra: NamedSpectra = MappingProxyType({}),
+) -> Figure:
+    """Draw lines that were measured side by side, one above the other, their distribution and their spectra.
 
     Levelled heights (n,) and the distance of points along the lines, m, positive out of the material.
     """
     together = np.concatenate(lines)
     size, symbol, _ = height_scale(together)
     reach = np.ptp(np.nanpercentile(together, [0.1, 99.9])) / size
-    figure, (left, right) = side_by_side(2.4 + 0.42 * len(lines), (2.4, 1))
-    figure.set_facecolor("white")  # it goes to a file of its own
-    figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
+    figure, left, right = _picture_panels(2.4 + 0.42 * len(lines), (2.4, 1), spectra, stacked=False)
+    _titled(figure, title)
     longest = max(map(len, lines)) * spacing
     unit = length_unit(longest)
     for row, (line, colour) in enumerate(zip(lines, cycle((BLUE, VERMILLION)), strict=False)):

@@ -15,10 +15,10 @@ import numpy as np
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
 from asperity.kernels.options import is_kept
-from asperity.progress import Progress
+from asperity.progress import COMPILATION, Progress
 from asperity.threads import processors
 
-MESSAGE = "compiled functions (the first run compiles them, some 10 s)"
+MESSAGE = "compiled functions"
 
 
 def call_kernels(progress: Progress, stepping: Any, rolling: Callable[[], None]) -> None:
@@ -61,6 +61,9 @@ def _beside(stepping: Any, rolling: Callable[[], None]) -> Iterator[None]:
         except BaseException:
             other.kill()
             raise
+        COMPILATION.begin(name)  # waiting for it is compiling, too
+        other.wait()
+        COMPILATION.end(name)
 
 
 def press_and_displace() -> None:

@@ -25,11 +25,13 @@ from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import case_of, kind_named
 from asperity.reference.materials import Material
+from asperity.reporting.typed import TYPED_FACTOR, TYPED_UNIT
 from asperity.store import content_key
+from asperity.units import factor, unit_in
 
 MOST_MEMBERS = 10_000
 MOST_KEYS = 100  # that are swept: more than a case has
-FORMAT = 1
+FORMAT = 2
 """Raise it when what is kept of a member no longer means what it meant."""
 TEMPLATE = """\
 # A case for every combination of the values of some keys. Run it with: asperity study STUDY
@@ -61,6 +63,18 @@ class Axis:
     def units(self) -> str:
         """SI unit of the coordinate; ``"1"`` where the values are words."""
         return unit_of(self.entry) or "1"
+
+    @property
+    def typed(self) -> dict[str, Any]:
+        """Unit in which its first value was written that has one, and what it is in SI; nothing in SI."""
+        if self.units in ("1", "dB"):
+            return {}
+        for value in self.written:
+            if isinstance(value, str) and (unit := unit_in(value)) and unit != self.units:
+                return {TYPED_UNIT: unit, TYPED_FACTOR: factor(unit, self.units)}
+            if isinstance(value, str) and unit:
+                return {}
+        return {}
 
     @property
     def coordinate(self) -> NDArray[Any]:

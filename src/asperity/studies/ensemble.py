@@ -14,6 +14,8 @@ SHARE = 0.8
 """Probability with which the band holds one more member."""
 FEWEST = 3
 """Members of which a band says something."""
+SCATTER = "_scatter"
+"""End of the names of standard deviations."""
 BANDED = ("dB", "N")
 """Beginnings of the units of what has a band: levels, and means and rms of forces."""
 
@@ -99,6 +101,36 @@ def _band(name: str, values: xarray.DataArray, over: str, share: float) -> dict[
         f"{name}{end}": variable(dims, np.where(enough, of, np.nan), units, f"{what}, {which}", **told)
         for end, (of, which) in ends.items()
     }
+
+
+def mean_and_scatter(table: xarray.Dataset, over: str = "seed") -> xarray.Dataset:
+    """Mean of the members of a study, and how they scatter.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        From `asperity.study`.
+    over : str
+        The swept key by which members differ by chance alone.
+
+    Returns
+    -------
+    xarray.Dataset
+        Without the dimension `over`: for every quantity its mean over the members that have it, and
+        ``…_scatter``, the standard deviation of a member (n − 1), NaN of fewer than two. Levels are averaged
+        as they are, in dB.
+    """
+    found: dict[str, xarray.Variable] = {}
+    for name, values in table.data_vars.items():
+        if over in values.dims and values.dtype.kind == "f":
+            count = values.notnull().sum(over)
+            attrs = {"units": values.attrs["units"], "long_name": f"{values.attrs['long_name']}, mean"}
+            found[str(name)] = values.mean(over).assign_attrs(attrs).variable
+            what = f"{values.attrs['long_name']}, standard deviation over {over}"
+            scatter = values.std(over, ddof=1).where(count >= 2).assign_attrs(attrs | {"long_name": what})
+            found[f"{name}{SCATTER}"] = scatter.variable
+    kept = {name: values.variable for name, values in table.coords.items() if name != over}
+    return xarray.Dataset(found | kept, attrs={**table.attrs, "over": over, "members": table.sizes[over]})
 
 
 def meaning(over: str, count: int, share: float) -> str:

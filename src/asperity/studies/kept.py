@@ -14,6 +14,7 @@ from asperity.kinds import KINDS
 from asperity.results import variable
 from asperity.schema import contact, provenance, rolling, spectra
 from asperity.schema.provenance import KIND
+from asperity.spectra import a_weighted_total
 
 KEPT = (
     spectra.FORCE_LEVEL,
@@ -25,6 +26,8 @@ KEPT = (
     rolling.LONGEST_LOSS,
 )
 """What is kept of the results of all kinds; what is kept beside it stands in the schema of a kind."""
+LEVEL = "dB re"
+"""Beginning of the units of levels."""
 PLACES = ("sensor", "point")
 """Dimensions whose positions may differ between members: they are numbered, from 1."""
 
@@ -43,6 +46,10 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
     force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name]
     found["mean_force"] = _described(force.mean("time"), "N", "mean contact force")
     found["rms_force"] = _described(force.std("time"), "N", "rms of the contact force about its mean")
+    found["peak_force"] = _described(force.max("time"), "N", "largest contact force")
+    found |= _weighted(
+        {name: values for name, values in found.items() if isinstance(values, xarray.DataArray)}
+    )
     table = xarray.Dataset(found).drop_attrs(deep=False)
     for place in set(PLACES) & set(map(str, table.dims)):
         table = _numbered(table, place)
@@ -51,6 +58,33 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
     table[approach.name] = variable((), value, approach.units, approach.meaning)
     told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
     return table.assign_attrs({name: tree.attrs[name] for name in told})
+
+
+def _weighted(found: Mapping[str, xarray.DataArray]) -> dict[str, xarray.DataArray]:
+    """A-weighted totals of levels, where the result has none, and of the force over the linear laws."""
+    totals: dict[str, xarray.DataArray] = {}
+    for name, level in found.items():
+        units, band = str(level.attrs["units"]), str(level.dims[-1])
+        if units.startswith(LEVEL) and band.endswith("band") and f"{name}_a" not in found:
+            long_name = f"A-weighted {level.attrs['long_name']}, over the bands computed"
+            total = _total(level, band)
+            totals[f"{name}_a"] = _described(total, units.replace("dB", "dB(A)", 1), long_name)
+    force = found.get(spectra.FORCE_LEVEL.name)
+    for entry in spectra.FORCE_LEVEL_DIFFERENCES.values():
+        if force is not None and entry.name in found:
+            law, band = str(found[entry.name].attrs["reference"]), str(force.dims[-1])
+            both = np.isfinite(force) & np.isfinite(force.sel(law=law, drop=True))
+            change = _total(force.where(both), band) - _total(force.sel(law=law, drop=True).where(both), band)
+            name = entry.name.replace(spectra.FORCE_LEVEL.name, f"{spectra.FORCE_LEVEL.name}_a")
+            totals[name] = _described(change, "dB", f"A-weighted {entry.long_name}, over the bands of both")
+    return totals
+
+
+def _total(level: xarray.DataArray, band: str) -> xarray.DataArray:
+    numbers = a_weighted_total(level.transpose(..., band).values, level[band].values)
+    return (
+        level.isel({band: 0}, drop=True).transpose(*[d for d in level.dims if d != band]).copy(data=numbers)
+    )
 
 
 def _described(values: xarray.DataArray, units: str, long_name: str) -> xarray.DataArray:

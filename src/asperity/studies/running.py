@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from asperity.arguments import shown, whole
 from asperity.config.case import Case
 from asperity.errors import ComputationError, InputError
+from asperity.kinds.cases import kind_of
 from asperity.progress import shown_progress
 from asperity.studies.definition import Member, Study, load_study, study_of
 from asperity.studies.executors import locally, through
@@ -88,7 +89,11 @@ def study(
     members = plan.members()
 
     def compute(waiting: Sequence[Member]) -> Outcomes:
-        return locally(waiting, workers) if executor is None else through(executor, waiting)
+        if executor is not None:
+            return through(executor, waiting)
+        if waiting and waiting[0].case is not None:  # once here, and not in every process
+            kind_of(waiting[0].case).compile_kernels(told)
+        return locally(waiting, workers)
 
     with shown_progress(progress) as told:
         results, failures = _outcomes(members, compute, told)

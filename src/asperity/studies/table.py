@@ -33,7 +33,9 @@ def tabulated(
     ordered = [(member.index, results[member.index]) for member in members if member.index in results]
     coordinates = _coordinates([table for _, table in ordered])
     variables: dict[str, xarray.Variable] = {
-        axis.name: variable(axis.name, axis.coordinate, axis.units, str(axis.entry.field.description))
+        axis.name: variable(
+            axis.name, axis.coordinate, axis.units, str(axis.entry.field.description), **axis.typed
+        )
         for axis in study.axes
     }
     variables |= coordinates

@@ -1,0 +1,64 @@
+"""Spectra of what a measured file holds: those that its picture draws, and their CSV file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.reporting.csv_files import write_columns
+from asperity.surfaces.areal_psd import psd_1d, psd_radial
+from asperity.surfaces.heightmap import HeightMap, Profile
+
+Spectra = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
+"""Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""
+
+
+def spectra_of(surface: HeightMap | Profile) -> Spectra:
+    """Spectra of levelled heights along x, and of a map along y; none where points are missing."""
+    if not np.isfinite(surface.heights).all():
+        return {}
+    if isinstance(surface, Profile):
+        return {"along the line": _above_zero(psd_1d(surface))}
+    return {f"along {name}": _above_zero(psd_1d(surface, axis)) for axis, name in enumerate("xy")}
+
+
+def spectra_of_lines(lines: Sequence[Profile]) -> Spectra:
+    """Mean of the spectra of lines side by side, where they are equally long and complete."""
+    complete = all(np.isfinite(line.heights).all() for line in lines)
+    if not complete or len({len(line.heights) for line in lines}) > 1:
+        return {}
+    each = [_above_zero(psd_1d(line)) for line in lines]
+    return {"along the lines, mean": (each[0][0], np.mean([density for _, density in each], axis=0))}
+
+
+def _above_zero(
+    spectrum: tuple[NDArray[np.float64], NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    return spectrum[0][1:], spectrum[1][1:]
+
+
+def write_spectra(spectra: Spectra, surface: HeightMap | Profile | None, path: Path) -> Path:
+    """Write spectra to a CSV file; of a map also the areal one, averaged over directions."""
+    pairs = {
+        f"wavenumber {name} [1/m]": (wavenumber, f"PSD {name} [m³]", density)
+        for name, (wavenumber, density) in spectra.items()
+    }
+    if isinstance(surface, HeightMap) and spectra:
+        pairs["angular wavenumber [rad/m]"] = (*_areal(surface),)
+    longest = max(len(first) for first, _, _ in pairs.values())
+    columns = {}
+    for heading, (first, title, second) in pairs.items():
+        columns[heading], columns[title] = _padded(first, longest), _padded(second, longest)
+    return write_columns(columns, path)
+
+
+def _areal(surface: HeightMap) -> tuple[NDArray[np.float64], str, NDArray[np.float64]]:
+    wavenumber, density = psd_radial(surface)
+    return wavenumber, "areal PSD, mean over directions [m⁴]", density
+
+
+def _padded(values: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+    return np.concatenate([values, np.full(length - len(values), np.nan)])

@@ -1,0 +1,164 @@
+"""Runs beside each other: what differs between their cases and results, as data, page and table."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import xarray
+from xarray import DataTree
+
+from asperity.arguments import file_path, shown
+from asperity.comma_separated import csv_text
+from asperity.errors import InputError
+from asperity.files import write_bytes
+from asperity.kinds import KINDS
+from asperity.printable import printable
+from asperity.reporting.comparison import NamedRun, compared
+from asperity.reporting.comparison_figures import MOST_RUNS
+from asperity.reporting.comparison_page import comparison_page
+from asperity.reporting.comparison_table import table_rows
+from asperity.reporting.data import stated
+from asperity.results import read_result
+from asperity.schema import Entry
+from asperity.schema.provenance import KIND
+from asperity.schema.spectra import FORCE_LEVEL
+
+TABLE = "comparison.csv"
+LEVEL = "dB re"
+
+
+def compare(
+    *results: DataTree | str | os.PathLike[str],
+    names: Sequence[str] | None = None,
+    laws: Sequence[str] = (),
+    path: str | os.PathLike[str] | None = None,
+) -> xarray.Dataset:
+    """Compare runs: what differs in their cases, levels, force, loss of contact, stiffness and filters.
+
+    Parameters
+    ----------
+    *results : xarray.DataTree or path
+        Two to eight runs: what `asperity.run` or `asperity.open_result` returned, or a ``run.nc`` or its
+        folder. All differences are to the first.
+    names : sequence of str, optional
+        What the runs are called; by default as their folders, or by number.
+    laws : sequence of str
+        Laws that are compared, the first as the main one; by default all that the runs have.
+    path : path, optional
+        Folder that receives ``comparison.html`` and ``comparison.csv``, or the page itself, ``….html``,
+        beside which the table is written.
+
+    Returns
+    -------
+    xarray.Dataset
+        By run, law and band: every level that the runs have, as ``force_level`` in dB, ``…_difference`` to
+        the first run in dB; by run and law ``…_a``, A-weighted totals in dB(A), ``…_a_difference`` over the
+        bands that both runs have, ``mean_force``, ``rms_force``, ``peak_force`` in N, and the loss of
+        contact; by run and approach ``stiffness`` k_c in N/m; by run and wavenumber ``filter``, the magnitude
+        in dB at the working approach. The attribute ``cases`` is a JSON list of keys that differ. NaN where a
+        run has no such value.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two runs or more than eight, one cannot be read, or names or laws do not fit.
+    ComputationError
+        If a file cannot be written.
+
+    Notes
+    -----
+    Several accelerometers, or points on a rail, count by their energy mean. A level of a record varies by
+    chance with a standard deviation of 4.34/√(B T) dB, its bandwidth times its averaging time; the
+    difference of two independent records with the root of the sum of both squares.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> quiet = asperity.run(case)
+    >>> table = asperity.compare(quiet, asperity.run(case.with_(speed=2.0)), names=["slow", "fast"])
+    >>> table["force_level_difference"].dims
+    ('run', 'law', 'band')
+    """
+    runs = named_runs(results, names)
+    entries = compared_levels(runs)
+    table = compared(runs, entries, laws)
+    if path is not None:
+        write_comparison(runs, table, shown_levels(table, entries), path)
+    return table
+
+
+def named_runs(
+    results: Sequence[DataTree | str | os.PathLike[str]], names: Sequence[str] | None = None
+) -> list[NamedRun]:
+    """Read runs, and name them so that they can be told apart."""
+    allowed = f"two to {MOST_RUNS} runs"
+    if not 2 <= len(results) <= MOST_RUNS:
+        raise InputError("runs to compare", len(results), allowed, "Give a run.nc or its folder for each.")
+    found = names_of(results) if names is None else [str(name) for name in names]
+    if len(found) != len(results) or len(set(found)) != len(found):
+        raise InputError("names", shown(list(found)), "one name for each run, each once")
+    return [NamedRun(printable(name), _tree(result)) for name, result in zip(found, results, strict=True)]
+
+
+def _tree(result: object) -> DataTree:
+    if isinstance(result, DataTree):
+        return result
+    return read_result(file_path("run", result, "a result, or the path of a run.nc or of its folder"))
+
+
+def names_of(results: Sequence[object]) -> list[str]:
+    """Call each run as its folder or file, with as much of the path as tells all apart."""
+    paths = [_place(result, number) for number, result in enumerate(results, 1)]
+    for depth in range(1, max(map(len, paths)) + 1):
+        found = ["/".join(parts[-depth:]) for parts in paths]
+        if len(set(found)) == len(found):
+            return found
+    return [f"{name} ({number})" for number, name in enumerate(found, 1)]
+
+
+def _place(result: object, number: int) -> tuple[str, ...]:
+    if not isinstance(result, str | os.PathLike):
+        return (f"run {number}",)
+    path = Path(result).absolute()
+    return path.parent.parts if path.name == "run.nc" else (*path.parent.parts, path.stem or "run")
+
+
+def compared_levels(runs: Sequence[NamedRun]) -> list[Entry]:
+    """Levels over bands that any of the runs' kinds keeps."""
+    kinds = dict.fromkeys(stated(run.tree, KIND) for run in runs)
+    own = (entry for kind in kinds if kind in KINDS for entry in KINDS[kind].kept)
+    levels = (entry for entry in own if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"))
+    return list(dict.fromkeys((FORCE_LEVEL, *levels)))
+
+
+def write_comparison(
+    runs: Sequence[NamedRun],
+    table: xarray.Dataset,
+    levels: Mapping[str, str],
+    path: str | os.PathLike[str],
+) -> tuple[Path, Path]:
+    """Write page and table of a comparison, with levels from `shown_levels`; return where they are."""
+    target = file_path("comparison", path, "the path of a folder, or of a page that ends in .html")
+    if target.suffix.lower() != ".html":
+        target /= "comparison.html"
+    rows = target.with_suffix(".csv")
+    written = write_bytes(rows, csv_text(*table_rows(runs, table)).encode("utf-8", errors="backslashreplace"))
+    page = comparison_page(runs, table, levels, rows.name)
+    return write_bytes(target, page.encode("utf-8", errors="backslashreplace")), written
+
+
+def shown_levels(table: xarray.Dataset, entries: Sequence[Entry]) -> dict[str, str]:
+    """Levels that the page shows, by name, with what they are; of several sources the last, their sum."""
+    found = {}
+    for entry in entries:
+        names = [name for name in table.data_vars if _is_level(str(name), entry.name, table)]
+        if names:
+            title = str(table[names[-1]].attrs["long_name"])
+            found[str(names[-1])] = title.partition(", energy mean")[0]
+    return found
+
+
+def _is_level(name: str, entry: str, table: xarray.Dataset) -> bool:
+    return f"{name}_a_difference" in table and (name == entry or name.startswith(f"{entry}_"))
