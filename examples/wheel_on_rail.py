@@ -43,6 +43,8 @@ for axes, over, stiffness in zip(panels, (over_t, over_c), ("k_t = dF/dr", "k_c 
     for law in case.laws:
         axes.semilogx(over.band, over.sel(law=law), "o-", ms=3, label=law)
     axes.set(title=f"over the linear contact of {stiffness}", xlabel="frequency / Hz")
+    axes.set_xticks([63, 125, 250, 500, 1000, 2000, 4000], ["63", "125", "250", "500", "1k", "2k", "4k"])
+    axes.minorticks_off()
 panels[0].set_ylabel("force level difference / dB")
 panels[0].legend(loc="lower left")
 plt.show()

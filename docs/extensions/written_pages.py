@@ -6,8 +6,11 @@ file, or to the file itself.
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import os
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -29,7 +32,7 @@ COPIED = {
 }
 """Pages that stand elsewhere in the repository, and their names here."""
 HOMES = {ROOT / source: WRITTEN / f"{name}.md" for source, name in COPIED.items()} | {
-    ROOT / "README.md": DOCS / "index.md",
+    ROOT / "README.md": DOCS / "start.md",
     ROOT / "examples": WRITTEN / "gallery/index.rst",
 }
 NEEDS = {
@@ -99,6 +102,18 @@ def keys_of(kind: str) -> str:
     return "\n\n".join([*parts, "\n".join(rows)])
 
 
+def agreement() -> str:
+    """How many numbers of each chapter of the conformance page are held against what."""
+    rows = ["| subject | numbers | sources |", "|---|---:|---|"]
+    text = (ROOT / "CONFORMANCE.md").read_text(encoding="utf-8")
+    for heading, body in re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", text, re.MULTILINE | re.DOTALL):
+        cells = [line.split(" | ") for line in body.splitlines()[3:] if line.startswith("| ")]
+        sources = Counter(re.split(r"[;,]", row[1])[0].strip() for row in cells)
+        named = "; ".join(f"{source}: {count}" for source, count in sources.most_common(6))
+        rows.append(f"| {heading} | {len(cells)} | {named}{' …' * (len(sources) > 6)} |")
+    return "\n".join(rows)
+
+
 def laws() -> str:
     """Every law and variant, as its specification states it."""
     rows = ["| law | what it is | needs of the surface |", "|---|---|---|"]
@@ -109,15 +124,39 @@ def laws() -> str:
     return "\n".join(rows)
 
 
+MODULES = {
+    "asperity": "Cases, runs, surfaces, contacts and structures",
+    "asperity.laws": "Contact laws",
+    "asperity.spectra": "Spectra and levels",
+}
+"""Modules whose public names are told of, and their headings."""
+
+
+def api() -> str:
+    """Tables of all public names, each with a page."""
+    parts = ["Names in Python", "===============", ""]
+    parts += ["What is named here is kept; everything else may change. All quantities are in SI.", ""]
+    for name, heading in MODULES.items():
+        module = importlib.import_module(name)
+        offered = getattr(module, "__all__", None) or sorted(
+            each for each, value in vars(module).items()
+            if inspect.isfunction(value) and value.__module__ == name and not each.startswith("_")
+        )  # fmt: skip
+        shown = [each for each in offered if callable(getattr(module, each))]
+        parts += [heading, "-" * len(heading), "", ".. autosummary::", "   :toctree: api", ""]
+        parts += [*(f"   {name}.{each}" for each in shown), ""]
+    return "\n".join(parts)
+
+
 def write(app: object) -> None:
     """Write all pages whose text has changed."""
-    pages = dict(copied())
-    pages["commands"] = commands()
-    pages |= {f"keys-{kind}": keys_of(kind) for kind in KINDS}
-    pages["parts/laws"] = laws()
+    pages = {f"{name}.md": text for name, text in copied()}
+    pages["commands.md"] = commands()
+    pages |= {f"keys-{kind}.md": keys_of(kind) for kind in KINDS}
+    pages |= {"api.rst": api(), "parts/laws.md": laws(), "parts/conformance.md": agreement()}
     (WRITTEN / "parts").mkdir(parents=True, exist_ok=True)
     for name, text in pages.items():
-        path = WRITTEN / f"{name}.md"
+        path = WRITTEN / name
         if not path.is_file() or path.read_text(encoding="utf-8") != text + "\n":
             path.write_text(text + "\n", encoding="utf-8", newline="\n")
 
