@@ -193,7 +193,7 @@ def run(case: Path, directory: Path | None, report: bool, converge: bool, overwr
     examples=[
         ('asperity study case.toml --vary "speed = 20 m/s, 200 km/h"', "two speeds, one table"),
         (
-            'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "wheel.load = 50 kN, 65 kN"',
+            'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "speed = 20 m/s, 56 m/s"',
             "mean and scatter over four textures, for two loads",
         ),
         ("asperity study study.toml -o runs/grid --workers 4", "a study file, on four processes"),
@@ -281,10 +281,9 @@ def _with_surface_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 @main.command(
     long_work=True,
-    short_help="Find the quietest texture within bounds, or the roughest that keeps a level.",
+    short_help="Find the texture that rolls quietest within bounds.",
     examples=[
-        ("asperity new optimisation > aim.toml", "what is judged, what the texture may be, which case"),
-        ("asperity optimise aim.toml -o quiet", "the case with its texture, bands as figure, both runs"),
+        ("asperity optimise aim.toml -o quiet", "of a file that 'asperity new optimisation' began"),
     ],
 )
 @click.argument("optimisation", type=PATH)
