@@ -11,13 +11,13 @@ HOSTILE = '"><script>alert(1)</script><img src=x onerror=alert(2)> & {{ 7*7 }} $
 
 
 class Reader(HTMLParser):
-    """Collects tags with their attributes, the text of the page, and checks that tags are closed in order."""
+    """Collects tags with their attributes, text and scripts, and checks that tags are closed in order."""
 
     VOID = frozenset({"meta", "br", "img", "link", "input", "hr"})
 
     def __init__(self, text):
         super().__init__()
-        self.tags, self.text, self.open = [], [], []
+        self.tags, self.text, self.scripts, self.open = [], [], [], []
         self.feed(text)
         self.close()
 
@@ -34,7 +34,10 @@ class Reader(HTMLParser):
             assert self.open.pop() == tag
 
     def handle_data(self, data):
-        self.text.append(data)
+        if self.open[-1:] == ["script"]:
+            self.scripts.append(data)
+        elif self.open[-1:] != ["style"]:
+            self.text.append(data)
 
     def all(self, name):
         return [attrs[name] for _, attrs in self.tags if name in attrs]

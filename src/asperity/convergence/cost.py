@@ -12,8 +12,9 @@ from asperity.errors import InputError, PhysicsWarning
 from asperity.progress import Progress
 from asperity.scenarios.expecting import Work, expect
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.refining import PATH_LENGTH, Setting
+from asperity.scenarios.refining import Setting
 from asperity.scenarios.trial import try_contacts
+from asperity.schema.convergence import PATH_LENGTH
 
 ONCE = ("report", "compiling")
 """Parts of the work that are done once."""

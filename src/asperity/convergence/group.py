@@ -12,7 +12,6 @@ from xarray import DataTree
 
 from asperity.convergence.levels import Levels, motion_entry
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.refining import PATH_LENGTH
 from asperity.scenarios.verdict import compared_bands
 from asperity.schema import Entry, attributes, convergence, spectra, variables
 from asperity.spectra import nominal_frequency
@@ -77,7 +76,7 @@ def _sentences(group: xarray.Dataset, main: str) -> Iterator[str]:
     limits = dict(zip(names, map(str, group[convergence.LIMIT.name].values), strict=True))
     size = dict(zip(names, group[convergence.LARGEST_CHANGE.name].values.tolist(), strict=True))
     known = sorted((name for name in names if np.isfinite(size[name])), key=lambda name: -size[name])
-    tried = [name for name in known if name != PATH_LENGTH]
+    tried = [name for name in known if name != convergence.PATH_LENGTH]
     if tried:
         first, *others = tried
         band = float(group[convergence.LARGEST_BAND.name].values[names.index(first)])
@@ -89,8 +88,8 @@ def _sentences(group: xarray.Dataset, main: str) -> Iterator[str]:
         stiffness = dict(zip(names, group[convergence.STIFFNESS_CHANGE.name].values.tolist(), strict=True))
         most = max(tried, key=lambda name: abs(stiffness[name]))
         yield f"The mean contact stiffness depends most on {most} ({_percent(stiffness[most])})."
-    if PATH_LENGTH in known:
-        yield f"The first half of the record is up to {size[PATH_LENGTH]:.1f} dB from all of it."
+    if convergence.PATH_LENGTH in known:
+        yield f"The first half of the record is up to {size[convergence.PATH_LENGTH]:.1f} dB from all of it."
     if unchanged := [name for name in names if limits[name]]:
         yield f"Not changed: {', '.join(unchanged)}."
 

@@ -20,7 +20,7 @@ from asperity.progress import Progress
 from asperity.scenarios.compiling import MESSAGE as COMPILED
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.preparing import PreparedCase, prepare_of_kind
-from asperity.scenarios.refining import PATH_LENGTH, Setting, Way, shared_settings
+from asperity.scenarios.refining import Setting, Way, shared_settings
 from asperity.scenarios.restricting import restricted
 from asperity.schema import contact, convergence, provenance
 from asperity.store import Store, content_key
@@ -84,7 +84,7 @@ def _named(setting: Setting, progress: Progress) -> Progress:
 def _compared(prepared: PreparedCase, result: DataTree, setting: Setting, progress: Progress) -> Comparison:
     """Take the first way of changing a setting that can be computed."""
     base = Levels.of_result(result, prepared.kind)
-    if setting.name == PATH_LENGTH:
+    if setting.name == convergence.PATH_LENGTH:
         whole, half = halves(result, prepared.case.time_step, prepared.case.numerics.highest_frequency)
         return Comparison(setting.name, setting.ways[0].words, "", half.over(whole, base.band))
     limit = setting.limit

@@ -1,4 +1,4 @@
-"""The report of a run of any kind: a page, and the numbers of its figures."""
+"""The report of a run of any kind: a page, and its figures as drawings and as numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from asperity.kinds import KINDS
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.csv_files import write_columns
 from asperity.reporting.data import stated
-from asperity.reporting.page import drawable_parts, page
+from asperity.reporting.page import drawable_parts, page, pictures, sections
 from asperity.reporting.part import Part
 from asperity.schema.provenance import KIND
 
@@ -37,19 +37,20 @@ def parts_of(tree: DataTree) -> list[Part]:
 
 def page_of(tree: DataTree) -> str:
     """The whole page of a run, see `asperity.reporting.page.page`."""
-    return page(tree, chapters_of(tree))
+    chapters = chapters_of(tree)
+    return page(tree, chapters, sections(tree, chapters))
 
 
 def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
-    """Write the report of a run: one page, and one CSV file per figure.
+    """Write the report of a run: one page, and of each figure its drawing (SVG) and its numbers (CSV).
 
     Parameters
     ----------
     result : xarray.DataTree
         The result of a run. Whatever it lacks is left out of the report.
     path : path
-        Folder that receives ``report.html`` and the CSV files, or the page itself, ``….html``, beside which
-        the CSV files are written. Folders are made where they are missing.
+        Folder that receives ``report.html`` and the files of the figures, or the page itself, ``….html``,
+        beside which these are written. Folders are made where they are missing.
 
     Returns
     -------
@@ -75,10 +76,18 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     target = file_path("report", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
         target /= "report.html"
-    text = page_of(result)
+    chapters = chapters_of(result)
+    drawn = sections(result, chapters)
+    text = page(result, chapters, drawn)
+    for picture in pictures(drawn):
+        _write(target.parent / f"{picture.name}.svg", picture.file)
     for part in parts_of(result):
         write_columns(part.columns(result), target.parent / f"{part.name}.csv")
-    return write_bytes(target, text.encode("utf-8", errors="backslashreplace"))
+    return _write(target, text)
+
+
+def _write(path: Path, text: str) -> Path:
+    return write_bytes(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def remove_report(directory: str | os.PathLike[str]) -> None:
@@ -87,6 +96,7 @@ def remove_report(directory: str | os.PathLike[str]) -> None:
     if not (directory / "report.html").exists():
         return
     parts = (part for kind in KINDS.values() for chapter in kind.chapters for part in chapter.parts)
-    for name in ["report.html", *(f"{part.name}.csv" for part in parts)]:
+    names = [f"{part.name}.{ending}" for part in parts for ending in ("csv", "svg")]
+    for name in ["report.html", *names]:
         with suppress(OSError):
             (directory / name).unlink(missing_ok=True)

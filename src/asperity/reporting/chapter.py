@@ -9,9 +9,11 @@ from xarray import DataTree
 
 from asperity.reporting import convergence
 from asperity.reporting.contact_figures import CONTACT as CONTACT_PARTS
+from asperity.reporting.headline import HeadlineNumber
 from asperity.reporting.part import Part
 from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
-from asperity.reporting.tables import ReportTable, population_table, validity_table
+from asperity.reporting.tables import ReportTable, population_table
+from asperity.reporting.uncertainty import uncertainty_table
 
 
 @dataclass(frozen=True)
@@ -22,14 +24,19 @@ class Chapter:
     title: str
     parts: tuple[Part, ...]
     tables: tuple[Callable[[DataTree], ReportTable | None], ...] = ()
+    # a number for the top of the page, in place of the change of the force level
+    headline: Callable[[DataTree], HeadlineNumber | None] | None = None
 
 
 CONTACT = Chapter(
     "contact",
     "Contact",
     (*CONTACT_PARTS, HEIGHTS),
-    (validity_table, population_table, condition_table, passes_table),
+    (population_table, condition_table, passes_table),
 )
-CONVERGENCE = Chapter(
-    "convergence", "Convergence", (), (convergence.settings_table, convergence.changes_table)
+UNCERTAINTY = Chapter(
+    "uncertainty",
+    "Uncertainty",
+    (),
+    (uncertainty_table, convergence.settings_table, convergence.changes_table),
 )

@@ -18,7 +18,8 @@ from asperity.reporting.comparison_table import summary, sure
 from asperity.reporting.data import engineering, json_attribute, json_list, nominal_band, stated
 from asperity.reporting.law_entries import law_colours, law_style
 from asperity.reporting.page import Picture, page_template
-from asperity.reporting.style import colour_variables, narrow_page, svg
+from asperity.reporting.style import narrow_page
+from asperity.reporting.svg import colour_variables, drawing_of, share_styles
 from asperity.reporting.tables import Cell, ReportTable, in_percent, signed, text_cell
 from asperity.schema import provenance, rolling
 
@@ -57,7 +58,7 @@ def comparison_page(
     citations = dict.fromkeys(
         str(text) for run in runs for text in json_attribute(run.tree, provenance.CITATIONS, [])
     )
-    return page_template("comparison.html.jinja").render(
+    text = page_template("comparison.html.jinja").render(
         title=f"Comparison of {' and '.join(run.name for run in runs)}",
         summary=summary(runs, table, levels),
         first=runs[0].name,
@@ -69,6 +70,7 @@ def comparison_page(
         light=Markup(colour_variables(dark=False, colours=colours)),
         dark=Markup(colour_variables(dark=True, colours=colours)),
     )
+    return share_styles(text)
 
 
 def _sections(
@@ -115,10 +117,11 @@ class _Pictures:
     colours: Mapping[str, str]
 
     def of(self, name: str, title: str, draw: Callable[[], Figure], caption: str) -> Picture:
-        wide = svg(draw(), name, title, self.colours)
+        wide = drawing_of(draw(), name)
         with narrow_page():
-            narrow = svg(draw(), f"{name}-narrow", title, self.colours)
-        return Picture(name, title, caption, Markup(wide), Markup(narrow))
+            narrow = drawing_of(draw(), f"{name}-narrow")
+        shown = [Markup(drawing.for_page(title, self.colours)) for drawing in (wide, narrow)]
+        return Picture(name, title, caption, shown[0], shown[1], wide.for_file(title))
 
 
 def _levels_caption(table: xarray.Dataset, name: str) -> str:

@@ -17,12 +17,12 @@ OFF, FAR = 0.5, 1.0
 
 def settings_table(tree: DataTree) -> ReportTable | None:
     """Each setting: from what to what, the largest change of the levels, and that of the stiffness."""
-    names = _words(tree, convergence.SETTING)
+    names = setting_names(tree)
     if not names:
         return None
     changed, limits = (_words(tree, entry) for entry in (convergence.CHANGE, convergence.LIMIT))
     size, band, stiffness = (
-        _numbers(tree, entry, len(names))
+        setting_numbers(tree, entry)
         for entry in (convergence.LARGEST_CHANGE, convergence.LARGEST_BAND, convergence.STIFFNESS_CHANGE)
     )
     motion = _largest_motion(tree, len(names))
@@ -56,7 +56,7 @@ def changes_table(tree: DataTree) -> ReportTable | None:
         return None
     change = values(tree, entry, "setting", "law", "band")[:, 0]
     kept = np.flatnonzero(np.isfinite(change).any(axis=1))
-    names = [_words(tree, convergence.SETTING)[k] for k in kept]
+    names = [setting_names(tree)[k] for k in kept]
     faint = doubtful(tree, BAND_TIME_PRODUCT)
     rows = [
         [Cell(nominal_band(f), "number faint" if doubt else "number"), *(_change(d, doubt) for d in column)]
@@ -73,8 +73,14 @@ def _words(tree: DataTree, entry: Entry) -> list[str]:
     return [str(word) for word in tree[entry.group].to_dataset()[entry.name].values]
 
 
-def _numbers(tree: DataTree, entry: Entry, count: int) -> NDArray[np.float64]:
-    return values(tree, entry) if present(tree, entry) else np.full(count, np.nan)
+def setting_names(tree: DataTree) -> list[str]:
+    """Settings that were made finer, or were to be; none where nobody asked."""
+    return _words(tree, convergence.SETTING)
+
+
+def setting_numbers(tree: DataTree, entry: Entry) -> NDArray[np.float64]:
+    """Numbers of an entry by setting, NaN where none is known."""
+    return values(tree, entry) if present(tree, entry) else np.full(len(setting_names(tree)), np.nan)
 
 
 def _main(tree: DataTree) -> str:

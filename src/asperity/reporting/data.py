@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from xarray import DataArray, DataTree
 
+from asperity.errors import InputError
 from asperity.schema import Attribute, Entry
+from asperity.schema.provenance import PARAMETERS
 from asperity.spectra import LEAST_PRODUCT, nominal
+from asperity.units import quantity
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -69,6 +73,22 @@ def number(tree: DataTree, attribute: Attribute) -> float | None:
     except (TypeError, ValueError):
         return None
     return result if math.isfinite(result) else None
+
+
+def case_quantity(tree: DataTree, key: str, dimension: str) -> float | None:
+    """Finite value of a key of the case in SI units, ``"m"`` or another, or None."""
+    for item in json_list(tree, PARAMETERS):
+        if item.get("key") == key:
+            with suppress(InputError):
+                found = quantity(str(item.get("value", "")), dimension)
+                return found if math.isfinite(found) else None
+    return None
+
+
+def case_words(tree: DataTree, key: str) -> str:
+    """Value of a key of the case in words; nothing where it is unknown."""
+    found = (item.get("value", "") for item in json_list(tree, PARAMETERS) if item.get("key") == key)
+    return str(next(found, ""))
 
 
 def json_attribute(tree: DataTree, attribute: Attribute, empty: Any) -> Any:

@@ -13,10 +13,16 @@ from markupsafe import Markup
 from xarray import DataTree
 
 from asperity.reporting.chapter import Chapter
-from asperity.reporting.data import json_attribute, json_list, missing, stated
+from asperity.reporting.convergence import setting_names
+from asperity.reporting.data import json_list, missing, stated
+from asperity.reporting.headline import headline
+from asperity.reporting.history import as_json, script, script_digest, script_style
 from asperity.reporting.law_entries import law_colours, law_entries
+from asperity.reporting.lights import counted, lights
+from asperity.reporting.literature import literature
 from asperity.reporting.part import Part
-from asperity.reporting.style import colour_variables, narrow_page, svg
+from asperity.reporting.style import narrow_page
+from asperity.reporting.svg import colour_variables, drawing_of, share_styles
 from asperity.reporting.tables import ReportTable
 from asperity.schema import provenance
 
@@ -29,7 +35,9 @@ class Picture:
     title: str
     caption: str
     svg: Markup
-    narrow: Markup
+    narrow: Markup  # empty where a browser draws the figure itself
+    file: str  # the wide drawing as a document of its own
+    live: str = ""  # what a browser draws in its place, where it does
 
 
 @dataclass(frozen=True)
@@ -52,12 +60,19 @@ def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | ReportT
 
 def _picture(tree: DataTree, part: Part) -> Picture:
     data, colours = part.collect(tree), law_colours(tree)
-    wide = svg(part.plot(tree, data), part.name, part.title, colours)
-    with narrow_page():
-        narrow = svg(part.plot(tree, data), f"{part.name}-narrow", part.title, colours)
+    drawn = drawing_of(part.plot(tree, data), part.name)
+    shown = {
+        "svg": Markup(drawn.for_page(part.title, colours)),
+        "narrow": Markup(),
+        "live": Markup(as_json(part.live(tree))) if part.live else Markup(),
+    }
+    if part.live is None:
+        with narrow_page():
+            narrow = drawing_of(part.plot(tree, data), f"{part.name}-narrow")
+        shown["narrow"] = Markup(narrow.for_page(part.title, colours))
     lost = missing(tree, *part.needs, *part.any_of)
     caption = f"{part.caption(tree)} {lost}".strip()
-    return Picture(part.name, part.title, caption, Markup(wide), Markup(narrow))
+    return Picture(part.name, part.title, caption, file=drawn.for_file(part.title), **shown)
 
 
 def sections(tree: DataTree, chapters: Sequence[Chapter]) -> list[PageSection]:
@@ -71,6 +86,11 @@ def sections(tree: DataTree, chapters: Sequence[Chapter]) -> list[PageSection]:
         for chapter in chapters
     )
     return [section for section in found if section.blocks]
+
+
+def pictures(drawn: Sequence[PageSection]) -> list[Picture]:
+    """Figures of a page."""
+    return [block for section in drawn for block in section.blocks if isinstance(block, Picture)]
 
 
 _GRADES = {"out of range": ("out", "out of range"), "warning": ("", "warnings"), "note": ("note", "notes")}
@@ -93,7 +113,12 @@ def _graded(warnings: list[dict[str, Any]]) -> str:
 def _law_key(tree: DataTree) -> list[dict[str, str]]:
     numbers = {colour: number for number, colour in enumerate(law_colours(tree))}
     return [
-        {"name": law.name, "meaning": law.meaning, "colour": f"var(--c{numbers[law.colour]})"}
+        {
+            "name": law.name,
+            "meaning": law.meaning,
+            "colour": f"var(--c{numbers[law.colour]})",
+            "dashes": "" if isinstance(law.dashes, str) else " ".join(f"{2 * d:g}" for d in law.dashes[1]),
+        }
         for law in law_entries(tree).values()
     ]
 
@@ -129,29 +154,45 @@ def _unbroken(text: str) -> str:
     return re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
 
 
-def page(tree: DataTree, chapters: Sequence[Chapter]) -> str:
-    """The whole page of a result, with the chapters of its kind, as one self-contained HTML text.
+def page(tree: DataTree, chapters: Sequence[Chapter], drawn: Sequence[PageSection]) -> str:
+    """The whole page of a result, with what `sections` drew of it, as one self-contained HTML text.
 
-    Styles and figures are inside; nothing is loaded from elsewhere.
+    Styles, figures and the script are inside; nothing is loaded from elsewhere, and no other script may run.
     """
     kind, parameters = stated(tree, provenance.KIND), json_list(tree, provenance.PARAMETERS)
-    warnings = _warnings(tree)
-    return page_template("report.html.jinja").render(
+    warnings, checks, colours = _warnings(tree), lights(tree), law_colours(tree)
+    own = next((found for c in chapters if c.headline and (found := c.headline(tree))), None)
+    text = page_template("report.html.jinja").render(
         title=stated(tree, provenance.TITLE) or kind or "Rolling contact",
-        verdict=stated(tree, provenance.VERDICT) or "",
+        verdict=_verdict(tree),
+        numbers=headline(tree, own),
+        lights=checks,
+        counted=counted(checks),
         version=stated(tree, provenance.ASPERITY_VERSION) or "unknown",
         created=stated(tree, provenance.CREATED) or "",
         seed="" if (seed := stated(tree, provenance.SEED)) is None else seed,
         case=stated(tree, provenance.CASE) or "",
+        converged=bool(setting_names(tree)),
         kind=kind or "",
-        citations=[str(text) for text in json_attribute(tree, provenance.CITATIONS, [])],
+        literature=literature(tree),
         warnings=warnings,
         graded=_graded(warnings),
         case_groups=_case_groups(parameters),
-        changed=sum(not parameter.get("is_default", True) for parameter in parameters),
+        changed=_case_groups([p for p in parameters if not p.get("is_default", True)]),
+        count=len(parameters),
         numerics=json_list(tree, provenance.NUMERICS),
         laws=_law_key(tree),
-        sections=sections(tree, chapters),
-        light=Markup(colour_variables(dark=False, colours=law_colours(tree))),
-        dark=Markup(colour_variables(dark=True, colours=law_colours(tree))),
+        sections=drawn,
+        script=Markup(script()),
+        script_style=Markup(script_style()),
+        digest=script_digest(),
+        light=Markup(colour_variables(dark=False, colours=colours)),
+        dark=Markup(colour_variables(dark=True, colours=colours)),
     )
+    return share_styles(text)
+
+
+def _verdict(tree: DataTree) -> tuple[str, str]:
+    """The first sentence of the verdict, and the others."""
+    first, _, rest = str(stated(tree, provenance.VERDICT) or "").partition(". ")
+    return (f"{first}.", rest) if rest else (first, "")

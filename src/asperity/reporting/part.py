@@ -103,6 +103,7 @@ class Part:
     plot: Callable[[DataTree, Data], Figure]  # draws them; what is said beside them stands in the result
     caption: Callable[[DataTree], str]  # says what is drawn and with which conventions
     any_of: tuple[Entry, ...] = ()  # variables of which it needs at least one
+    live: Callable[[DataTree], dict[str, Any]] | None = None  # what a browser draws in its place
     # whether these variables have anything to show: a smooth surface has no spectrum
     worth: Callable[[DataTree], bool] = lambda _: True
 

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import re
-import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from io import StringIO
 from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 from numpy.typing import NDArray
@@ -132,60 +128,6 @@ def sequence(count: int) -> list[str]:
     """`count` colours from low to high; repeats nothing up to six."""
     picks = np.linspace(0, len(SEQUENCE) - 1, max(count, 1)).round().astype(int)
     return [SEQUENCE[pick] for pick in picks]
-
-
-def svg(figure: Figure, name: str, title: str, colours: Mapping[str, str] = COLOURS) -> str:
-    """SVG element of a figure for a page that holds many of them.
-
-    Identifiers get the prefix `name`, `colours` become CSS variables, and everything that names
-    another document (prolog, metadata, name spaces) is left out.
-    """
-    canvas, text = FigureCanvasSVG(figure), StringIO()
-    coarser = {"path.simplify_threshold": 0.5} if is_narrow() else {}  # half a page needs fewer points
-    with rc_context(RC | coarser):
-        engine = figure.get_layout_engine()
-        if engine is not None:  # lay out once; `savefig` would draw everything twice
-            with warnings.catch_warnings():  # names may be longer than a narrow page is wide
-                warnings.filterwarnings("ignore", "constrained_layout not applied", UserWarning)
-                engine.execute(figure)
-            figure.set_layout_engine("none")
-        figure.dpi = 110  # of the images in it
-        canvas.print_svg(text, metadata={"Date": None})  # type: ignore[no-untyped-call]
-    body = text.getvalue()
-    body = body[body.index("<svg") :]
-    body = re.sub(r"<metadata>.*?</metadata>", "", body, flags=re.DOTALL)
-    head, inner = body.split(">", 1)
-    box = re.search(r'viewBox="[^"]*"', head)
-    # numbered as they appear: matplotlib's names hold digits that differ from one drawing to the next
-    used = {
-        found: f"{name}-{n}"
-        for n, found in enumerate(dict.fromkeys(re.findall(r'(?:url\(|href=")#([^")]+)', inner)))
-    }
-
-    def rewritten(tag: re.Match[str]) -> str:  # tags only: the words of a label stay as they are
-        text = re.sub(r' id="([^"]*)"', lambda m: f' id="{used[m[1]]}"' if m[1] in used else "", tag[0])
-        text = re.sub(r'(url\(|href=")#([^")]+)', lambda m: f"{m[1]}#{used[m[2]]}", text)
-        for index, colour in enumerate(colours):
-            text = text.replace(colour, f"var(--c{index})")
-        text = re.sub(r"(\d\.\d\d)\d+", r"\1", text)  # a hundredth of a point is finer than any screen
-        return re.sub(r' d="([^"]*)"', lambda m: f' d="{tight(m[1])}"', text)
-
-    inner = re.sub(r"<[^<>]+>", rewritten, inner)
-    label = title.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
-    return f'<svg role="img" aria-label="{label}" {box.group(0) if box else ""}>{inner}'
-
-
-def tight(path: str) -> str:
-    """Path of an SVG element in fewer letters: a pair of numbers behind another is a line by itself."""
-    path = re.sub(r"\s*([A-Za-z])\s*", r"\1", path.strip())
-    return path if re.search("[^MLz0-9. -]", path) else re.sub(r"(?<=\d)L", " ", path)
-
-
-def colour_variables(dark: bool, colours: Mapping[str, str] = COLOURS) -> str:
-    """CSS declarations of the colours that `svg` refers to."""
-    return "".join(
-        f"--c{index}:{other if dark else colour};" for index, (colour, other) in enumerate(colours.items())
-    )
 
 
 def frequency_axis(axes: Axes, low: float, high: float, label: str = "frequency / Hz") -> None:

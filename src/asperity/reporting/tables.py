@@ -1,4 +1,4 @@
-"""Tables of the report that all kinds of case share: statistics, validity, reference, loss of contact."""
+"""Tables of the report that all kinds of case share: statistics, differences of laws, loss of contact."""
 
 from __future__ import annotations
 
@@ -18,10 +18,15 @@ from asperity.reporting.data import (
     stored_variable,
     values,
 )
-from asperity.reporting.law_entries import law_entry
-from asperity.schema import contact, rolling, surface
-from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
-from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCE_TO_REFERENCE as REFERENCE
+from asperity.reporting.law_entries import differences, law_entry
+from asperity.schema import Entry, contact, rolling, surface
+from asperity.schema.spectra import (
+    BAND,
+    BAND_TIME_PRODUCT,
+    FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
+    FORCE_LEVEL_DIFFERENCES,
+    PRACTICE,
+)
 from asperity.spectra import LEAST_PRODUCT
 
 
@@ -127,33 +132,24 @@ def population_table(tree: DataTree) -> ReportTable | None:
 _GRADED = {"out of range": "far", "warning": "off"}
 
 
-def validity_table(tree: DataTree) -> ReportTable | None:
-    """Quantities that bound the range in which the laws hold, with their limits."""
-    found = json_list(tree, contact.VALIDITY)
-    if not found:
-        return None
-    looks = {"out of range": "number far", "warning": "number off"}
-    rows = []
-    for entry in found:
-        grade = str(entry.get("grade", ""))
-        told = f"{entry.get('meaning', '')} {entry.get('remedy', '')}" if grade else "in range"
-        names = [str(entry.get(name, "")) for name in ("quantity", "value", "limit")]
-        value = Cell(names[1], looks.get(grade, "number"))
-        rows.append([text_cell(names[0]), value, text_cell(names[2]), text_cell(told)])
-    note = "Shaded: outside the range in which the laws are known to hold, and far outside."
-    return ReportTable(
-        "validity", "Range of validity", ["quantity", "here", "in range", "meaning"], rows, note
-    )
+def practice_table(tree: DataTree) -> ReportTable | None:
+    """Level differences to the filtered linear contact, that of practice, per one-third octave."""
+    entry = FORCE_LEVEL_DIFFERENCES[PRACTICE]
+    return _differences_table(tree, "practice", entry, differences(tree).get(entry))
 
 
 def reference_table(tree: DataTree) -> ReportTable | None:
     """Level differences to the reference law per one-third octave."""
-    compared = stored_variable(tree, REFERENCE)
-    reference = None if compared is None else str(compared.attrs["reference"])
-    names = [law for law in laws(tree, REFERENCE) if law != reference]
-    if not names or not present(tree, BAND):
+    compared = stored_variable(tree, FORCE_LEVEL_DIFFERENCE_TO_REFERENCE)
+    solved = None if compared is None else str(compared.attrs["reference"])
+    return _differences_table(tree, "reference", FORCE_LEVEL_DIFFERENCE_TO_REFERENCE, solved)
+
+
+def _differences_table(tree: DataTree, name: str, entry: Entry, to: str | None) -> ReportTable | None:
+    names = [law for law in laws(tree, entry) if law != to]
+    if to is None or not names or not present(tree, BAND):
         return None
-    found = np.array([of_law(tree, REFERENCE, law, "band") for law in names])
+    found = np.array([of_law(tree, entry, law, "band") for law in names])
     bands, faint = values(tree, BAND), doubtful(tree, BAND_TIME_PRODUCT)
     rows = [
         [
@@ -173,8 +169,8 @@ def reference_table(tree: DataTree) -> ReportTable | None:
             " In grey and in brackets: bands whose bandwidth times averaging time is below "
             f"{LEAST_PRODUCT:g}; they say little, and are not in the last two rows."
         )
-    title = f"Contact force level minus that of {reference}, in dB"
-    return ReportTable("reference", title, ["band / Hz", *names], rows, note)
+    title = f"Contact force level minus that of {to}, in dB"
+    return ReportTable(name, title, ["band / Hz", *names], rows, note)
 
 
 def signed(difference: float) -> str:

@@ -61,7 +61,8 @@ def _main_flight(tree: DataTree) -> NDArray[np.bool_]:
     return lost(tree, main, of_law(tree, CONTACT_FORCE, main, "time"))
 
 
-def _force_unit(tree: DataTree) -> tuple[float, str]:
+def force_unit_of(tree: DataTree) -> tuple[float, str]:
+    """Unit in which the forces of a result read well: its size in N and its symbol."""
     return force_unit(float(np.nanmax(np.abs(values(tree, CONTACT_FORCE)))))
 
 
@@ -119,7 +120,7 @@ def envelope_figure(tree: DataTree, data: Data) -> Figure:
     figure = new_figure(0.6 + 1.0 * len(names))
     panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
     unit, symbol = time_unit(whole[-1] - whole[0])
-    size, force_symbol = _force_unit(tree)
+    size, force_symbol = force_unit_of(tree)
     for axes, law in zip(panels, names, strict=True):
         lowest, highest = (data.lines[law, end].values for end in ("lowest", "highest"))
         columns = COLUMNS // 2 if is_narrow() else COLUMNS
@@ -191,7 +192,7 @@ def _draw_forces(
     axes: Axes, tree: DataTree, time: NDArray[np.float64], forces: dict[str, NDArray[np.float64]]
 ) -> None:
     main, (low, high) = next(iter(forces)), main_limits(forces, pulling(tree))
-    size, symbol = _force_unit(tree)
+    size, symbol = force_unit_of(tree)
     for law, force in forces.items():
         faint = {"alpha": 0.5, "linewidth": 0.8} if force.min() < low or force.max() > high else {}
         axes.plot(time, force / size, label=law, **law_style(tree, law, main) | faint)
@@ -234,9 +235,11 @@ def bars_words(tree: DataTree, data: Data) -> str:
 def _envelope_caption(tree: DataTree) -> str:
     stretches = min(COLUMNS, len(values(tree, TIME)))
     return (
-        f"Lowest and highest force in each of {stretches} stretches of the run, compression positive. "
-        "Marks along the bottom: stretches with loss of contact. A linear law beside the main one has an "
-        f"axis of its own. The full series is in run.nc.{_cut_off_of_those_that_let_go(tree)}"
+        "Compression positive. Contact is lost where bars stand along the bottom, by law; where the main law "
+        f"loses it, the background is shaded. As a drawing: lowest and highest force in each of {stretches} "
+        "stretches of the run, with marks where contact is lost; a linear law beside the main one has its "
+        "own axis. All time steps are in run.nc."
+        f"{_cut_off_of_those_that_let_go(tree)}"
     )
 
 

@@ -35,6 +35,7 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         contact.WORKING_LOAD: shape.load,
         contact.CONTACT_MODULUS: shape.modulus,
         contact.HERTZ_CONSTANT: shape.hertz.stiffness_constant,
+        contact.VALIDITY: json.dumps([_row(finding) for finding in found], ensure_ascii=False),
     }
     if reduction is None:
         return _hertz_only(chain, facts)
@@ -50,7 +51,6 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         contact.CONTACT_AREA_RATIO: reduction.area_ratio,
         contact.ISOLATED_SHARE: reduction.isolated_share,
         contact.RMS_SLOPE: rms_slope_of(chain),
-        contact.VALIDITY: json.dumps([_row(finding) for finding in found], ensure_ascii=False),
         contact.SAMPLES: len(ensemble.forces),
         contact.POPULATION: json.dumps([_asked(answer) for answer in answers(chain)], ensure_ascii=False),
     }

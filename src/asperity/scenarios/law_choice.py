@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,6 +92,15 @@ class LawChoice:
             f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load. Nearest "
             f"point: {near.kind}, {_force(near.load)}, {self.distance:.1f} half decades away{off}",
         )
+
+    def entries(self) -> dict[str, Any]:
+        """Lay it out for a result file."""
+        return {
+            "errors": [asdict(found) for found in self.expected],
+            "taken": self.taken,
+            "off_map": self.off_map,
+            "wanted": WANTED,
+        }
 
     def sentence(self, law: str) -> str | None:
         """Say in a sentence how far a law is expected from `direct`; nothing of a law that was not mapped."""

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from asperity.config.case import Case
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.textures import Textures
+from asperity.schema.convergence import PATH_LENGTH
 from asperity.units import written
 
-PATH_LENGTH = "path length"
-"""The setting that needs no other run: half of the record is compared with all of it."""
 NO_SAMPLES = "nothing is reduced from samples here"
 
 

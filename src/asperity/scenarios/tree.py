@@ -19,18 +19,23 @@ from asperity.errors import Grade, PhysicsWarning
 from asperity.laws import baselines, reference, spec_of
 from asperity.results import checked
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.law_choice import LawChoice
 from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
 from asperity.spectra import LEAST_PRODUCT, averaging_time, band_levels, band_product, psd
 
 SEGMENT = (0.025, 0.2)
 """Shortest and longest segment of the spectra, s: lines 40 Hz and 5 Hz apart."""
-CITATIONS = (
+METHOD = (
     "O. Lundberg, State-dependent nonlinear contact modelling, licentiate thesis, KTH Stockholm (2014).",
+    "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies).",
+)
+ROUGH_CONTACT = (
     "A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377 (influence coefficients).",
     "I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206 (projected conjugate gradients).",
     "E. A. H. Vollebregt, J. Comput. Phys. 257 (2014) 333 (preconditioning of rough contact).",
-    "IEC 61260-1:2014 (one-third octaves, base 10).",
 )
+BANDS = ("IEC 61260-1:2014 (one-third octaves, base 10).",)
+EXPECTED = ("G. Matheron, Economic Geology 58 (1963) 1246 (kriging, of the expected errors of laws).",)
 
 
 def assembled(
@@ -42,22 +47,26 @@ def assembled(
     verdict: str,
     numerics: Iterable[tuple[str, str]],
     citations: tuple[str, ...] = (),
+    choice: LawChoice | None = None,
 ) -> xarray.DataTree:
     """Put the groups of a result, but for scenario, together with provenance.
 
     The title says what was rolled, the verdict what the run says. `numerics` are names and values of the
-    computation beyond those that all kinds of case have, `citations` sources beyond `CITATIONS`.
+    computation beyond those that all kinds of case have, `citations` sources beyond those of the methods
+    that they share; choice of a law, from the law accuracy map.
     """
     case = chain.case
-    scenario = attributes(
-        {
-            provenance.KIND: case.kind,
-            provenance.PARAMETERS: json.dumps(case.parameters(), ensure_ascii=False),
-            provenance.NUMERICS: json.dumps(_listed(chain, numerics), ensure_ascii=False),
-            provenance.LAWS: json.dumps([spec_of(n).entry() for n in chain.laws], ensure_ascii=False),
-        }
-    )
-    tree = xarray.DataTree.from_dict({"/scenario": xarray.Dataset(attrs=scenario), **groups})
+    every = (*numerics, *(choice.rows() if choice else ()))
+    scenario = {
+        provenance.KIND: case.kind,
+        provenance.PARAMETERS: json.dumps(case.parameters(), ensure_ascii=False),
+        provenance.NUMERICS: json.dumps(_listed(chain, every), ensure_ascii=False),
+        provenance.LAWS: json.dumps([spec_of(n).entry() for n in chain.laws], ensure_ascii=False),
+    }
+    if choice is not None:
+        scenario[provenance.EXPECTED_ERRORS] = json.dumps(choice.entries())
+    held = xarray.Dataset(attrs=attributes(scenario))
+    tree = xarray.DataTree.from_dict({"/scenario": held, **groups})
     tree.attrs = attributes(
         {
             provenance.TITLE: title,
@@ -66,12 +75,18 @@ def assembled(
             provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
             provenance.CASE: case.text,
             provenance.SEED: case.seed,
-            provenance.CITATIONS: json.dumps(CITATIONS + citations, ensure_ascii=False),
+            provenance.CITATIONS: json.dumps(_sources(chain, choice) + citations, ensure_ascii=False),
             provenance.VERDICT: verdict,
             provenance.WARNINGS: json.dumps(_collected(caught), ensure_ascii=False),
         }
     )
     return checked(tree)
+
+
+def _sources(chain: Chain[Any], choice: LawChoice | None) -> tuple[str, ...]:
+    """Sources of the methods that a run of any kind used."""
+    rough = ROUGH_CONTACT if chain.reduction is not None else ()
+    return METHOD + rough + BANDS + (EXPECTED if choice is not None else ())
 
 
 def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:

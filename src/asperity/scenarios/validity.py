@@ -40,6 +40,7 @@ class Finding:
     remedy: str  # what to do
     brief: str  # quantity and number in a few words, for a headline
     laws: tuple[str, ...]  # of the case that it concerns
+    told: bool = False  # whether it has been warned of where it was found
 
     def concerns(self, law: str) -> bool:
         """Whether it makes a law doubtful."""
@@ -52,16 +53,17 @@ class Finding:
 
 
 def findings(chain: Chain[Any]) -> list[Finding]:
-    """Hold a case to the range in which its laws are known to hold; nothing is found without samples."""
+    """Hold a case to the range in which its laws are known to hold; without samples, its time steps alone."""
+    steps = _time_steps(chain)
     if chain.reduction is None:
-        return []
-    return [_area(chain), _slope(chain), _isolated(chain), *_cut_off(chain), *_populations(chain)]
+        return [steps]
+    return [_area(chain), _slope(chain), _isolated(chain), *_cut_off(chain), *_populations(chain), steps]
 
 
 def warn_of_findings(found: list[Finding]) -> None:
-    """Warn of what is outside its range; cut-off contacts have been warned of where they were solved."""
+    """Warn of what is outside its range and was not told where it was found."""
     for finding in found:
-        if finding.grade is not None and not finding.quantity.startswith(_CUT_OFF):
+        if finding.grade is not None and not finding.told:
             warnings.warn(OutOfRangeWarning(finding.message, finding.grade), stacklevel=2)
 
 
@@ -171,16 +173,36 @@ def _cut_off(chain: Chain[Any]) -> Iterator[Finding]:
             remedy,
             "",
             (),
+            told=True,
         )
 
 
+def _time_steps(chain: Chain[Any]) -> Finding:
+    """Time steps whose contact force missed its tolerance, of the law that has most of them."""
+    case = chain.case
+    steps = (case.rolled_time + case.settled_time) / case.time_step
+    worst = max(chain.runs, key=lambda law: chain.runs[law].unconverged_steps)
+    missed = chain.runs[worst].unconverged_steps
+    return Finding(
+        f"share of the time steps that missed their tolerance{f', {worst}' if missed else ''}",
+        percent(missed / steps),
+        "below 1 %",
+        Grade.of_share(missed / steps) if missed else None,
+        "Their contact force is too coarse.",
+        "Take a smaller numerics.time_step.",
+        "",
+        (),
+        told=True,
+    )
+
+
 def _populations(chain: Chain[Any]) -> Iterator[Finding]:
-    """Samples and path that are not one population, so that what is reduced from samples does not fit all."""
+    """Whether samples and path are one population, so that what is reduced from samples fits all of it."""
     for answer in answers(chain):
-        if answer.grade is not None:
+        if answer.laws:
             yield Finding(
                 answer.question,
-                answer.value,
+                f"{answer.value}: {answer.effect:.1f} dB",
                 f"an effect of up to {EFFECT[0]:g} dB",
                 answer.grade,
                 answer.answer,

@@ -130,9 +130,7 @@ ISOLATED_SHARE = _attribute(
     "isolated_share", "1", "share of the load on cells in contact without a neighbour", _SAMPLES
 )
 RMS_SLOPE = _attribute("rms_slope", "1", "rms slope Sdq of the samples on the grid", _SAMPLES)
-VALIDITY = _attribute(
-    "validity", "JSON", "what bounds the range of the laws: quantity, value, limit, …", _SAMPLES
-)
+VALIDITY = _attribute("validity", "JSON", "what bounds the range of the laws: quantity, value, limit, …")
 SAMPLES = _attribute("samples", "1", "number of samples", _SAMPLES)
 POPULATION = _attribute(
     "population",

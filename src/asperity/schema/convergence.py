@@ -10,6 +10,9 @@ _ASKED = "where convergence was asked for"
 _entry = partial(Entry, "convergence", condition=_ASKED)
 _NOT_COMPARED = "this setting was not changed, or changes nothing of the kind"
 
+PATH_LENGTH = "path length"
+"""The setting that needs no other run: half of the record is compared with all; by chance they differ."""
+
 SETTING = _entry("setting", ("setting",), "1", "setting that was changed")
 CHANGE = _entry("change", ("setting",), "1", "from what to what")
 LIMIT = _entry("limit", ("setting",), "1", "why it was not changed; empty where it was")

@@ -22,4 +22,11 @@ WARNINGS = _root("warnings", "JSON", "warnings on the physics: category, message
 KIND = _scenario("kind", "text", "kind of case")
 PARAMETERS = _scenario("parameters", "JSON", "every key of the case, with its value and default")
 NUMERICS = _scenario("numerics", "JSON", "numbers of the computation: name, value")
+EXPECTED_ERRORS = _scenario(
+    "expected_errors",
+    "JSON",
+    "by the law accuracy map: errors (law, error, low, high: dB from direct), the law taken, whether the "
+    "case is off_map, and the error wanted, dB",
+    "where the map knows the case",
+)
 LAWS = _scenario("laws", "JSON", "each contact law: name, meaning, look, whether it may pull, needs, role")

@@ -50,7 +50,8 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         caught,
         title=_title(computed.case.ball.material.name, computed.case.beam.material.name),
         verdict=verdict(computed.chain, over_frequency, found, "ball", choice=choice),
-        numerics=(*_numerics(computed), *(choice.rows() if choice else ())),
+        numerics=_numerics(computed),
+        choice=choice,
     )
 
 

@@ -5,29 +5,32 @@ from __future__ import annotations
 from asperity.kinds.wheel_on_rail.figures.force import FORCE_BANDS, FORCE_PEAK, FORCE_SPECTRUM
 from asperity.kinds.wheel_on_rail.figures.loss_factors import LOSS_FACTORS
 from asperity.kinds.wheel_on_rail.figures.motion import MOTION
-from asperity.kinds.wheel_on_rail.figures.noise import NOISE, sound_power_table
+from asperity.kinds.wheel_on_rail.figures.noise import NOISE, sound_power_change, sound_power_table
 from asperity.kinds.wheel_on_rail.figures.roughness import ROUGHNESS_LEVELS
+from asperity.kinds.wheel_on_rail.figures.scene import TRACK_SCENE
 from asperity.kinds.wheel_on_rail.figures.track import TRACK
 from asperity.reporting.chapter import CONTACT, Chapter
+from asperity.reporting.history import FORCE_HISTORY
 from asperity.reporting.tables import (
     homogeneity_table,
     loss_table,
+    practice_table,
     reference_table,
     statistics_table,
 )
 from asperity.reporting.texture import TEXTURE
-from asperity.reporting.time_figures import FORCE_ENVELOPE
 
 CHAPTERS = (
+    Chapter("setup", "Scene", (TRACK_SCENE,)),
     Chapter("texture", "Texture", (ROUGHNESS_LEVELS, *TEXTURE), (statistics_table, homogeneity_table)),
     Chapter("track", "Track and wheel", (*TRACK, LOSS_FACTORS)),
     CONTACT,
     Chapter(
         "force",
         "Contact force",
-        (FORCE_ENVELOPE, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS),
-        (reference_table, loss_table),
+        (FORCE_HISTORY, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS),
+        (practice_table, reference_table, loss_table),
     ),
-    Chapter("noise", "Rolling noise", NOISE, (sound_power_table,)),
+    Chapter("noise", "Rolling noise", NOISE, (sound_power_table,), sound_power_change),
     Chapter("motion", "Motion", MOTION),
 )

@@ -8,14 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from asperity.errors import PhysicsWarning
+from asperity.errors import Grade, PhysicsWarning
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.bodies import wheel_of
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.geometry import geometry_of
-from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, loss_factor_error, signed_level
+from asperity.kinds.wheel_on_rail.loss_factors import (
+    DOUBTFUL,
+    LossFactorError,
+    loss_factor_error,
+    signed_level,
+)
 from asperity.scenarios.laws import working_point
+from asperity.scenarios.validity import Finding
 from asperity.schema import Entry
 from asperity.spectra import nominal_frequency
 from asperity.structures.causal_track import causal_track
@@ -58,6 +64,19 @@ def relaxed(error: LossFactorError) -> dict[Entry, Any]:
         schema.RELAXED_STIFFNESS: stiffness.real,
         schema.RELAXED_LOSS_FACTOR: stiffness.imag / stiffness.real,
     }
+
+
+def findings_of_losses(error: LossFactorError) -> list[Finding]:
+    """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
+    if error.track.is_causal:
+        return []
+    worst, limit = error.worst, f"up to {DOUBTFUL:g} dB"
+    grade = Grade.WARNING if abs(error.force[worst]) > DOUBTFUL else None
+    value = f"{signed_level(error.force[worst])} dB ({nominal_frequency(error.bands[worst])})"
+    meaning = "Nothing that answers after a force only has one loss factor at all frequencies."
+    remedy = "Give the layers a damping instead, which is exact."
+    name = "error of the contact force for constant loss factors, at most"
+    return [Finding(name, value, limit, grade, meaning, remedy, "", (), told=True)]
 
 
 def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str, str]]:

@@ -12,7 +12,7 @@ from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.bodies import Bodies, square_transfer
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, warn_of_loss_factors
-from asperity.kinds.wheel_on_rail.losses import described_losses, error_of_losses
+from asperity.kinds.wheel_on_rail.losses import described_losses, error_of_losses, findings_of_losses
 from asperity.kinds.wheel_on_rail.spectra import spectra_group
 from asperity.kinds.wheel_on_rail.track_group import track_group
 from asperity.reference.cnossos import CITATION
@@ -32,7 +32,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     added to it.
     """
     spectra, losses = spectra_group(computed), error_of_losses(computed)
-    found = findings(computed.chain)
+    found = [*findings(computed.chain), *findings_of_losses(losses)]
     warn_of_findings(found)
     warn_of_loss_factors(losses)
     transfer = partial(square_transfer, Bodies(computed.wheel, computed.track))
@@ -50,8 +50,9 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         caught,
         title=f"Wheel on rail at {computed.case.speed:.3g} m/s",
         verdict=verdict(computed.chain, spectra, found, "wheel", _sound_power(spectra), choice),
-        numerics=(*_numerics(computed, losses), *(choice.rows() if choice else ())),
+        numerics=_numerics(computed, losses),
         citations=(*computed.track.sources, CITATION),
+        choice=choice,
     )
 
 

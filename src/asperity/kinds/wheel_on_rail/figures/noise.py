@@ -13,6 +13,7 @@ from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.data import doubtful, laws, of_law, stored_variable
+from asperity.reporting.headline import HeadlineNumber
 from asperity.reporting.law_entries import baselines_among, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
@@ -169,6 +170,22 @@ def sound_power_table(tree: DataTree) -> ReportTable | None:
         name = standard.attrs.get("contact_filter", "")
         note += f" CNOSSOS-EU: the same roughness with its own contact filter ({name})."
     return ReportTable("sound_power_table", "A-weighted sound power", head, rows, note)
+
+
+def sound_power_change(tree: DataTree) -> HeadlineNumber | None:
+    """A-weighted sound power of the main law over that of the linear law of practice."""
+    names = laws(tree, POWER_A)
+    others = [law for law in baselines_among(tree, names) if law != names[0]]
+    if not others or "total" not in sources(tree, POWER_A):
+        return None
+    place = sources(tree, POWER_A).index("total")
+    level, *compared = (float(of_law(tree, POWER_A, law, "source")[place]) for law in (names[0], *others))
+    told = [f"{level:.1f} dB(A) re 1 pW ({names[0]})"]
+    told += [
+        f"{signed(level - other)} dB over {law}" for law, other in zip(others[1:], compared[1:], strict=True)
+    ]
+    name = f"sound power over {others[0]}"
+    return HeadlineNumber(name, f"{signed(level - compared[0])} dB(A)", "; ".join(told))
 
 
 def _told(value: float) -> str:

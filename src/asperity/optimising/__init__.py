@@ -1,1 +1,0 @@
-"""The texture that rolls quietest, or the roughest that keeps a level."""
