@@ -23,6 +23,7 @@ _HOME = {
     "listen": "reporting.sound",
     "material": "reference.materials",
     "open_result": "running",
+    "optimise": "optimising.running",
     "prediction_band": "studies.ensemble",
     "read_surface": "surfaces.readers",
     "report": "kinds.report",

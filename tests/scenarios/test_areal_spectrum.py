@@ -57,8 +57,16 @@ def test_one_source_of_samples():
         BallOnBeam(surface=both)
 
 
+def test_a_surface_is_rolled_over_by_all_laws():
+    """Those of a case that names none are those of any surface."""
+    case = BallOnBeam(surface={"spectrum": LEVELS, "lateral": 1.0})
+    assert case.laws == BallOnBeam(surface={"rms": "1 um"}).laws
+    assert "laws" not in case.given()
+
+
 def test_a_spectrum_without_lateral_is_a_line():
     case = BallOnBeam(surface={"spectrum": LEVELS})
+    assert "areal" not in case.laws
     assert case.surface.has_line
     assert not case.surface.has_samples
 

@@ -20,6 +20,7 @@ from asperity.cli.options import (
     overwrite,
     report,
     run_folder,
+    templates,
 )
 from asperity.kinds import KINDS
 from asperity.terminal import say
@@ -91,9 +92,10 @@ def demo(directory: Path, overwrite: bool) -> None:
         (f"asperity new {next(iter(KINDS))} > case.toml", "every key, with meaning, limits and default"),
         (f"asperity new {list(KINDS)[-1]} --law areal --law linear > case.toml", "with laws of your choice"),
         ("asperity new study > study.toml", "many cases: lists of values for some keys"),
+        ("asperity new optimisation > aim.toml", "the quietest texture of a case, within bounds"),
     ],
 )
-@click.argument("kind", metavar="|".join((*KINDS, "study")), shell_complete=complete_templates)
+@click.argument("kind", metavar="|".join(templates()), shell_complete=complete_templates)
 @click.option(
     "--law",
     "laws",
@@ -103,16 +105,20 @@ def demo(directory: Path, overwrite: bool) -> None:
     help="A law of the contact force, the first the main one. May be repeated.",
 )
 def new(kind: str, laws: tuple[str, ...]) -> None:
-    """Write a commented case, or a study of one, to standard output.
+    """Write a commented case, a study of one or its optimisation, to standard output.
 
     Every key stands in it with its meaning, what is allowed and its default; keys that need not be given
     stand behind a '#'.
     """
     from asperity.kinds.cases import not_a_kind, template
 
-    if kind not in (names := (*KINDS, "study")):
-        raise not_a_kind(kind, names)
-    if kind == "study":
+    if kind not in templates():
+        raise not_a_kind(kind, templates())
+    if kind == "optimisation":
+        from asperity.optimising.definition import task_template
+
+        say(task_template(), lines=True)
+    elif kind == "study":
         from asperity.studies.definition import TEMPLATE
 
         say(TEMPLATE, lines=True)
@@ -187,7 +193,7 @@ def run(case: Path, directory: Path | None, report: bool, converge: bool, overwr
     examples=[
         ('asperity study case.toml --vary "speed = 20 m/s, 200 km/h"', "two speeds, one table"),
         (
-            'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "wheel.load = 50 kN, 65 kN"',
+            'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "speed = 20 m/s, 56 m/s"',
             "mean and scatter over four textures, for two loads",
         ),
         ("asperity study study.toml -o runs/grid --workers 4", "a study file, on four processes"),
@@ -271,6 +277,31 @@ def _with_surface_options(command: Callable[..., Any]) -> Callable[..., Any]:
     for option in reversed(_surface_options):
         command = option(command)
     return command
+
+
+@main.command(
+    long_work=True,
+    short_help="Find the texture that rolls quietest within bounds.",
+    examples=[
+        ("asperity optimise aim.toml -o quiet", "of a file that 'asperity new optimisation' began"),
+    ],
+)
+@click.argument("optimisation", type=PATH)
+@run_folder()
+@report
+@click.option("--overwrite", is_flag=True, help="Replace another texture in the folder.")
+@device
+def optimise(optimisation: Path, directory: Path | None, report: bool, overwrite: bool) -> None:
+    """Find the texture that rolls quietest within bounds, or the roughest that keeps a level.
+
+    Searches with a cheap law and verifies with another, before and after. Textures that were rolled over are
+    kept: interrupted, the same command goes on where it was.
+    """
+    from asperity.cli.optimising import optimise_into
+
+    optimise_into(
+        optimisation, directory or Path("runs") / optimisation.stem, report=report, overwrite=overwrite
+    )
 
 
 @main.command(

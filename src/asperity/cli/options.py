@@ -46,9 +46,14 @@ device = click.option(
 )
 
 
+def templates() -> tuple[str, ...]:
+    """List what 'asperity new' can write."""
+    return (*KINDS, "study", "optimisation")
+
+
 def complete_templates(context: click.Context, argument: click.Parameter, incomplete: str) -> list[str]:
     """Complete what 'asperity new' can write."""
-    return [name for name in (*KINDS, "study") if name.startswith(incomplete)]
+    return [name for name in templates() if name.startswith(incomplete)]
 
 
 def complete_laws(context: click.Context, option: click.Parameter, incomplete: str) -> list[str]:

@@ -14,12 +14,12 @@ import numpy as np
 from pydantic import ValidationError
 
 from asperity import decoding
-from asperity.config.case import Case
+from asperity.config.form import Section
 from asperity.config.keys import BACKSLASH
 from asperity.config.messages import case_error
 from asperity.errors import InputError
 
-C = TypeVar("C", bound=Case)
+C = TypeVar("C", bound=Section)
 LARGEST_CASE = 2**20  # bytes
 MOST_PARTS = 20
 """Parts of a dotted key; those of a case have three. The time to read a key grows with the square of them."""
@@ -99,7 +99,7 @@ def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str,
 
 
 def validated(model: type[C], data: dict[str, Any], origin: Origin) -> C:
-    """Make a case of a known kind from its keys and values, sections as dicts; in SI.
+    """Make a case of a known kind, or another form, from its keys and values, sections as dicts; in SI.
 
     Raises
     ------

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from asperity.progress import Progress
     from asperity.reporting.chapter import Chapter
     from asperity.scenarios.geometry import Geometry
+    from asperity.scenarios.measure import Measure
     from asperity.scenarios.preparing import PreparedCase
     from asperity.scenarios.refining import Setting
     from asperity.scenarios.textures import Textures
@@ -63,6 +64,7 @@ class Kind:
         schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
                    entries, each with the place on its dimensions if not all of it
         refining   ``settings_of(case)``, how finely its bodies are resolved
+        measures   ``MEASURES``, by name what textures are judged by
         chapters   ``CHAPTERS`` of its report
         plan       ``rows(case)``, what will be computed, in words; ``seconds(prepared, progress, pace)`` by
                    part of the work, s; ``step_seconds(prepared)``; ``records(case)``; ``REPORT``, s
@@ -147,6 +149,12 @@ class Kind:
     def kept(self) -> Mapping[Entry, Mapping[str, str]]:
         """What a study keeps of its results beside what it keeps of all, and where of it."""
         found: Mapping[Entry, Mapping[str, str]] = self.offers("schema", "KEPT")
+        return found
+
+    @property
+    def measures(self) -> Mapping[str, Measure]:
+        """What its textures are judged by, by name."""
+        found: Mapping[str, Measure] = self.offers("measures", "MEASURES")
         return found
 
     @property

@@ -100,9 +100,16 @@ def show_run(path: str) -> dict[str, Any]:
 
 def show_beside(paths: list[str], names: list[str]) -> dict[str, Any]:
     """Show runs beside each other."""
-    from asperity.serving.run_view import compared_runs
+    from asperity.serving.comparison_view import compared_runs
 
     return compared_runs(paths, names)
+
+
+def write_comparison_page(paths: list[str], names: list[str], folder: str) -> dict[str, Any]:
+    """Write the page of a comparison into a folder."""
+    from asperity.serving.comparison_view import write_beside
+
+    return write_beside(paths, names, folder)
 
 
 def write_report(path: str) -> dict[str, Any]:
@@ -124,6 +131,7 @@ QUESTIONS: dict[str, Callable[..., dict[str, Any]]] = {
     "view": show_run,
     "compare": show_beside,
     "report": write_report,
+    "comparison": write_comparison_page,
 }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import secrets
@@ -15,6 +16,7 @@ from asperity.files import discard, write_bytes
 from asperity.printable import printable
 
 CASE, RESULT, REPORT, SOUNDS = "case.toml", "run.nc", "report.html", "sounds"
+COMPARISON = "comparison.html"
 _FACTS, _OUTCOME = "run.json", "outcome.json"
 _IDENTIFIER = re.compile(r"[0-9a-f]{16}")
 LONGEST_NAME = 80
@@ -23,6 +25,11 @@ LONGEST_NAME = 80
 def new_identifier() -> str:
     """Make a name that nobody can guess."""
     return secrets.token_hex(8)
+
+
+def identifier_of_runs(identifiers: list[str]) -> str:
+    """Name of what is kept of several runs in this order."""
+    return hashlib.sha256(",".join(identifiers).encode()).hexdigest()[:16]
 
 
 def folder_of(root: Path, identifier: str) -> Path | None:

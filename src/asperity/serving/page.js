@@ -445,16 +445,26 @@ function table(found, words, title = "") {
 
 async function compare() {
   const box = find("comparison-tables");
+  const asked = runs.filter((run) => chosen.has(run.id)).reverse().map((run) => `run=${run.id}`).join("&");
   find("comparison").hidden = false;
   try {
-    const found = await ask(`ask/compare?${runs.filter((run) => chosen.has(run.id)).reverse().map((run) => `run=${run.id}`).join("&")}`);
-    const cases = found.cases.rows.length ? [table(found.cases, true, "What differs in the cases")] : [make("p", { className: "note", textContent: "The cases are the same." })];
-    const parts = [...cases, table(found.facts, false, "In numbers"), table(found.levels, false, "Contact force levels, dB re 1 N, of the main laws")];
-    box.replaceChildren(...parts.map((part) => { const around = make("div", { className: "scroll", tabIndex: 0 }, part); around.setAttribute("role", "region"); around.setAttribute("aria-label", part.caption?.textContent || "comparison"); return around; }));
+    const found = await ask(`ask/compare?${asked}`);
+    const page = make("a", { href: `${found.page}?${asked}`, target: "_blank", rel: "noopener", textContent: "The whole comparison, with figures of all laws", title: "It takes some seconds" });
+    const tables = [[found.cases, true, "What differs in the cases"], [found.numbers, false, `In numbers, ${found.law}`],
+      [found.levels, false, `Contact force levels, ${found.law}, dB re 1 N; in brackets: no more than chance`]];
+    box.replaceChildren(make("p", { textContent: found.summary }), make("p", {}, page),
+      ...tables.filter(([each]) => each.rows.length).map(([each, words, title]) => scrolled(table(each, words, title), title)));
   } catch (error) {
     box.replaceChildren(make("p", { className: "alert", textContent: error.message }));
   }
   find("comparison").scrollIntoView({ block: "start" });
+}
+
+function scrolled(inside, label) {
+  const around = make("div", { className: "scroll", tabIndex: 0 }, inside);
+  around.setAttribute("role", "region");
+  around.setAttribute("aria-label", label);
+  return around;
 }
 
 // ---- one run: watched, read, heard ---------------------------------------------------------------------------

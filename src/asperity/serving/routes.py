@@ -54,6 +54,7 @@ class Server:
 
     def __init__(self, folder: Path) -> None:
         self.surfaces, self.runs = folder / "surfaces", folder / "runs"
+        self.comparisons = folder / "comparisons"
         self.jobs = Jobs()
         self.contacts, self.files = Desk(CONTACT_SECONDS), Desk(FILE_SECONDS)
 
@@ -96,6 +97,7 @@ class Server:
                 Route("/runs/{run}/go-on", self._bound(go_on_with_run), methods=["POST"]),
                 Route("/runs/{run}/delete", self._bound(delete_run), methods=["POST"]),
                 Route("/runs/{run}/{name:path}", self._bound(send_file)),
+                Route("/comparisons/{run}/{name}", self._bound(send_comparison_file)),
             ],
             lifespan=self.alive,
         )
@@ -270,16 +272,49 @@ async def delete_run(server: Server, request: Request) -> Response:
     return JSONResponse({})
 
 
-@told_plainly
-async def send_comparison(server: Server, request: Request) -> Response:
-    """Show runs beside each other."""
+def _compared(server: Server, request: Request) -> dict[str, Any]:
+    """Paths and names of the runs that a question names, in their order."""
     found = [kept_runs.folder_of(server.runs, each) for each in request.query_params.getlist("run")]
     folders = [folder for folder in found if folder is not None]
     if not 2 <= len(folders) <= MOST_COMPARED:
         raise HTTPException(400, f"Two to {MOST_COMPARED} runs can be compared.")
     names = [str(kept_runs.told_of(folder)["name"]) for folder in folders]
-    paths = [str(folder / kept_runs.RESULT) for folder in folders]
-    return JSONResponse(await server.files.ask("compare", paths=paths, names=names))
+    return {"paths": [str(folder / kept_runs.RESULT) for folder in folders], "names": names}
+
+
+@told_plainly
+async def send_comparison(server: Server, request: Request) -> Response:
+    """Show runs beside each other."""
+    runs = _compared(server, request)
+    identifier = kept_runs.identifier_of_runs([Path(path).parent.name for path in runs["paths"]])
+    told = await server.files.ask("compare", **runs)
+    return JSONResponse(told | {"page": f"comparisons/{identifier}/{kept_runs.COMPARISON}"})
+
+
+@told_plainly
+async def send_comparison_file(server: Server, request: Request) -> Response:
+    """The page of a comparison, written when it is asked for with its runs; and its table."""
+    root, name = server.comparisons, request.path_params["name"]
+    if "run" in request.query_params:
+        runs = _compared(server, request)
+        identifier = kept_runs.identifier_of_runs([Path(path).parent.name for path in runs["paths"]])
+        if identifier == request.path_params["run"]:
+            await server.files.ask("comparison", **runs, folder=str(root / identifier))
+    folder = kept_runs.folder_of(root, request.path_params["run"])
+    return _handed_out(folder, name)
+
+
+def _handed_out(folder: Path | None, name: str) -> Response:
+    """A file of a run or a comparison, to be looked at or taken away."""
+    file = None if folder is None else kept_runs.file_of_run(folder, name)
+    if folder is None or file is None:
+        raise HTTPException(404, "There is no such file.")
+    shown = file.suffix in (".html", ".wav", ".svg", ".png")
+    taken = file.name if shown else f"{folder.name}-{file.name}"
+    where = "inline" if shown else "attachment"
+    return FileResponse(
+        file, filename=taken, content_disposition_type=where, headers=dict(policy_of(file.suffix))
+    )
 
 
 @told_plainly
@@ -292,12 +327,4 @@ async def send_file(server: Server, request: Request) -> Response:
     result = folder / kept_runs.RESULT
     if name == kept_runs.REPORT and result.is_file() and not (folder / name).is_file():
         await server.files.ask("report", path=str(result))
-    file = kept_runs.file_of_run(folder, name)
-    if file is None:
-        raise HTTPException(404, "The run has no such file.")
-    shown = file.suffix in (".html", ".wav", ".svg", ".png")
-    where = "inline" if shown else "attachment"
-    name = file.name if shown else f"{folder.name}-{file.name}"
-    return FileResponse(
-        file, filename=name, content_disposition_type=where, headers=dict(policy_of(file.suffix))
-    )
+    return _handed_out(folder, name)

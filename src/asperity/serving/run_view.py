@@ -1,4 +1,4 @@
-"""What the page shows of runs: force and texture to watch, levels, sounds; and several beside each other."""
+"""What the page shows of a run: force and texture to watch, levels and sounds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
 from asperity.reporting.data import (
-    engineering,
     json_list,
     laws,
     nominal_band,
@@ -25,10 +24,9 @@ from asperity.reporting.law_entries import law_colours, law_entries, law_entry
 from asperity.reporting.style import envelope
 from asperity.results import read_result
 from asperity.schema import contact, provenance, surface
-from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, POSITION, TIME
+from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.schema.spectra import BAND, FORCE_LEVEL
 from asperity.serving.kept_runs import SOUNDS
-from asperity.spectra import a_weighting, energy_sum
 
 PIECE = 20_000
 """Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""
@@ -111,7 +109,7 @@ def _texture(tree: DataTree) -> dict[str, Any] | None:
 
 def _about_long_waves(heights: NDArray[np.float64]) -> NDArray[np.float64]:
     """Heights (nx, ny) about their mean over a stretch around each row: long waves would hide all others."""
-    stretch = min(STRETCH * heights.shape[1], len(heights))
+    stretch = min(STRETCH * heights.shape[1] | 1, len(heights))  # an odd one has a middle
     return heights - uniform_filter1d(heights.mean(axis=1), stretch, mode="nearest")[:, None]
 
 
@@ -130,88 +128,3 @@ def _levels(tree: DataTree) -> dict[str, Any] | None:
 def _rounded(levels: NDArray[np.float64]) -> list[float | None]:
     """Levels in dB for a table; None where there is none."""
     return [round(float(level), 1) if np.isfinite(level) else None for level in levels]
-
-
-def compared_runs(paths: list[str], names: list[str]) -> dict[str, Any]:
-    """Levels of the main laws by band, differences to the first run, and what differs in the cases."""
-    trees = [read_result(path) for path in paths]
-    mains = [(laws(tree, FORCE_LEVEL) or [""])[0] for tree in trees]
-    found = [_by_band(tree, law) for tree, law in zip(trees, mains, strict=True)]
-    bands = sorted({band for levels in found for band in levels})
-    first = found[0]
-    rows = []
-    for band in bands:
-        levels = [_level(each.get(band)) for each in found]
-        rows.append(
-            [nominal_band(band), *levels, *(_change(each.get(band), first.get(band)) for each in found[1:])]
-        )
-    heads = [f"{name}: {law}" for name, law in zip(names, mains, strict=True)]
-    differences = [f"{name} − {names[0]}" for name in names[1:]]
-    return {
-        "levels": {"head": ["Hz", *heads, *differences], "rows": [*rows, _weighted(found, bands)]},
-        "facts": {"head": ["", *names], "rows": _facts(trees, mains)},
-        "cases": {"head": ["key", *names], "rows": _differing(trees)},
-    }
-
-
-def _by_band(tree: DataTree, law: str) -> dict[float, float]:
-    if not law:
-        return {}
-    bands, levels = values(tree, BAND, "band"), of_law(tree, FORCE_LEVEL, law, "band")
-    return {
-        round(float(b), 6): float(level) for b, level in zip(bands, levels, strict=True) if np.isfinite(level)
-    }
-
-
-def _level(level: float | None) -> str:
-    return "–" if level is None else f"{level:.1f}".replace("-", "−")
-
-
-def _change(level: float | None, first: float | None) -> str:
-    return "–" if level is None or first is None else f"{level - first:+.1f}".replace("-", "−")
-
-
-def _weighted(found: list[dict[float, float]], bands: list[float]) -> list[str]:
-    """The row of A-weighted sums over the bands that all runs have."""
-    shared = [band for band in bands if all(band in levels for levels in found)]
-    if not shared:
-        return []
-    weights = a_weighting(np.array(shared))
-    sums = [float(energy_sum(np.array([levels[band] for band in shared]) + weights)) for levels in found]
-    return ["A-weighted sum", *map(_level, sums), *(_change(each, sums[0]) for each in sums[1:])]
-
-
-def _facts(trees: list[DataTree], mains: list[str]) -> list[list[str]]:
-    rows: list[list[str]] = [["main law", *mains]]
-    forces = [of_law(tree, CONTACT_FORCE, law, "time") for tree, law in zip(trees, mains, strict=True) if law]
-    if len(forces) == len(trees):
-        for what, of in (
-            ("mean force", np.nanmean),
-            ("rms about it", np.nanstd),
-            ("largest force", np.nanmax),
-        ):
-            rows.append([what, *(engineering(float(of(force)), "N") for force in forces)])
-        lost = [float(of_law(tree, CONTACT_LOSS_SHARE, law)) for tree, law in zip(trees, mains, strict=True)]
-        rows.append(["time without contact", *(f"{share:.2%}" for share in lost)])
-    stiffness = [number(tree, contact.WORKING_STIFFNESS) for tree in trees]
-    rows.append(
-        [
-            "contact stiffness dF/dr at the load",
-            *("–" if k is None else engineering(k, "N/m") for k in stiffness),
-        ]
-    )
-    return rows
-
-
-def _differing(trees: list[DataTree]) -> list[list[str]]:
-    """Keys whose values are not the same in all cases."""
-    cases = [
-        {str(each.get("key")): str(each.get("value")) for each in json_list(tree, provenance.PARAMETERS)}
-        for tree in trees
-    ]
-    keys = dict.fromkeys(key for case in cases for key in case)
-    return [
-        [key, *(case.get(key, "–") for case in cases)]
-        for key in keys
-        if len({case.get(key) for case in cases}) > 1
-    ]

@@ -192,8 +192,10 @@ class BallOnBeam(Case):
         keys = surface.given() if isinstance(surface, Section) else surface
         if not isinstance(keys, Mapping):
             return data
-        line, samples = ({*words} & keys.keys() for words in (("line", "spectrum"), ("file", "rms")))
-        return {**data, "laws": _rolled(line=bool(line), samples=bool(samples))}
+        areal = {"spectrum", "lateral"} <= keys.keys()
+        line = "line" in keys or ("spectrum" in keys and not areal)
+        samples = areal or not keys.keys().isdisjoint(("file", "rms"))
+        return {**data, "laws": _rolled(line=line, samples=samples)}
 
     def default_of(self, name: str) -> Any:
         """Value of a key that is left out: laws as the surface allows them."""

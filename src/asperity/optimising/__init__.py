@@ -1,0 +1,1 @@
+"""The texture that rolls quietest, or the roughest that keeps a level."""

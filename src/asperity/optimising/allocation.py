@@ -1,0 +1,214 @@
+"""How much roughness each band of wavelengths may bear, where each adds to the response in proportion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog, minimize
+
+from asperity.errors import ComputationError, InputError
+
+MOST_STEPS = 500
+PRECISION = 1e-10
+"""Of the level that is minimised, dB; of the price, its unit."""
+SLACK = 1e-6
+"""By which a solution may miss a limit, dB or price."""
+_NOTHING = "no texture within the limits was found"
+_WIDER = "wider bounds of the levels, of the rms height or of the price"
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """What a texture may be: levels L (b,), dB re 1 µm, of its one-third octaves of wavelength."""
+
+    start: NDArray[np.float64]  # levels that prices count from
+    lowest: NDArray[np.float64]
+    highest: NDArray[np.float64]
+    price: NDArray[np.float64]  # of lowering a band by 1 dB; as much is saved by raising it
+    budget: float = np.inf  # largest Σ price (start − L)
+    rms_at_least: float = 0.0  # of all bands together, m
+    rms_at_most: float = np.inf
+
+    def cost(self, levels: NDArray[np.float64]) -> float:
+        """Price of a texture: Σ price (start − L)."""
+        return float(self.price @ (self.start - levels))
+
+    def checked(self) -> Limits:
+        """Refuse bounds that leave nothing between them."""
+        crossed = np.flatnonzero(self.lowest > self.highest)
+        if crossed.size:
+            low, high = self.lowest[crossed[0]], self.highest[crossed[0]]
+            received = f"{low:g} dB as lowest, {high:g} dB as highest, in band {crossed[0] + 1}"
+            raise InputError("bounds of the levels", received, "lowest below highest in every band")
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """The energy of a response: a floor, and in each band as much as it has roughness.
+
+    E(L) = floor + Σ weight 10^(L/10), relative to the square of the reference of the response's level.
+    """
+
+    weights: NDArray[np.float64]  # (b,), per µm²
+    floor: float
+
+    def energies(self, levels: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What each band adds (b,)."""
+        return np.asarray(self.weights * energy_of(levels))
+
+    def level(self, levels: NDArray[np.float64]) -> float:
+        """10 lg E(L), dB."""
+        return float(10.0 * np.log10(self.floor + self.energies(levels).sum()))
+
+    def slope(self, levels: NDArray[np.float64]) -> NDArray[np.float64]:
+        """By how much its level grows with each band's (b,), dB per dB: the band's share of the energy."""
+        energies = self.energies(levels)
+        return np.asarray(energies / (self.floor + energies.sum()))
+
+
+def energy_of(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean square of each band, µm², of levels in dB re 1 µm."""
+    return np.asarray(10.0 ** (levels / 10.0))
+
+
+def rms_of(levels: NDArray[np.float64]) -> float:
+    """Rms height of all bands together, m."""
+    return float(1e-6 * np.sqrt(energy_of(levels).sum()))
+
+
+def quietest(response: Response, limits: Limits, begin: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Find the levels (b,), dB, with the least response within limits, beginning at some.
+
+    What is found is the best there is: the problem is convex in the bands' energies. Raises
+    `ComputationError` where nothing lies within the limits, or the search does not end.
+    """
+    if np.isfinite(limits.budget):
+        return _solved(Term(response.level, response.slope), [], limits, begin)
+    return _by_linear_programme(response, limits)
+
+
+def roughest(
+    response: Response, limits: Limits, level: float, begin: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Find the cheapest levels (b,), dB, whose response has a level, dB, or less.
+
+    Where nothing else binds, each band adds to the response in proportion to its price:
+    weight 10^(L/10) = price (10^(level/10) − floor)/Σ price. Convex, as `quietest`; raises the same.
+    """
+    kept = Term(lambda x: level - response.level(x), lambda x: -response.slope(x))
+    scale = max(float(limits.price.sum()), 1e-300)
+    cost = Term(lambda x: limits.cost(x) / scale, lambda _: -limits.price / scale)
+    return _solved(cost, [kept], limits, begin)
+
+
+def _by_linear_programme(response: Response, limits: Limits) -> NDArray[np.float64]:
+    """Without a price, response and rms height are sums of the bands' energies, and nothing else counts."""
+    low, high = energy_of(limits.lowest), energy_of(limits.highest)
+    least, most = ((1e6 * rms) ** 2 for rms in (limits.rms_at_least, limits.rms_at_most))
+    rows = [(-1.0, -least)] + ([(1.0, most)] if np.isfinite(most) else [])
+    found = linprog(
+        response.weights,
+        A_ub=np.array([np.full(len(low), sign) for sign, _ in rows]),
+        b_ub=[bound for _, bound in rows],
+        bounds=list(zip(low, high, strict=True)),
+    )
+    if not found.success:
+        raise ComputationError(f"{_NOTHING} ({found.message})", _WIDER)
+    return np.clip(10.0 * np.log10(np.asarray(found.x)), limits.lowest, limits.highest)
+
+
+class Term(NamedTuple):
+    """A function of the levels, and its slope."""
+
+    value: Callable[[NDArray[np.float64]], float]
+    slope: Callable[[NDArray[np.float64]], NDArray[np.float64]]  # (b,), per dB
+
+
+def _of_limits(limits: Limits) -> list[Term]:
+    """What must not be negative within the limits."""
+    found = []
+    if np.isfinite(limits.budget):
+        found.append(Term(lambda x: limits.budget - limits.cost(x), lambda _: limits.price))
+    if limits.rms_at_least > 0.0:
+        found.append(Term(lambda x: _rms_level(x, limits.rms_at_least), _share))
+    if np.isfinite(limits.rms_at_most):
+        found.append(Term(lambda x: -_rms_level(x, limits.rms_at_most), lambda x: -_share(x)))
+    return found
+
+
+def _rms_level(levels: NDArray[np.float64], rms: float) -> float:
+    return 20.0 * float(np.log10(rms_of(levels) / rms))
+
+
+def _share(levels: NDArray[np.float64]) -> NDArray[np.float64]:
+    energy = energy_of(levels)
+    return np.asarray(energy / energy.sum())
+
+
+def _solved(least: Term, kept: list[Term], limits: Limits, begin: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Minimise a term where others are not negative.
+
+    Over levels, in which all but the least rms height is convex; with one, over energies, in which all is.
+    """
+    kept = [*kept, *_of_limits(limits)]
+    begin = np.clip(begin, limits.lowest, limits.highest)
+    ways = [_over_energies, _over_levels] if limits.rms_at_least > 0.0 else [_over_levels]
+    message = ""
+    for way in ways:
+        levels, message = way(least, kept, limits, begin)
+        missed = min((term.value(levels) for term in kept), default=0.0)
+        if missed < -SLACK:
+            message = f"a limit is missed by {-missed:.2g}"
+        if not message:
+            return levels
+    raise ComputationError(f"{_NOTHING} ({message})", _WIDER)
+
+
+def _over_levels(
+    least: Term, kept: list[Term], limits: Limits, begin: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], str]:
+    found = minimize(
+        least.value,
+        begin,
+        jac=least.slope,
+        method="SLSQP",
+        bounds=list(zip(limits.lowest, limits.highest, strict=True)),
+        constraints=[{"type": "ineq", "fun": term.value, "jac": term.slope} for term in kept],
+        options={"maxiter": MOST_STEPS, "ftol": PRECISION},
+    )
+    return np.clip(found.x, limits.lowest, limits.highest), "" if found.success else str(found.message)
+
+
+def _over_energies(
+    least: Term, kept: list[Term], limits: Limits, begin: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], str]:
+    """Over y = 10^((L − begin)/10), dL/dy = (10/ln 10)/y."""
+
+    def levels(y: NDArray[np.float64]) -> NDArray[np.float64]:
+        return begin + 10.0 * np.log10(np.maximum(y, 1e-30))
+
+    def over(term: Term) -> Term:
+        return Term(
+            lambda y: term.value(levels(y)),
+            lambda y: term.slope(levels(y)) * (10.0 / np.log(10.0)) / np.maximum(y, 1e-30),
+        )
+
+    low, high = energy_of(limits.lowest - begin), energy_of(limits.highest - begin)
+    aim, limited = over(least), [over(term) for term in kept]
+    found = minimize(
+        aim.value,
+        np.ones_like(begin),
+        jac=aim.slope,
+        method="SLSQP",
+        bounds=list(zip(low, high, strict=True)),
+        constraints=[{"type": "ineq", "fun": term.value, "jac": term.slope} for term in limited],
+        options={"maxiter": MOST_STEPS, "ftol": PRECISION},
+    )
+    return np.clip(levels(found.x), limits.lowest, limits.highest), "" if found.success else str(
+        found.message
+    )

@@ -1,0 +1,181 @@
+"""What is optimised: a case, the quantity its texture is judged by, and what the texture may be."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator
+
+from asperity.arguments import shown
+from asperity.config.case import Case, Law
+from asperity.config.describing import commented
+from asperity.config.form import Section, key
+from asperity.config.keys import Choice, Length, Level, Number, Quantity
+from asperity.config.parsing import Origin, read_definition, read_toml, validated
+from asperity.errors import CaseError, InputError
+from asperity.kinds.cases import as_case, case_of, load_case
+from asperity.optimising.allocation import Limits
+from asperity.scenarios.measure import A_WEIGHTED, MEASURE_NAMES
+
+_HEAD = """\
+# The texture that rolls quietest, or the roughest that keeps a limit. Run it with: asperity optimise FILE
+# The case: its path, from the folder of this file, or a section [case] with its keys.
+
+case = "case.toml"
+
+"""
+_TEXTURES = ("10 nm", "10 m", "textures lie between")
+_LEVELS = ("-200 dB", "120 dB", "1e-10 um to 1 m in one band")
+Price = Annotated[float, BeforeValidator(Number(at_least=0))]
+
+
+class Aim(Section):
+    """What the texture of a case shall be."""
+
+    quantity: Annotated[str, BeforeValidator(Choice(MEASURE_NAMES))] = key(
+        A_WEIGHTED,
+        "what it is judged by: sound power of a wheel, else motion; or the unweighted acceleration",
+    )
+    limit: Level | None = key(
+        None,
+        "level of the quantity that is kept: the roughest texture is sought, by its price",
+        otherwise="the quantity is made as small as the bounds allow",
+        example='"100 dB"',
+        within=("-400 dB", "400 dB", "levels lie between"),
+    )
+    law: Law = key("areal", "law of the contact force that is rolled while searching")
+    verify: Law = key("table", "law with which the texture is rolled before and after")
+    longest: Length | None = key(
+        None,
+        "longest wavelength that is changed",
+        otherwise="the longest that is heard",
+        example='"10 mm"',
+        within=_TEXTURES,
+    )
+    shortest: Length | None = key(
+        None,
+        "shortest wavelength that is changed",
+        otherwise="the shortest that is heard",
+        example='"100 um"',
+        within=_TEXTURES,
+    )
+    reach: Annotated[float, BeforeValidator(Quantity("dB", above=0))] = key(
+        "20 dB",
+        "how far levels may go from those of the case where no bound is given",
+        within=("0.01 dB", "100 dB", "five powers of ten are another surface"),
+    )
+    lowest: tuple[Level, ...] | None = key(
+        None,
+        "least level of a one-third octave, dB re 1 um: one for all, or one for each from the longest",
+        otherwise="the reach below that of the case",
+        example='["-40 dB"]',
+        within=_LEVELS,
+    )
+    highest: tuple[Level, ...] | None = key(
+        None,
+        "largest level of a one-third octave, dB re 1 um: one for all, or one for each from the longest",
+        otherwise="the reach above that of the case",
+        example='["+10 dB"]',
+        within=_LEVELS,
+    )
+    rms_at_least: Length | None = key(
+        None,
+        "least rms height of these wavelengths together, as friction or oil asks for",
+        otherwise="any",
+        example='"0.5 um"',
+        within=("1 pm", "1 mm", "rms heights lie between"),
+    )
+    rms_at_most: Length | None = key(
+        None,
+        "largest rms height of these wavelengths together",
+        otherwise="any",
+        example='"2 um"',
+        within=("1 pm", "1 mm", "rms heights lie between"),
+    )
+    price: tuple[Price, ...] = key(
+        (1.0,),
+        "price of lowering a one-third octave by 1 dB, which raising it saves: one for all, or one for each "
+        "from the longest",
+    )
+    budget: Price | None = key(None, "largest price of all changes together", otherwise="any", example="30.0")
+    lateral: tuple[Annotated[float, BeforeValidator(Number(above=0))], ...] | None = key(
+        None,
+        "least and largest correlation length across over that along: the lay, which is chosen between",
+        otherwise="as it is in the case",
+        example="[0.5, 2.0]",
+    )
+
+    def problems(self) -> Iterator[InputError]:
+        """Something that keeps the texture from being as smooth as it may be; bounds in order."""
+        if self.limit is None and self.rms_at_least is None and self.budget is None:
+            remedy = "Give rms_at_least, or budget with price; or a limit to be kept."
+            allowed = "something that keeps it rough: without, the smoothest is the quietest"
+            yield InputError("rms_at_least", "nothing, and no budget", allowed, remedy)
+        if self.rms_at_least and self.rms_at_most and self.rms_at_least > self.rms_at_most:
+            yield InputError("rms_at_least", f"{self.rms_at_least:g} m", "at most rms_at_most")
+        if self.longest and self.shortest and self.longest < self.shortest:
+            yield InputError("longest", f"{self.longest:g} m", "at least shortest")
+        if self.limit is not None and not any(self.price):
+            yield InputError("price", "only zeros", "a price that tells which roughness is worth more")
+        if self.lateral is not None and not (len(self.lateral) == 2 and self.lateral[0] < self.lateral[1]):
+            yield InputError("lateral", list(self.lateral), "two numbers, the least first")
+
+    def limits(self, start: NDArray[np.float64]) -> Limits:
+        """Limits of levels (b,), dB re 1 µm, around those that the search starts from."""
+        return Limits(
+            start,
+            _for_each("lowest", self.lowest, start - self.reach),
+            _for_each("highest", self.highest, start + self.reach),
+            _for_each("price", self.price, np.ones_like(start)),
+            np.inf if self.budget is None else self.budget,
+            self.rms_at_least or 0.0,
+            self.rms_at_most or np.inf,
+        ).checked()
+
+
+def _for_each(
+    name: str, values: tuple[float, ...] | None, otherwise: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    if values is None:
+        return otherwise
+    if len(values) not in (1, len(otherwise)):
+        raise InputError(name, f"{len(values)} values", f"one, or {len(otherwise)}: one for each band")
+    return np.broadcast_to(np.array(values), otherwise.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class Assignment:
+    """A case and what its texture shall be."""
+
+    case: Case
+    aim: Aim
+
+
+def load_task(path: str | os.PathLike[str]) -> Assignment:
+    """Read a task from a TOML file: ``case``, a path or a section, and the keys of `Aim`."""
+    remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
+    data = read_toml(read_definition(path, "optimisation", remedy), "optimisation", path)
+    base = data.pop("case", None)
+    if not isinstance(base, str | dict):
+        received = "nothing" if base is None else shown(base)
+        error = InputError("case", received, "the path of a case, or a section [case] with its keys")
+        raise CaseError(str(path), [str(error)])
+    origin = Origin.file(path)
+    case = case_of(base, origin) if isinstance(base, dict) else load_case(Path(path).parent / base)
+    return Assignment(case, validated(Aim, data, origin))
+
+
+def task_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, keys: Mapping[str, Any]) -> Assignment:
+    """Make a task of a case in any of its forms and the keys of `Aim`."""
+    return Assignment(as_case(case), Aim(**keys))
+
+
+def task_template() -> str:
+    """A commented task."""
+    return _HEAD + commented(Aim, {"rms_at_least": '"0.5 um"'})

@@ -1,0 +1,237 @@
+"""Optimising the texture of a case: from the case and an aim to textures that were rolled over."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity import __version__
+from asperity.arguments import shown
+from asperity.config.case import Case
+from asperity.config.content import content, file_digest
+from asperity.errors import InputError, PhysicsWarning
+from asperity.kinds.cases import kind_of
+from asperity.optimising.allocation import Limits, rms_of
+from asperity.optimising.definition import Assignment, task_of
+from asperity.optimising.searching import Trial, search
+from asperity.optimising.texture import Bands, bands_of, with_texture
+from asperity.progress import Progress, shown_progress
+from asperity.running import prepare_case, run
+from asperity.scenarios.measure import Measure, line_frequencies
+from asperity.spectra import band_energies
+from asperity.store import Store, content_key
+from asperity.threads import one_thread_in_linear_algebra
+
+if TYPE_CHECKING:
+    from asperity.reporting.notebook import Result
+
+FORMAT = 1
+"""Raise it when what is kept of a trial no longer means what it meant."""
+AT_A_BOUND = 0.05
+"""A level so near to its bound lies on it, dB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Optimised:
+    """A texture that was optimised.
+
+    Attributes
+    ----------
+    task : Assignment
+        The case, and what its texture should be.
+    measure : Measure
+        What it was judged by.
+    limits : Limits
+        What the levels of the bands that were changed might be.
+    before, after : Bands
+        The texture of the case, and the one found.
+    trials : tuple of Trial
+        All textures that were rolled over on the way, with ``aim.law``; that of the case first, the one found
+        last.
+    settled : bool
+        Whether the search ended by itself.
+    case : Case
+        The case with the texture found.
+    result_before, result_after : Result
+        Both textures, rolled over with ``aim.verify`` and ``aim.law``.
+    """
+
+    task: Assignment
+    measure: Measure
+    limits: Limits
+    before: Bands
+    after: Bands
+    trials: tuple[Trial, ...]
+    settled: bool
+    case: Case
+    result_before: Result
+    result_after: Result
+
+    def level(self, after: bool, law: str) -> float:
+        """Level of the quantity, dB, of one of the two textures with a law that was rolled over both."""
+        tree = self.result_after if after else self.result_before
+        frequency = line_frequencies(tree)
+        density = self.measure.density(tree, law)
+        return float(10.0 * np.log10(density.sum() * (frequency[1] - frequency[0])))
+
+    def band_levels(self, tree: Result, law: str) -> NDArray[np.float64]:
+        """Level of the quantity (b,), dB, while each changed band is passed, of one of the results."""
+        density = self.measure.density(tree, law)
+        edges = self.after.edges(self.case.speed)
+        with np.errstate(divide="ignore"):
+            return np.asarray(10.0 * np.log10(band_energies(line_frequencies(tree), density, *edges)))
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """By how much the level of the quantity changes, dB, by law."""
+        aim = self.task.aim
+        laws = dict.fromkeys((aim.verify, aim.law))
+        return {law: self.level(True, law) - self.level(False, law) for law in laws}
+
+    @property
+    def active(self) -> list[str]:
+        """Limits that the texture found lies on."""
+        limits, levels, aim = self.limits, self.after.levels[self.after.changed], self.task.aim
+        found = []
+        if aim.limit is not None and abs(self.trials[-1].level - aim.limit) < 2 * AT_A_BOUND:
+            found.append("limit")
+        for name in ("rms_at_least", "rms_at_most"):
+            bound = getattr(limits, name)
+            if 0.0 < bound < np.inf and abs(20.0 * np.log10(rms_of(levels) / bound)) < AT_A_BOUND:
+                found.append(name)
+        if np.isfinite(limits.budget) and limits.cost(levels) > limits.budget - AT_A_BOUND:
+            found.append("budget")
+        for name, bound in (("lowest", limits.lowest), ("highest", limits.highest)):
+            if count := np.count_nonzero(np.abs(levels - bound) < AT_A_BOUND):
+                found.append(f"{name} in {count} of {len(levels)} bands")
+        return found
+
+    @property
+    def sentence(self) -> str:
+        """What came of it, for people."""
+        aim, (first, last) = self.task.aim, (self.before, self.after)
+        rms = [1e6 * rms_of(bands.levels[bands.changed]) for bands in (first, last)]
+        told = [f"{law} {change:+.1f} dB" for law, change in self.changes.items()]
+        lay = f", lay {first.lateral:.3g} to {last.lateral:.3g}" if aim.lateral and first.lateral else ""
+        words = [
+            f"{self.measure.meaning}: {', '.join(told)}; "
+            f"rms of the bands {rms[0]:.3g} to {rms[1]:.3g} µm{lay}.",
+            f"On its limits: {'; '.join(self.active) or 'none'}.",
+        ]
+        if not self.settled:
+            words.append("The search did not settle: the best texture that was met is shown.")
+        if aim.limit is None and self.changes[aim.verify] >= 0.0:
+            words.append(f"By {aim.verify} the texture is no better: {aim.law} does not hold here.")
+        return " ".join(words)
+
+
+def optimise(
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case | Assignment,
+    progress: Progress | None = None,
+    **aim: Any,
+) -> Optimised:
+    """Find the texture that rolls quietest, or the roughest that keeps a limit.
+
+    Parameters
+    ----------
+    case : path, mapping, case object or Assignment
+        The case, as `asperity.run` takes it; or a whole task.
+    progress : callable, optional
+        ``progress(done, total, message)``, called during long work.
+    **aim
+        What the texture shall be, in SI or as text with a unit, as the keys that ``asperity new
+        optimisation`` lists: ``quantity``, ``rms_at_least``, ``budget``, ``limit`` and so on.
+
+    Returns
+    -------
+    Optimised
+        Textures before and after, the case with the one found, and both rolled over again.
+
+    Raises
+    ------
+    InputError
+        If the case or the aim is wrong.
+    ComputationError
+        If no texture lies within the limits, or a computation fails.
+
+    Notes
+    -----
+    The bands of the texture are one-third octaves of wavelength λ, which are heard at v/λ. Energies of the
+    response in these bands of frequency are, for a linear contact, in proportion to those of the texture; a
+    law that is rolled over each trial corrects the proportions. Trials are kept in the store: interrupted,
+    the same search goes on where it was.
+
+    Examples
+    --------
+    >>> import asperity
+    >>> found = asperity.optimise(case, rms_at_least="0.3 um", law="hertz", verify="linear")
+    >>> found.changes["linear"] < 0.0
+    True
+    """
+    if isinstance(case, Assignment):
+        if aim:
+            raise InputError("aim", shown(next(iter(aim))), "a task alone, or a case with an aim")
+        task = case
+    else:
+        task = task_of(case, aim)
+    with shown_progress(progress) as told:
+        return _optimised(task, told)
+
+
+def _optimised(task: Assignment, progress: Progress) -> Optimised:
+    case, aim = task.case, task.aim
+    measures = kind_of(case).measures
+    if aim.quantity not in measures:
+        raise InputError("quantity", f'"{aim.quantity}" of {case.kind}', " or ".join(measures))
+    measure = measures[aim.quantity]
+    before = bands_of(case, aim.longest, aim.shortest)
+    if aim.lateral is not None and before.lateral is None:
+        raise InputError("lateral", "bounds for a line, which has no lay", "a surface", "Remove the key.")
+    limits = aim.limits(before.levels[before.changed])
+    count = 0
+
+    def report(words: str) -> None:
+        nonlocal count
+        count += 1
+        progress(count, count + 1, f"texture {count}: {words}")
+
+    def roll(levels: NDArray[np.float64], lateral: float | None) -> Trial:
+        return _rolled(task, measure, before.with_changed(levels, lateral), progress)
+
+    start = roll(before.levels[before.changed], before.lateral)
+    lay = None if aim.lateral is None else (aim.lateral[0], aim.lateral[1])
+    trials, settled = search(roll, start, limits, aim.limit, lay, report)
+    after = before.with_changed(trials[-1].levels, trials[-1].lateral)
+    laws = tuple(dict.fromkeys((aim.verify, aim.law, *measure.beside)))
+    found = with_texture(case, after)
+    results = [run(each.with_(laws=laws), progress) for each in (with_texture(case, before), found)]
+    return Optimised(task, measure, limits, before, after, tuple(trials), settled, found, *results)
+
+
+def _rolled(task: Assignment, measure: Measure, bands: Bands, progress: Progress) -> Trial:
+    """Roll over a texture with the law of the search; what came of it is kept by all that it depends on."""
+    aim = task.aim
+    laws = tuple(dict.fromkeys((aim.law, *measure.beside)))
+    case = with_texture(task.case, bands).with_(laws=laws)
+    store = Store()
+    told = json.dumps(content(case, file_digest), sort_keys=True)
+    key = content_key("texture", FORMAT, __version__, told, aim.quantity, aim.law)
+    kept = store.get(key)
+    if kept is None:
+        with warnings.catch_warnings(), one_thread_in_linear_algebra():
+            warnings.simplefilter("ignore", PhysicsWarning)  # those of the texture found are told
+            prepared = prepare_case(case)
+            tree = prepared.kind.computed(prepared, progress, [])
+        kept = {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
+        store.put(key, kept)
+    frequency, density = kept["frequency"], kept["density"]
+    energies = np.maximum(band_energies(frequency, density, *bands.edges(case.speed)), 0.0)
+    whole = float(density.sum() * (frequency[1] - frequency[0]))
+    return Trial(bands.levels[bands.changed], bands.lateral, energies, max(whole - energies.sum(), 0.0))

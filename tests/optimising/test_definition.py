@@ -1,0 +1,96 @@
+"""What can be asked for, and what is said of what cannot."""
+
+import numpy as np
+import pytest
+
+import asperity
+from asperity.config.parsing import FROM_PYTHON, read_toml, validated
+from asperity.errors import CaseError, InputError
+from asperity.optimising.definition import Aim, load_task, task_template
+from asperity.optimising.texture import bands_of, with_texture
+from small_cases import COARSE, WHEEL
+
+CASE = COARSE | {"start": "0.2 m", "duration": "0.2 s"}
+BANDS = np.array([[10.0 ** (-n / 10.0), -30.0] for n in range(25, 37)])
+
+
+def refused(match, **aim):
+    with pytest.raises((CaseError, InputError), match=match):
+        asperity.optimise(CASE, **aim)
+
+
+def test_the_template_is_an_aim():
+    data = read_toml(task_template(), "optimisation", "template")
+    assert data.pop("case") == "case.toml"
+    assert validated(Aim, data, FROM_PYTHON).rms_at_least == pytest.approx(0.5e-6)
+
+
+def test_wrong_aims_are_refused_with_all_that_is_wrong():
+    refused("without, the smoothest is the quietest")
+    refused("unknown key", rms_at_least=1e-7, colour="red")
+    refused("at most rms_at_most", rms_at_least="2 um", rms_at_most="1 um")
+    refused("at least shortest", rms_at_least="1 um", longest="1 mm", shortest="2 mm")
+    refused("a price that tells", limit="100 dB", price=[0.0])
+    refused("two numbers, the least first", rms_at_least="1 um", lateral=[2.0, 1.0])
+    refused("quantity", rms_at_least="1 um", quantity="loudness")
+    refused("one for each band", rms_at_least="1 um", lowest=["-40 dB", "-30 dB"])
+    refused("lowest below highest", rms_at_least="1 um", lowest=["-20 dB"], highest=["-30 dB"])
+    refused("Change longest or shortest", rms_at_least="1 um", longest="0.3 mm", shortest="0.29 mm")
+
+
+def test_a_line_has_no_lay():
+    line = CASE | {"surface": {"spectrum": BANDS}}
+    with pytest.raises(InputError, match="a line, which has no lay"):
+        asperity.optimise(line, rms_at_least="0.1 um", lateral=[0.5, 2.0], law="hertz", verify="linear")
+
+
+def test_a_quantity_that_a_kind_does_not_know_is_refused(monkeypatch):
+    from asperity.kinds.cases import as_case, kind_of
+    from asperity.scenarios.usual.measures import MEASURES
+
+    monkeypatch.setattr(type(kind_of(as_case(CASE))), "measures", property(lambda kind: MEASURES))
+    refused('"rms acceleration" of ball-on-beam', rms_at_least="1 um", quantity="rms acceleration")
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        ("rms_at_least = '1 um'", "case: received nothing"),
+        ("case = 'none.toml'\nrms_at_least = '1 um'", "none.toml"),
+        ("case = 'case.toml'\nrms_at_leest = '1 um'", "rms_at_least"),
+    ],
+)
+def test_files_that_say_too_little_or_too_much(tmp_path, text, match):
+    (tmp_path / "case.toml").write_text(asperity.BallOnBeam(**CASE).to_toml())
+    (tmp_path / "aim.toml").write_text(text)
+    with pytest.raises((CaseError, InputError), match=match):
+        load_task(tmp_path / "aim.toml")
+
+
+def test_bands_are_those_of_the_spectrum_that_are_heard():
+    case = asperity.BallOnBeam(**CASE | {"surface": {"spectrum": BANDS, "lateral": 2.0, "level": "+3 dB"}})
+    bands = bands_of(case, None, None)
+    np.testing.assert_allclose(bands.wavelength, BANDS[:, 0])
+    np.testing.assert_allclose(bands.levels, -27.0)
+    assert bands.lateral == 2.0
+    low, high = bands.edges(case.speed)
+    assert high.max() >= case.numerics.highest_frequency > low.max() / 10**0.1
+    np.testing.assert_allclose(np.sqrt(low * high), case.speed / bands.changed_wavelength)
+
+
+def test_bands_of_a_self_affine_texture_have_its_rms():
+    case = asperity.BallOnBeam(**CASE)
+    bands = bands_of(case, 1.0, 1e-6)
+    rms = 1e-6 * np.sqrt(np.sum(10.0 ** (bands.levels / 10.0)))
+    assert rms == pytest.approx(case.surface.rms, rel=0.1)
+
+
+def test_the_case_with_a_texture_keeps_all_else():
+    surface = WHEEL.get("surface", {}) | {"corrugation": "5 um", "corrugation_wavelength": "40 mm"}
+    case = asperity.WheelOnRail(**WHEEL | {"surface": surface})
+    bands = bands_of(case, None, None)
+    found = with_texture(case, bands)
+    assert found.surface.corrugation == case.surface.corrugation
+    assert found.wheel == case.wheel
+    np.testing.assert_array_equal(found.surface.spectrum, bands.table)
+    assert found.surface.lateral == case.surface.lateral

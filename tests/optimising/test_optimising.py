@@ -1,0 +1,110 @@
+"""From a case to a texture that was rolled over: quieter within its limits, by another law too."""
+
+import csv
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.fft import rfft, rfftfreq
+
+import asperity
+from asperity.cli import main
+from asperity.kinds.cases import load_case
+from asperity.optimising.allocation import rms_of
+from small_cases import COARSE, WHEEL
+
+pytestmark = pytest.mark.usefixtures("cache_of_module")
+CASE = COARSE | {
+    "start": "0.2 m",
+    "duration": "0.2 s",
+    "surface": {"rms": "0.05 um", "longest": "2 mm", "shortest": "0.1 mm"},
+    "contact": COARSE["contact"] | {"samples": 1},
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, cache_of_module):
+    """What the command writes."""
+    place = tmp_path_factory.mktemp("optimised")
+    (place / "case.toml").write_text(asperity.BallOnBeam(**CASE).to_toml())
+    aim = 'case = "case.toml"\nrms_at_least = "0.05 um"\nhighest = ["-30 dB"]\nlongest = "20 mm"\n'
+    (place / "aim.toml").write_text(aim)
+    words = ["optimise", str(place / "aim.toml"), "-o", str(place / "out"), "--no-report"]
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0, done.output
+    return place / "out", done.output
+
+
+def columns(file):
+    with file.open() as text:
+        rows = list(csv.reader(text))
+    return {name: np.array([float(row[i]) for row in rows[1:]]) for i, name in enumerate(rows[0])}
+
+
+def test_it_beats_the_start_by_table_with_its_limit_active(folder):
+    out, said = folder
+    bands = columns(out / "bands.csv")
+    levels = bands["level after [dB re 1 um]"]
+    assert rms_of(levels) == pytest.approx(0.05e-6, rel=1e-3)
+    assert (levels <= -30.0 + 1e-9).all()
+    assert "On its limits: rms_at_least" in said
+    runs = [asperity.open_result(out / name) for name in ("before", "after")]
+    for law in ("table", "areal"):
+        rms = [run["rolling/acceleration"].sel(law=law).values.std() for run in runs]
+        assert rms[1] < 0.5 * rms[0]
+
+
+def test_its_case_runs_as_what_was_found(folder):
+    out, _ = folder
+    case = load_case(out / "case.toml")
+    again = asperity.run(case.with_(laws=("areal",)))
+    found = asperity.open_result(out / "after")["rolling/contact_force"].sel(law="areal")
+    np.testing.assert_allclose(again["rolling/contact_force"].sel(law="areal"), found, rtol=1e-6, atol=1e-3)
+
+
+def test_it_replaces_no_other_texture(folder):
+    out, _ = folder
+    done = CliRunner().invoke(main, ["optimise", str(out.parent / "aim.toml"), "-o", str(out)])
+    assert done.exit_code == 2
+    assert "--overwrite" in done.output
+
+
+def test_a_limit_is_kept_and_each_band_takes_its_share():
+    """The inverse: bands that no bound holds add the same to the level, as all cost the same."""
+    found = asperity.optimise(
+        CASE, limit=120.0, longest="1.6 mm", lowest=["-90 dB"], highest=["-10 dB"], verify="areal"
+    )
+    assert found.settled
+    assert found.trials[0].level > 125.0
+    assert found.trials[-1].level == pytest.approx(120.0, abs=0.06)
+    shares = 10.0 * np.log10(found.trials[-1].energies)
+    assert np.ptp(shares) < 3.0
+    assert "limit" in found.active
+
+
+def test_a_rail_is_judged_by_its_sound_power():
+    case = WHEEL | {"surface": {"spectrum": "iso3095"}, "duration": "0.2 s"}
+    found = asperity.optimise(case, budget=30.0, law="linear-filtered", verify="linear-filtered")
+    assert found.measure.units == "dB(A) re 1 pW"
+    assert found.changes["linear-filtered"] < -0.5
+    assert "budget" in found.active
+    tree = found.result_before
+    total = tree["spectra/sound_power_level_a"].sel(law="linear-filtered").values
+    assert found.level(False, "linear-filtered") == pytest.approx(
+        10.0 * np.log10(np.sum(10.0 ** (total / 10.0))), abs=0.2
+    )
+
+
+def test_the_unweighted_acceleration():
+    found = asperity.optimise(
+        CASE, quantity="rms acceleration", rms_at_least="0.05 um", law="linear-filtered", verify="areal"
+    )
+    tree = found.result_after
+    record = tree["rolling/acceleration"].sel(law="areal")
+    step = float(record["time"][1] - record["time"][0])
+    power = 2.0 * np.abs(rfft(record.transpose("sensor", "time").values)) ** 2 / record.sizes["time"] ** 2
+    lines = rfftfreq(record.sizes["time"], step)
+    inside = (lines > 0.0) & (lines < 1.13 * found.case.numerics.highest_frequency)
+    rms = np.sqrt(power[:, inside].sum(axis=1).mean())
+    assert found.level(True, "areal") == pytest.approx(20.0 * np.log10(rms / 1e-6), abs=0.5)
+    assert found.changes["areal"] < 0.0

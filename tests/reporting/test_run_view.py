@@ -1,0 +1,113 @@
+"""What the page shows of runs, against the results they come from and against closed forms."""
+
+import json
+
+import numpy as np
+import pytest
+from report_tree import report_tree
+
+from asperity.reporting.notebook import Result
+from asperity.results import save
+from asperity.schema.rolling import POSITION
+from asperity.serving.answering import _answered
+from asperity.serving.comparison_view import compared_runs, numbered_names
+from asperity.serving.run_view import STRETCH, _about_long_waves, viewed_run
+from asperity.spectra import a_weighting
+
+
+@pytest.fixture(scope="module")
+def tree():
+    made = report_tree(["areal", "linear"], steps=4000)
+    position = POSITION.variable(2.0 + 1.0 * made["rolling/time"].values)  # at 1 m/s
+    made["rolling"] = made["rolling"].to_dataset().assign({POSITION.name: position})
+    for node in made.subtree:  # it is made for a page, which needs no units of coordinates
+        for values in node.to_dataset(inherit=False).variables.values():
+            values.attrs.setdefault("units", "1")
+            values.attrs.setdefault("long_name", "?")
+    return made
+
+
+@pytest.fixture(scope="module")
+def path(tree, tmp_path_factory):
+    return save(tree, tmp_path_factory.mktemp("run") / "run.nc")
+
+
+def test_the_force_is_watched_sample_by_sample_over_the_texture_that_is_kept(tree, path):
+    view = viewed_run(str(path))
+    force, rolling = view["force"], tree["rolling"]
+    length = float(tree["surface/path_x"][-1])
+    count = len(force["distance"])
+    assert force["distance"][-1] <= length
+    position = rolling["position"].values
+    assert count == len(position) or position[count] - position[0] > length
+    for law in ("areal", "linear"):
+        whole = rolling["contact_force"].sel(law=law).values
+        np.testing.assert_array_equal(force["pieces"][law], whole[:count])
+        assert min(force["low"][law]) == whole.min() == force["range"][law][0]
+        assert max(force["high"][law]) == whole.max() == force["range"][law][1]
+    assert view["patch"]["load"] == tree["contact"].attrs["working_load"]
+    assert [law["name"] for law in view["laws"]] == ["areal", "linear"]
+    assert view["verdict"] == tree.attrs["verdict"]
+    assert len(view["warnings"]) == 2
+
+
+def test_long_waves_hide_no_short_ones():
+    """A mean over n rows leaves of a wave of k rows 1 − sin(πn/k)/(n sin(π/k))."""
+    ny, rows = 21, np.arange(3000)
+    n = STRETCH * ny | 1
+    for period in (2000, 400, 40):
+        wave = np.repeat(np.sin(2 * np.pi * rows / period)[:, None], ny, axis=1)
+        left = _about_long_waves(wave)[500:2500]
+        kept = 1 - np.sin(np.pi * n / period) / (n * np.sin(np.pi / period))
+        assert np.abs(left).max() == pytest.approx(kept, rel=0.05)
+    across = np.repeat(np.sin(2 * np.pi * np.arange(ny) / ny)[None], 3000, axis=0)
+    np.testing.assert_allclose(_about_long_waves(across), across, atol=1e-12)
+
+
+def louder(tree, factor, **parameters):
+    """The same run with its levels changed by a factor, and some keys of its case."""
+    other = Result.of(tree.copy(deep=True))
+    other["spectra/force_level"] = other["spectra/force_level"] + 20 * np.log10(factor)
+    keys = json.loads(other["scenario"].attrs["parameters"])
+    for each in keys:
+        each["value"] = parameters.get(each["key"].replace(".", "_"), each["value"])
+    other["scenario"].attrs["parameters"] = json.dumps(keys)
+    return other
+
+
+def test_runs_beside_each_other_differ_by_what_they_differ(tree, path, tmp_path):
+    second = save(louder(tree, 2.0, speed="3 m/s"), tmp_path / "run.nc")
+    found = compared_runs([str(path), str(second)], ["a", "b"])
+    assert found["cases"]["rows"] == [["speed", "1 m/s", "3 m/s"]]
+    *bands, total = found["levels"]["rows"]
+    assert {row[3].strip("()") for row in bands} == {"+6.0"}
+    level = tree["spectra/force_level"].sel(law="areal").dropna("band")
+    summed = 10 * np.log10(np.sum(10 ** ((level.values + a_weighting(level["band"].values)) / 10)))
+    assert total[:2] == ["dB(A)", f"{summed:.1f}".replace("-", "−")]
+    assert total[3] == "+6.0"
+    numbers = {row[0]: row[1:] for row in found["numbers"]["rows"]}
+    assert numbers["mean force"][0] == numbers["mean force"][1]
+    assert found["law"] == "areal"
+    assert "+6.0 dB" in found["summary"]
+
+
+def test_runs_of_one_name_are_numbered_names():
+    assert numbered_names(["a", "b", "a", "a"]) == ["a", "b", "a (2)", "a (3)"]
+
+
+def test_a_damaged_run_is_refused_in_words(path, tmp_path):
+    damaged = tmp_path / "run.nc"
+    contents = bytearray(path.read_bytes())
+    contents[len(contents) // 2] ^= 255
+    damaged.write_bytes(contents)
+    answer = _answered(json.dumps({"question": "view", "path": str(damaged)}))
+    assert "a damaged file" in answer["refused"][0]
+
+
+def test_the_report_is_written_beside_its_result(path, monkeypatch):
+    written = []
+    monkeypatch.setattr("asperity.kinds.report.report", lambda tree, folder: written.append((tree, folder)))
+    assert _answered(json.dumps({"question": "report", "path": str(path)})) == {}
+    ((tree, folder),) = written
+    assert folder == path.parent
+    assert "rolling" in tree.children
