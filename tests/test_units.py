@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from asperity.errors import InputError
-from asperity.units import _PREFIXED, _PREFIXES, factor, quantity
+from asperity.units import _OTHERS, _PREFIXED, _PREFIXES, factor, quantity
 
 
 @pytest.mark.parametrize(
@@ -114,3 +114,9 @@ def test_factor():
     assert factor("dB", "dB") == 1.0
     with pytest.raises(InputError, match="allowed: no unit"):
         factor("m", "")
+
+
+@pytest.mark.parametrize(("unit", "dimension"), _OTHERS)
+def test_other_units_that_need_no_library_are_its_units(unit, dimension):
+    expected = pint.UnitRegistry().Quantity(1.0, unit).to(dimension).magnitude
+    assert factor(unit, dimension) == pytest.approx(expected, rel=1e-15)

@@ -58,7 +58,6 @@ def run(
     >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
     1
     """
-    from asperity.convergence.running import with_convergence
     from asperity.errors import PhysicsWarning
     from asperity.kinds.cases import as_case
     from asperity.progress import shown_progress
@@ -80,6 +79,8 @@ def run(
             caught += prepared.caught
             result = prepared.kind.computed(prepared, told, caught)
             if converge:
+                from asperity.convergence.running import with_convergence
+
                 result = with_convergence(prepared, result, told)
     except ComputationError:
         _warn_again(caught)  # they may say why

@@ -23,7 +23,8 @@ _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit hav
 _PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m", "N m^2")
 LEAST_NUMBER, MOST_NUMBER = 1e-3, 1e5
 """A quantity keeps its unit while its number lies between these."""
-_PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+_PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+_OTHERS = {("deg", "rad"): math.pi / 180.0, ("h", "s"): 3600.0, ("min", "s"): 60.0, ("t", "kg"): 1000.0}
 
 
 @lru_cache(maxsize=1)
@@ -44,6 +45,8 @@ def factor(unit: str, dimension: str) -> float:
         return 1.0
     if dimension in _PREFIXED and unit[:1] in _PREFIXES and unit[1:] == dimension:
         return _PREFIXES[unit[0]]
+    if (unit, dimension) in _OTHERS:
+        return _OTHERS[unit, dimension]
     import pint
 
     allowed = f"a unit that converts to {dimension}" if dimension else "no unit"

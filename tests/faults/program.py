@@ -16,7 +16,8 @@ START = "from asperity.__main__ import start; start()"
 RUN = ("run", "case.toml", "-o", "out", "--no-report")
 CASE = """
 kind = "ball-on-beam"
-duration = "20 ms"
+duration = "10 ms"
+settling = "5 ms"
 laws = ["hertz", "table"]
 [surface]
 rms = "0.1 um"
@@ -24,6 +25,7 @@ longest = "0.2 mm"
 shortest = "40 um"
 [contact]
 samples = 1
+sample_length = "2 mm"
 spacing = "20 um"
 [ball]
 load = "5 N"

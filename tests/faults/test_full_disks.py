@@ -55,10 +55,10 @@ def test_an_earlier_run_stays_as_it_was(earlier, size):
 
 @pytest.fixture
 def small(tmp_path):
-    """A file system of half a mebibyte."""
+    """A file system of a quarter of a mebibyte."""
     place = tmp_path / "small"
     place.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=512k", "tmpfs", str(place)]
+    mount = ["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", str(place)]
     if subprocess.run(mount, capture_output=True, check=False).returncode != 0:
         pytest.skip("no file system can be mounted here")
     yield place

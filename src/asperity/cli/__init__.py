@@ -194,7 +194,7 @@ def run(case: Path, directory: Path | None, report: bool, converge: bool, overwr
         ('asperity study case.toml --vary "speed = 20 m/s, 200 km/h"', "two speeds, one table"),
         (
             'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "speed = 20 m/s, 56 m/s"',
-            "mean and scatter over four textures, for two loads",
+            "mean and scatter over four textures, at two speeds",
         ),
         ("asperity study study.toml -o runs/grid --workers 4", "a study file, on four processes"),
     ],

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from asperity.scenarios.preparing import PreparedCase
 
+PAGE = "report.html"
 READING = "reading and laying out the case"
 
 
@@ -73,8 +74,6 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
 
 def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> dict[str, Any]:
     """Compute a case and write its results, while no other run does into this folder."""
-    from asperity.convergence.running import with_convergence
-    from asperity.kinds import report as reports
     from asperity.running import run
     from asperity.store import Store
 
@@ -88,9 +87,14 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, conver
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
         grade = warning.get("grade", "warning").capitalize()
         say(f"{grade}: {warning['message']}{times}", err=True)
-    reports.remove_report(directory)
+    if (directory / PAGE).exists():  # figures take half a second to import
+        from asperity.kinds.report import remove_report
+
+        remove_report(directory)
     written = _written(tree, directory, report=report)
     if converge:
+        from asperity.convergence.running import with_convergence
+
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)
         written = _written(tree, directory, report=report)
@@ -150,12 +154,13 @@ def band_summaries(tree: DataTree) -> dict[str, Any]:
 
 def _written(tree: DataTree, directory: Path, *, report: bool) -> dict[str, Path]:
     """Write a result, and its report if it is wanted; the paths, each with what it is."""
-    from asperity.kinds import report as reports
     from asperity.results import save
 
     written = {"Results": save(tree, directory / "run.nc")}
     if report:
-        written["Report"] = reports.report(tree, directory)
+        from asperity.kinds.report import report as written_report
+
+        written["Report"] = written_report(tree, directory)
     return written
 
 
@@ -198,5 +203,5 @@ def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> No
             raise InputError(str(directory), "a run.nc that cannot be read", allowed, remedy) from None
         if earlier != case.text:
             raise InputError(str(directory), "the run of another case", allowed, remedy)
-    elif (directory / "report.html").exists():
+    elif (directory / PAGE).exists():
         raise InputError(str(directory), "a report.html without its run.nc", allowed, remedy)
