@@ -28,6 +28,7 @@ extensions = [
 ]
 exclude_patterns = ["_build", "generated/gallery/*.ipynb", "generated/gallery/*.py", "generated/parts/*"]
 default_role = "literal"
+smartquotes = False
 templates_path = ["_templates"]
 nitpicky = True
 suppress_warnings = ["config.cache"]
@@ -73,7 +74,7 @@ html_copy_source = html_show_sourcelink = False
 html_theme_options = {
     "logo": {"text": "asperity"},
     "navbar_align": "left",
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 8,
     "navigation_with_keys": False,
     "show_prev_next": True,
     "secondary_sidebar_items": ["page-toc"],

@@ -46,7 +46,7 @@ def test_the_gate_and_the_workflows_call_the_same_commands():
     (hook,) = yaml.safe_load(text(".pre-commit-config.yaml"))["repos"][0]["hooks"]
     assert hook["entry"] == ".ci/lint"
     assert ".ci/lint" in text(".ci/checks")
-    assert "\n.ci/docs" in text(".ci/checks")
+    assert ".ci/docs" in text(".ci/checks")
 
 
 def test_the_oldest_versions_are_tested():
