@@ -33,6 +33,7 @@ class Compilation:
     def __init__(self) -> None:
         self.functions = 0  # that were compiled
         self._told: Callable[[], None] | None = None
+        self._said = False
         self._spent, self._begun = 0.0, 0.0  # s
         self._open: set[str] = set()
         self._lock = threading.Lock()
@@ -55,15 +56,15 @@ class Compilation:
 
     @contextmanager
     def told_to(self, tell: Callable[[str], None]) -> Iterator[None]:
-        """Have it said, once, that something is compiled while the body of the ``with`` statement runs."""
-        before, self._told = self._told, lambda: self._tell_once(tell)
+        """Have it said, once in a process, that something is compiled while the ``with`` statement runs."""
+        before, self._told = self._told, None if self._said else lambda: self._tell_once(tell)
         try:
             yield
         finally:
             self._told = before
 
     def _tell_once(self, tell: Callable[[str], None]) -> None:
-        self._told = None
+        self._told, self._said = None, True
         tell(COMPILING)
 
     def end(self, name: str) -> None:

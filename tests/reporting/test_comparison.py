@@ -12,7 +12,7 @@ from report_tree import report_tree
 import asperity
 from asperity.kinds.comparing import names_of
 from asperity.reporting.comparison import MAIN, NamedRun, compared, working_filter
-from asperity.reporting.comparison_table import summary
+from asperity.reporting.comparison_table import listed_keys, summary
 from asperity.schema import contact
 from asperity.spectra import a_weighted_total, a_weighting
 
@@ -137,6 +137,14 @@ def test_keys_that_differ_are_listed_and_no_others(first):
         ("speed", ["1 m/s", "2 m/s", None]),
         ("radius", [None, None, "5 mm"]),
     ]
+
+
+def test_of_different_kinds_the_keys_of_both_are_told(first):
+    ball = with_parameters(first, kind="ball", speed="1 m/s", radius="5 mm")
+    wheel = with_parameters(first, kind="wheel", speed="2 m/s", load="60 kN")
+    table = asperity.compare(ball, wheel)
+    assert [item["key"] for item in json.loads(table.attrs["cases"])] == ["kind", "speed", "radius", "load"]
+    assert [item["key"] for item in listed_keys(table)] == ["kind", "speed"]
 
 
 def test_different_main_laws_are_compared_as_such(first):

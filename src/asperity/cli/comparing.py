@@ -13,7 +13,7 @@ import xarray
 from asperity.files import refuse_unwritable
 from asperity.kinds.comparing import compared_levels, named_runs, shown_levels, write_comparison
 from asperity.reporting.comparison import compared
-from asperity.reporting.comparison_table import summary
+from asperity.reporting.comparison_table import listed_keys, summary
 from asperity.reporting.tables import signed
 from asperity.terminal import say, say_table
 
@@ -28,7 +28,7 @@ def compare_into(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> di
     levels = shown_levels(table, entries)
     cases = json.loads(table.attrs["cases"])
     names = [run.name for run in runs]
-    _show_cases(names, cases)
+    _show_cases(names, listed_keys(table))
     _show_changes(names, table, levels)
     say(words := summary(runs, table, levels))
     page, rows = write_comparison(runs, table, levels, target)

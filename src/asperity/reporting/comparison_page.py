@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -14,7 +13,7 @@ from matplotlib.figure import Figure
 from asperity import __version__
 from asperity.reporting.comparison import MAIN, OF_CONTACT, NamedRun
 from asperity.reporting.comparison_figures import contact_figure, levels_figure
-from asperity.reporting.comparison_table import summary, sure
+from asperity.reporting.comparison_table import KIND, listed_keys, summary, sure
 from asperity.reporting.data import engineering, json_attribute, json_list, nominal_band, stated
 from asperity.reporting.law_entries import law_colours, law_style
 from asperity.reporting.page import Picture, page_template
@@ -145,7 +144,7 @@ def _levels_caption(table: xarray.Dataset, name: str) -> str:
 
 def _case_table(runs: Sequence[NamedRun], table: xarray.Dataset) -> ReportTable:
     """Keys whose values differ."""
-    items = json.loads(table.attrs["cases"])
+    items = listed_keys(table)
     rows = [
         [
             text_cell(item["key"]),
@@ -155,6 +154,8 @@ def _case_table(runs: Sequence[NamedRun], table: xarray.Dataset) -> ReportTable:
         for item in items
     ]
     note = "All other keys have the same values." if items else "All keys have the same values in all runs."
+    if any(item["key"] == KIND for item in items):
+        note = "Keys that one kind of case has alone are not listed; the table beside this page has them."
     return ReportTable("keys", "Keys that differ", ["key", *(r.name for r in runs), "what it is"], rows, note)
 
 

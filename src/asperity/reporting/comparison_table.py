@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray
@@ -15,6 +16,8 @@ from asperity.reporting.tables import signed
 from asperity.schema import provenance
 from asperity.spectra import nominal_frequency
 
+KIND = "kind"
+"""Key that names the kind of a case."""
 SURE = 2.0
 """Standard deviation of a difference by chance, dB, from which a band says little."""
 
@@ -62,6 +65,14 @@ def _rows_of(table: xarray.Dataset, name: str) -> Iterator[list[object]]:
         yield [kind, name, law, where, units, *numbers.tolist(), own_units, *less]
 
 
+def listed_keys(table: xarray.Dataset) -> list[dict[str, Any]]:
+    """Keys that differ; of cases of different kinds only those that all have, for the others say little."""
+    items: list[dict[str, Any]] = json.loads(table.attrs["cases"])
+    if not any(item["key"] == KIND for item in items):
+        return items
+    return [item for item in items if None not in item["values"]]
+
+
 def summary(runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str]) -> str:
     """Say in a few sentences how the runs after the first differ from it, by their first law.
 
@@ -69,7 +80,7 @@ def summary(runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str
     """
     names = list(dict.fromkeys([*list(levels)[:1], *list(levels)[-1:]]))
     first = runs[0].name
-    keys = [str(item["key"]) for item in json.loads(table.attrs["cases"])]
+    keys = [str(item["key"]) for item in listed_keys(table)]
     sentences = [_keys_sentence(keys)]
     law = str(table["law"].values[0]) if table.sizes["law"] else ""
     for r, run in enumerate(runs[1:], 1):
