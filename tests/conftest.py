@@ -41,7 +41,10 @@ def cache_of_module(tmp_path_factory):
         yield
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser():
-    """A browser that all tests of a session share; each opens a page of its own in it."""
+    """A browser that the tests of a module share; each opens a page of its own in it.
+
+    What drives it has an event loop, which tests of other modules must not find running.
+    """
     yield from chromium()

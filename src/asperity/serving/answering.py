@@ -10,11 +10,14 @@ import base64
 import json
 import os
 import sys
+import threading
+import time
 import warnings
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
+from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
@@ -32,6 +35,8 @@ if TYPE_CHECKING:
 
 KEPT = 4
 """Contacts that stay laid ready: as many tabs may be open."""
+LEAVING = 1.0
+"""Time that an answer has to be finished when the server has ended, s."""
 MOST_CHANGED = 4  # keys that the list of runs names
 _pressed: OrderedDict[str, PressedSample] = OrderedDict()
 
@@ -141,9 +146,25 @@ def answer_all() -> None:
     with suppress(OSError, ValueError):
         limit_memory(MEMORY)
     warnings.simplefilter("ignore")  # runs tell theirs; here nobody reads them
-    for line in sys.stdin:
+    for line in _questions():
         answers.write(json.dumps(_answered(line), default=_plain) + "\n")
         answers.flush()
+
+
+def _questions() -> Iterator[str]:
+    """Lines of standard input; where it ends while one is being answered, nobody waits for that any more."""
+    waiting: SimpleQueue[str | None] = SimpleQueue()
+
+    def read() -> None:
+        for line in sys.stdin:
+            waiting.put(line)
+        waiting.put(None)
+        time.sleep(LEAVING)
+        os._exit(1)
+
+    threading.Thread(target=read, daemon=True).start()
+    while (line := waiting.get()) is not None:
+        yield line
 
 
 def _answered(line: str) -> dict[str, Any]:

@@ -59,7 +59,7 @@ def keep_run(root: Path, case: str, *, kind: str, name: str, changed: str) -> st
         "kind": kind,
         "name": shortened_name(name) or datetime.now().strftime("%d %b, %H:%M:%S"),
         "changed": changed,
-        "created": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "created": datetime.now().astimezone().isoformat(timespec="milliseconds"),
     }
     write_bytes(root / identifier / _FACTS, json.dumps(facts, ensure_ascii=False).encode())
     write_bytes(root / identifier / CASE, case.encode())

@@ -39,6 +39,25 @@ function numbers(base64) {
   return new Float32Array(bytes.buffer);
 }
 
+// A link to a page that the server has to draw first: the first click asks for it, the second opens it.
+function drawnFirst(address, words) {
+  const link = make("a", { href: address, target: "_blank", rel: "noopener", textContent: `Draw ${words}` });
+  link.onclick = async (event) => {
+    if (link.dataset.drawn) return;
+    event.preventDefault();
+    link.textContent = `Drawing ${words}, some seconds …`;
+    try {
+      const answer = await fetch(address);
+      if (!answer.ok) throw new Error(await answer.text());
+      link.dataset.drawn = "yes";
+      link.textContent = `Open ${words}`;
+    } catch (error) {
+      link.textContent = `${words} could not be drawn: ${error.message}`;
+    }
+  };
+  return link;
+}
+
 // ---- numbers for people ------------------------------------------------------------------------------------
 
 const PREFIXES = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
@@ -368,6 +387,7 @@ async function listRuns() {
   }
   const now = JSON.stringify(runs) + opened() + [...chosen];
   if (now !== listed) { listed = now; drawRuns(); }
+  document.body.dataset.runs = String(runs.length);
   const active = runs.some((run) => ["running", "waiting"].includes(run.state));
   setTimeout(listRuns, active ? 300 : 1500);
 }
@@ -449,9 +469,9 @@ async function compare() {
   find("comparison").hidden = false;
   try {
     const found = await ask(`ask/compare?${asked}`);
-    const page = make("a", { href: `${found.page}?${asked}`, target: "_blank", rel: "noopener", textContent: "The whole comparison, with figures of all laws", title: "It takes some seconds" });
+    const page = drawnFirst(`${found.page}?${asked}`, "the whole comparison, with figures of all laws");
     const tables = [[found.cases, true, "What differs in the cases"], [found.numbers, false, `In numbers, ${found.law}`],
-      [found.levels, false, `Contact force levels, ${found.law}, dB re 1 N; in brackets: no more than chance`]];
+      [found.levels, false, `Contact force levels, ${found.law}, dB re 1 N; in brackets: bands in which two records of this length differ by 2 dB through chance alone`]];
     box.replaceChildren(make("p", { textContent: found.summary }), make("p", {}, page),
       ...tables.filter(([each]) => each.rows.length).map(([each, words, title]) => scrolled(table(each, words, title), title)));
   } catch (error) {
@@ -479,7 +499,7 @@ async function showRun(run) {
   for (const id of ["warnings", "watch", "listen", "levels"]) find(id).hidden = true;
   play(false);
   const place = `runs/${run.id}/`, link = (name, words, properties) => make("a", { href: place + name, textContent: words, ...properties });
-  find("run-links").replaceChildren(link("report.html", "Report", { target: "_blank", rel: "noopener", title: "It takes some seconds when it is opened first" }), link("run.nc", "Download run.nc", { download: "" }), link("case.toml", "Download the case", { download: "" }));
+  find("run-links").replaceChildren(drawnFirst(`${place}report.html`, "the report"), link("run.nc", "Download run.nc", { download: "" }), link("case.toml", "Download the case", { download: "" }));
   try {
     const view = await ask(`${place}view`);
     if (shown.id !== run.id) return;

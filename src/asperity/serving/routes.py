@@ -28,6 +28,7 @@ from asperity.serving.page_template import page_text
 CONTACT_SECONDS, FILE_SECONDS = 60.0, 120.0
 """Time that a contact, and a file, may take, s."""
 MOST_COMPARED = 4
+LONGEST_SIZE = 19  # digits of a number of bytes
 Handler = Callable[["Server", Request], Awaitable[Response]]
 _STATIC = {"page.js": "text/javascript", "page.css": "text/css"}
 
@@ -203,9 +204,9 @@ async def send_surfaces(server: Server, request: Request) -> Response:
 async def take_upload(server: Server, request: Request) -> Response:
     """Receive a surface, and keep it if anybody can read it."""
     size = request.headers.get("content-length", "")
+    announced = int(size) if size.isascii() and size.isdigit() and len(size) < LONGEST_SIZE else None
     name = request.query_params.get("name", "")
-    pieces = request.stream()
-    file = await uploads.receive(server.surfaces, name, int(size) if size.isdigit() else None, pieces)
+    file = await uploads.receive(server.surfaces, name, announced, request.stream())
     try:
         told = await server.files.ask("examine", path=str(file))
     except BaseException:
@@ -216,7 +217,8 @@ async def take_upload(server: Server, request: Request) -> Response:
 
 async def send_runs(server: Server, request: Request) -> Response:
     """All runs, the latest first."""
-    return JSONResponse([server.told(folder) for folder in kept_runs.kept_in(server.runs)])
+    found = [server.told(folder) for folder in kept_runs.kept_in(server.runs)]
+    return JSONResponse(sorted(found, key=lambda run: str(run["created"]), reverse=True))
 
 
 @told_plainly
