@@ -41,11 +41,14 @@ state = contact.approach.values + contact.attrs["datum"]
 rough = contact.stiffness.values
 
 # %%
-# Hertz's contact is drawn at r − d₀; the spread is that between the samples.
+# Left: Hertz's contact is drawn at r − d₀; the spread is that between the samples. Right: under equal load
+# the tangent stiffness dF/dr does not depend on the datum.
 
 ball = asperity.Hertz(contact.attrs["contact_modulus"], 25e-3, 25e-3)
-past_touch = np.maximum(contact.approach.values, 0.0)  # of smooth bodies
-hertz = ball.stiffness_constant * np.sqrt(past_touch)
+hertz = ball.stiffness_constant * np.sqrt(np.maximum(contact.approach.values, 0.0))
+load = contact.force.values
+shown = load > 0.5  # N
+smooth = np.array([ball.tangent_stiffness(ball.approach(force)) for force in load[shown]])
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 3.9), layout="constrained")
 spread = contact.stiffness_std.values
@@ -54,17 +57,10 @@ left.plot(state * 1e6, rough / 1e6, label="rough, 12 samples ± std")
 left.plot(state * 1e6, hertz / 1e6, "--", label="Hertz at r − d₀")
 left.axvline(contact.attrs["datum"] * 1e6, color="0.5", lw=0.8)
 left.set(xlabel="state r / µm", ylabel="contact stiffness F/r / (MN/m)", xlim=(0, None), ylim=(0, None))
-left.legend()
-
-# %%
-# Under equal load the tangent stiffness dF/dr does not depend on the datum.
-
-load = contact.force.values
-shown = load > 0.5  # N
-softer = np.array([ball.tangent_stiffness(ball.approach(force)) for force in load[shown]])
 right.loglog(load[shown], contact.tangent_stiffness.values[shown] / 1e6, label="rough, mean")
-right.loglog(load[shown], softer / 1e6, "--", label="Hertz")
+right.loglog(load[shown], smooth / 1e6, "--", label="Hertz")
 right.set(xlabel="load / N", ylabel="tangent stiffness dF/dr / (MN/m)")
+left.legend()
 right.legend()
 plt.show()
 
@@ -74,7 +70,7 @@ plt.show()
 step = round(RMS / (state[1] - state[0]))
 rise = {name: np.max(k[step:] - k[:-step]) for name, k in (("rough", rough), ("hertz", hertz))}
 last_below = np.flatnonzero(hertz <= rough)[-1]
-softening = contact.tangent_stiffness.values[shown] / softer
+softening = contact.tangent_stiffness.values[shown] / smooth
 print(f"steepest rise over an rms height: {rise['rough']:.3g} N/m, Hertz's {rise['hertz']:.3g} N/m")
 print(f"tangent stiffness over Hertz's at 5 N: {np.interp(5.0, load[shown], softening):.2f}")
 assert state[last_below + 1] - contact.attrs["datum"] <= RMS
