@@ -19,7 +19,14 @@ from asperity.reporting.data import values
 from asperity.reporting.law_entries import baselines_among, law_colours, law_entry, pulling
 from asperity.reporting.part import by_law
 from asperity.reporting.style import envelope
-from asperity.reporting.time_figures import FORCE_ENVELOPE, force_unit_of, lost, main_limits, time_unit
+from asperity.reporting.time_figures import (
+    FORCE_ENVELOPE,
+    force_unit_of,
+    lost,
+    main_limits,
+    stretches,
+    time_unit,
+)
 from asperity.schema.rolling import CONTACT_FORCE, TIME
 
 MOST = 300_000
@@ -52,7 +59,7 @@ def history(tree: DataTree) -> dict[str, Any]:
                 "lowest": bottom / size,
                 "step": (top - bottom) / LEVELS / size,
                 "shown": law in beside and bottom >= low and top <= high,
-                "losses": _intervals(flight),
+                "losses": stretches(flight),
             }
         )
     return {
@@ -86,12 +93,6 @@ def _packed(force: NDArray[np.float64], low: float, high: float) -> bytes:
     steps = np.rint((force - low) / ((high - low) or 1.0) * LEVELS).astype(np.int64)
     changes = np.diff(np.diff(steps, prepend=0), prepend=0)
     return (changes & 0xFFFF).astype("<u2").view(np.uint8).reshape(-1, 2).T.tobytes()
-
-
-def _intervals(flight: NDArray[np.bool_]) -> list[list[int]]:
-    """First and last time step of each stretch in which contact is lost."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], flight.astype(np.int8), [0]))))
-    return [[int(start), int(end) - 1] for start, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
 FORCE_HISTORY = replace(FORCE_ENVELOPE, live=history)

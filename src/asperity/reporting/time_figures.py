@@ -40,16 +40,20 @@ def lost(tree: DataTree, law: str, force: NDArray[np.float64]) -> NDArray[np.boo
     return force <= 0
 
 
+def stretches(flight: NDArray[np.bool_]) -> list[list[int]]:
+    """First and last time step of each stretch in which contact is lost."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], flight.astype(np.int8), [0]))))
+    return [[int(start), int(end) - 1] for start, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
 def piece(tree: DataTree) -> slice:
     """Short piece of the run: around the main law's longest loss of contact, else in the middle."""
     flight = _main_flight(tree)
     count = len(flight)
     middle = count // 2
     if flight.any():
-        edges = np.flatnonzero(np.diff(np.concatenate(([0], flight.astype(np.int8), [0]))))
-        starts, ends = edges[::2], edges[1::2]
-        longest = int(np.argmax(ends - starts))
-        middle = int(starts[longest] + ends[longest]) // 2
+        first, last = max(stretches(flight), key=lambda stretch: stretch[1] - stretch[0])
+        middle = (first + last + 1) // 2
     length = min(PIECE, max(count // 5, min(count, 200)))
     start = min(max(middle - length // 2, 0), count - length)
     return slice(start, start + length)
@@ -150,9 +154,10 @@ def cut_off(tree: DataTree, data: Data) -> str:
 
 
 def _flight_marks(axes: Axes, instants: NDArray[np.float64]) -> None:
+    ends = np.tile([-0.04, 0.1, np.nan], len(instants))  # one line with gaps: far smaller than many marks
     (marks,) = axes.plot(
-        instants, np.full(len(instants), 0.03), "|", transform=axes.get_xaxis_transform(), color=INK,
-        markersize=7, markeredgewidth=0.8, clip_on=False, zorder=5,
+        np.repeat(instants, 3), ends, transform=axes.get_xaxis_transform(), color=INK, linewidth=0.8,
+        clip_on=False, zorder=5,
     )  # fmt: skip
     marks.set_in_layout(False)
 
@@ -208,8 +213,10 @@ def _draw_flights(
 ) -> None:
     """Draw a bar per law where it has lost contact."""
     for row, (law, flight) in enumerate(flights.items()):
+        found, half = stretches(flight), 0.5 * (time[1] - time[0])
+        bars = [(time[first] - half, time[last] - time[first] + 2 * half) for first, last in found]
         colour = law_entry(tree, law).colour
-        axes.fill_between(time, row - 0.35, row + 0.35, where=flight, color=colour, step="mid", linewidth=0.8)
+        axes.broken_barh(bars, (row - 0.35, 0.7), color=colour, linewidth=0.8)
     axes.set_ylim(len(flights) - 0.4, -0.6)
     axes.set_yticks(range(len(flights)), list(flights))
     axes.grid(visible=False, axis="y")
