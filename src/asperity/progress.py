@@ -10,6 +10,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from html import escape
+from importlib import import_module
 from typing import Protocol, TextIO
 
 from asperity.printable import printable
@@ -213,12 +214,10 @@ class _NotebookProgress:
     """A bar beneath the cell that is run, which goes when the work ends."""
 
     def __init__(self) -> None:
-        from IPython.display import display
-
         self.line = "", 0, 1, ""  # message, done, total, rate and time left
         self.pace = Pace("", 0)
         self.drawn = time.monotonic()
-        self.handle = display(self, display_id=True)
+        self.handle = import_module("IPython.display").display(self, display_id=True)
 
     def __enter__(self) -> _NotebookProgress:
         return self
