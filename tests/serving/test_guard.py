@@ -8,7 +8,7 @@ pytest.importorskip("starlette", reason="the extra app is not installed")
 
 from starlette.responses import PlainTextResponse
 
-from asperity.serving.guard import PAGE_POLICY, Guard, new_token
+from asperity.serving.guard import PAGE_POLICY, Guard, new_token, policy_of
 
 TOKEN, PORT = "a-token", 8000
 HOST = {"host": f"127.0.0.1:{PORT}"}
@@ -100,3 +100,13 @@ def test_tokens_are_long_and_differ():
     found = {new_token() for _ in range(50)}
     assert len(found) == 50
     assert min(map(len, found)) >= 32
+
+
+@pytest.mark.parametrize("ending", [".html", ".svg"])
+def test_what_may_hold_scripts_is_shown_in_a_sandbox(ending):
+    policy = policy_of(ending)["content-security-policy"]
+    assert "sandbox allow-scripts" in policy
+    assert "allow-same-origin" not in policy
+    assert "default-src 'none'" in policy
+    assert "connect-src" not in policy
+    assert policy_of(".wav") == {}

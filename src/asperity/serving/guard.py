@@ -7,7 +7,6 @@ the same browser, can reach it there all the same; they know no token, and their
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterable
 
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
@@ -101,6 +100,6 @@ class Guard:
         return "Only the page itself may ask this."
 
 
-def policy_of(kind: str) -> Iterable[tuple[str, str]]:
-    """Headers of a file by its ending: a report lives in a sandbox, other files are taken away."""
-    return [("content-security-policy", REPORT_POLICY)] if kind == ".html" else []
+def policy_of(ending: str) -> dict[str, str]:
+    """Headers of a file by its ending: what a browser shows as a page of its own lives in a sandbox."""
+    return {"content-security-policy": REPORT_POLICY} if ending in (".html", ".svg") else {}

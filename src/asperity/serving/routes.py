@@ -314,9 +314,7 @@ def _handed_out(folder: Path | None, name: str) -> Response:
     shown = file.suffix in (".html", ".wav", ".svg", ".png")
     taken = file.name if shown else f"{folder.name}-{file.name}"
     where = "inline" if shown else "attachment"
-    return FileResponse(
-        file, filename=taken, content_disposition_type=where, headers=dict(policy_of(file.suffix))
-    )
+    return FileResponse(file, filename=taken, content_disposition_type=where, headers=policy_of(file.suffix))
 
 
 @told_plainly
