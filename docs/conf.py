@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import asperity
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "extensions"))
-os.environ.setdefault("MPLBACKEND", "agg")
 
 project, author, language = "asperity", "The asperity developers", "en"
 project_copyright = "the asperity developers, BSD-3-Clause"
@@ -41,6 +39,7 @@ nb_execution_raise_on_error = True
 nb_execution_in_temp = True
 nb_execution_timeout = 600
 nb_execution_show_tb = True
+nb_merge_streams = True
 nb_output_stderr = "remove"  # progress; warnings on the physics stand in results
 nb_number_source_lines = False
 
