@@ -223,6 +223,7 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     before = tab.inner_text("#now")
     tab.click("#play")
     tab.wait_for_function("before => document.getElementById('now').textContent !== before", arg=before)
+    tab.click("#play")
     tab.locator("#player").evaluate("it => { it.preload = 'metadata'; }")
     tab.wait_for_function("() => document.getElementById('player').duration > 0.01")  # it is a sound
     with tab.expect_download() as taken:

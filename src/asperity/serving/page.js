@@ -609,16 +609,24 @@ function rangeOf(low, high) {
   return [low > 3 * (high - low) || low < 0 ? low - margin : 0, high + margin];
 }
 
+// Number of values, which increase, below a limit.
+function indexOf(values, limit) {
+  let low = 0, high = values.length;
+  while (low < high) { const middle = (low + high) >> 1; if (values[middle] < limit) low = middle + 1; else high = middle; }
+  return low;
+}
+
 function drawForce(view, x, length) {
   const [pen, width, height] = prepared(find("force")), box = { left: 0, top: 20, width, height: height - 26 };
   const { force, patch } = view, [low, high] = force.range[shown.law], y = rangeOf(low, high);
   const [toX, toY] = axes(pen, { ...box, left: 44, width: width - 44 }, [x - length / 2, x + length / 2], y, null, [`contact force, ${shown.law}`, "N"]);
   const at = (value) => (value - x) / length * width + width / 2;
+  const first = indexOf(force.distance, x - 0.51 * length), end = indexOf(force.distance, x + 0.51 * length);
   pen.save(); pen.beginPath(); pen.rect(44, 0, width - 44, height); pen.clip();
   pen.setLineDash([3, 3]); line(pen, [[44, toY(patch.load)], [width, toY(patch.load)]], colour("--muted"), 1); pen.setLineDash([]);
   for (const name of [...Object.keys(force.pieces).filter((each) => each !== shown.law), shown.law]) {
     const main = name === shown.law, points = [];
-    force.distance.forEach((d, i) => { if (Math.abs(d - x) <= 0.51 * length) points.push([at(d), toY(force.pieces[name][i])]); });
+    for (let i = first; i < end; i++) points.push([at(force.distance[i]), toY(force.pieces[name][i])]);
     pen.globalAlpha = main ? 1 : 0.3;
     line(pen, points, paintOf(name), main ? 2 : 1);
   }
