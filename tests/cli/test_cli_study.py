@@ -94,6 +94,7 @@ def test_a_study_is_tabulated_and_written(computed):
     assert "Study of 8 seed × 2 ball.load" in outcome.stderr
     for text in ("8 values of seed", "ball.load [N]", "contact_loss_share [1]", "hertz-filtered", " ± ", "–"):
         assert text in outcome.stdout
+    assert "dB(A) over linear_filtered" in " ".join(outcome.stdout.split())
     assert "100 Hz" not in outcome.stdout
     assert str((folder / "out" / "study.nc").resolve()) in outcome.stdout
     with (folder / "out" / "study.csv").open(newline="", encoding="utf-8") as file:

@@ -135,9 +135,11 @@ def _refuse_to_overwrite(study: Study, directory: Path) -> None:
         raise InputError(str(directory), "the study.nc of another study", allowed, remedy)
 
 
+OVER = f"{spectra.FORCE_LEVEL.name}_a_difference_to_"
 PRINTED = (
     f"{spectra.FORCE_LEVEL.name}_a",
-    *(f"{spectra.FORCE_LEVEL.name}_a_difference_to_{to}" for to in ("linear_filtered", "linear")),
+    f"{OVER}linear_filtered",
+    f"{OVER}linear",
     "rms_force",
     "peak_force",
     rolling.CONTACT_LOSS_SHARE.name,
@@ -150,6 +152,7 @@ def _show(found: xarray.Dataset) -> None:
     names = [name for name in PRINTED if name in found]
     held = [name for name in (*names, *(f"{name}{SCATTER}" for name in names)) if name in found]
     heading, rows = columns_of(found[held].assign_attrs(found.attrs), bands=False)
+    heading = [title.replace(OVER, "dB(A) over ") for title in heading]  # as wide as its numbers
     keys = len(axes_of(found))
     paired = len(held) > len(names)
     shown = [_printed_row(row, keys, paired=paired) for row in rows[:MOST_ROWS]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any
@@ -20,6 +21,8 @@ from asperity.spectra import LEAST_PRODUCT
 
 MOST_LINES = 6
 """Values of other keys, or bands of one, that are told apart; the CSV file has all."""
+LETTERS = 26
+"""In a line of the label of an axis."""
 SPREAD = 20.0
 """Ratio of the largest value to the smallest from which the axis is logarithmic."""
 WEIGHTED = f"{FORCE_LEVEL.name}_a"
@@ -80,7 +83,8 @@ def _quantities(table: xarray.Dataset) -> list[tuple[str, str, float]]:
     ]
     size, symbol = force_unit(float(np.nanmax(table["peak_force"].values)))
     wanted = [(WEIGHTED, "force level / dB(A) re 1 N", 1.0)]
-    wanted += [(name, _level_label(table[name]), 1.0) for name in motion[-1:]]
+    heard = sorted(motion, key=lambda name: table[name].ndim)[:1]  # rather sound than motion at places
+    wanted += [(name, _level_label(table[name]), 1.0) for name in heard]
     wanted += [
         ("peak_force", f"largest force / {symbol}", size),
         (CONTACT_LOSS_SHARE.name, "time without contact / %", 0.01),
@@ -91,7 +95,7 @@ def _quantities(table: xarray.Dataset) -> list[tuple[str, str, float]]:
 
 def _level_label(level: xarray.DataArray) -> str:
     what = str(level.attrs["long_name"]).removeprefix("A-weighted ").partition(",")[0]
-    return f"{what}\n/ {level.attrs['units']}"
+    return f"{textwrap.fill(what, LETTERS)}\n/ {level.attrs['units']}"
 
 
 def _lines(
