@@ -18,6 +18,8 @@ WRITERS = {
     "terminal.py",
     "progress.py",  # bars; its words go through `printable`
     "apart.py",  # answers to the process that asked
+    "desk.py",
+    "jobs.py",  # read what such processes answer
     "__main__.py",  # before anything can be imported
 }
 

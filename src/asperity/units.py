@@ -23,8 +23,14 @@ _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit hav
 _PREFIXED = ("m", "s", "Hz", "N", "Pa", "m/s", "N/m", "N s/m", "N m^2")
 LEAST_NUMBER, MOST_NUMBER = 1e-3, 1e5
 """A quantity keeps its unit while its number lies between these."""
-_PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
-_OTHERS = {("deg", "rad"): math.pi / 180.0, ("h", "s"): 3600.0, ("min", "s"): 60.0, ("t", "kg"): 1000.0}
+_PREFIXES = {"n": 1e-9, "u": 1e-6, "µ": 1e-6, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}
+_OTHERS = {
+    ("pm", "m"): 1e-12,
+    ("deg", "rad"): math.pi / 180.0,
+    ("h", "s"): 3600.0,
+    ("min", "s"): 60.0,
+    ("t", "kg"): 1000.0,
+}
 
 
 @lru_cache(maxsize=1)

@@ -62,8 +62,10 @@ def whole(tmp_path_factory):
     return folder / "out"
 
 
-@pytest.mark.parametrize("when", ["before", "after"])
-@pytest.mark.parametrize("number", range(1, 26) if LONG else [1, 5])
+KILLED = [(n, when) for n in range(1, 26) for when in ("before", "after")]
+
+
+@pytest.mark.parametrize(("number", "when"), KILLED if LONG else [(1, "after"), (5, "before")])
 def test_a_run_killed_at_a_write_goes_on(whole, tmp_path, number, when):
     folder = prepared(tmp_path / "run")
     killed = program(

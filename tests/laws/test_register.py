@@ -119,7 +119,9 @@ def test_a_law_of_the_test_runs_through_result_report_and_csv(kind, registered, 
     (variable,) = re.findall(r"(--c\d+):#123456;", page)  # for light screens …
     assert page.count(f"{variable}:") >= 2  # … and another value for dark ones
     figure = page[page.index('<figure id="force_bands"') :]
-    assert f"var({variable})" in figure[: figure.index("</figure>")]
+    figure = figure[: figure.index("</figure>")]
+    styles = re.findall(rf"\.(s\d+)\{{[^}}]*var\({variable}\)", page)
+    assert any(f'class="{style}"' in figure for style in styles)
     with open(tmp_path / "force_bands.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
     columns = [cell for row in rows[:3] for cell in row]

@@ -179,7 +179,9 @@ def _least_squares(linearised: Linearised, start: NDArray[np.float64]) -> NDArra
         aim = np.concatenate([slope @ unknowns - residual, brake * unknowns])
         tried = nnls(np.vstack([slope, np.diag(brake)]), aim, maxiter=100 * aim.size)[0]
         found = linearised(tried)
-        gain = 1.0 - (found[0] @ found[0]) / (residual @ residual)
+        if (squares := residual @ residual) == 0.0:  # losses so small that nothing is to be gained
+            return unknowns
+        gain = 1.0 - (found[0] @ found[0]) / squares
         damping *= 0.1 if gain > 0.0 else 10.0
         if gain > 0.0:
             unknowns, (residual, slope) = tried, found
