@@ -7,9 +7,11 @@ import wave
 import numpy as np
 import pytest
 import xarray
+from scipy.fft import rfft, rfftfreq
 
 import asperity
 from asperity.errors import InputError
+from asperity.reporting.pass_by import pass_by_pressure, radiated
 from asperity.reporting.sound import FADE, PEAK, RATE, Sound, at_rate, wav_bytes
 
 STEP = 1 / 37333.0
@@ -110,3 +112,55 @@ def test_every_kind_can_be_listened_to(real_runs, kind, tmp_path):
     duration = float(tree["rolling"]["time"][-1])
     assert len(files) >= tree["rolling"].sizes["law"]
     assert all(len(read(file)) / RATE == pytest.approx(duration, rel=0.01) for file in files)
+
+
+def passing(speed, level=100.0):
+    """Made-up run of a wheel: a tone, whose sound power is known in the band."""
+    time = STEP * np.arange(40_000)
+    force = 65e3 + 300.0 * np.sin(2.0 * np.pi * 1000.0 * time)[None]
+    power = np.full((1, 3, 2), np.nan)
+    power[0, :2] = [[level - 10.0 * np.log10(2.0), -300.0]] * 2  # two sources, one that does not radiate
+    rolling = xarray.Dataset(
+        {"contact_force": (("law", "time"), force, {"units": "N"})},
+        {"law": ["areal"], "time": time},
+        {"speed": speed},
+    )
+    spectra = xarray.Dataset(
+        {"sound_power_level": (("law", "source", "noise_band"), power)},
+        {"law": ["areal"], "noise_band": [1000.0, 2000.0]},
+    )
+    return xarray.DataTree.from_dict({"/rolling": rolling, "/spectra": spectra})
+
+
+def test_pressure_beside_the_track_is_that_of_a_source_above_ground():
+    """At rest 7.5 m away: L_p = L_W − 10 lg(2π d²/1 m²) + 10 lg(413 · 1e-12/4e-10)."""
+    found = pass_by_pressure(passing(speed=0.0))
+    level = 20.0 * np.log10(found.values.std() / 2e-5)
+    assert level == pytest.approx(100.0 - 10.0 * np.log10(2.0 * np.pi * 7.5**2) + 0.14, abs=0.02)
+
+
+def test_it_is_loudest_in_the_middle_and_falls_with_the_distance():
+    """At 50 m/s the source is 26.8 m along when the record ends: 20 lg(27.8/7.5) = 11.4 dB."""
+    pressure = pass_by_pressure(passing(speed=50.0)).values[0]
+    n = len(pressure)
+    loud = [np.std(part) for part in (pressure[n // 2 - 400 : n // 2 + 400], pressure[:800], pressure[-800:])]
+    assert 20.0 * np.log10(loud[0] / loud[1]) == pytest.approx(11.3, abs=0.2)
+    assert loud[1] == pytest.approx(loud[2], rel=0.02)
+
+
+def test_each_band_has_its_sound_power_and_nothing_lies_beside():
+    force = np.random.default_rng(3).normal(size=40_000)
+    centre, level = np.array([100.0, 1000.0]) * 10.0 ** np.array([0.0, 0.1]), np.array([90.0, -np.inf])
+    source = radiated(force, STEP, centre, level)
+    power = 2.0 * np.abs(rfft(source)) ** 2 / len(source) ** 2
+    lines = rfftfreq(len(source), STEP)
+    inside = (lines > 100.0 / 10**0.05) & (lines < 100.0 * 10**0.05)
+    assert 10.0 * np.log10(power[inside].sum() / 1e-12) == pytest.approx(90.0, abs=0.3)
+    assert power[~inside].sum() < 1e-20
+
+
+def test_it_is_heard_where_the_sound_power_is_known(real_runs, tmp_path):
+    files = asperity.listen(real_runs["wheel-on-rail"], tmp_path, what="pass_by_pressure")
+    assert len(files) == real_runs["wheel-on-rail"]["rolling"].sizes["law"]
+    with pytest.raises(InputError, match="received 'pass_by_pressure'"):
+        asperity.listen(real_runs["ball-on-beam"], tmp_path, what="pass_by_pressure")

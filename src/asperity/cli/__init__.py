@@ -374,7 +374,10 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> d
 )
 @click.argument("run", type=PATH)
 @click.option(
-    "--what", metavar="NAME", help="Variable of 'rolling' in the run. [default: acceleration, else velocity]"
+    "--what",
+    metavar="NAME",
+    help="Variable of 'rolling' in the run, or pass_by_pressure, 7.5 m from a track. "
+    "[default: acceleration, else velocity]",
 )
 @click.option(
     "--matched", is_flag=True, help="Make all as loud as each other. [default: louder laws are louder]"

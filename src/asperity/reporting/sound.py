@@ -22,6 +22,7 @@ from asperity.arguments import file_path, shown
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
 from asperity.files import write_bytes
+from asperity.reporting.pass_by import PASS_BY, pass_by_pressure
 from asperity.schema.rolling import LAW, TIME
 from asperity.spectra import a_weighting
 
@@ -75,6 +76,7 @@ def listen(
         sample stands for. It is made where it is missing.
     what : str, optional
         A variable of the group ``rolling``, in m/s², m/s or N; by default an acceleration, else a velocity.
+        Or ``"pass_by_pressure"``, the sound pressure 7.5 m from a track, where the sound power is known.
     matched : bool
         Make all as loud as each other, by A-weighted level. By default all have the same scale, so that
         louder laws are heard as such.
@@ -93,8 +95,9 @@ def listen(
 
     Notes
     -----
-    Vibration is heard as it is, neither radiated nor transmitted. Means are taken off; what lies above 24 kHz
-    is left out. Both ends fade over 10 ms.
+    Vibration is heard as it is, neither radiated nor transmitted; docs/conventions.md says how the pressure
+    beside a track is made. Means are taken off; what lies above 24 kHz is left out. Both ends fade over
+    10 ms.
 
     Examples
     --------
@@ -127,6 +130,8 @@ def listen(
 def sounds_of(tree: DataTree, what: str | None = None) -> list[Sound]:
     """Signals of a variable of the run in time, of each law and place."""
     found = _heard(tree)
+    if what == PASS_BY and (pressure := pass_by_pressure(tree)) is not None:
+        found[PASS_BY] = pressure
     name = next(iter(found), None) if what is None else what
     if name not in found:
         allowed = ", ".join(found) or "nothing, for the run holds no signal of two samples or more"
