@@ -10,7 +10,7 @@ from program import LONG, RUN, ended, left, prepared, program, promised, same
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there is no such limit")
 
-SIZES = [2**k for k in range(12, 22)] if LONG else [20_000, 100_000]
+SIZES = [2**k for k in range(12, 22)] if LONG else [20_000, 100_000, 300_000]
 
 
 @pytest.fixture(scope="module")

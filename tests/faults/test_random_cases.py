@@ -82,7 +82,7 @@ def flaws(tree):
                 yield f"{node.path}/{name}"
 
 
-@pytest.mark.parametrize("seed", range(300 if LONG else 4))
+@pytest.mark.parametrize("seed", range(300 if LONG else 6))
 def test_a_random_case_is_computed_or_refused(seed, tmp_path, monkeypatch):
     monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
     source = random.Random(seed)

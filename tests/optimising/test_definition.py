@@ -6,7 +6,7 @@ import pytest
 import asperity
 from asperity.config.parsing import FROM_PYTHON, read_toml, validated
 from asperity.errors import CaseError, InputError
-from asperity.optimising.definition import Aim, load_task, task_template
+from asperity.optimising.definition import Aim, assignment_template, load_assignment
 from asperity.optimising.texture import bands_of, with_texture
 from small_cases import COARSE, WHEEL
 
@@ -20,7 +20,7 @@ def refused(match, **aim):
 
 
 def test_the_template_is_an_aim():
-    data = read_toml(task_template(), "optimisation", "template")
+    data = read_toml(assignment_template(), "optimisation", "template")
     assert data.pop("case") == "case.toml"
     assert validated(Aim, data, FROM_PYTHON).rms_at_least == pytest.approx(0.5e-6)
 
@@ -64,7 +64,7 @@ def test_files_that_say_too_little_or_too_much(tmp_path, text, match):
     (tmp_path / "case.toml").write_text(asperity.BallOnBeam(**CASE).to_toml())
     (tmp_path / "aim.toml").write_text(text)
     with pytest.raises((CaseError, InputError), match=match):
-        load_task(tmp_path / "aim.toml")
+        load_assignment(tmp_path / "aim.toml")
 
 
 def test_bands_are_those_of_the_spectrum_that_are_heard():

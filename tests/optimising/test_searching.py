@@ -81,5 +81,7 @@ def test_a_search_that_does_not_settle_says_so():
     def erratic(levels, lateral):
         return Trial(levels, lateral, WEIGHT * energy_of(levels) * 10.0 ** random.uniform(-0.5, 0.5), 0.0)
 
-    _, settled, _ = found(erratic, limits(), limit=5.0)
+    trials, settled, _ = found(erratic, limits(), limit=5.0)
     assert not settled
+    missed = [abs(trial.level - 5.0) for trial in trials[1:]]
+    assert missed[-1] == min(missed)  # and the best that was met is the last

@@ -115,6 +115,13 @@ def test_it_is_passive_and_not_too_soft_at_rest(rail, pad, ballast):
         assert (causal.receptance(frequency, x, x).imag <= 1e-18).all()
 
 
+@pytest.mark.xfail(strict=True, reason="the direction of waves that hardly decay is lost to round-off")
+def test_a_rail_that_its_ballast_alone_damps_is_passive():
+    track = replace(NORDBORG, rail_loss_factor=0.0, pad_loss_factor=0.0, ballast_loss_factor=1e-6)
+    frequency = np.geomspace(1.0, 2e4, 200)
+    assert (causal_track(track).receptance(frequency, 0.0, 0.0).imag <= 1e-18).all()
+
+
 def test_losses_next_to_nothing_end_the_fit():
     track = replace(NORDBORG, rail_loss_factor=0.0, pad_loss_factor=0.0, ballast_loss_factor=4.57e-270)
     assert max(causal_track(track).relaxations.ballast.strengths) < 1e-200

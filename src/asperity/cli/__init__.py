@@ -115,9 +115,9 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     if kind not in templates():
         raise not_a_kind(kind, templates())
     if kind == "optimisation":
-        from asperity.optimising.definition import task_template
+        from asperity.optimising.definition import assignment_template
 
-        say(task_template(), lines=True)
+        say(assignment_template(), lines=True)
     elif kind == "study":
         from asperity.studies.definition import TEMPLATE
 

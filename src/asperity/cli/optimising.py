@@ -14,7 +14,7 @@ from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, write_bytes
 from asperity.kinds import report as reports
 from asperity.laws import spec_of
-from asperity.optimising.definition import load_task
+from asperity.optimising.definition import load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
 from asperity.reporting.optimised import TextureBands, optimised_figure
@@ -31,13 +31,13 @@ def optimise_into(path: Path, directory: Path, *, report: bool = True, overwrite
 
     `overwrite` says whether a texture in the folder may be replaced, and `report` whether the runs get pages.
     """
-    task = load_task(path)
+    assignment = load_assignment(path)
     refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
     if (directory / CASE).exists() and not overwrite:
         remedy = "Choose another folder with -o, or replace it with --overwrite."
         raise InputError(str(directory), f"a folder that holds a {CASE}", "a new folder", remedy)
     with alone_in(directory), progress_bar() as progress:
-        found = optimise(task, progress)
+        found = optimise(assignment, progress)
         bands = texture_bands(found)
         rows = zip(found.after.wavelength.tolist(), found.after.levels.tolist(), strict=True)
         write_csv(directory / TEXTURE, ["wavelength (m)", "level (dB re 1 um)"], [list(row) for row in rows])
@@ -59,7 +59,7 @@ def texture_bands(found: Optimised) -> TextureBands:
     """Numbers of the bands: of those that were changed."""
     changed = found.after.changed
     low, high = found.after.edges(found.case.speed)
-    aim = found.task.aim
+    aim = found.assignment.aim
     heard = {
         law: {
             name: found.band_levels(tree, law)
@@ -97,7 +97,7 @@ def _table(bands: TextureBands, units: str) -> tuple[list[str], list[list[object
 
 
 def _trials(found: Optimised) -> tuple[list[str], list[list[object]]]:
-    """All textures that were rolled over, in their order."""
+    """Textures that the search went on from, in their order."""
     heading = ["trial", f"level [{found.measure.units}]", "lateral"]
     heading += [f"{w:.6g} m [dB re 1 um]" for w in found.after.changed_wavelength]
     rows: list[list[object]] = [

@@ -157,8 +157,8 @@ class Assignment:
     aim: Aim
 
 
-def load_task(path: str | os.PathLike[str]) -> Assignment:
-    """Read a task from a TOML file: ``case``, a path or a section, and the keys of `Aim`."""
+def load_assignment(path: str | os.PathLike[str]) -> Assignment:
+    """Read a assignment from a TOML file: ``case``, a path or a section, and the keys of `Aim`."""
     remedy = "Check the path, or write one with 'asperity new optimisation > optimisation.toml'."
     data = read_toml(read_definition(path, "optimisation", remedy), "optimisation", path)
     base = data.pop("case", None)
@@ -171,11 +171,13 @@ def load_task(path: str | os.PathLike[str]) -> Assignment:
     return Assignment(case, validated(Aim, data, origin))
 
 
-def task_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, keys: Mapping[str, Any]) -> Assignment:
-    """Make a task of a case in any of its forms and the keys of `Aim`."""
+def assignment_of(
+    case: str | os.PathLike[str] | Mapping[str, Any] | Case, keys: Mapping[str, Any]
+) -> Assignment:
+    """Make a assignment of a case in any of its forms and the keys of `Aim`."""
     return Assignment(as_case(case), Aim(**keys))
 
 
-def task_template() -> str:
-    """A commented task."""
+def assignment_template() -> str:
+    """A commented assignment."""
     return _HEAD + commented(Aim, {"rms_at_least": '"0.5 um"'})

@@ -19,7 +19,7 @@ from asperity.config.content import content, file_digest
 from asperity.errors import InputError, PhysicsWarning
 from asperity.kinds.cases import kind_of
 from asperity.optimising.allocation import Limits, rms_of
-from asperity.optimising.definition import Assignment, task_of
+from asperity.optimising.definition import Assignment, assignment_of
 from asperity.optimising.searching import Trial, search
 from asperity.optimising.texture import Bands, bands_of, with_texture
 from asperity.progress import Progress, shown_progress
@@ -44,7 +44,7 @@ class Optimised:
 
     Attributes
     ----------
-    task : Assignment
+    assignment : Assignment
         The case, and what its texture should be.
     measure : Measure
         What it was judged by.
@@ -53,8 +53,8 @@ class Optimised:
     before, after : Bands
         The texture of the case, and the one found.
     trials : tuple of Trial
-        All textures that were rolled over on the way, with ``aim.law``; that of the case first, the one found
-        last.
+        Textures that the search went on from, rolled over with ``aim.law``; that of the case first, the one
+        found last.
     settled : bool
         Whether the search ended by itself.
     case : Case
@@ -63,7 +63,7 @@ class Optimised:
         Both textures, rolled over with ``aim.verify`` and ``aim.law``.
     """
 
-    task: Assignment
+    assignment: Assignment
     measure: Measure
     limits: Limits
     before: Bands
@@ -91,14 +91,14 @@ class Optimised:
     @property
     def changes(self) -> dict[str, float]:
         """By how much the level of the quantity changes, dB, by law."""
-        aim = self.task.aim
+        aim = self.assignment.aim
         laws = dict.fromkeys((aim.verify, aim.law))
         return {law: self.level(True, law) - self.level(False, law) for law in laws}
 
     @property
     def active(self) -> list[str]:
         """Limits that the texture found lies on."""
-        limits, levels, aim = self.limits, self.after.levels[self.after.changed], self.task.aim
+        limits, levels, aim = self.limits, self.after.levels[self.after.changed], self.assignment.aim
         found = []
         if aim.limit is not None and abs(self.trials[-1].level - aim.limit) < 2 * AT_A_BOUND:
             found.append("limit")
@@ -116,7 +116,7 @@ class Optimised:
     @property
     def sentence(self) -> str:
         """What came of it, for people."""
-        aim, (first, last) = self.task.aim, (self.before, self.after)
+        aim, (first, last) = self.assignment.aim, (self.before, self.after)
         rms = [1e6 * rms_of(bands.levels[bands.changed]) for bands in (first, last)]
         told = [f"{law} {change:+.1f} dB" for law, change in self.changes.items()]
         lay = f", lay {first.lateral:.3g} to {last.lateral:.3g}" if aim.lateral and first.lateral else ""
@@ -142,7 +142,7 @@ def optimise(
     Parameters
     ----------
     case : path, mapping, case object or Assignment
-        The case, as `asperity.run` takes it; or a whole task.
+        The case, as `asperity.run` takes it; or a whole assignment.
     progress : callable, optional
         ``progress(done, total, message)``, called during long work.
     **aim
@@ -177,16 +177,16 @@ def optimise(
     """
     if isinstance(case, Assignment):
         if aim:
-            raise InputError("aim", shown(next(iter(aim))), "a task alone, or a case with an aim")
-        task = case
+            raise InputError("aim", shown(next(iter(aim))), "a assignment alone, or a case with an aim")
+        assignment = case
     else:
-        task = task_of(case, aim)
+        assignment = assignment_of(case, aim)
     with shown_progress(progress) as told:
-        return _optimised(task, told)
+        return _optimised(assignment, told)
 
 
-def _optimised(task: Assignment, progress: Progress) -> Optimised:
-    case, aim = task.case, task.aim
+def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
+    case, aim = assignment.case, assignment.aim
     measures = kind_of(case).measures
     if aim.quantity not in measures:
         raise InputError("quantity", f'"{aim.quantity}" of {case.kind}', " or ".join(measures))
@@ -203,7 +203,7 @@ def _optimised(task: Assignment, progress: Progress) -> Optimised:
         progress(count, count + 1, f"texture {count}: {words}")
 
     def roll(levels: NDArray[np.float64], lateral: float | None) -> Trial:
-        return _rolled(task, measure, before.with_changed(levels, lateral), progress)
+        return _rolled(assignment, measure, before.with_changed(levels, lateral), progress)
 
     start = roll(before.levels[before.changed], before.lateral)
     lay = None if aim.lateral is None else (aim.lateral[0], aim.lateral[1])
@@ -212,14 +212,14 @@ def _optimised(task: Assignment, progress: Progress) -> Optimised:
     laws = tuple(dict.fromkeys((aim.verify, aim.law, *measure.beside)))
     found = with_texture(case, after)
     results = [run(each.with_(laws=laws), progress) for each in (with_texture(case, before), found)]
-    return Optimised(task, measure, limits, before, after, tuple(trials), settled, found, *results)
+    return Optimised(assignment, measure, limits, before, after, tuple(trials), settled, found, *results)
 
 
-def _rolled(task: Assignment, measure: Measure, bands: Bands, progress: Progress) -> Trial:
+def _rolled(assignment: Assignment, measure: Measure, bands: Bands, progress: Progress) -> Trial:
     """Roll over a texture with the law of the search; what came of it is kept by all that it depends on."""
-    aim = task.aim
+    aim = assignment.aim
     laws = tuple(dict.fromkeys((aim.law, *measure.beside)))
-    case = with_texture(task.case, bands).with_(laws=laws)
+    case = with_texture(assignment.case, bands).with_(laws=laws)
     store = Store()
     told = json.dumps(content(case, file_digest), sort_keys=True)
     key = content_key("texture", FORMAT, __version__, told, aim.quantity, aim.law)

@@ -55,7 +55,7 @@ def search(
     lay: tuple[float, float] | None,
     told: Callable[[str], None],
 ) -> tuple[list[Trial], bool]:
-    """Search the best texture; all trials, the best last, and whether the search settled.
+    """Search the best texture; trials that it went on from, the best last, and whether the search settled.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def _up_to(
     rolled: Callable[[NDArray[np.float64]], Trial], trials: list[Trial], limits: Limits, limit: float
 ) -> tuple[list[Trial], bool]:
     """Find the cheapest levels that keep a limit."""
-    response = _in_proportion(trials[-1])
+    response, before = _in_proportion(trials[-1]), len(trials)
     for _ in range(MOST_ROUNDS):
         last = trials[-1]
         trial = rolled(roughest(response, limits, limit, last.levels))
@@ -114,7 +114,7 @@ def _up_to(
         still = np.abs(trial.levels - last.levels).max() < SETTLED_LEVEL
         if abs(trial.level - limit) < SETTLED_LEVEL or (still and trial.level < limit):
             return trials, True
-    return trials, False
+    return [*trials, min(trials[before:], key=lambda each: abs(each.level - limit))], False
 
 
 def _quieter(
@@ -150,7 +150,7 @@ def _in_proportion(trial: Trial) -> Response:
     return Response(trial.energies / energy_of(trial.levels), trial.rest)
 
 
-def _by_slopes(response: Response, last: Trial, trial: Trial, smallest: float = SMALLEST_SHARE) -> Response:
+def _by_slopes(response: Response, last: Trial, trial: Trial) -> Response:
     """Take each band's slope between two trials; what that leaves of the energy is the floor.
 
     A band whose energy comes from elsewhere, from other bands or another body, is not worth lowering.
