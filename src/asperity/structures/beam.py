@@ -152,6 +152,16 @@ class Beam:
         return 0.5 * self.loss_factor
 
     @property
+    def damping_ratios(self) -> NDArray[np.float64]:
+        """The same for each mode."""
+        return np.full(self.natural_frequencies.shape, self.damping_ratio)
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Where it begins and ends, m."""
+        return 0.0, self.length
+
+    @property
     def mass(self) -> float:
         """Mass, kg."""
         return self.mass_per_length * self.length

@@ -1,0 +1,87 @@
+"""A body that rolls on one or several contacts: masses, springs and dampers, and modes on top of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError
+
+Array = NDArray[np.float64]
+
+CARRIED = 1e-9
+"""Share of the pressing forces that may be left uncarried."""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A linear body with d degrees of freedom y, m or rad, positive upwards, on c contacts.
+
+    M y″ + C y′ + K y = Aᵀ F − p under the contact forces F (c,), and each of its s modes, mass-normalised,
+    obeys q″ + 2ζω q′ + ω² q = Φᵀ F beside it. At its contacts it is displaced, upwards, by A y + Φ q.
+    """
+
+    mass: Array  # M, (d, d), kg or kg m²
+    damping: Array  # C, (d, d), N s/m …
+    stiffness: Array  # K, (d, d), N/m …; singular of a body that nothing but its contacts holds
+    contacts: Array  # A, (c, d)
+    pressing: Array  # p, (d,), constant forces that press the body down, N or N m
+    places: Array  # (c,), of its contacts along the path, ahead of the body's position, m
+    natural_frequencies: Array  # (s,), of its modes, Hz
+    damping_ratios: Array  # (s,)
+    shapes: Array  # Φ, (c, s), kg^(−1/2)
+
+    def __post_init__(self) -> None:
+        c, d = self.contacts.shape
+        s = len(self.natural_frequencies)
+        shapes = {
+            "mass": (d, d),
+            "damping": (d, d),
+            "stiffness": (d, d),
+            "pressing": (d,),
+            "places": (c,),
+            "damping_ratios": (s,),
+            "shapes": (c, s),
+        }
+        for name, shape in shapes.items():
+            value = getattr(self, name)
+            if value.shape != shape or not np.isfinite(value).all():
+                raise InputError(
+                    f"{name} of a body", f"shape {value.shape}", f"finite numbers of shape {shape}"
+                )
+        if np.linalg.eigvalsh(self.mass).min() <= 0.0:
+            raise InputError("masses of a body", "one without inertia", "positive masses")
+        carried = self.contacts.T @ self.static_loads - self.stiffness @ self._hung - self.pressing
+        if np.abs(carried).max(initial=0.0) > CARRIED * np.abs(self.pressing).max(initial=1.0):
+            remedy = "Give it more contacts, or springs that hold it."
+            raise InputError(
+                "contacts of a body", "too few: it falls or tilts", "a body that is held", remedy
+            )
+
+    @classmethod
+    def rigid(cls, mass: float, load: float) -> Body:
+        """A free rigid mass, kg, on one contact under a constant load, N, weight included."""
+        one, none = np.ones((1, 1)), np.zeros((1, 1))
+        empty = np.zeros(0)
+        return cls(mass * one, none, none, one, np.array([load]), np.zeros(1), empty, empty, np.zeros((1, 0)))
+
+    @property
+    def static_loads(self) -> Array:
+        """Forces of the contacts at rest (c,), N, on a rigid plane; of several answers the most even."""
+        return self._statics[1]
+
+    @property
+    def _hung(self) -> Array:
+        return self._statics[0]
+
+    @property
+    def _statics(self) -> tuple[Array, Array]:
+        """Displacements y (d,) and forces (c,) with A y = 0 and Aᵀ F − K y = p, of least squares."""
+        c, d = self.contacts.shape
+        # forces and lengths are as different as stiffnesses
+        scale = max(float(np.abs(self.stiffness).max()), 1.0)
+        matrix = np.block([[-self.stiffness / scale, self.contacts.T], [self.contacts, np.zeros((c, c))]])
+        solution = np.linalg.lstsq(matrix, np.concatenate([self.pressing, np.zeros(c)]), rcond=None)[0]
+        return solution[:d] / scale, solution[d:]
