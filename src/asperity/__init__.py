@@ -15,6 +15,7 @@ _HOME = {
     "HeightMap": "surfaces.heightmap",
     "Hertz": "contact.hertz",
     "Material": "reference.materials",
+    "ModalStructure": "structures.modal_table",
     "Profile": "surfaces.heightmap",
     "Track": "structures.track",
     "Wheel": "structures.wheel",

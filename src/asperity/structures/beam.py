@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.errors import InputError
 from asperity.kernels.waves import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
+from asperity.structures.modal import modal_receptance
 
 SUPPORTS = ("simply-supported", "free", "clamped")
 
@@ -301,8 +302,4 @@ class Beam:
         InputError
             If a position is off the beam.
         """
-        omega = 2.0 * np.pi * np.asarray(frequency, dtype=float)[..., None]
-        natural = 2.0 * np.pi * self.natural_frequencies
-        (response, force), _ = self.shapes([x, x0])
-        dynamic = natural**2 - omega**2 + 2j * self.damping_ratio * natural * omega
-        return np.sum(response * force / dynamic, axis=-1)
+        return modal_receptance(self, frequency, x, x0)

@@ -7,6 +7,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.errors import InputError
+
 
 class Modal(Protocol):
     """A linear structure as the sum of its modes along a path, mass-normalised, displacement along the force.
@@ -39,3 +41,17 @@ class Modal(Protocol):
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """As `shapes`, at equally spaced positions."""
         ...
+
+
+def modal_receptance(structure: Modal, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
+    """Displacement at `x` per harmonic force at `x0`, m/N, e^{+iωt}, of the shape of the frequency, Hz.
+
+    Zero frequency gives the static compliance, which a structure with modes of a rigid body has not.
+    """
+    omega = 2.0 * np.pi * np.asarray(frequency, dtype=float)[..., None]
+    natural = 2.0 * np.pi * structure.natural_frequencies
+    if not omega.all() and not natural.all():
+        raise InputError("frequency (Hz)", 0, "above 0: what nothing holds has no static receptance")
+    (response, force), _ = structure.shapes([x, x0])
+    dynamic = natural**2 - omega**2 + 2j * structure.damping_ratios * natural * omega
+    return np.sum(response * force / dynamic, axis=-1)
