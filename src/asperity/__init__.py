@@ -26,6 +26,7 @@ _HOME = {
     "open_result": "running",
     "optimise": "optimising.running",
     "prediction_band": "studies.ensemble",
+    "read_modal_structure": "structures.modal_files",
     "read_surface": "surfaces.readers",
     "report": "kinds.report",
     "run": "running",

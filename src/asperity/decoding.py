@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+from collections.abc import Iterator
 from pathlib import Path
 
 from asperity.arguments import no_file
@@ -51,6 +52,20 @@ def decoded(content: bytes, source: str, allowed: str) -> str:
         encoding = error.encoding[:6].upper()  # whatever the order of bytes
         received = f"a byte that is no {encoding} in line {line}"
         raise InputError(source, received, allowed, remedy) from None
+
+
+def lines_of_cells(content: str) -> Iterator[tuple[int, list[str]]]:
+    """Cells of each line of a table that holds any, with its number.
+
+    They are apart by comma, semicolon (with decimal commas) or white space; text from '#' on is left out.
+    """
+    for number, line in enumerate(content.splitlines(), start=1):
+        text = line.partition("#")[0].strip()
+        separator = next((mark for mark in (";", ",") if mark in text), None)
+        if separator == ";":
+            text = text.replace(",", ".")
+        if text:
+            yield number, [cell.strip() for cell in text.split(separator)]
 
 
 def number_in(text: str | bytes) -> float:

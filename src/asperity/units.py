@@ -16,6 +16,7 @@ _NUMBER = re.compile(
 # Names, single-digit powers, products and quotients: nothing that takes the unit library long.
 _POWER = r"(?:(?:\^|\*\*)?-?[1-9]|[²³])?"
 _UNIT = re.compile(rf"[A-Za-zµμΩ°%]+{_POWER}(?:\s*[ */·]\s*[A-Za-zµμΩ°%]+{_POWER})*")
+_IN_BRACKETS = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 _LONGEST = 40  # characters
 _LONGEST_QUANTITY = 200  # characters: a number to the last bit and its unit have 70
 
@@ -104,6 +105,12 @@ def unit_in(text: str) -> str:
     """Unit of a quantity as it is written, ``"km/h"`` of ``"50 km/h"``; empty if it names none."""
     match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST_QUANTITY else None
     return "" if match is None else match[2].strip()
+
+
+def unit_in_brackets(heading: str) -> str:
+    """Unit that the heading of a column names, ``"cm"`` of ``"wavelength (cm)"``; empty without one."""
+    match = _IN_BRACKETS.search(heading)
+    return " ".join(match[1].split()) if match else ""
 
 
 def written(value: float, dimension: str, unit: str, *, exactly: bool = False) -> str:

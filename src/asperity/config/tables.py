@@ -15,16 +15,15 @@ from numpy.typing import NDArray
 from asperity.arguments import shown
 from asperity.config.content import name_of
 from asperity.config.form import Section
-from asperity.decoding import number_in, read_text
+from asperity.decoding import lines_of_cells, number_in, read_text
 from asperity.errors import InputError
-from asperity.units import factor
+from asperity.units import factor, unit_in_brackets
 
 LARGEST_TABLE = 10 * 2**20  # bytes
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
 
 TABLE_OF_LEVELS = "a table of wavelengths and levels"
 
-_UNIT = re.compile(r"[(\[]([^()\[\]]*)[)\]]")
 _BAND = 0.1  # of a decade
 
 
@@ -105,7 +104,8 @@ def read_table(table: TableSource, columns: tuple[Column, ...]) -> NDArray[np.fl
             raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
         return table
     scale, rows = [1.0] * len(columns), []
-    for number, cells in _lines(table, allowed):
+    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE)
+    for number, cells in lines_of_cells(content):
         values = [_number(cell) for cell in cells]
         if len(cells) == len(columns) and all(map(math.isfinite, values)):
             rows.append(values)
@@ -118,20 +118,6 @@ def read_table(table: TableSource, columns: tuple[Column, ...]) -> NDArray[np.fl
     return np.array(rows) * scale
 
 
-def _lines(path: Path, allowed: str) -> list[tuple[int, list[str]]]:
-    """Cells of each line that holds any, with its number."""
-    found = []
-    content = read_text(path, path.name, allowed, largest=LARGEST_TABLE)
-    for number, line in enumerate(content.splitlines(), start=1):
-        text = line.partition("#")[0].strip()
-        separator = next((mark for mark in (";", ",") if mark in text), None)
-        if separator == ";":
-            text = text.replace(",", ".")
-        if text:
-            found.append((number, [cell.strip() for cell in text.split(separator)]))
-    return found
-
-
 def _number(cell: str) -> float:
     try:
         return number_in(cell)
@@ -141,8 +127,7 @@ def _number(cell: str) -> float:
 
 def _scale(heading: str, column: Column, path: Path) -> float:
     """SI value of the unit that a heading names in brackets; 1 without one."""
-    match = _UNIT.search(heading)
-    unit = " ".join(match[1].split()) if match else ""
+    unit = unit_in_brackets(heading)
     if column.dimension == "dB":
         unit = re.sub(r" ?re ?1 ?[uµμ]m$", "", unit)
     if unit in ("", "-", "1"):

@@ -1,0 +1,229 @@
+"""Reading structures by their modes: text tables, netCDF, universal files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.apart import apart, received, send
+from asperity.arguments import file_path, no_file, shown
+from asperity.decoding import lines_of_cells, number_in, read_text
+from asperity.errors import InputError
+from asperity.files import amount
+from asperity.structures.modal_table import ModalStructure
+from asperity.structures.modal_universal import serve_universal
+from asperity.surfaces.readers.guards import check_claim, hostile
+from asperity.units import factor, unit_in_brackets
+
+Array = NDArray[np.float64]
+
+LARGEST_FILE = 256 * 2**20
+"""Bytes of a file with modes."""
+MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written
+
+VARIABLES = {
+    "positions": ("m", 1),
+    "natural_frequencies": ("Hz", 1),
+    "damping_ratios": ("", 1),
+    "mode_shapes": ("", 2),
+    "modal_masses": ("kg", 1),
+    "residual_flexibility": ("m/N", 2),
+}
+"""Variables of a netCDF file, with SI unit and most dimensions."""
+NEEDED = ("positions", "natural_frequencies", "damping_ratios", "mode_shapes")
+ROWS = {
+    "frequency": ("natural_frequencies", "Hz"),
+    "damping ratio": ("damping_ratios", ""),
+    "modal mass": ("modal_masses", "kg"),
+}
+"""First words of the lines of a text table before those of the positions."""
+_TABLE = (
+    "a table of modes: a line 'frequency (Hz)', a line 'damping ratio', then position (m) and mode shapes "
+    "in each line"
+)
+
+
+def read_modal_structure(
+    path: str | Path,
+    *,
+    along: str | None = None,
+    force: str | None = None,
+    length_unit: str | None = None,
+    force_unit: str | None = None,
+    damping: float | None = None,
+    nodes: Sequence[int] | None = None,
+) -> ModalStructure:
+    """Read a structure from a file of its modes.
+
+    *Text or CSV*: a line ``frequency (Hz)`` with one number for each mode, a line ``damping ratio``, perhaps
+    one ``modal mass (kg)`` (without it the shapes are mass-normalised, kg^(−1/2)), then for each position a
+    line with the position, m, and the shape of each mode there. A heading ``position (mm)`` before those may
+    name another unit; if it ends with ``residual flexibility (m/N)``, the last column is that.
+
+    *NetCDF-4*: the variables ``positions``, ``natural_frequencies``, ``damping_ratios``, ``mode_shapes`` with
+    the dimensions of positions and of frequencies; ``modal_masses`` and ``residual_flexibility`` if there are
+    any. Attributes ``units`` may name units.
+
+    *Universal file*: modes in datasets 55, nodes in dataset 15 or 2411, units in dataset 164, through the
+    package pyuff. The keywords are for these files alone.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; ``.nc`` is netCDF, ``.uff`` and ``.unv`` are universal files, others text.
+    along, force : {"x", "y", "z"}, optional
+        Direction of the path, and of the contact force.
+    length_unit, force_unit : str, optional
+        As ``"mm"`` and ``"N"``, where the file does not state them; stronger than what it states.
+    damping : float, optional
+        Damping ratio of all modes, where the file states none.
+    nodes : sequence of int, optional
+        Numbers of the nodes on the path; all that have mode shapes if not given.
+
+    Returns
+    -------
+    ModalStructure
+        With positions and shapes in SI.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or is damaged, or says too little; or as `ModalStructure`.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from asperity import read_modal_structure
+    >>> lines = ["frequency (Hz), 120", "damping ratio, 0.01", "position (mm), shape"]
+    >>> lines += ["0, 0", "250, 0.5", "500, 0.7", "750, 0.5", "1000, 0"]
+    >>> _ = Path("plate.csv").write_text("\\n".join(lines))
+    >>> read_modal_structure("plate.csv").extent
+    (0.0, 1.0)
+    """
+    file = file_path("file of modes", path, "the path of a file")
+    if found := no_file(file):
+        raise InputError(str(file), found, "a file with modes", "Check the path.")
+    if file.stat().st_size > LARGEST_FILE:
+        raise InputError(file.name, amount(file.stat().st_size), f"at most {amount(LARGEST_FILE)}")
+    given = {
+        "along": along,
+        "force": force,
+        "length_unit": length_unit,
+        "force_unit": force_unit,
+        "damping": damping,
+        "nodes": None if nodes is None else [int(node) for node in nodes],
+    }
+    kind = file.suffix.lower()
+    if kind in (".uff", ".unv", ".univ"):
+        return _read_from(file, "universal", serve_universal, given)
+    for name, value in given.items():
+        if value is not None:
+            allowed = "nothing: it is for universal files (.uff, .unv)"
+            raise InputError(name, shown(value), allowed, f"{file.name} states it, in SI or with its units.")
+    if kind in (".nc", ".nc4"):
+        return _read_from(file, "netCDF-4", serve_netcdf)
+    return _structure(_table_of_modes(file), file.name)
+
+
+def _read_from(file: Path, kind: str, serve: Callable[..., None], *more: Any) -> ModalStructure:
+    """Read a file in a process of its own, by a function that sends the names and values of its arrays."""
+    answer = apart(
+        f"{serve.__module__}:{serve.__name__}",
+        [str(file.absolute()), *more],
+        file.name,
+        file.stat().st_size,
+        kind,
+    )
+    names, arrays = received(answer)
+    aligned = (array.copy() for array in arrays)  # they lie in the answer as they came
+    return _structure(dict(zip(names, aligned, strict=True)), file.name)
+
+
+def _structure(found: dict[str, Array], source: str) -> ModalStructure:
+    try:
+        return ModalStructure(
+            found["positions"],
+            found["natural_frequencies"],
+            found["damping_ratios"],
+            found["mode_shapes"],
+            found.get("modal_masses"),
+            found.get("residual_flexibility"),
+        )
+    except InputError as error:
+        raise InputError(f"{error.what} in {source}", error.received, error.allowed, error.remedy) from None
+
+
+def _table_of_modes(file: Path) -> dict[str, Array]:
+    """Read a text table, see `read_modal_structure`."""
+    found: dict[str, Array] = {}
+    rows: list[list[float]] = []
+    unit, residual = 1.0, math.nan
+    for number, cells in lines_of_cells(read_text(file, file.name, _TABLE, largest=LARGEST_FILE)):
+        values = [_cell(cell) for cell in cells]
+        words = 0
+        while words < len(cells) and math.isnan(values[words]):
+            words += 1
+        heading = " ".join(cells[:words])
+        label = heading.lower()
+        row = next((row for row in ROWS if label.startswith(row)), None)
+        if row and not rows and words < len(cells) and np.isfinite(values[words:]).all():
+            name, dimension = ROWS[row]
+            found[name] = np.array(values[words:]) * factor(unit_in_brackets(heading) or dimension, dimension)
+        elif label.startswith("position") and not rows:
+            unit = factor(unit_in_brackets(heading) or "m", "m")
+            _, there, last = " ".join(cells).rpartition("residual flexibility")
+            residual = factor(unit_in_brackets(last) or "m/N", "m/N") if there else math.nan
+        elif words == 0 and np.isfinite(values).all() and len(values) == len((rows or [values])[0]):
+            rows.append(values)
+        else:
+            raise InputError(file.name, f"'{', '.join(cells)[:40]}' in line {number}", _TABLE)
+    missing = [row for row, (name, _) in ROWS.items() if name in NEEDED and name not in found]
+    if missing or not rows:
+        raise InputError(file.name, f"no line of {missing[0] if missing else 'numbers'}", _TABLE)
+    table = np.array(rows)
+    if not math.isnan(residual):
+        found["residual_flexibility"] = residual * table[:, -1]
+        table = table[:, :-1]
+    return found | {"positions": unit * table[:, 0], "mode_shapes": table[:, 1:]}
+
+
+def _cell(cell: str) -> float:
+    try:
+        return number_in(cell)
+    except ValueError:
+        return math.nan
+
+
+def serve_netcdf(path: str, answers: BinaryIO) -> None:
+    """Read the variables of a netCDF-4 file and send them to the binary file `answers`."""
+    import h5netcdf
+
+    file = Path(path)
+    with hostile(file.name, "netCDF-4"), h5netcdf.File(file, "r") as opened:
+        present = [name for name in VARIABLES if name in opened.variables]
+        for name in NEEDED:
+            if name not in present:
+                allowed = f"the variables {', '.join(NEEDED)}"
+                raise InputError(file.name, f"no variable {name}", allowed)
+        arrays = [_variable(opened.variables[name], name, file) for name in present]
+        modes = opened.variables["natural_frequencies"].dimensions
+        shapes = present.index("mode_shapes")
+        if opened.variables["mode_shapes"].dimensions[:1] == modes:
+            arrays[shapes] = arrays[shapes].T
+    send(answers, present, arrays)
+
+
+def _variable(variable: Any, name: str, file: Path) -> Array:
+    unit, dimensions = VARIABLES[name]
+    check_claim(file.name, variable.shape, variable.dtype.itemsize / MAX_COMPRESSION, file.stat().st_size)
+    if not 1 <= variable.ndim <= dimensions or variable.dtype.kind not in "fiu":
+        received = f"{name} of {variable.ndim} dimensions and type {variable.dtype}"
+        raise InputError(file.name, received, f"numbers along at most {dimensions} dimensions")
+    stated = variable.attrs.get("units")
+    scale = factor(stated, unit) if unit and isinstance(stated, str) else 1.0
+    return np.asarray(variable[...], dtype=np.float64) * scale
