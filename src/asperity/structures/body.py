@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import real_array
 from asperity.errors import InputError
 
 Array = NDArray[np.float64]
@@ -67,6 +68,72 @@ class Body:
         empty = np.zeros(0)
         return cls(mass * one, none, none, one, np.array([load]), np.zeros(1), empty, empty, np.zeros((1, 0)))
 
+    @classmethod
+    def from_modes(
+        cls,
+        mass: float,
+        load: float,
+        frequencies: ArrayLike,
+        damping_ratios: ArrayLike,
+        modal_masses: ArrayLike,
+    ) -> Body:
+        """Mass with resonances on one contact under a load, N, weight included, as `Wheel.from_modes`."""
+        return cls.rigid(mass, load).with_modes(frequencies, damping_ratios, modal_masses)
+
+    def with_modes(self, frequencies: ArrayLike, damping_ratios: ArrayLike, modal_masses: ArrayLike) -> Body:
+        """Let what touches at each contact have resonances of its own, the same at each: those of a wheel.
+
+        Parameters
+        ----------
+        frequencies : array_like (s,)
+            Undamped natural frequencies, Hz.
+        damping_ratios : array_like (s,)
+            Above 0 and below 1.
+        modal_masses : array_like (s,)
+            With the shape at the contact scaled to one, kg.
+
+        Returns
+        -------
+        Body
+            With s modes more for each contact.
+
+        Raises
+        ------
+        InputError
+            If the lists differ in length, or a number is out of range.
+        """
+        natural = positive("natural frequencies of the modes (Hz)", frequencies)
+        ratio = positive("damping ratios of the modes", damping_ratios, natural.size)
+        shape = positive("modal masses (kg)", modal_masses, natural.size) ** -0.5
+        if natural.size and ratio.max() >= 1.0:
+            raise InputError("damping ratios of the modes", float(ratio.max()), "above 0 and below 1")
+        each = np.eye(len(self.places))
+        return replace(
+            self,
+            natural_frequencies=np.concatenate([self.natural_frequencies, np.tile(natural, len(each))]),
+            damping_ratios=np.concatenate([self.damping_ratios, np.tile(ratio, len(each))]),
+            shapes=np.hstack([self.shapes, np.kron(each, shape)]),
+        )
+
+    def receptance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Displacements of the contacts per harmonic force at each, upwards (n, c, c), m/N, e^{+iωt}.
+
+        Frequencies in Hz, above zero.
+        """
+        f = np.atleast_1d(np.asarray(frequency, dtype=float))
+        if not (f > 0.0).all():
+            raise InputError(
+                "frequency (Hz)", float(f.min()), "above 0: a free body has no static receptance"
+            )
+        omega = 2.0 * np.pi * f[:, None, None]
+        dynamic = self.stiffness + 1j * omega * self.damping - omega**2 * self.mass
+        moving = self.contacts @ np.linalg.solve(
+            dynamic, np.broadcast_to(self.contacts.T, (f.size, *self.contacts.T.shape))
+        )
+        natural, omega = 2.0 * np.pi * self.natural_frequencies, omega[:, 0]
+        answer = 1.0 / (natural**2 - omega**2 + 2j * self.damping_ratios * natural * omega)
+        return np.asarray(moving + np.einsum("cs,ns,ds->ncd", self.shapes, answer, self.shapes))
+
     @property
     def static_loads(self) -> Array:
         """Forces of the contacts at rest (c,), N, on a rigid plane; of several answers the most even."""
@@ -85,3 +152,15 @@ class Body:
         matrix = np.block([[-self.stiffness / scale, self.contacts.T], [self.contacts, np.zeros((c, c))]])
         solution = np.linalg.lstsq(matrix, np.concatenate([self.pressing, np.zeros(c)]), rcond=None)[0]
         return solution[:d] / scale, solution[d:]
+
+
+def positive(what: str, given: ArrayLike, count: int | None = None, *, zero: bool = False) -> Array:
+    """Take a list of finite numbers above zero, or not below it; as many as `count`, if that is given."""
+    allowed = f"finite numbers, {'0 and more' if zero else 'above 0'}"
+    values = np.atleast_1d(real_array(what, given, allowed)) if np.size(given) else np.zeros(0)
+    if values.ndim > 1 or (count is not None and values.size != count):
+        raise InputError(what, f"{values.size} numbers", f"{count}" if count is not None else "a list")
+    wrong = ~(np.isfinite(values) & ((values >= 0.0) if zero else (values > 0.0)))
+    if wrong.any():
+        raise InputError(what, float(values[wrong][0]), allowed)
+    return values

@@ -1,0 +1,125 @@
+"""Chains, bogies and carriages: what they weigh, how they share it, how they move against closed forms."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from asperity.errors import InputError
+from asperity.structures.ball import GRAVITY
+from asperity.structures.body import Body
+from asperity.structures.suspended import bogie, carriage, chain
+from asperity.structures.wheel import Wheel
+
+F = np.array([0.7, 4.0, 31.0, 250.0])
+S = 2j * np.pi * F
+
+
+def two_masses(lower, upper, spring, damper):
+    """Receptance at the lower of two masses: −(1/ω²)(…) from Newton's equations, solved by hand."""
+    link = spring + damper * S
+    return (upper * S**2 + link) / ((lower * S**2 + link) * (upper * S**2 + link) - link**2)
+
+
+def test_a_chain_of_two_is_the_closed_form():
+    body = chain([600.0, 4000.0], [1.2e6], [8e3])
+    assert_allclose(body.receptance(F)[:, 0, 0], two_masses(600.0, 4000.0, 1.2e6, 8e3), rtol=1e-12)
+
+
+def test_a_chain_weighs_what_its_masses_weigh_and_the_load():
+    body = chain([600.0, 1500.0, 8000.0], [1.2e6, 0.4e6], [1e4, 2e4], load=1000.0)
+    assert body.static_loads == pytest.approx([10100.0 * GRAVITY + 1000.0])
+    assert chain([2.0], [], []).static_loads == pytest.approx([2.0 * GRAVITY])
+
+
+def test_the_modes_of_a_bogie_are_bounce_and_pitch():
+    """Both wheels alike lift half the frame, against one another its pitch: each a chain of two."""
+    body = bogie(600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3)
+    point, transfer = body.receptance(F)[:, 0, 0], body.receptance(F)[:, 0, 1]
+    assert_allclose(point + transfer, two_masses(600.0, 1500.0, 1.2e6, 8e3), rtol=1e-10)
+    rolled = 1800.0 / (2.0 * 1.25**2)  # kg at each wheel
+    assert_allclose(point - transfer, two_masses(600.0, rolled, 1.2e6, 8e3), rtol=1e-10)
+    assert body.places.tolist() == [0.0, 2.5]
+    assert body.static_loads == pytest.approx(np.full(2, 2100.0 * GRAVITY))
+
+
+def test_a_car_body_rests_on_the_frame():
+    car = (16e3, 0.5e6, 15e3)
+    body = bogie(600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3, car_body=car, load=2e3)
+    assert body.static_loads == pytest.approx(np.full(2, 10.1e3 * GRAVITY + 1e3))
+    point, transfer = body.receptance(F)[:, 0, 0], body.receptance(F)[:, 0, 1]
+    three = chain([600.0, 1500.0, 8e3], [1.2e6, 0.25e6], [8e3, 7.5e3])
+    assert_allclose(point + transfer, three.receptance(F)[:, 0, 0], rtol=1e-10)
+
+
+def test_a_rigid_carriage_turns_about_its_centre():
+    body = carriage(2.0, 0.01, [0.0, 0.03, 0.06, 0.09], load=100.0)
+    levers = np.array([-0.045, -0.015, 0.015, 0.045])
+    expected = (1.0 / 2.0 + np.outer(levers, levers) / 0.01) / S[:, None, None] ** 2
+    assert_allclose(body.receptance(F), expected, rtol=1e-12)
+    assert body.static_loads == pytest.approx(np.full(4, 0.5 * GRAVITY + 25.0))
+
+
+def test_elements_carry_a_carriage_on_springs():
+    """An eccentric load is shared along a straight line, as springs of one stiffness do."""
+    at = [0.0, 0.03, 0.06]
+    body = carriage(
+        2.0,
+        0.01,
+        at,
+        element_mass=0.05,
+        upper_stiffness=40e6,
+        upper_damping=100.0,
+        load=60.0,
+        load_place=0.04,
+    )
+    weight, element = 2.0 * GRAVITY, 0.05 * GRAVITY
+    shared = (weight + 60.0) / 3.0 + 60.0 * 0.01 * np.array([-0.03, 0.0, 0.03]) / (2 * 0.03**2)
+    assert body.static_loads == pytest.approx(shared + element)
+    assert body.static_loads.sum() == pytest.approx(2.15 * GRAVITY + 60.0)
+    # all elements alike: a third of the carriage on each
+    alike = body.receptance(F).sum(axis=2)[:, 1]
+    assert_allclose(alike, two_masses(0.05, 2.0 / 3.0, 40e6, 100.0), rtol=1e-9)
+
+
+def test_carriage_without_elements_is_the_limit_of_stiff_ones():
+    at = [0.0, 0.03, 0.08]
+    stiff = carriage(2.0, 0.01, at, element_mass=1e-9, upper_stiffness=1e11)
+    rigid = carriage(2.0, 0.01, at)
+    assert_allclose(stiff.receptance(F[1:3]), rigid.receptance(F[1:3]), rtol=1e-5)
+
+
+def test_each_wheel_has_its_own_modes():
+    modes = ([400.0, 2000.0], [0.01, 0.002], [300.0, 100.0])
+    wheel = Wheel.from_modes(600.0, 65e3, *modes)
+    assert_allclose(
+        Body.from_modes(600.0, 65e3, *modes).receptance(F)[:, 0, 0], wheel.receptance(F), rtol=1e-12
+    )
+    pair = bogie(600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3)
+    ringing = pair.with_modes(*modes)
+    added = ringing.receptance(F) - pair.receptance(F)
+    flexible = wheel.receptance(F) - Wheel.rigid(600.0, 65e3).receptance(F)
+    assert_allclose(added[:, 1, 1], flexible, rtol=1e-6)
+    assert np.abs(added[:, 0, 1]).max() < 1e-6 * np.abs(flexible).min()
+    assert ringing.static_loads == pytest.approx(pair.static_loads)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: chain([1.0, -1.0], [1.0], [0.0]), r"masses of the chain \(kg\): received -1.0"),
+        (lambda: chain([1.0, 1.0], [], [0.0]), "stiffnesses of the chain.*received 0 numbers; allowed: 1"),
+        (lambda: chain([1.0, 1.0], [0.0], [0.0]), "stiffnesses.*received 0.0; allowed: finite numbers"),
+        (lambda: chain([1.0, 1.0], [1.0], [-1.0]), r"dampings of the chain.*received -1.0.*0 and more"),
+        (lambda: chain([1.0], [], [], load=-20.0), r"a contact under -10.19 N; allowed: contacts that"),
+        (lambda: chain([1.0], [], [], load="much"), r"load \(N\): received 'much'"),
+        (lambda: bogie(1.0, 0.0, 1.0, 1.0, 1.0, 1.0), r"wheel mass, wheelbase.*received 0.0"),
+        (lambda: carriage(1.0, 1.0, [0.0], centre=0.1), "too few: it falls or tilts"),
+        (lambda: carriage(1.0, 1.0, [0.0, 1.0], element_mass=0.1), r"above them: received 0.0"),
+        (lambda: carriage(1.0, 1.0, [0.0, 1.0], load=100.0, load_place=3.0), "or nearer the middle"),
+        (lambda: Body.from_modes(1.0, 1.0, [1.0], [1.0], [1.0]), "damping ratios of the modes: received 1.0"),
+        (lambda: chain([1.0], [], []).receptance(0.0), "no static receptance"),
+    ],
+)  # fmt: skip
+def test_bodies_that_cannot_be_are_refused(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
