@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from asperity.errors import ComputationError, InputError
 from asperity.radiation.air import IMPEDANCE
 from asperity.radiation.pass_by import AxleSource, Passage, Receiver, exposure, squared_pressure
-from asperity.radiation.pass_by_levels import FAST, level, pass_by_levels, time_weighted
+from asperity.radiation.pass_by_levels import FAST, pass_by_levels, pressure_level, time_weighted
 
 FLAT = Receiver(7.5, 0.0)
 
@@ -30,7 +30,7 @@ def test_time_weighting_falls_by_34_7_dB_per_second():
     values[1, 100:] = 0.0
     found = time_weighted(values, step)
     assert_allclose(found[0], 1.0, rtol=1e-12)
-    assert_allclose(np.diff(level(found[1, 110:])) / step, -34.7, atol=0.05)
+    assert_allclose(np.diff(pressure_level(found[1, 110:])) / step, -34.7, atol=0.05)
 
 
 def test_time_weighting_does_not_depend_on_the_step():
@@ -69,9 +69,9 @@ def test_the_maximum_is_that_of_the_weighted_pressure(speed):
     time = passage.times(FLAT)
     pressure = squared_pressure(AxleSource(np.array([1e-3])), passage, FLAT, time)
     found = pass_by_levels(time, pressure, None).maximum[0]
-    assert found == pytest.approx(level(1e-3 * IMPEDANCE / (2 * np.pi) * largest), abs=0.02)
+    assert found == pytest.approx(pressure_level(1e-3 * IMPEDANCE / (2 * np.pi) * largest), abs=0.02)
     if speed == 0.5:
-        assert found == pytest.approx(level(1e-3 * IMPEDANCE / (2 * np.pi * 7.5**2)), abs=0.01)
+        assert found == pytest.approx(pressure_level(1e-3 * IMPEDANCE / (2 * np.pi * 7.5**2)), abs=0.01)
 
 
 def test_a_long_train_has_the_level_of_its_line_of_axles():
@@ -82,7 +82,7 @@ def test_a_long_train_has_the_level_of_its_line_of_axles():
     found = pass_by_levels(time, squared_pressure(source, passage, FLAT, time), passage.passed)
     line = 10 * np.log10(1e-3 / apart * IMPEDANCE * 2 / (4 * 7.5) / 4e-10)
     duration = 400 * apart / 40.0
-    assert level(exposure(source, passage, FLAT) / duration) == pytest.approx(line, abs=1e-9)
+    assert pressure_level(exposure(source, passage, FLAT) / duration) == pytest.approx(line, abs=1e-9)
     # a finite line of length L, mean over its own length: (2/π) (arctan L/d − (d/2L) ln(1 + L²/d²))
     over = 400 * apart / 7.5
     ends = 2 / np.pi * (np.arctan(over) - np.log1p(over**2) / (2 * over))

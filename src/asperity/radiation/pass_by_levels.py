@@ -55,14 +55,14 @@ def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, flo
     """
     instants, parts = np.asarray(time, dtype=float), np.asarray(squared, dtype=float)
     step = float(instants[-1] - instants[0]) / (len(instants) - 1)
-    maximum = level(time_weighted(parts, step).max(axis=-1))
+    maximum = pressure_level(time_weighted(parts, step).max(axis=-1))
     if passed is None:
         unknown = np.full(maximum.shape, np.nan)
         return PassByLevels(maximum, unknown, unknown)
     duration = passed[1] - passed[0]
     measured = _measured(instants, parts[-1], passed)
     equivalent, exposed = (_integral(instants, parts, *each) / duration for each in (passed, measured))
-    return PassByLevels(maximum, level(equivalent), level(exposed))
+    return PassByLevels(maximum, pressure_level(equivalent), pressure_level(exposed))
 
 
 def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) -> NDArray[np.float64]:
@@ -80,7 +80,7 @@ def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) 
     return np.asarray(found)
 
 
-def level(squared: ArrayLike) -> NDArray[np.float64]:
+def pressure_level(squared: ArrayLike) -> NDArray[np.float64]:
     """Level of a squared sound pressure, Pa², in dB re 20 µPa."""
     with np.errstate(divide="ignore"):
         return np.asarray(10.0 * np.log10(np.asarray(squared, dtype=float) / REFERENCE_PRESSURE**2))
