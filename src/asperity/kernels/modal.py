@@ -78,14 +78,14 @@ def modal_coefficients(natural: NDArray, damping_ratio: NDArray, time_step: floa
     generator[:, 1, 0] = -(phase**2)
     generator[:, 1, 1] = -2.0 * np.asarray(damping_ratio) * phase
     # rows and columns in q, h q', h^2 p_start, h^2 (p_end - p_start)
-    step = _exponential(generator)[:, :2]
+    step = exponentials(generator)[:, :2]
     step[..., 2] -= step[..., 3]
     step *= np.array([1.0, time_step, time_step**2, time_step**2])
     step[:, 1] /= time_step
     return np.ascontiguousarray(step.reshape(-1, 8).T)
 
 
-def _exponential(matrices: NDArray) -> NDArray:
+def exponentials(matrices: NDArray) -> NDArray:
     """Exponentials of small matrices (k, n, n), all at once: Taylor series, scaled and squared."""
     largest = float(np.abs(matrices).sum(axis=2).max(initial=0.0))
     largest = max(largest, 1e-300)  # no logarithm of zero

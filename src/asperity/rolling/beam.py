@@ -126,11 +126,15 @@ def resolved_step(
 
 def modal_alternating_compliance(coefficients: NDArray[np.float64], shapes: NDArray[np.float64]) -> float:
     """Least alternating compliance of modes, m/N: of coefficients (8, modes) and shapes (places, modes)."""
+    return float((shapes**2 @ alternating_of_modes(coefficients)).min())
+
+
+def alternating_of_modes(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Alternating compliance of each mode, of coefficients (8, ...), for a shape of one."""
     a = coefficients
     # q and q' change their sign from step to step, as the force does
     determinant = (1.0 + a[0]) * (1.0 + a[5]) - a[1] * a[4]
-    each = ((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant
-    return float((shapes**2 @ each).min())
+    return np.asarray(((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant)
 
 
 def refuse_off_the_beam(beam: Beam, path: Path) -> None:

@@ -45,28 +45,39 @@ def warn_after(
 
     `counts` holds steps done, steps not converged and evaluations; approach (n,) at every step, m.
     """
-    steps = max(int(counts[0]), 1)
-    if counts[1]:
-        share = int(counts[1]) / steps
-        warnings.warn(
-            UnconvergedWarning(
-                f"{name}: {counts[1]} of {steps} time steps ({percent(share)}) missed the tolerance on "
-                "the contact force: their force is uncertain; take a smaller numerics.time_step",
-                Grade.of_share(share),
-            ),
-            stacklevel=4,
-        )
+    warn_if_unconverged(name, counts, stacklevel=5)
     if not isinstance(prepared, Prepared):
         prepared.warn_of_flaws()
         return
-    beyond = count_beyond(prepared, approach)
-    if beyond:
-        warnings.warn(
-            ExtrapolationWarning(
-                f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
-                f"steps ({percent(beyond / steps)}): the force there is a continuation; let "
-                "contact.approaches reach higher",
-                Grade.of_share(beyond / steps),
-            ),
-            stacklevel=4,
-        )
+    warn_if_beyond(name, count_beyond(prepared, approach), max(int(counts[0]), 1), stacklevel=5)
+
+
+def warn_if_unconverged(name: str, counts: NDArray[np.int64], *, stacklevel: int) -> None:
+    """Warn of forces that missed the tolerance; `counts` as of `warn_after`."""
+    if not counts[1]:
+        return
+    steps = max(int(counts[0]), 1)
+    share = int(counts[1]) / steps
+    warnings.warn(
+        UnconvergedWarning(
+            f"{name}: {counts[1]} of {steps} time steps ({percent(share)}) missed the tolerance on "
+            "the contact force: their force is uncertain; take a smaller numerics.time_step",
+            Grade.of_share(share),
+        ),
+        stacklevel=stacklevel,
+    )
+
+
+def warn_if_beyond(name: str, beyond: int, steps: int, *, stacklevel: int) -> None:
+    """Warn of time steps, of so many, at which a law was continued beyond its data."""
+    if not beyond:
+        return
+    warnings.warn(
+        ExtrapolationWarning(
+            f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
+            f"steps ({percent(beyond / steps)}): the force there is a continuation; let "
+            "contact.approaches reach higher",
+            Grade.of_share(beyond / steps),
+        ),
+        stacklevel=stacklevel,
+    )

@@ -16,6 +16,7 @@ from asperity.progress import Progress
 from asperity.rolling.bodies import RolledOver, Rolls, Side
 from asperity.rolling.path import Path
 from asperity.rolling.rolled import Limit, Rolled, roll_along
+from asperity.rolling.stability import contact_resonance
 from asperity.rolling.stepping import Free, copied, put_back
 from asperity.store import Checkpoint
 
@@ -85,7 +86,7 @@ def roll_pair(
 
     def limits(stiffness: float) -> Iterator[Limit]:
         direct = below.compliance(1) + rolls.placed(path, 0.0, 0.0).compliance(1)
-        yield "the contact resonance", _resonance(stiffness, direct, alternating, time_step), 10.0
+        yield "the contact resonance", contact_resonance(stiffness, direct, alternating, time_step), 10.0
         yield "the highest frequency asked for", highest_frequency or 0.0, 10.0
 
     rolled, pair = roll_along(
@@ -104,16 +105,6 @@ def roll_pair(
         over_displacement=pair.record.over[kept],
         rolling_displacement=pair.record.rolling[kept],
     )
-
-
-def _resonance(stiffness: float, direct: float, alternating: float, time_step: float) -> float:
-    """Natural frequency, Hz, of bodies on the contact, N/m, from their two compliances in a time step, m/N.
-
-    A mass m has α = h²/6m and β = −h²/12m, a spring of compliance c has α = β = c.
-    """
-    inverse_mass = max(4.0 * (direct - alternating), 0.0) / time_step**2
-    compliance = max(direct + 2.0 * alternating, 0.0) / 3.0
-    return float(np.sqrt(inverse_mass * stiffness / (1.0 + stiffness * compliance))) / (2.0 * np.pi)
 
 
 class Pair:

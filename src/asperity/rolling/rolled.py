@@ -84,7 +84,7 @@ def roll_along(
     prepared = law.prepare(path.positions)
     relative = 1e-9 if isinstance(prepared, Prepared) else STEPPED_EQUILIBRIUM
     approach, stiffness = static_approach(evaluation(prepared, 0), load, relative)
-    _warn_if_coarse(path.time_step, limits(stiffness))
+    warn_if_coarse(path.time_step, limits(stiffness))
     stiffest, strongest = largest_stiffness(prepared, (approach, stiffness))
     stiff = stiffest, stiffness_in_impacts(prepared, stiffest, stiffness)
     softer = softening(alternating, stiff, law.damping, stiffness, path.time_step)
@@ -112,7 +112,7 @@ def roll_along(
     return rolled, stepper
 
 
-def _warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:
+def warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:
     """Compare the time step with the periods that it must resolve."""
     for what, frequency, least in limits:
         if frequency * time_step * least > 1.0:

@@ -101,6 +101,16 @@ def softening(
     return softer
 
 
+def contact_resonance(stiffness: float, direct: float, alternating: float, time_step: float) -> float:
+    """Natural frequency, Hz, of bodies on the contact, N/m, from their two compliances in a time step, m/N.
+
+    A mass m has α = h²/6m and β = −h²/12m, a spring of compliance c has α = β = c.
+    """
+    inverse_mass = max(4.0 * (direct - alternating), 0.0) / time_step**2
+    compliance = max(direct + 2.0 * alternating, 0.0) / 3.0
+    return float(np.sqrt(inverse_mass * stiffness / (1.0 + stiffness * compliance))) / (2.0 * np.pi)
+
+
 def largest_force(load: float, force: float) -> float:
     """Contact force, N, that makes no sense any more, by the load and the largest force of the law, N."""
     return RUNAWAY * max(load, force)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,8 +25,8 @@ MOTION, LAW = "motion.", "law."  # prefixes of what is kept
 Free = tuple[float, float, float, float]
 
 
-class Stepper(Protocol):
-    """Bodies that a contact force couples, advanced step by step.
+class Advanced(Protocol):
+    """Bodies that contact forces couple, advanced step by step.
 
     `motion` and `record` are named tuples of arrays written in place. The motion holds ``force`` and
     ``approach`` (as the law sees it; both now first) and ``counts`` (steps done, not converged, evaluations);
@@ -52,6 +53,22 @@ class Stepper(Protocol):
         """Number of steps in all."""
         ...
 
+    def where(self, step: int) -> str:
+        """Time and position of a step, in words."""
+        ...
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Copies of all that changes from step to step, but for the records."""
+        ...
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from a saved state."""
+        ...
+
+
+class Stepper(Advanced, Protocol):
+    """Two bodies that one contact force couples."""
+
     def bound(self) -> int:
         """Step up to which it can be advanced in one go from where it stands."""
         ...
@@ -68,12 +85,12 @@ class Stepper(Protocol):
         """Apply the force at the end of the step."""
         ...
 
-    def where(self, step: int) -> str:
-        """Time and position of a step, in words."""
-        ...
+
+class Remembers(Protocol):
+    """Laws that hold something from step to step."""
 
     def state(self) -> dict[str, NDArray[Any]]:
-        """Copies of all that changes from step to step, but for the records."""
+        """Copies of what they hold."""
         ...
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
@@ -105,24 +122,38 @@ def step_through(
     The damping is that of a `SteppedLaw`, N s/m. A force beyond the `largest` that makes sense, N, or none,
     says that the motion has run away.
     """
+
+    def advance() -> bool:
+        end = stepper.bound()
+        if isinstance(prepared, Prepared):
+            return stepper.roll(prepared, end, largest)
+        stop = min(int(stepper.motion.counts[0]) + STEPPED_BLOCK, end)
+        return _step_from_python(stepper, prepared, damping, stop, largest)
+
+    advance_to_end(stepper, prepared, advance, largest, progress, checkpoint)
+
+
+def advance_to_end(
+    stepper: Advanced,
+    laws: Prepared | Remembers,
+    advance: Callable[[], bool],
+    largest: float,
+    progress: Progress | None,
+    checkpoint: Checkpoint | None,
+) -> None:
+    """Call `advance` to the end of the path; it says False from a force larger than `largest`, N, or NaN."""
     motion, saved = stepper.motion, time.monotonic()
-    held = _state(stepper, prepared)
+    held = _state(stepper, laws)
     try:
         while motion.counts[0] < stepper.total:
-            end = stepper.bound()
-            if isinstance(prepared, Prepared):
-                sane = stepper.roll(prepared, end, largest)
-            else:
-                stop = min(int(motion.counts[0]) + STEPPED_BLOCK, end)
-                sane = _step_from_python(stepper, prepared, damping, stop, largest)
-            if not sane:
-                step = int(motion.counts[0])
+            if not advance():
+                step, forces = int(motion.counts[0]), np.atleast_1d(motion.force[0])
                 raise ComputationError(
                     f"the motion runs away: at step {step}, {stepper.where(step)}, the contact force is "
-                    f"{motion.force[0]:.3g} N under a load of {stepper.load:.4g} N",
+                    f"{forces[np.argmax(np.abs(forces))]:.3g} N under a load of {stepper.load:.4g} N",
                     "a smaller numerics.time_step, and check masses, damping and the texture there",
                 )
-            held = _state(stepper, prepared)
+            held = _state(stepper, laws)
             if progress is not None:
                 progress(int(motion.counts[0]), stepper.total, "rolling")
             if checkpoint is not None and time.monotonic() - saved > SAVE_EVERY:
@@ -130,7 +161,7 @@ def step_through(
                 saved = time.monotonic()
     finally:
         # at the end, and whatever stopped the run, maybe amid a step: it goes on from the last steps done
-        if checkpoint is not None and abs(motion.force[0]) <= largest:
+        if checkpoint is not None and np.all(np.abs(motion.force[0]) <= largest):
             checkpoint.save(held | _histories(stepper, held))
 
 
@@ -140,7 +171,7 @@ def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: i
     for step in range(int(motion.counts[0]) + 1, stop + 1):
         free = stepper.free(step)
         guess = 2.0 * motion.force[0] - motion.force[1]
-        force, evaluations, converged = _solve_from_python(law, step, free, stepper.load, guess, damping)
+        force, evaluations, converged = solve_from_python(law, step, free, stepper.load, guess, damping)
         law.accept(step)
         stepper.complete(step, force, evaluations, converged)
         if not abs(force) <= largest:
@@ -148,7 +179,7 @@ def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: i
     return True
 
 
-def _solve_from_python(
+def solve_from_python(
     law: SteppedLaw, step: int, free: Free, load: float, guess: float, damping: float
 ) -> tuple[float, int, bool]:
     """The iteration of `asperity.kernels.modal.solve_step` for a law that Python evaluates."""
@@ -167,22 +198,22 @@ def _solve_from_python(
     return (free_approach - approach) / compliance, STEPPED_ITERATIONS, False
 
 
-def _state(stepper: Stepper, prepared: Prepared | SteppedLaw) -> dict[str, NDArray[Any]]:
-    """What bodies and law need to go on from here."""
+def _state(stepper: Advanced, laws: Prepared | Remembers) -> dict[str, NDArray[Any]]:
+    """What bodies and laws need to go on from here."""
     found = {f"{MOTION}{name}": value for name, value in stepper.state().items()}
-    if not isinstance(prepared, Prepared):
-        found |= {f"{LAW}{name}": value for name, value in prepared.state().items()}
+    if not isinstance(laws, Prepared):
+        found |= {f"{LAW}{name}": value for name, value in laws.state().items()}
     return found
 
 
-def _histories(stepper: Stepper, held: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+def _histories(stepper: Advanced, held: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Records up to a state."""
     done = int(held[f"{MOTION}counts"][0]) + 1
     return {f"record.{name}": value[..., :done].copy() for name, value in stepper.record._asdict().items()}
 
 
-def restore(checkpoint: Checkpoint | None, stepper: Stepper, prepared: Prepared | SteppedLaw) -> None:
-    """Take a run up where it was saved, if it was: state, histories, and what a `SteppedLaw` holds."""
+def restore(checkpoint: Checkpoint | None, stepper: Advanced, laws: Prepared | Remembers) -> None:
+    """Take a run up where it was saved, if it was: state, histories, and what laws remember."""
     arrays = checkpoint.load() if checkpoint is not None else None
     if arrays is None:
         return
@@ -201,8 +232,8 @@ def restore(checkpoint: Checkpoint | None, stepper: Stepper, prepared: Prepared 
     stepper.restore(state)
     for name, value in histories.items():
         getattr(record, name)[..., : value.shape[-1]] = value
-    if not isinstance(prepared, Prepared):
-        prepared.restore(_named(arrays, LAW))
+    if not isinstance(laws, Prepared):
+        laws.restore(_named(arrays, LAW))
 
 
 def _named(arrays: dict[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:

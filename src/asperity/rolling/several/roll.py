@@ -1,0 +1,179 @@
+"""Bodies roll over a structure on several contacts, which feel each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import Outcome
+from asperity.kernels.several import (
+    BODY_DAMPING,
+    CONTACT_DAMPING,
+    CONTACT_WORK,
+    OVER_DAMPING,
+    SLOPE_WORK,
+    THROUGHPUT,
+    ContactsMotion,
+)
+from asperity.laws.base import Law
+from asperity.progress import Progress
+from asperity.rolling.events import ContactLoss, contact_losses
+from asperity.rolling.outcome import flying
+from asperity.rolling.path import Path
+from asperity.rolling.several.energy import Ledger
+from asperity.rolling.several.stand import Stand, stand
+from asperity.rolling.several.stepper import Remembered
+from asperity.rolling.several.warned import warn_after_contacts
+from asperity.rolling.stepping import advance_to_end, restore
+from asperity.store import Checkpoint
+from asperity.structures.body import Body
+from asperity.structures.modal import Modal
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class RolledBodies:
+    """Bodies have rolled over a structure on c contacts, numbered through in the order of the bodies."""
+
+    time: Array  # (n,), s, uniform from zero, after the run-in
+    positions: Array  # (c, n), of the contacts, m
+    body: NDArray[np.int64]  # (c,), to which body each contact belongs
+    contact_force: Array  # (c, n), N, compression positive
+    relative_displacement: Array  # (c, n), approach of the mean surfaces, m, positive closing
+    over_displacement: Array  # (c, n), of what is rolled over, at the contacts, m, positive downwards
+    rolling_displacement: Array  # (c, n), of what rolls, at the contacts, m, positive downwards
+    degrees_of_freedom: tuple[Array, ...]  # of each body (d, n), m or rad, positive upwards
+    acceleration: Array  # (sensors, n), of what is rolled over, m/s², positive downwards
+    in_contact: NDArray[np.bool_]  # (c, n), whether the surfaces touch
+    contact_loss: tuple[list[ContactLoss], ...]  # flights at each contact
+    energy: Ledger  # where the work of the loads went, in run-in and run
+    evaluations: int  # of the laws, in run-in and run
+    unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
+    outcome: Outcome  # whether all steps converged
+
+
+def roll_bodies(
+    over: Modal | None,
+    bodies: Sequence[Body],
+    laws: Sequence[Law],
+    *,
+    speed: float,
+    start: float,
+    duration: float,
+    time_step: float,
+    positions: ArrayLike,
+    settling: float = 0.0,
+    highest_frequency: float | None = None,
+    sensors: ArrayLike = (),
+    progress: Progress | None = None,
+    checkpoint: Checkpoint | None = None,
+) -> RolledBodies:
+    """Roll bodies over a structure at constant speed, from rest, and keep what follows the run-in.
+
+    All contacts feel each other, through the structure and through the bodies. Structure and bodies are
+    advanced exactly for contact forces that are linear over a step; the forces at the end of each step solve
+    all contact laws at once, each to 1e-10 of itself plus its load (laws that Python steps: 1e-6), to second
+    order in the time step. The time of a step grows linearly with the number of contacts. A step that is too
+    long to be stable is kept so by softened contacts, with a warning (`asperity.rolling.stability`).
+
+    Parameters
+    ----------
+    over : Modal or None
+        What is rolled over; None for a plane that does not move. Modes without stiffness start undisplaced.
+    bodies : sequence of Body
+        What rolls, pressed down by its constant forces; contacts are numbered through the bodies.
+    laws : sequence of Law
+        One for each contact; it reads its texture at the position of its own contact.
+    speed : float
+        m/s, of all bodies.
+    start : float
+        Where the bodies are at time zero, after the run-in, m.
+    duration, time_step : float
+        s.
+    positions : array_like (b,)
+        Of the bodies ahead of `start`, m; their contacts lie at their `places` from there.
+    settling : float
+        Run-in before time zero, s.
+    highest_frequency : float, optional
+        Hz, against which the time step is checked.
+    sensors : array_like (k,)
+        Places on the structure whose acceleration is recorded, m.
+    progress : callable, optional
+        Is told steps done, steps in all and what is done.
+    checkpoint : Checkpoint, optional
+        Keeps the state about every 10 s, at the end and when interrupted, to go on from there.
+
+    Returns
+    -------
+    RolledBodies
+
+    Raises
+    ------
+    InputError
+        If a contact leaves the structure, or numbers of bodies, laws and positions disagree.
+    ComputationError
+        If nothing is at rest at the start, or the motion runs away.
+    """
+    whole = Path.laid(start, speed, time_step, duration, settling)
+    at = np.atleast_1d(np.asarray(positions, dtype=float))
+    standing = stand(
+        over, bodies, laws, whole, at, np.atleast_1d(np.asarray(sensors, dtype=float)), highest_frequency
+    )
+    stepper, remembered = standing.stepper, Remembered(standing.stepper.prepared)
+    energies = standing.energies()
+    restore(checkpoint, stepper, remembered)
+    largest = standing.largest
+    advance_to_end(stepper, remembered, lambda: stepper.advance(largest), largest, progress, checkpoint)
+    return _rolled(standing, whole, energies)
+
+
+def _rolled(standing: Stand, whole: Path, energies: tuple[float, float, float]) -> RolledBodies:
+    """What is kept of a run that is done."""
+    stepper, kept = standing.stepper, slice(whole.settled, None)
+    record, counts = stepper.record, stepper.motion.counts
+    seen = record.approach - stepper.system.softening[:, None] * record.force
+    apart = np.array(
+        [
+            flying(law, force, approach)
+            for law, force, approach in zip(stepper.prepared, record.force, seen, strict=True)
+        ]
+    )[:, kept]
+    warn_after_contacts(stepper, seen)
+    dofs = zip(standing.steps.bases, record.core, strict=True)
+    return RolledBodies(
+        time=whole.time,
+        positions=np.array([path.positions[kept] for path in stepper.paths]),
+        body=standing.steps.body,
+        contact_force=record.force[:, kept],
+        relative_displacement=record.approach[:, kept],
+        over_displacement=record.over[:, kept],
+        rolling_displacement=record.rolling[:, kept],
+        degrees_of_freedom=tuple(basis @ core[: len(basis), kept] for basis, core in dofs),
+        acceleration=record.acceleration[:, kept],
+        in_contact=~apart,
+        contact_loss=tuple(contact_losses(each, whole.time_step) for each in apart),
+        energy=_ledger(stepper.motion, standing, energies),
+        evaluations=int(counts[2]),
+        unconverged_steps=int(counts[1]),
+        outcome=Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
+    )
+
+
+def _ledger(motion: ContactsMotion, standing: Stand, before: tuple[float, float, float]) -> Ledger:
+    """Balance of a run that started with these energies of structure, of bodies and of their loads, J."""
+    structure, bodies, loads = (now - then for now, then in zip(standing.energies(), before, strict=True))
+    return Ledger(
+        loads=-loads,
+        bodies=bodies,
+        body_damping=float(motion.ledger[BODY_DAMPING]),
+        structure=structure,
+        structure_damping=float(motion.ledger[OVER_DAMPING]),
+        contact=float(motion.ledger[CONTACT_WORK]),
+        slope=float(motion.ledger[SLOPE_WORK]),
+        contact_damping=float(motion.ledger[CONTACT_DAMPING]),
+        throughput=float(motion.ledger[THROUGHPUT]),
+    )

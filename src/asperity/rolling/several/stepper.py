@@ -1,0 +1,192 @@
+"""A structure and bodies on several contacts, advanced step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.kernels.modal import solve_step
+from asperity.kernels.pointforce import Prepared
+from asperity.kernels.several import (
+    CONTACT_DAMPING,
+    SWEEPS,
+    Assembly,
+    ContactsMotion,
+    ContactsRecord,
+    begin_step,
+    book,
+    complete_contacts,
+    free_of,
+    observe_contacts,
+    roll_contacts,
+    take,
+)
+from asperity.laws.base import Law, SteppedLaw
+from asperity.rolling.outcome import evaluation
+from asperity.rolling.path import Path
+from asperity.rolling.several.stacked import Stack
+from asperity.rolling.stepping import STEPPED_BLOCK, copied, put_back, solve_from_python
+from asperity.structures.modal import Modal
+
+Array = NDArray[np.float64]
+PIECE = 2**18
+"""Mode shapes that are held at once."""
+LONGEST, LEAST = 2048, 64
+"""Steps whose mode shapes are held at once, at most and at least."""
+
+
+class ContactsStepper:
+    """Structure and bodies behind the protocol of `asperity.rolling.stepping.Advanced`."""
+
+    def __init__(
+        self,
+        system: Assembly,
+        motion: ContactsMotion,
+        record: ContactsRecord,
+        over: Modal | None,
+        paths: Sequence[Path],
+        laws: Sequence[Law],
+        prepared: Sequence[Prepared | SteppedLaw],
+    ) -> None:
+        self.system, self.motion, self.record = system, motion, record
+        self.paths, self.laws, self.prepared = paths, laws, prepared
+        self.load, self.total = float(system.loads.max()), paths[0].total
+        compiled = [law for law in prepared if isinstance(law, Prepared)]
+        self.stack = Stack(compiled) if len(compiled) == len(prepared) else None
+        self.along = ShapesUnder(over, paths, len(system.stiffness))
+        self.piece = self.stack.piece(0, 1) if self.stack else None
+        shapes, slopes = self.along.at(0)
+        observe_contacts(system, motion, record, 0, shapes, slopes)
+        motion.approach[1] = motion.approach[0]
+
+    def advance(self, largest: float) -> bool:
+        """Go on to the end of a chunk of the path; False if a force exceeds what makes sense, N."""
+        done = int(self.motion.counts[0])
+        fresh = self.along.hold(done + 1)
+        end = self.along.end
+        if self.stack is None:
+            return self._from_python(min(done + STEPPED_BLOCK, end), largest)
+        if fresh or self.piece is None or self.piece.planes.shape[1] != end + 1 - self.along.offset:
+            self.piece = self.stack.piece(self.along.offset, end + 1)
+        along = self.along
+        rolled = roll_contacts(
+            self.system,
+            self.motion,
+            self.record,
+            self.piece,
+            along.shapes,
+            along.slopes,
+            along.offset,
+            end,
+            largest,
+        )
+        return bool(rolled)
+
+    def _from_python(self, stop: int, largest: float) -> bool:
+        """The loop of `asperity.kernels.several.roll_contacts` with laws that Python evaluates."""
+        system, motion = self.system, self.motion
+        for step in range(int(motion.counts[0]) + 1, stop + 1):
+            shapes, slopes = self.along.at(step)
+            begin_step(system, motion, shapes)
+            converged = self._solve(step, shapes)
+            for law in self.prepared:
+                if not isinstance(law, Prepared):
+                    law.accept(step)
+            complete_contacts(system, motion, shapes)
+            book(system, motion)
+            observe_contacts(system, motion, self.record, step, shapes, slopes)
+            self._dampers(step)
+            book(system, motion)
+            motion.counts[0] = step
+            motion.counts[1] += not converged
+            if not np.all(np.abs(motion.trial) <= largest):
+                return False
+        return True
+
+    def _solve(self, step: int, shapes: Array) -> bool:
+        """The sweeps of `asperity.kernels.several.solve_contacts`."""
+        system, motion = self.system, self.motion
+        for sweep in range(SWEEPS):
+            settled = True
+            for k, law in enumerate(self.prepared):
+                free, load = free_of(system, motion, shapes, k), float(system.loads[k])
+                guess = float(motion.trial[k])
+                if isinstance(law, Prepared):
+                    found = solve_step(law, step, free, load, guess)
+                else:
+                    found = solve_from_python(law, step, free, load, guess, self.laws[k].damping)
+                right = take(system, motion, shapes, k, sweep, *found)
+                settled = settled and (right if system.coupled else found[2])
+            if settled or not system.coupled:
+                return settled
+        return False
+
+    def _dampers(self, step: int) -> None:
+        motion = self.motion
+        for k, law in enumerate(self.prepared):
+            if self.laws[k].damping > 0.0:
+                elastic = evaluation(law, step)(float(motion.approach[0, k]))[0]
+                motion.power[CONTACT_DAMPING] += (motion.force[0, k] - elastic) * motion.rate[k]
+
+    def where(self, step: int) -> str:
+        """Time and position of a step."""
+        return self.paths[int(np.argmax(np.abs(self.motion.force[0])))].where(step)
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Of the motion."""
+        return copied(self.motion)
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from a saved state."""
+        put_back(self.motion, state)
+
+
+class Remembered:
+    """What the laws of all contacts hold from step to step."""
+
+    def __init__(self, prepared: Sequence[Prepared | SteppedLaw]) -> None:
+        self.stepped = {str(k): law for k, law in enumerate(prepared) if not isinstance(law, Prepared)}
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Of each, under the number of its contact."""
+        return {
+            f"{k}.{name}": value for k, law in self.stepped.items() for name, value in law.state().items()
+        }
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Give back to each what it held."""
+        for k, law in self.stepped.items():
+            own = f"{k}."
+            law.restore({name.removeprefix(own): v for name, v in state.items() if name.startswith(own)})
+
+
+class ShapesUnder:
+    """Mode shapes under all contacts, in chunks whose bounds do not depend on where a run was taken up."""
+
+    def __init__(self, over: Modal | None, paths: Sequence[Path], modes: int) -> None:
+        self.over, self.paths, self.modes = over, paths, modes
+        self.length = int(np.clip(PIECE // max(len(paths) * modes, 1), LEAST, LONGEST))
+        self.offset = self.end = -1
+        self.shapes = self.slopes = np.zeros((0, len(paths), modes))
+
+    def hold(self, step: int) -> bool:
+        """Make ready the chunk of the step that ends at `step`; whether it is another one."""
+        offset = max(step - 1, 0) // self.length * self.length
+        if offset == self.offset:
+            return False
+        self.offset, self.end = offset, min(offset + self.length, self.paths[0].total)
+        shape = (self.end + 1 - offset, len(self.paths), self.modes)
+        self.shapes, self.slopes = np.zeros(shape), np.zeros(shape)
+        if self.over is not None:
+            for k, path in enumerate(self.paths):
+                start, spacing = float(path.positions[offset]), path.speed * path.time_step
+                self.shapes[:, k], self.slopes[:, k] = self.over.shapes_along(start, spacing, shape[0])
+        return True
+
+    def at(self, step: int) -> tuple[Array, Array]:
+        """Shapes (n, m) at a step, kg^-1/2, and slopes, kg^-1/2 per metre."""
+        self.hold(step)
+        return self.shapes[step - self.offset], self.slopes[step - self.offset]
