@@ -1,0 +1,133 @@
+"""Design answers: what pads, decay rate, roughness and speed do to the sound of rail and sleepers.
+
+By the linear contact force in the frequency domain, on tracks of published parameters. The rules are those of
+D. J. Thompson, Railway Noise and Vibration (Elsevier, 2009), chapters 2, 3 and 7.
+"""
+
+import numpy as np
+import pytest
+
+from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
+from asperity.radiation.rail import STEEL_DENSITY, RailSection
+from asperity.radiation.sleeper import SleeperTop
+from asperity.reference import cnossos
+from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
+from asperity.structures.decay_rate import decay_rate
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+CENTRES, LOW, HIGH = third_octave_bands(100.0, 5000.0)
+LINES = 10
+FREQUENCY = CENTRES[:, None] * 10.0 ** (0.1 * ((np.arange(LINES) + 0.5) / LINES - 0.5))
+RAIL = RailSection(foot_width=0.15, head_width=0.072, area=60.2 / STEEL_DENSITY)
+SLEEPER = SleeperTop(length=2.6, width=0.25)
+WHEEL, STIFFNESS = Wheel.rigid(600.0, 65e3), 1.25e9
+TRACKS = ("x2000", "nordborg", "uic60")
+
+
+def roughness_psd(speed, gain):
+    """One-sided PSD, m³, of the limit of ISO 3095 with the contact filter of CNOSSOS-EU, at f/v."""
+    wavelength, level = cnossos.rail_roughness("iso3095")
+    _, filtered = cnossos.contact_filter("50 kN, 920 mm")
+    exact = 10.0 ** (np.rint(10.0 * np.log10(wavelength)) / 10.0)
+    energy = 1e-12 * 10.0 ** ((level + filtered + gain) / 10.0) * exact / (HALF_BAND - 1.0 / HALF_BAND)
+    order = np.argsort(exact)
+    at = np.log(speed / FREQUENCY)
+    return np.exp(np.interp(at, np.log(exact[order]), np.log(energy[order])))
+
+
+def levels(track, speed=30.0, gain=0.0):
+    """Sound power levels of rail and sleepers (2, b), dB re 1 pW, of one wheel."""
+    texture = roughness_psd(speed, gain).ravel()
+    force = linear_force_psd(FREQUENCY.ravel(), texture, speed, WHEEL, track, STIFFNESS, positions=6)
+    found = []
+    for part in (RAIL, SLEEPER):
+        density = (force * part.power_per_force(track, FREQUENCY.ravel())).reshape(FREQUENCY.shape)
+        found.append(10.0 * np.log10(density.mean(axis=1) * (HIGH - LOW) / 1e-12))
+    return np.array(found)
+
+
+def heard(*arguments, **keywords):
+    """A-weighted levels of rail and sleepers."""
+    return a_weighted_total(levels(*arguments, **keywords), CENTRES)
+
+
+PADS = 60e6 * 2.0 ** np.arange(8)  # 60 MN/m to 7.7 GN/m
+REAL = PADS < 2e9
+"""Pads of ballasted tracks; the stiffer ones stand for none."""
+
+
+def over_pads(name, **damping):
+    """A-weighted levels of rail and sleepers (pads, 2)."""
+    return np.array([heard(Track.named(name, pad_stiffness=pad, **damping)) for pad in PADS])
+
+
+@pytest.mark.parametrize("name", TRACKS)
+def test_noise_against_pad_stiffness(name):
+    """Stiffer pads: less of the rail, whose waves decay faster, more of the sleepers, a best pad between.
+
+    Thompson, ch. 7; N. Vincent, P. Bouvet, D. J. Thompson, P. E. Gautier, J. Sound Vib. 193 (1996) 161-171.
+    """
+    found = over_pads(name, pad_loss_factor=0.2)
+    rail, sleepers = found[REAL].T
+    assert (np.diff(rail) < -0.5).all()
+    assert (np.diff(sleepers) > 1.0).all()
+    assert rail[0] - rail[-1] > 6.0
+    assert sleepers[-1] - sleepers[0] > 12.0
+    assert rail[0] > sleepers[0] + 15.0
+    total = energy_sum(found)
+    best = int(total.argmin())
+    assert 400e6 < PADS[best] < 4e9
+    assert min(total[0], total[-1]) > total[best] + 1.0
+    assert abs(found[best, 0] - found[best, 1]) < 5.0  # about where the two are equal
+
+
+@pytest.mark.parametrize("name", TRACKS)
+def test_the_decay_rate_rises_with_pad_stiffness(name):
+    waves = CENTRES[CENTRES > 450.0]  # above the cut-on of soft pads
+    soft, stiff = (
+        decay_rate(Track.named(name, pad_stiffness=pad, pad_loss_factor=0.2), waves) for pad in (100e6, 800e6)
+    )
+    assert (stiff > 1.2 * soft).all()
+    assert (stiff > 3.0 * soft)[waves < 900.0].all()
+
+
+def test_a_damper_that_stays_hides_it():
+    """Of a viscous damper the loss factor ωc/k falls as pads get stiffer, so that the rail gets no quieter.
+
+    The rule is that of pads of one material, whose loss factor stays.
+    """
+    rail = over_pads("x2000")[REAL, 0]
+    assert np.ptp(rail) < 2.0
+
+
+def test_twice_the_decay_rate_is_3_db_less_of_the_rail():
+    """W = ρ c 2b σ ⟨v₀²⟩ 8.686/Δ of a wave that decays by Δ, dB/m. Thompson, ch. 3."""
+    lossy = {"pad_loss_factor": 0.1, "rail_loss_factor": 0.01, "ballast_loss_factor": 0.5}
+    once, twice = (
+        Track.named("uic60", pad_stiffness=150e6, **{key: n * value for key, value in lossy.items()})
+        for n in (1.0, 2.0)
+    )
+    waves = CENTRES > 600.0  # above the cut-on of waves that the pads hold back, 390 Hz
+    ratio = decay_rate(twice, CENTRES[waves]) / decay_rate(once, CENTRES[waves])
+    np.testing.assert_allclose(ratio, 2.0, rtol=0.01)
+    change = (levels(twice) - levels(once))[0, waves]
+    np.testing.assert_allclose(change, -3.0, atol=0.5)
+    assert heard(twice)[0] - heard(once)[0] == pytest.approx(-3.0, abs=1.0)
+
+
+@pytest.mark.parametrize("name", TRACKS)
+def test_ten_decibels_of_roughness_are_ten_of_noise(name):
+    """The sound is linear in the roughness while contact is kept. Thompson, ch. 2."""
+    track = Track.named(name, pad_loss_factor=0.2)
+    np.testing.assert_allclose(heard(track, gain=10.0) - heard(track), 10.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", TRACKS)
+@pytest.mark.parametrize("pad", [150e6, 1200e6])
+def test_noise_rises_by_about_30_lg_v(name, pad):
+    """From 60 to 320 km/h on the roughness of ISO 3095. Thompson, ch. 2."""
+    track = Track.named(name, pad_stiffness=pad, pad_loss_factor=0.2)
+    speeds = np.geomspace(60.0, 320.0, 5) / 3.6
+    total = [energy_sum(heard(track, speed=speed)) for speed in speeds]
+    assert 25.0 < np.polyfit(np.log10(speeds), total, 1)[0] < 35.0
