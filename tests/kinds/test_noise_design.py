@@ -88,7 +88,7 @@ def test_the_decay_rate_rises_with_pad_stiffness(name):
     soft, stiff = (
         decay_rate(Track.named(name, pad_stiffness=pad, pad_loss_factor=0.2), waves) for pad in (100e6, 800e6)
     )
-    assert (stiff > 1.2 * soft).all()
+    assert (stiff > 1.1 * soft).all()  # the highest bands: the rail's own losses
     assert (stiff > 3.0 * soft)[waves < 900.0].all()
 
 
