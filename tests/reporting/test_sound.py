@@ -139,6 +139,29 @@ def test_pressure_beside_the_track_is_that_of_a_source_above_ground():
     assert level == pytest.approx(100.0 - 10.0 * np.log10(2.0 * np.pi * 7.5**2) + 0.14, abs=0.02)
 
 
+def loudness(tree):
+    return 20.0 * np.log10(pass_by_pressure(tree).values.std())
+
+
+def test_the_total_is_not_heard_twice():
+    """It stands among the sources, and is their sum."""
+    tree = passing(speed=0.0)
+    named = tree["spectra"].to_dataset().copy(deep=True).assign_coords(source=["track", "wheel", "total"])
+    named["sound_power_level"][0, 2, 0] = 100.0
+    both = xarray.DataTree.from_dict({"/rolling": tree["rolling"].to_dataset(), "/spectra": named})
+    assert loudness(both) == pytest.approx(loudness(tree), abs=1e-6)
+
+
+def test_sound_power_from_vibration_comes_before_that_of_transfers():
+    tree = passing(speed=0.0)
+    power = [[[80.0, np.nan], [np.nan, np.nan], [80.0, np.nan]]]  # of the second source nothing is known
+    vibration = {"radiated_power_level": (("law", "radiator", "band"), power)}
+    coordinates = {"radiator": ["rail", "wheel", "total"], "band": [1000.0, 2000.0]}
+    spectra = tree["spectra"].to_dataset().assign(vibration).assign_coords(coordinates)
+    both = xarray.DataTree.from_dict({"/rolling": tree["rolling"].to_dataset(), "/spectra": spectra})
+    assert loudness(both) == pytest.approx(loudness(tree) - 20.0, abs=0.02)
+
+
 def test_it_is_loudest_in_the_middle_and_falls_with_the_distance():
     """At 50 m/s the source is 26.8 m along when the record ends: 20 lg(27.8/7.5) = 11.4 dB."""
     pressure = pass_by_pressure(passing(speed=50.0)).values[0]

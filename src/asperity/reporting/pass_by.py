@@ -12,8 +12,13 @@ from asperity.spectra import HALF_BAND, band_energies, energy_sum
 
 PASS_BY = "pass_by_pressure"
 """Name of what is heard."""
-SOUND_POWER, NOISE_BAND, SOURCE = "sound_power_level", "noise_band", "source"
-"""Of the variable of the group ``spectra``, in dB re 1 pW, and its dimensions."""
+SOUND_POWERS = {
+    "radiated_power_level": ("radiator", "band"),
+    "sound_power_level": ("source", "noise_band"),
+}
+"""Of the group ``spectra``, dB re 1 pW, the better one first, and their dimensions beside the law."""
+WHOLE = "total"
+"""What stands among the sources for all of them together."""
 DISTANCE = 7.5
 """From the track, m (ISO 3095)."""
 IMPEDANCE = 413.0
@@ -25,29 +30,37 @@ def pass_by_pressure(tree: DataTree) -> DataArray | None:
     """Sound pressure (law, time), Pa, 7.5 m from the track; None where the sound power is not known.
 
     The contact force of each law, weighted by one-third octaves so that it has the sound power level of the
-    run, is the source; it passes the receiver in the middle of the record, at the speed of the run, and
-    radiates evenly above reflecting ground: p² = W ρc/(2π d²). Doppler's effect, directivity and the length
-    of the vehicle are left out, and what lies outside of the bands.
+    run, from its vibration or else by CNOSSOS-EU, is the source; it passes the receiver in the middle of the
+    record, at the speed of the run, and radiates evenly above reflecting ground: p² = W ρc/(2π d²). Doppler's
+    effect, directivity and the length of the vehicle are left out, and what lies outside of the bands.
     """
-    if "spectra" not in tree.children or SOUND_POWER not in tree["spectra"].to_dataset():
+    found = _sound_power(tree)
+    if found is None:
         return None
-    power, rolling = tree["spectra"].to_dataset()[SOUND_POWER], tree["rolling"].to_dataset()
+    (band, level), rolling = found, tree["rolling"].to_dataset()
     speed = tree[SPEED.group].attrs.get(SPEED.name)
     if CONTACT_FORCE.name not in rolling or speed is None:
         return None
     time = rolling[TIME.name].values
     distance = np.hypot(DISTANCE, float(speed) * (time - 0.5 * (time[0] + time[-1])))
-    level = energy_sum(
-        np.nan_to_num(power.transpose(LAW.name, SOURCE, NOISE_BAND).values, nan=-np.inf), axis=1
-    )
     force = rolling[CONTACT_FORCE.name].transpose(LAW.name, TIME.name)
     step = float(time[-1] - time[0]) / (len(time) - 1)
-    source = [
-        radiated(one, step, power[NOISE_BAND].values, bands)
-        for one, bands in zip(force.values.astype(float), level, strict=True)
-    ]
+    forces = force.values.astype(float)
+    source = [radiated(one, step, band, bands) for one, bands in zip(forces, level, strict=True)]
     pressure = np.array(source) * np.sqrt(IMPEDANCE / (2.0 * np.pi)) / distance
     return DataArray(pressure, force.coords, force.dims, PASS_BY, {"units": "Pa"})
+
+
+def _sound_power(tree: DataTree) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Band centres (b,), Hz, and levels of all sources together (law, b), dB re 1 pW."""
+    held = tree["spectra"].to_dataset() if "spectra" in tree.children else {}
+    for name, (source, band) in SOUND_POWERS.items():
+        if name in held:
+            levels = held[name].transpose(LAW.name, source, band)
+            parts = [number for number, each in enumerate(levels[source].values) if each != WHOLE]
+            known = np.nan_to_num(levels.values[:, parts], nan=-np.inf)
+            return levels[band].values, energy_sum(known, axis=1)
+    return None
 
 
 def radiated(
