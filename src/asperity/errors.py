@@ -145,6 +145,10 @@ class InhomogeneousWarning(PhysicsWarning):
     """A texture is not the same everywhere, so that samples of it do not stand for all of it."""
 
 
+class MissingSourceWarning(PhysicsWarning):
+    """Something that radiates sound is not described well enough to compute its part."""
+
+
 class MissingPointsWarning(PhysicsWarning):
     """A measured surface has points without a height."""
 

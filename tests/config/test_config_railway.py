@@ -10,7 +10,13 @@ from asperity.config.tables import read_levels, read_table
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import load_case, parse_case, template
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.tables import MODES, read_modes, read_receptance
+from asperity.kinds.wheel_on_rail.tables import (
+    MODES,
+    read_mode_shapes,
+    read_modes,
+    read_ratios,
+    read_receptance,
+)
 from asperity.laws import names
 
 INTERFACE = """
@@ -48,6 +54,7 @@ def folder(tmp_path, monkeypatch):
     """A folder with the files that cases name."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "levels.csv").write_text(LEVELS)
+    (tmp_path / "ratios.csv").write_text("frequency (kHz), ratio\n0.1, 0.01\n1, 0.8\n")
     (tmp_path / "modes.csv").write_text("frequency, ratio, mass\n2000, 1e-4, 300\n3100, 1e-4, 250\n")
     rows = "".join(f"{100 * n}, {-1e-9 / n:.3g}, -1e-11\n" for n in range(1, 30))
     (tmp_path / "receptance.csv").write_text(rows)
@@ -89,7 +96,11 @@ def test_a_minimal_case_has_the_documented_defaults():
         "poles",
         None,
     )
-    assert (case.noise.track_pad, case.noise.wheel_transfer, case.noise.axles) == ("medium", "920 mm", 1)
+    noise = case.noise
+    assert (noise.track_pad, noise.wheel_transfer, noise.rail_radiation, noise.axles) == (None, None, None, 1)
+    widths = (noise.rail_foot_width, noise.rail_head_width, noise.wheel_width)
+    assert widths == pytest.approx((0.15, 0.072, 0.135))
+    assert (noise.sleeper_length, noise.sleeper_width) == pytest.approx((2.6, 0.25))
     assert case.rolled_time == 1.0
     assert case.rolled_range == pytest.approx((-16.8, 56.0))
 
@@ -111,7 +122,9 @@ def test_every_key_is_understood(folder):
         'rail_profile = "rail.csv"\npoints = ["9 m", "9.325 m"]',
         contact='spacing = "0.4 mm"\nwindow = "16 mm"',
         numerics='highest_frequency = "4 kHz"\ntime_step = "20 us"\nkernel = "poles"\npoles = 80',
-        noise='track_pad = "soft"\nwheel_transfer = "920 mm"\naxles = 4',
+        noise='track_pad = "soft"\nwheel_transfer = "920 mm"\naxles = 4\nrail_foot_width = "140 mm"\n'
+        'rail_head_width = "70 mm"\nrail_radiation = "ratios.csv"\nsleeper_length = "2.4 m"\n'
+        'sleeper_width = "0.2 m"\nwheel_width = "140 mm"',
     )
     case = parse_case(text, folder / "case.toml")
     assert case.speed == pytest.approx(200 / 3.6)
@@ -324,7 +337,9 @@ def test_wheel_and_rail_may_be_of_own_materials():
         ("numerics", 'kernel = "pole"', 'Did you mean "poles"?'),
         ("numerics", 'time_step = "0.1 ms"', "numerics.time_step: received 100 us"),
         ("noise", 'track_pad = "stiff"', '"soft", "medium", "hard"'),
-        ("noise", 'wheel_transfer = "840 mm"', '"920 mm"'),
+        ("noise", 'wheel_transfer = "800 mm"', '"920 mm", "840 mm", "680 mm", "1200 mm"'),
+        ("noise", 'rail_radiation = "none.csv"', "noise.rail_radiation: received"),
+        ("noise", 'rail_foot_width = "150 m"', "noise.rail_foot_width: received"),
         ("noise", "axles = 0", "a whole number at least 1"),
         ("ball", 'radius = "1 mm"', "ball: received an unknown key"),
     ],
@@ -499,6 +514,67 @@ def test_modes_that_are_wrong(row, message, folder):
     assert message.partition(";")[0] in errors[0]
     with pytest.raises(InputError) as caught:
         read_modes(folder / "modes.csv")
+    assert message in str(caught.value)
+
+
+def test_modes_say_how_they_move_the_wheel(folder):
+    text = "frequency (kHz), damping, modal mass (kg), diameters, axial, radial\n2, 1e-4, 300, 2, 4, 0.5\n"
+    (folder / "modes.csv").write_text(text)
+    assert read_mode_shapes(folder / "modes.csv").tolist() == [[2.0, 4.0, 0.5]]
+    assert [list(each) for each in read_modes(folder / "modes.csv")] == [[2000.0], [1e-4], [300.0]]
+    (folder / "modes.csv").write_text("2000, 1e-4, 300\n")
+    assert read_mode_shapes(folder / "modes.csv") is None
+    assert read_mode_shapes(np.array([[2000.0, 1e-4, 300.0, 2.0, 4.0, 0.5]])).tolist() == [[2.0, 4.0, 0.5]]
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        (
+            "2000, 0.1, 300, 1.5, 4, 0.5",
+            "a number of nodal diameters of 1.5; allowed: a whole number",
+        ),
+        ("2000, 0.1, 300, -1, 4, 0.5", "a number of nodal diameters of -1"),
+        ("2000, 0.1, 300, 2, -4, 0.5", "an rms velocity of -4; allowed: zero or more, per radial velocity"),
+        ("2000, 0.1, 300, 2, 4", "or with these and nodal diameters (1), axial velocity over the disc (1)"),
+        ("2000, 0.1, 300, 2, 4, 1\n2100, 0.1, 300", "'2100, 0.1, 300' in line 2"),
+    ],
+)
+def test_shapes_of_modes_that_are_wrong(row, message, folder):
+    (folder / "modes.csv").write_text(row + "\n")
+    errors = errors_of(case_with(wheel='modes = "modes.csv"'), folder / "case.toml")
+    assert len(errors) == 1
+    assert errors[0].startswith("wheel.modes: received ")
+    assert message.partition(";")[0] in errors[0]
+    with pytest.raises(InputError) as caught:
+        read_modes(folder / "modes.csv")
+    assert message in str(caught.value)
+
+
+def test_modes_as_an_array_have_three_columns_or_six():
+    with pytest.raises(CaseError, match=r"an array of shape \(n, 3\) or \(n, 6\) of real numbers"):
+        WheelOnRail(surface={"spectrum": "iso3095"}, wheel={"modes": np.ones((2, 4))})
+
+
+def test_radiation_ratios_are_read(folder):
+    frequency, ratio = read_ratios(folder / "ratios.csv")
+    assert (list(frequency), list(ratio)) == ([100.0, 1000.0], [0.01, 0.8])
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("100, 0.1\n100, 0.2", "frequencies that do not rise; allowed: rising frequencies, all above 0 Hz"),
+        ("0, 0.1\n100, 0.2", "frequencies that do not rise"),
+        ("100, 0\n200, 0.2", "a radiation ratio of 0; allowed: greater than 0"),
+    ],
+)
+def test_radiation_ratios_that_are_wrong(rows, message, folder):
+    (folder / "ratios.csv").write_text(rows)
+    errors = errors_of(case_with(noise='rail_radiation = "ratios.csv"'), folder / "case.toml")
+    assert errors[0].startswith("noise.rail_radiation: received ")
+    with pytest.raises(InputError) as caught:
+        read_ratios(folder / "ratios.csv")
     assert message in str(caught.value)
 
 

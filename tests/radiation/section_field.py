@@ -28,7 +28,7 @@ def mirrored(half):
     return np.concatenate([half, (half * [-1.0, 1.0])[1:-1][::-1]])
 
 
-def power_per_length(outline, inside, wavenumber, size=3e-3):
+def power_per_length(outline, inside, wavenumber, size=5e-3):
     """Sound power per length over ρ c ⟨v²⟩, m, of an outline (n, 2), m, at a wavenumber, rad/m."""
     nodes = np.concatenate(
         [

@@ -252,10 +252,13 @@ class File:
         Surfaces that may stand in its place.
     columns : int
         Number of columns of an array that may stand in its place; 0 for none.
+    further : int
+        How many columns more such an array may have.
     """
 
     held: tuple[type, ...] = ()
     columns: int = 0
+    further: int = 0
 
     @property
     def allowed(self) -> str:
@@ -274,8 +277,10 @@ class File:
         return self._path(value, info)
 
     def _table(self, value: NDArray[Any]) -> NDArray[np.float64]:
-        if value.ndim != 2 or value.shape[1] != self.columns or value.dtype.kind not in "fiu":
-            allowed = f"an array of shape (n, {self.columns}) of real numbers in SI"
+        counts = sorted({self.columns, self.columns + self.further})
+        if value.ndim != 2 or value.shape[1] not in counts or value.dtype.kind not in "fiu":
+            shapes = " or ".join(f"(n, {count})" for count in counts)
+            allowed = f"an array of shape {shapes} of real numbers in SI"
             raise InputError("table", shown(value), allowed)
         table = np.array(value, dtype=np.float64, order="C")
         table.flags.writeable = False

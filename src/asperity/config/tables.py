@@ -89,23 +89,27 @@ def check_band_levels(levels: NDArray[np.float64], name: str) -> None:
         raise InputError(name, received, allowed, remedy)
 
 
-def read_table(table: TableSource, columns: tuple[Column, ...]) -> NDArray[np.float64]:
-    """Read a table of numbers (lines, columns), in SI.
+def read_table(
+    table: TableSource, columns: tuple[Column, ...], further: tuple[Column, ...] = ()
+) -> NDArray[np.float64]:
+    """Read a table of numbers (lines, columns), in SI; all of its lines may have all `further` columns.
 
     An array is taken as it is. In a file, columns are apart by comma, semicolon (with decimal commas) or
     white space; text from '#' on is left out. A heading may name units in brackets, as ``wavelength (cm)``;
     without one, they are SI. A line that does not hold one finite number for each column is refused.
     """
-    allowed = "a table with the columns " + ", ".join(
-        f"{column.name} ({column.dimension or '1'})" for column in columns
-    )
+    allowed = f"a table with the columns {_named(columns)}"
+    if further:
+        allowed += f", or with these and {_named(further)}"
     if isinstance(table, np.ndarray):
         if not len(table) or not np.isfinite(table).all():
             raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
         return table
+    lines = list(lines_of_cells(read_text(table, table.name, allowed, largest=LARGEST_TABLE)))
+    if lines and len(lines[0][1]) == len(columns) + len(further):
+        columns += further
     scale, rows = [1.0] * len(columns), []
-    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE)
-    for number, cells in lines_of_cells(content):
+    for number, cells in lines:
         values = [_number(cell) for cell in cells]
         if len(cells) == len(columns) and all(map(math.isfinite, values)):
             rows.append(values)
@@ -116,6 +120,10 @@ def read_table(table: TableSource, columns: tuple[Column, ...]) -> NDArray[np.fl
     if not rows:
         raise InputError(name_of(table), "no line of numbers", allowed)
     return np.array(rows) * scale
+
+
+def _named(columns: tuple[Column, ...]) -> str:
+    return ", ".join(f"{column.name} ({column.dimension or '1'})" for column in columns)
 
 
 def _number(cell: str) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,10 +12,15 @@ from asperity.errors import InputError
 from asperity.structures.periodic_rail import PeriodicWaves
 from asperity.structures.track import Track
 
+ForceOverBay = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+"""Mean square of the force at places (n,), m from a sleeper, at the frequencies (n, f), in any unit."""
+
 FEWEST_NODES = 10  # of Gauss's rule in a bay, beside one per radian of the shortest wave
 
 
-def squared_mobility(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
+def squared_mobility(
+    track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
+) -> NDArray[np.float64]:
     """Integral along the rail of the squared mobility, mean over the places of the force in a bay.
 
     Parameters
@@ -23,6 +29,10 @@ def squared_mobility(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
         With its damping as it is: constant loss factors, or relaxations.
     frequency : array_like (f,)
         Hz, positive.
+    force : callable, optional
+        How the mean square of the force is spread over a bay, the same on both sides of its middle; evenly
+        by default. A wheel presses less where the rail gives way, most of all at mid-span near the
+        pinned-pinned frequency.
 
     Returns
     -------
@@ -47,14 +57,16 @@ def squared_mobility(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
     along = np.stack([waves.outgoing(x) for x in node])  # (x, j, f)
     within = np.einsum("x,xif,xjf->ijf", weight, along, along.conj(), optimize=True)
     total = _over_bays(waves, driven, within)
-    for row, (x0, force) in enumerate(zip(node, driven, strict=True)):
+    for row, (x0, sent) in enumerate(zip(node, driven, strict=True)):
         places, lengths = _gauss(len(node), bay - x0)
         for x, length in zip(x0 + places, lengths, strict=True):
-            total[row] += length * np.abs(np.sum(force * waves.outgoing(x), axis=0)) ** 2
-    return 2.0 * omega**2 * (weight @ total) / bay
+            total[row] += length * np.abs(np.sum(sent * waves.outgoing(x), axis=0)) ** 2
+    return 2.0 * omega**2 * _mean(total, node, weight, force)
 
 
-def squared_sleeper_mobility(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
+def squared_sleeper_mobility(
+    track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
+) -> NDArray[np.float64]:
     """Sum over all half sleepers of the squared mobility, mean over the places of the force in a bay.
 
     Velocity of the sleeper per force on the rail, squared, (f,), (m/s)²/N², at positive frequencies (f,), Hz.
@@ -63,21 +75,23 @@ def squared_sleeper_mobility(track: Track, frequency: ArrayLike) -> NDArray[np.f
     """
     omega = 2.0 * np.pi * positive(frequency)
     waves = track.waves(omega)
-    _, weight, driven = _driven(waves)
+    node, weight, driven = _driven(waves)
     above = waves.outgoing(0.0)
     total = _over_bays(waves, driven, above[:, None] * above.conj()[None, :])
     pad, ballast = track.layer_stiffnesses(omega)
     passed_on = np.abs(pad / (pad + ballast - track.sleeper_mass * omega**2)) ** 2
-    return 2.0 * omega**2 * passed_on * (weight @ total) / track.sleeper_spacing
+    return 2.0 * omega**2 * passed_on * _mean(total, node, weight, force)
 
 
-def squared_point_mobility(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
-    """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; frequencies (f,), Hz."""
+def squared_point_mobility(
+    track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
+) -> NDArray[np.float64]:
+    """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
     omega = 2.0 * np.pi * positive(frequency)
     waves = track.waves(omega)
     node, weight = _gauss(_nodes(waves), track.sleeper_spacing)
     point = np.stack([np.abs(waves.receptance(x0, x0)) ** 2 for x0 in node])
-    return omega**2 * (weight @ point) / track.sleeper_spacing
+    return omega**2 * _mean(point, node, weight, force)
 
 
 def effective_length(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
@@ -95,6 +109,19 @@ def positive(frequency: ArrayLike) -> NDArray[np.float64]:
     if not (np.isfinite(f) & (f > 0.0)).all():
         raise InputError("frequency (Hz)", float(np.min(f)), "finite positive numbers")
     return f
+
+
+def _mean(
+    values: NDArray[np.float64],
+    node: NDArray[np.float64],
+    weight: NDArray[np.float64],
+    force: ForceOverBay | None,
+) -> NDArray[np.float64]:
+    """Mean over a bay of values (n, f) at places (n,) with the weights of Gauss's rule and of the force."""
+    if force is None:
+        return np.asarray(weight @ values / weight.sum())
+    square = force(node)
+    return np.asarray(weight @ (square * values) / (weight @ square))
 
 
 def _driven(

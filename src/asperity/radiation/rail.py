@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
 from asperity.radiation.air import IMPEDANCE, wavenumber
-from asperity.radiation.along import positive, squared_mobility
+from asperity.radiation.along import ForceOverBay, positive, squared_mobility
 from asperity.radiation.elementary import cylinder
 from asperity.structures.track import Track
 
@@ -81,7 +81,12 @@ class RailSection:
         radius = (self.dipole_area**2 / (4.0 * np.pi * self.radiating_width)) ** (1.0 / 3.0)
         return cylinder(wavenumber(f) * radius)
 
-    def power_per_force(self, track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
-        """Sound power of the whole rail per mean square force on it, (f,), W/N², at frequencies (f,), Hz."""
+    def power_per_force(
+        self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
+    ) -> NDArray[np.float64]:
+        """Sound power of the whole rail per mean square force on it, (f,), W/N², at frequencies (f,), Hz.
+
+        `force` is how that is spread over a bay, as in `squared_mobility`.
+        """
         ratio = self.radiation_ratio(frequency)
-        return IMPEDANCE * self.radiating_width * ratio * squared_mobility(track, frequency)
+        return IMPEDANCE * self.radiating_width * ratio * squared_mobility(track, frequency, force)

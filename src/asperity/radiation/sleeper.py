@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
 from asperity.radiation.air import IMPEDANCE, wavenumber
-from asperity.radiation.along import positive, squared_sleeper_mobility
+from asperity.radiation.along import ForceOverBay, positive, squared_sleeper_mobility
 from asperity.radiation.elementary import baffled_piston
 from asperity.structures.track import Track
 
@@ -61,7 +61,12 @@ class SleeperTop:
         """Ratio σ (f,) at positive frequencies (f,), Hz: of the power to ρ c S ⟨v²⟩."""
         return baffled_piston(wavenumber(positive(frequency)) * self.radius)
 
-    def power_per_force(self, track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
-        """Sound power of all half sleepers per mean square force on the rail, (f,), W/N²; frequencies, Hz."""
+    def power_per_force(
+        self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
+    ) -> NDArray[np.float64]:
+        """Sound power of all half sleepers per mean square force on the rail, (f,), W/N²; frequencies, Hz.
+
+        `force` is how that is spread over a bay, as in `asperity.radiation.along.squared_mobility`.
+        """
         ratio = self.radiation_ratio(frequency)
-        return IMPEDANCE * self.area * ratio * squared_sleeper_mobility(track, frequency)
+        return IMPEDANCE * self.area * ratio * squared_sleeper_mobility(track, frequency, force)

@@ -111,6 +111,13 @@ TRACK_TRANSFER: dict[str, tuple[float, ...]] = {
 }  # fmt: skip
 """Table G-3a, track on mono-block sleepers by rail pad, dB at `TRANSFER_FREQUENCIES`."""
 
+PAD_CLASSES: dict[str, tuple[float, float]] = {
+    "soft": (150e6, 250e6),
+    "medium": (250e6, 800e6),
+    "hard": (800e6, 1000e6),
+}
+"""Table [2.3.b], digit 3 of a track's descriptor: dynamic stiffness of rail pads, least and largest, N/m."""
+
 WHEEL_TRANSFER: dict[str, tuple[float, ...]] = {
     "920 mm": (
         75.4, 77.3, 81.1, 84.1, 83.3, 84.3, 86.0, 90.1, 89.8, 89.0, 88.8, 90.4, 92.4, 94.9, 100.4, 104.6,
@@ -180,6 +187,20 @@ def nearest_contact_filter(load: float, diameter: float) -> str:
         return math.hypot(math.log(load / (1e3 * key[0])), math.log(diameter / (1e-3 * key[1])))
 
     return _filter_name(*min(CONTACT_FILTERS, key=distance))
+
+
+def nearest_pad_class(stiffness: float) -> str:
+    """Class of rail pads, of `PAD_CLASSES`, in which a stiffness, N/m, lies, or to which it is nearest."""
+    if not 0.0 < stiffness < math.inf:
+        raise InputError("stiffness of a rail pad (N/m)", stiffness, "a finite positive number")
+    return next((name for name, (_, most) in PAD_CLASSES.items() if stiffness < most), "hard")
+
+
+def nearest_wheel_transfer(diameter: float) -> str:
+    """Name of the wheel transfer whose diameter is nearest to one, m, by their ratio."""
+    if not 0.0 < diameter < math.inf:
+        raise InputError("wheel diameter (m)", diameter, "a finite positive number")
+    return min(WHEEL_TRANSFER, key=lambda name: abs(math.log(1e3 * diameter / float(name.split()[0]))))
 
 
 def track_transfer(name: str) -> Spectrum:

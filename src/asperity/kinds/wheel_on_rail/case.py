@@ -21,8 +21,9 @@ from asperity.config.form import key
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
 from asperity.config.tables import check_band_levels, read_levels
 from asperity.errors import InputError
+from asperity.kinds.wheel_on_rail.noise_keys import NoiseCase
 from asperity.kinds.wheel_on_rail.surface_keys import RailSurface
-from asperity.kinds.wheel_on_rail.track_keys import OVERRIDES, NoiseCase, RailContact, RailNumerics, TrackCase
+from asperity.kinds.wheel_on_rail.track_keys import OVERRIDES, RailContact, RailNumerics, TrackCase
 from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
 from asperity.scenarios.kind import Words
 from asperity.units import written
@@ -74,7 +75,7 @@ class WheelOnRail(Case):
     track: TrackCase = key({}, "the track that is rolled over")
     contact: RailContact = key({}, "how the rough contact is solved and reduced")
     numerics: RailNumerics = key({}, "how finely time and the track are resolved")
-    noise: NoiseCase = key({}, "how force is turned into sound power")
+    noise: NoiseCase = key({}, "what radiates, and the labels of CNOSSOS-EU")
 
     @property
     def time_step(self) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
+from asperity.kinds.wheel_on_rail.labels import track_label, wheel_label
 from asperity.kinds.wheel_on_rail.sound_power import SOURCES, SoundPower, rolling_sound_power
 from asperity.laws import Role, in_role
 from asperity.reference import cnossos
@@ -62,8 +63,8 @@ def _linear(computed: Computed, contact_filter: str | None) -> SoundPower:
         case.speed,
         rail,
         wheel,
-        cnossos.track_transfer(case.noise.track_pad),
-        cnossos.wheel_transfer(case.noise.wheel_transfer),
+        cnossos.track_transfer(track_label(case)),
+        cnossos.wheel_transfer(wheel_label(case)),
         contact_filter=None if contact_filter is None else cnossos.contact_filter(contact_filter),
         axles=case.noise.axles,
     )

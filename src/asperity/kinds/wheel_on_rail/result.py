@@ -11,8 +11,10 @@ import xarray
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.bodies import Bodies, square_transfer
 from asperity.kinds.wheel_on_rail.compute import Computed
+from asperity.kinds.wheel_on_rail.labels import findings_of_labels
 from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, error_of_losses, findings_of_losses
+from asperity.kinds.wheel_on_rail.radiated import warn_of_silence
 from asperity.kinds.wheel_on_rail.spectra import spectra_group
 from asperity.kinds.wheel_on_rail.track_group import track_group
 from asperity.reference.cnossos import CITATION
@@ -33,7 +35,10 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     """
     spectra, losses = spectra_group(computed), error_of_losses(computed)
     found = [*findings(computed.chain), *findings_of_losses(losses)]
+    if schema.SOUND_POWER_LEVEL.name in spectra:
+        found += findings_of_labels(computed.case)
     warn_of_findings(found)
+    warn_of_silence(computed.case)
     warn_of_loss_factors(losses)
     transfer = partial(square_transfer, Bodies(computed.wheel, computed.track))
     choice = law_choice(computed.case, computed.chain.shape, computed.chain.textures, transfer)

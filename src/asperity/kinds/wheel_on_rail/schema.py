@@ -17,6 +17,7 @@ _track_attribute = partial(Attribute, "track")
 _POINT = "point on the rail passed by"
 _BAND = "one-third-octave band centre"
 _LOSSES = "where the track has loss factors"
+SILENT = "of this wheel it is not known how its disc and tread vibrate"
 _NOISE = "where the law linear rolled over a roughness"
 
 ROLLING_POINT = _rolling("point", ("point",), "m", _POINT)
@@ -193,6 +194,29 @@ CNOSSOS_SOUND_POWER_LEVEL_A = _spectra(
     ("contact_filter",),
 )
 
+RADIATOR = _spectra("radiator", ("radiator",), "1", "what radiates by its vibration")
+RADIATED_POWER_LEVEL = _spectra(
+    "radiated_power_level",
+    ("law", "radiator", "band"),
+    "dB re 1 pW",
+    "sound power level from the vibration itself, of all axles",
+    "",
+    SILENT,
+    ("wheel",),
+)
+RADIATED_POWER_LEVEL_A = _spectra(
+    "radiated_power_level_a",
+    ("law", "radiator"),
+    "dB(A) re 1 pW",
+    "A-weighted sound power level from the vibration itself, over the bands computed",
+    "",
+    SILENT,
+    ("wheel",),
+)
+BAND_DECAY_RATE = _spectra(
+    "band_decay_rate", ("band",), "dB/m", "decay rate of the rail, of the mean length in the band"
+)
+
 SLEEPER_PASSING_FREQUENCY = Attribute(
     "spectra", "sleeper_passing_frequency", "Hz", "speed over the distance of the sleepers"
 )
@@ -208,5 +232,7 @@ KEPT: dict[Entry, dict[str, str]] = {
     POINT_VELOCITY_LEVEL: {},
     SOUND_POWER_LEVEL: {},
     SOUND_POWER_LEVEL_A: {"source": "total"},
+    RADIATED_POWER_LEVEL: {},
+    RADIATED_POWER_LEVEL_A: {},
 }
 """What a study keeps, and where of it."""

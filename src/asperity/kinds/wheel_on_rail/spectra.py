@@ -13,6 +13,7 @@ from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
 from asperity.kinds.wheel_on_rail.noise_group import noise
+from asperity.kinds.wheel_on_rail.radiated import radiation
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.tree import level_differences, product_of_bands, spectrum_segment
 from asperity.schema import Attribute, Entry, attributes, spectra, variables
@@ -45,6 +46,7 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
         schema.LINEAR_REFERENCE_LEVEL: reference_level,
     }
     found |= _points(computed, segment) | _roughness(computed) | noise(computed, band, force_level)
+    found |= radiation(computed, band, frequency, force, segment)
     if schema.NOISE_BAND in found:
         centres = found[schema.NOISE_BAND]
         product = product_of_bands(schema.NOISE_BAND_TIME_PRODUCT, centres, time)

@@ -1,4 +1,4 @@
-"""Track, contact, numerics and noise of a case with a railway wheel."""
+"""Track, contact and numerics of a case with a railway wheel."""
 
 from __future__ import annotations
 
@@ -222,17 +222,3 @@ class RailNumerics(Numerics):
         """Poles come in pairs."""
         if self.poles is not None and self.poles % 2:
             yield InputError("poles", self.poles, "an even number", "Poles come in conjugate pairs.")
-
-
-class NoiseCase(Section):
-    """How force is turned into sound power, by the transfer functions of CNOSSOS-EU."""
-
-    track_pad: Annotated[str, BeforeValidator(Choice(("soft", "medium", "hard")))] = key(
-        "medium", "rail pads of the track's transfer to sound power, on mono-block sleepers"
-    )
-    wheel_transfer: Annotated[str, BeforeValidator(Choice(("920 mm",)))] = key(
-        "920 mm", "diameter of the wheel's transfer to sound power"
-    )
-    axles: Annotated[int, BeforeValidator(Number(at_least=1, at_most=1000, whole=True))] = key(
-        1, "number of axles whose sound power is added"
-    )

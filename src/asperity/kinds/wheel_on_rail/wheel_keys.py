@@ -40,6 +40,7 @@ WheelRoughness = Annotated[
     PlainValidator(ChoiceOrFile(WHEEL_ROUGHNESS, TABLE_OF_LEVELS, columns=2)),
 ]
 TableFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=3))]
+ModesFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=3, further=3))]
 
 
 class WheelBody(Section):
@@ -65,9 +66,11 @@ class WheelBody(Section):
         "measured shape of the tread across the rail, instead of transverse_radius",
         example='"tread.csv"',
     )
-    modes: TableFile | None = key(
+    modes: ModesFile | None = key(
         None,
-        "table of the wheel's modes: frequency (Hz), damping ratio, modal mass (kg)",
+        "table of the wheel's modes: frequency (Hz), damping ratio, modal mass (kg); its sound needs three "
+        "columns more: number of nodal diameters, and rms axial velocity of the disc and rms radial velocity "
+        "of the tread, both per radial velocity at the contact",
         otherwise="a rigid wheel",
         example='"modes.csv"',
     )
