@@ -26,7 +26,7 @@ TABLES = {
     "wheel-on-rail": {"statistics", "practice", "contact_loss", "sound_power_table"},
 }
 UNITS = r"m|1/m|m\^3|m/N|rad|m/\(N s\)|Pa|N|N/m|1|s|Hz|m/s|N\^2/Hz|\(m/s\)\^2/Hz|\(m/s\^2\)\^2/Hz"
-LEVELS = r"dB|dB/m|dB re 1 N|dB re 1 µm|dB re 1 pW|dB\(A\) re 1 pW"
+LEVELS = r"dB|dB/m|dB re 1 N|dB re 1 µm|dB re 1 pW|dB\(A\) re 20 µPa|dB\(A\) re 1 pW"
 
 
 def kind_of(tree):

@@ -30,7 +30,7 @@ class Series:
     @property
     def heading(self) -> str:
         """Of its column, as ``"areal [N^2/Hz]"``."""
-        units = re.sub(r"(?<=[A-Za-z)])(\d)", r"^\1", self.units).replace("um", "µm")
+        units = re.sub(r"(?<=[A-Za-z)])(\d)", r"^\1", self.units).replace("um", "µm").replace("uPa", "µPa")
         return f"{self.name} [{units}]"
 
 

@@ -6,6 +6,7 @@ from asperity.kinds.wheel_on_rail.figures.force import FORCE_BANDS, FORCE_PEAK, 
 from asperity.kinds.wheel_on_rail.figures.loss_factors import LOSS_FACTORS
 from asperity.kinds.wheel_on_rail.figures.motion import MOTION
 from asperity.kinds.wheel_on_rail.figures.noise import NOISE, sound_power_change, sound_power_table
+from asperity.kinds.wheel_on_rail.figures.pass_by import PASS_BY_PART, pass_by_table
 from asperity.kinds.wheel_on_rail.figures.roughness import ROUGHNESS_LEVELS
 from asperity.kinds.wheel_on_rail.figures.scene import TRACK_SCENE
 from asperity.kinds.wheel_on_rail.figures.track import TRACK
@@ -32,5 +33,6 @@ CHAPTERS = (
         (practice_table, reference_table, loss_table),
     ),
     Chapter("noise", "Rolling noise", NOISE, (sound_power_table,), sound_power_change),
+    Chapter("pass_by", "Pass-by", (PASS_BY_PART,), (pass_by_table,)),
     Chapter("motion", "Motion", MOTION),
 )

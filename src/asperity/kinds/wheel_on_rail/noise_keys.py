@@ -10,17 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, PlainValidator
 
-from asperity.config.form import Section, key
+from asperity.config.form import key
 from asperity.config.keys import Choice, File, Length, Number
 from asperity.config.tables import problems_of_table
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.tables import read_ratios
+from asperity.kinds.wheel_on_rail.train_keys import TrainKeys
 from asperity.reference.cnossos import PAD_CLASSES, WHEEL_TRANSFER
 
 RatiosFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=2))]
 
 
-class NoiseCase(Section):
+class NoiseCase(TrainKeys):
     """What radiates, for the sound power from vibration, and the labels of CNOSSOS-EU for that beside it."""
 
     axles: Annotated[int, BeforeValidator(Number(at_least=1, at_most=1000, whole=True))] = key(
@@ -65,4 +66,5 @@ class NoiseCase(Section):
 
     def problems(self) -> Iterator[InputError]:
         """A table of ratios that can be read."""
+        yield from self.problems_of_train()
         yield from problems_of_table(self, "rail_radiation", read_ratios)

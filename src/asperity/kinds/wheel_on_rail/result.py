@@ -14,6 +14,7 @@ from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.labels import findings_of_labels
 from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, error_of_losses, findings_of_losses
+from asperity.kinds.wheel_on_rail.pass_by_group import pass_by_group
 from asperity.kinds.wheel_on_rail.radiated import warn_of_silence
 from asperity.kinds.wheel_on_rail.spectra import spectra_group
 from asperity.kinds.wheel_on_rail.track_group import track_group
@@ -48,6 +49,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),
         "/spectra": spectra,
+        "/pass_by": pass_by_group(computed.case, spectra),
     }
     return assembled(
         computed.chain,

@@ -228,11 +228,80 @@ WHEEL_REVOLUTION_FREQUENCY = Attribute(
     "spectra", "wheel_revolution_frequency", "Hz", "turns of the wheel per second"
 )
 
+# --- the pass-by
+
+_pass_by = partial(Entry, "pass_by")
+_pass_by_attribute = partial(Attribute, "pass_by")
+_HEARD = "dB(A) re 20 uPa"
+_OF_RADIATOR = ("law", "radiator")
+_LENGTH = "where the train has a length: not of one axle without vehicle_length"
+
+PASS_BY_LAW = _pass_by("law", ("law",), "1", "contact law")
+PASS_BY_RADIATOR = _pass_by("radiator", ("radiator",), "1", "what radiates by its vibration")
+PASS_BY_BAND = _pass_by("band", ("band",), "Hz", _BAND)
+PASS_BY_TIME = _pass_by("time", ("time",), "s", "time since the first axle was opposite the receiver")
+AXLE = _pass_by("axle", ("axle",), "1", "number of the axle")
+AXLE_TIME = _pass_by("axle_time", ("axle",), "s", "time at which it is opposite the receiver")
+PASS_BY_LEVEL = _pass_by(
+    "pass_by_level",
+    (*_OF_RADIATOR, "time"),
+    _HEARD,
+    "A-weighted sound pressure level beside the track, with time weighting F",
+    missing=SILENT,
+)
+PASS_BY_MAXIMUM_LEVEL = _pass_by(
+    "pass_by_maximum_level",
+    _OF_RADIATOR,
+    _HEARD,
+    "L_pAFmax, largest A-weighted sound pressure level with time weighting F",
+    missing=SILENT,
+)
+PASS_BY_EQUIVALENT_LEVEL = _pass_by(
+    "pass_by_equivalent_level",
+    _OF_RADIATOR,
+    _HEARD,
+    "L_pAeq,Tp, A-weighted equivalent sound pressure level over the pass-by time",
+    _LENGTH,
+    SILENT,
+)
+TRANSIT_EXPOSURE_LEVEL = _pass_by(
+    "transit_exposure_level",
+    _OF_RADIATOR,
+    _HEARD,
+    "TEL, A-weighted transit exposure level: all between the points 10 dB down, over the pass-by time",
+    _LENGTH,
+    SILENT,
+)
+SOUND_EXPOSURE_LEVEL_A = _pass_by(
+    "sound_exposure_level_a",
+    _OF_RADIATOR,
+    f"{_HEARD} and 1 s",
+    "SEL, A-weighted sound exposure level of the whole passage",
+    missing=SILENT,
+)
+SOUND_EXPOSURE_LEVEL = _pass_by(
+    "sound_exposure_level",
+    (*_OF_RADIATOR, "band"),
+    "dB re 20 uPa and 1 s",
+    "sound exposure level of the whole passage",
+    missing=f"{NO_SIGNAL}; or {SILENT}",
+)
+RECEIVER_DISTANCE = _pass_by_attribute("receiver_distance", "m", "from the middle of the track")
+RECEIVER_HEIGHT = _pass_by_attribute("receiver_height", "m", "above the rail head")
+FRONT_TIME = _pass_by_attribute(
+    "front_time", "s", "at which the front of the train is opposite: Tp begins", _LENGTH
+)
+REAR_TIME = _pass_by_attribute("rear_time", "s", "at which its rear is opposite: Tp ends", _LENGTH)
+
 KEPT: dict[Entry, dict[str, str]] = {
     POINT_VELOCITY_LEVEL: {},
     SOUND_POWER_LEVEL: {},
     SOUND_POWER_LEVEL_A: {"source": "total"},
     RADIATED_POWER_LEVEL: {},
     RADIATED_POWER_LEVEL_A: {},
+    PASS_BY_MAXIMUM_LEVEL: {"radiator": "total"},
+    PASS_BY_EQUIVALENT_LEVEL: {"radiator": "total"},
+    TRANSIT_EXPOSURE_LEVEL: {"radiator": "total"},
+    SOUND_EXPOSURE_LEVEL_A: {"radiator": "total"},
 }
 """What a study keeps, and where of it."""

@@ -1,0 +1,140 @@
+"""How loud the train of a case is beside the track: from the sound power of a result to its levels."""
+
+import numpy as np
+import pytest
+import xarray
+from numpy.testing import assert_allclose
+
+from asperity import WheelOnRail
+from asperity.errors import CaseError
+from asperity.kinds.wheel_on_rail.figures.pass_by import PASS_BY_PART, pass_by_caption, pass_by_table
+from asperity.kinds.wheel_on_rail.pass_by_group import pass_by_group
+
+BAND = 1000.0 * 10.0 ** (np.arange(-6, 7) / 10.0)
+KILOHERTZ = 6  # where the A-weighting is zero
+
+
+def case(**noise):
+    return WheelOnRail(surface={"spectrum": "iso3095"}, noise=noise, speed=50.0)
+
+
+def spectra(rail=100.0, sleepers=90.0, wheel=np.nan, decay=1.0):
+    """Sound power in the band of 1 kHz only, dB re 1 pW, by one law."""
+    level = np.full((1, 4, len(BAND)), np.nan)
+    parts = np.array([rail, sleepers, wheel])
+    level[0, :3, KILOHERTZ] = parts
+    level[0, 3, KILOHERTZ] = 10.0 * np.log10(np.nansum(10.0 ** (parts / 10.0)))
+    return xarray.Dataset(
+        {
+            "radiated_power_level": (("law", "radiator", "band"), level),
+            "band_decay_rate": ("band", np.full(len(BAND), decay)),
+        },
+        {"law": ["areal"], "radiator": ["rail", "sleepers", "wheel", "total"], "band": BAND},
+    )
+
+
+def sel(power, axles, source_height=0.0):
+    """10 lg of W ρc Q/(4 d v) over (20 µPa)² s."""
+    distance = np.hypot(7.5, 1.2 - source_height)
+    return 10.0 * np.log10(axles * 1e-12 * 10 ** (power / 10) * 413.0 * 2.0 / (4 * distance * 50.0) / 4e-10)
+
+
+def test_one_axle_has_a_maximum_and_an_exposure():
+    found = pass_by_group(case(), spectra(wheel=95.0))
+    assert found.sizes["axle"] == 1
+    assert "transit_exposure_level" not in found
+    assert "pass_by_equivalent_level" not in found
+    assert "front_time" not in found.attrs
+    by = found["sound_exposure_level_a"].sel(law="areal")
+    assert_allclose(by.sel(radiator="rail"), sel(100.0, 1), atol=1e-3)
+    assert_allclose(by.sel(radiator="wheel"), sel(95.0, 1, 0.46), atol=1e-3)
+    levels = by.sel(radiator=["rail", "sleepers", "wheel"]).values
+    assert_allclose(by.sel(radiator="total"), 10 * np.log10(np.sum(10 ** (levels / 10))), atol=1e-9)
+    banded = found["sound_exposure_level"].sel(law="areal", radiator="rail")
+    assert_allclose(banded[KILOHERTZ], by.sel(radiator="rail"), atol=1e-3)
+    assert np.isnan(np.delete(banded.values, KILOHERTZ)).all()
+
+
+def test_axles_of_a_train_pass_when_they_do():
+    found = pass_by_group(case(axle_positions=[0.0, 2.5, 19.0], vehicle_length=25.0, vehicles=2), spectra())
+    assert_allclose(found["axle_time"], np.array([0.0, 2.5, 19.0, 25.0, 27.5, 44.0]) / 50.0)
+    assert_allclose([found.attrs["front_time"], found.attrs["rear_time"]], [-3.0 / 50.0, 47.0 / 50.0])
+    assert_allclose(found["sound_exposure_level_a"].sel(radiator="rail"), sel(100.0, 6), atol=1e-3)
+    # over Tp = 1 s the energy of TEL is nearly that of SEL, and L_pAeq,Tp holds less of it
+    te, se, eq = (
+        float(found[f"{name}"].sel(law="areal", radiator="total"))
+        for name in ("transit_exposure_level", "sound_exposure_level_a", "pass_by_equivalent_level")
+    )
+    assert eq < te < se < te + 0.5
+
+
+def test_a_bogie_is_two_axles():
+    found = pass_by_group(case(wheelbase=2.5), spectra())
+    assert_allclose(found["axle_time"], [0.0, 0.05])
+    assert_allclose(found.attrs["rear_time"] - found.attrs["front_time"], 5.0 / 50.0)
+
+
+def test_the_level_rises_to_its_maximum_and_falls():
+    found = pass_by_group(case(), spectra())
+    level = found["pass_by_level"].sel(law="areal", radiator="total")
+    assert float(level.max()) == pytest.approx(
+        float(found["pass_by_maximum_level"].sel(law="areal", radiator="total")), abs=0.05
+    )
+    assert (
+        0.0 < float(level["time"][np.argmax(level.values)]) < 0.15
+    )  # later than the axle, by the time weighting
+    assert np.diff(level["time"]).max() < 0.0201
+
+
+def test_a_rail_that_rings_farther_is_heard_longer_and_less_loudly():
+    short, long = (pass_by_group(case(), spectra(sleepers=-50.0, decay=rate)) for rate in (5.0, 0.3))
+    for name, change in (("sound_exposure_level_a", 0.0), ("pass_by_maximum_level", -3.5)):
+        difference = float((long - short)[name].sel(law="areal", radiator="rail"))
+        assert difference == pytest.approx(change, abs=0.8 if change else 1e-9)
+
+
+def test_what_is_not_known_is_missing_and_not_in_the_total():
+    found = pass_by_group(case(), spectra())
+    wheel = found["sound_exposure_level_a"].sel(radiator="wheel")
+    assert np.isnan(wheel).all()
+    assert "disc and tread" in found["sound_exposure_level_a"].attrs["missing"]
+    rail = found["sound_exposure_level_a"].sel(radiator=["rail", "sleepers"]).values
+    assert_allclose(
+        found["sound_exposure_level_a"].sel(radiator="total"), 10 * np.log10(np.sum(10 ** (rail / 10)))
+    )
+
+
+def test_sound_power_is_of_all_axles_and_the_pass_by_of_each():
+    """The number of axles of the sound power changes nothing: the train says how many pass."""
+    four = spectra(rail=100.0 + 10 * np.log10(4), sleepers=90.0 + 10 * np.log10(4))
+    one, other = pass_by_group(case(), spectra()), pass_by_group(case(axles=4), four)
+    assert_allclose(one["pass_by_maximum_level"], other["pass_by_maximum_level"], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("noise", "message"),
+    [
+        ({"axle_positions": ["1 m", "3 m"]}, "received 1 m, 3 m; allowed: positions that rise from 0 m"),
+        ({"axle_positions": ["0 m", "3 m", "3 m"]}, "allowed: positions that rise from 0 m, the first axle"),
+        ({"axle_positions": []}, "received an empty list"),
+        ({"axle_positions": ["0 m"], "wheelbase": "2 m"}, "both axle_positions and wheelbase"),
+        ({"wheelbase": "2.5 m", "vehicle_length": "2 m"}, "allowed: more than that over its axles, 2.5 m"),
+        ({"vehicles": 2}, "vehicle_length"),
+        ({"vehicles": 0, "vehicle_length": "20 m"}, "vehicles"),
+    ],
+)
+def test_trains_that_cannot_be(noise, message):
+    with pytest.raises(CaseError, match=message):
+        case(**noise)
+
+
+def test_figure_and_table_say_what_passes():
+    group = pass_by_group(case(wheelbase=2.5), spectra())
+    tree = xarray.DataTree.from_dict({"/pass_by": group})
+    assert "2 axles pass (ticks), two wheels on each, 7.5 m" in pass_by_caption(tree)
+    assert "Without the wheel's part." in pass_by_caption(tree)
+    table = pass_by_table(tree)
+    assert [row[1].text for row in table.rows] == ["total", "rail", "sleepers"]
+    assert table.head[2:] == ["L_pAFmax / dB(A)", "L_pAeq,Tp / dB(A)", "TEL / dB(A)", "SEL / dB(A)"]
+    assert len(PASS_BY_PART.columns(tree)) == 4  # time, rail, sleepers, total
+    assert pass_by_table(xarray.DataTree.from_dict({"/pass_by": xarray.Dataset()})) is None
