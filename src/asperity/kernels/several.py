@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from asperity.kernels.modal import FORCE_TOLERANCE, backward, solve_step
 from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 from asperity.kernels.pointforce import Prepared, evaluate
+from asperity.kernels.several_rail import Channels, advance_channels, press_rail, rail_compliance
 
 SWEEPS = 200
 SETTLED = 4.0 * FORCE_TOLERANCE
@@ -53,6 +54,7 @@ class Assembly(NamedTuple):
     time_step: float  # s
     speed: float  # m/s
     coupled: bool  # whether one contact can feel another
+    channels: Channels  # of a rail, none without one
 
 
 class ContactsMotion(NamedTuple):
@@ -70,9 +72,13 @@ class ContactsMotion(NamedTuple):
     flexible_ahead: NDArray  # (b, s)
     force: NDArray  # (2, n), N, now and one step ago
     approach: NDArray  # (2, n), as the laws see it, m, now and one step ago
+    rail: NDArray  # (p, 2 q), states of the poles of a rail's channels, m
+    ring: NDArray  # (n, taps), displacement to come at each contact where the rail is scattered, m
+    rail_ahead: NDArray  # (n,), displacement of the rail at the end of the step, as far as known, m
+    rail_now: NDArray  # (p,), displacement of the rail for unit force at the end of the step, m/N
     trial: NDArray  # (n,), forces at the end of the step, as far as they are known, N
     compliance: NDArray  # (n,), of structure, body and softening at the contact in a step, m/N
-    rate: NDArray  # (n,), of the approach, m/s
+    rate: NDArray  # (n,), of the approach, on a rail of the body alone, m/s
     climb: NDArray  # (n,), on the slope of the structure, m/s
     power: NDArray  # (POWERS,), now, W
     ledger: NDArray  # (6,), since the start, J, in the order of the names above
@@ -142,6 +148,8 @@ def begin_step(system, motion, shapes):  # type: ignore[no-untyped-def]
         motion.ahead[j] = (
             a[0, j] * motion.displacement[j] + a[1, j] * motion.velocity[j] + a[2, j] * motion.push[j]
         )
+    if system.channels.source.shape[0] > 0:
+        advance_channels(system.channels, motion, motion.force[0], motion.counts[0] + 1)
     bodies, states = motion.core.shape
     for b in range(bodies):
         for i in range(states):
@@ -161,6 +169,8 @@ def begin_step(system, motion, shapes):  # type: ignore[no-untyped-def]
         compliance = 0.0
         for j in range(motion.ahead.shape[0]):
             compliance += shapes[k, j] * shapes[k, j] * a[3, j]
+        if system.channels.source.shape[0] > 0:
+            compliance += rail_compliance(system.channels, motion, k)
         motion.compliance[k] = compliance + system.own[k] + system.softening[k]
         motion.trial[k] = 2.0 * motion.force[0, k] - motion.force[1, k]
         press(system, motion, shapes, k, motion.trial[k])
@@ -176,12 +186,14 @@ def press(system, motion, shapes, k, change):  # type: ignore[no-untyped-def]
         motion.core_ahead[b, j] += system.answers[k, j] * change
     for j in range(motion.flexible_ahead.shape[1]):
         motion.flexible_ahead[b, j] += f[3, b, j] * (system.flexible_shapes[k, j] * change)
+    if system.channels.source.shape[0] > 0:
+        press_rail(system.channels, motion, k, change)
 
 
 @compiled(**INNER, **REASSOCIATE)
 def over_ahead(motion, shapes, k):  # type: ignore[no-untyped-def]
-    """Displacement of the structure under a contact at the end of the step, m."""
-    total = 0.0
+    """Displacement of what is rolled over under a contact at the end of the step, m."""
+    total = motion.rail_ahead[k]
     for j in range(motion.ahead.shape[0]):
         total += shapes[k, j] * motion.ahead[j]
     return total
@@ -287,9 +299,10 @@ def complete_contacts(system, motion, shapes):  # type: ignore[no-untyped-def]
 def contact_rates(system, motion, shapes, slopes, k):  # type: ignore[no-untyped-def]
     """Now at a contact: displacement of structure and of body, their rates, and the climb on the slope, m/s.
 
-    The displacement of the structure is positive downwards, that of the body upwards.
+    The displacement of the structure is positive downwards, that of the body upwards; a rail, of which
+    displacements alone are known, has no rate.
     """
-    over, over_rate, slope = 0.0, 0.0, 0.0
+    over, over_rate, slope = motion.rail_ahead[k], 0.0, 0.0
     for j in range(motion.displacement.shape[0]):
         q, v = motion.displacement[j], motion.velocity[j]
         over += shapes[k, j] * q
@@ -354,6 +367,8 @@ def observe_contacts(system, motion, record, step, shapes, slopes):  # type: ign
         power[THROUGHPUT] += abs(force * over_rate) + abs(force * body_rate)
         if step > 0:
             closer = record.approach[k, step] - record.approach[k, step - 1]
+            if system.channels.source.shape[0] > 0:
+                closer = record.rolling[k, step] - record.rolling[k, step - 1]
             work(system, motion, k, closer, -(body_rate + over_rate + climb), climb)
         motion.rate[k], motion.climb[k] = -(body_rate + over_rate + climb), climb
         motion.approach[1, k] = motion.approach[0, k]
@@ -372,12 +387,22 @@ def work(system, motion, k, closer, rate, climb):  # type: ignore[no-untyped-def
     The force is linear over the step, whatever it does from step to step: by parts its work on the contact
     takes the integral of the approach alone, a cubic between its ends. The trapezoidal rule would miss what
     an impact does. `closer` is the change of the approach, m; rate of the approach and climb at the end, m/s.
+    On a rail approach and rate are those of the body: the work is that on contact and rail.
     """
     h, before, force = system.time_step, motion.force[1, k], motion.force[0, k]
     rise = force - before
     motion.ledger[CONTACT_WORK] += 0.5 * (before + force) * closer - h / 12.0 * rise * (motion.rate[k] - rate)
     product = 0.5 * (before * motion.climb[k] + force * climb) - rise * (climb - motion.climb[k]) / 6.0
     motion.ledger[SLOPE_WORK] += h * product
+
+
+@compiled(**INNER)
+def damper_power(system, motion, k, elastic):  # type: ignore[no-untyped-def]
+    """Power into the damper of a contact, W, whose law without it gives the force `elastic`, N."""
+    rate = motion.rate[k]
+    if system.channels.source.shape[0] > 0:
+        rate = (motion.approach[0, k] - motion.approach[1, k]) / system.time_step
+    return (motion.force[0, k] - elastic) * rate
 
 
 @compiled(**INNER)
@@ -404,7 +429,7 @@ def roll_contacts(system, motion, record, laws, shapes, slopes, offset, stop, la
         for k in range(motion.trial.shape[0]):
             if laws.damping[k] > 0.0:
                 elastic = evaluate(law_of(laws, k), row, motion.approach[0, k])[0]
-                motion.power[CONTACT_DAMPING] += (motion.force[0, k] - elastic) * motion.rate[k]
+                motion.power[CONTACT_DAMPING] += damper_power(system, motion, k, elastic)
         book(system, motion)
         motion.counts[0] = step
         motion.counts[1] += 0 if converged else 1

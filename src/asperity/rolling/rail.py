@@ -31,13 +31,17 @@ class RolledRail:
 
     def laid(self, path: Path, load: float) -> RailSide:
         """Let the load roll up to the start of the path, long enough for the rail to be steady."""
+        self.refuse_other(path)
+        memory = _Poles(self.rail) if isinstance(self.rail, RailPoles) else _Scatter(self.rail)
+        return RailSide(self.kernel, memory, path, load)
+
+    def refuse_other(self, path: Path) -> None:
+        """Refuse a path of another speed or time step than its kernel was made for."""
         given, made = (path.speed, path.time_step), (self.kernel.speed, self.kernel.time_step)
         if not np.allclose(given, made, rtol=1e-9, atol=0.0):
             received = f"{given[0]:.6g} m/s in steps of {given[1]:.6g} s"
             allowed = f"{made[0]:.6g} m/s and {made[1]:.6g} s, for which the rail's kernel was computed"
             raise InputError("path", received, allowed, "Compute the moving kernel of this path.")
-        memory = _Poles(self.rail) if isinstance(self.rail, RailPoles) else _Scatter(self.rail)
-        return RailSide(self.kernel, memory, path, load)
 
     def alternating_compliance(self, path: Path) -> float:
         """Least of all places in a bay, m/N."""

@@ -33,13 +33,14 @@ class MovingKernel:
     Row s, column k of the weights: displacement at x_s + k v Δt, k steps after a force that rises to 1 N and
     falls again, linearly, within a step each, at x_s = s L/positions; m/N. Column 0 stands for the rising
     half alone. A force that is linear over each step displaces the rail by the sum of its values times these
-    weights.
+    weights. With a distance, the displacement is that of another contact, which runs so far ahead.
     """
 
     track: Track  # with relaxations where it has loss factors
     speed: float  # of the contact, m/s
     time_step: float  # s
     weights: NDArray[np.float64]  # (positions, taps), m/N
+    distance: float = 0.0  # of the contact whose displacement it is ahead of the force, m; negative behind
 
     @property
     def spacing(self) -> float:
@@ -59,6 +60,7 @@ def moving_kernel(
     *,
     duration: float | None = None,
     positions: int = STARTS,
+    distance: float = 0.0,
     cache: Cache | None = None,
     progress: Progress | None = None,
 ) -> MovingKernel:
@@ -67,7 +69,8 @@ def moving_kernel(
     The track must dissipate; where it has constant loss factors, the kernel is that of its `causal_track`.
     The speed is below the critical one. The kernel lasts for `duration`, s, by default until it has died
     away, at most 0.6 s, with a warning. Start positions in one bay are equally spaced; between them kernels
-    are interpolated.
+    are interpolated. With a `distance`, m, it is the displacement of a second contact, so far ahead of the
+    force, or behind, at the same speed.
 
     Inverse Fourier transform of the exact receptance G(x_s + vτ | x_s) times that of the hat,
     sin²(ωΔt/2)/(ωΔt/2)², along ω − iσ and folded at half the sampling frequency; between the nodes of a bay
@@ -87,10 +90,12 @@ def moving_kernel(
         track.refuse_speed(speed)
     track = causal_track(track)
     parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
-    key = content_key("moving-kernel", parameters, speed, time_step, duration, positions, ZONES, SHIFT)
+    distance = real("distance (m)", distance, "a finite number")
+    made = (parameters, speed, time_step, duration, positions, ZONES, SHIFT)
+    key = content_key("moving-kernel", *made, *([distance] if distance else []))
     kept = cache.get(key) if cache is not None else None
     if kept is None:
-        kept = {"weights": _until_it_dies(track, speed, time_step, duration, positions, progress)}
+        kept = {"weights": _until_it_dies(track, speed, time_step, duration, positions, distance, progress)}
         if cache is not None:
             cache.put(key, kept)
     weights = kept["weights"]
@@ -104,7 +109,7 @@ def moving_kernel(
             CoarseSamplingWarning,
             stacklevel=2,
         )
-    return MovingKernel(track, speed, time_step, weights)
+    return MovingKernel(track, speed, time_step, weights, distance)
 
 
 def _until_it_dies(
@@ -113,12 +118,13 @@ def _until_it_dies(
     time_step: float,
     duration: float | None,
     positions: int,
+    distance: float,
     progress: Progress | None,
 ) -> NDArray[np.float64]:
     length = SHORTEST if duration is None else duration
     while True:
         taps = max(8, round(length / time_step))
-        weights = _weights(track, speed, time_step, taps, positions, progress)
+        weights = _weights(track, speed, time_step, taps, positions, distance, progress)
         if duration is not None or length >= LONGEST or _left_over(weights) <= DIED_AWAY:
             return weights
         length = min(1.6 * length, LONGEST)
@@ -143,7 +149,13 @@ def _lacks_damping(track: Track, weights: NDArray[np.float64], time_step: float)
 
 
 def _weights(
-    track: Track, speed: float, time_step: float, taps: int, positions: int, progress: Progress | None
+    track: Track,
+    speed: float,
+    time_step: float,
+    taps: int,
+    positions: int,
+    distance: float,
+    progress: Progress | None,
 ) -> NDArray[np.float64]:
     """All rows of the kernel."""
     spacing = track.sleeper_spacing / positions
@@ -155,20 +167,21 @@ def _weights(
     }
 
     def row(start: int) -> NDArray[np.float64]:
-        at = start + np.arange(taps) * (speed * time_step / spacing)  # in nodes
+        at = start + distance / spacing + np.arange(taps) * (speed * time_step / spacing)  # in nodes
         base = np.floor(at).astype(int)
         cubic, result = lagrange_weights(at - base), np.zeros(taps)
-        for bay in range(int(base[-1] + 2) // positions + 1):
-            grid = near if bay == 0 else far
+        first = int(base[0] - 1) // positions if distance else 0
+        for bay in range(first, int(base[-1] + 2) // positions + 1):
+            grid = near if bay in (-1, 0) else far
             outgoing, incoming = shapes[grid]
-            amplitude = grid.hat * grid.waves.coefficients * grid.waves.multipliers**bay
+            amplitude = grid.hat * grid.waves.coefficients * grid.waves.multipliers ** abs(bay)
+            behind = positions if bay < 0 else start if bay == 0 else 0  # by reciprocity
             spectra = (amplitude * incoming[start] * outgoing).sum(axis=1)
-            if bay == 0:  # behind the source: by reciprocity
-                spectra[:start] = (amplitude * outgoing[start] * incoming[:start]).sum(axis=1)
+            spectra[:behind] = (amplitude * outgoing[start] * incoming[:behind]).sum(axis=1)
             response = grid.response(spectra)
             for weight, offset in zip(cubic, range(-1, 3), strict=True):
                 node = base + offset - bay * positions
-                if bay == 0 and start == 0:
+                if bay == 0 and start == 0 and not distance:
                     node = np.abs(node)  # the track is symmetric about a sleeper
                 here = np.flatnonzero((node >= 0) & (node < positions))
                 result[here] += weight[here] * response[node[here], here]

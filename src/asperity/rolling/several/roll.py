@@ -31,6 +31,7 @@ from asperity.rolling.stepping import advance_to_end, restore
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
+from asperity.structures.rail_between import RailBetween
 
 Array = NDArray[np.float64]
 
@@ -57,7 +58,7 @@ class RolledBodies:
 
 
 def roll_bodies(
-    over: Modal | None,
+    over: Modal | RailBetween | None,
     bodies: Sequence[Body],
     laws: Sequence[Law],
     *,
@@ -82,8 +83,10 @@ def roll_bodies(
 
     Parameters
     ----------
-    over : Modal or None
-        What is rolled over; None for a plane that does not move. Modes without stiffness start undisplaced.
+    over : Modal or RailBetween or None
+        What is rolled over: a structure by its modes (those without stiffness start undisplaced); a rail,
+        over which the loads have rolled long enough to be steady (`asperity.structures.rail_between`); None
+        for a plane that does not move.
     bodies : sequence of Body
         What rolls, pressed down by its constant forces; contacts are numbered through the bodies.
     laws : sequence of Law
@@ -114,7 +117,8 @@ def roll_bodies(
     Raises
     ------
     InputError
-        If a contact leaves the structure, or numbers of bodies, laws and positions disagree.
+        If a contact leaves the structure, a rail was made for another speed, time step or distances, or
+        numbers of bodies, laws and positions disagree.
     ComputationError
         If nothing is at rest at the start, or the motion runs away.
     """

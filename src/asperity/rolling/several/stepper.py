@@ -19,6 +19,7 @@ from asperity.kernels.several import (
     begin_step,
     book,
     complete_contacts,
+    damper_power,
     free_of,
     observe_contacts,
     roll_contacts,
@@ -33,7 +34,7 @@ from asperity.structures.modal import Modal
 
 Array = NDArray[np.float64]
 PIECE = 2**18
-"""Mode shapes that are held at once."""
+"""Mode shapes that are held at once, of all contacts: they stay in the processor's cache."""
 LONGEST, LEAST = 2048, 64
 """Steps whose mode shapes are held at once, at most and at least."""
 
@@ -129,7 +130,7 @@ class ContactsStepper:
         for k, law in enumerate(self.prepared):
             if self.laws[k].damping > 0.0:
                 elastic = evaluation(law, step)(float(motion.approach[0, k]))[0]
-                motion.power[CONTACT_DAMPING] += (motion.force[0, k] - elastic) * motion.rate[k]
+                motion.power[CONTACT_DAMPING] += damper_power(self.system, motion, k, elastic)
 
     def where(self, step: int) -> str:
         """Time and position of a step."""
@@ -170,7 +171,8 @@ class ShapesUnder:
         self.over, self.paths, self.modes = over, paths, modes
         self.length = int(np.clip(PIECE // max(len(paths) * modes, 1), LEAST, LONGEST))
         self.offset = self.end = -1
-        self.shapes = self.slopes = np.zeros((0, len(paths), modes))
+        # one place for all chunks: fresh memory takes longer than what is computed
+        self.shapes, self.slopes = np.zeros((2, self.length + 1, len(paths), modes))
 
     def hold(self, step: int) -> bool:
         """Make ready the chunk of the step that ends at `step`; whether it is another one."""
@@ -178,12 +180,12 @@ class ShapesUnder:
         if offset == self.offset:
             return False
         self.offset, self.end = offset, min(offset + self.length, self.paths[0].total)
-        shape = (self.end + 1 - offset, len(self.paths), self.modes)
-        self.shapes, self.slopes = np.zeros(shape), np.zeros(shape)
+        count = self.end + 1 - offset
         if self.over is not None:
             for k, path in enumerate(self.paths):
                 start, spacing = float(path.positions[offset]), path.speed * path.time_step
-                self.shapes[:, k], self.slopes[:, k] = self.over.shapes_along(start, spacing, shape[0])
+                found = self.over.shapes_along(start, spacing, count)
+                self.shapes[:count, k], self.slopes[:count, k] = found
         return True
 
     def at(self, step: int) -> tuple[Array, Array]:
