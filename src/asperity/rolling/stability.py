@@ -78,9 +78,26 @@ def softening(
 ) -> float:
     """Compliance in series with the contact, m/N, that keeps a time step stable, s, and impacts elastic.
 
+    As `softening_told`, with a warning.
+    """
+    softer, message = softening_told(alternating, stiffness, damping, at_rest, time_step)
+    if message:
+        warnings.warn(message, CoarseSamplingWarning, stacklevel=3)
+    return softer
+
+
+def softening_told(
+    alternating: tuple[float, float],
+    stiffness: tuple[float, float],
+    damping: float,
+    at_rest: float,
+    time_step: float,
+) -> tuple[float, str]:
+    """Compliance in series with the contact, m/N, that keeps a time step stable, s, and impacts elastic.
+
     Zero if they are so already. `alternating` holds the least compliance of both bodies, and of what throws
     them apart, m/N; `stiffness` the largest of the contact, and that of impacts, and `at_rest` that at rest,
-    N/m; damping in N s/m. A contact that becomes softer by more than NEGLIGIBLE is warned of.
+    N/m; damping in N s/m. With it, for a contact that becomes softer by more than NEGLIGIBLE, what to tell.
     """
     both, thrown = (-value for value in alternating)
     opposed = both * (stiffness[0] + 4.0 * damping / time_step) / MARGIN
@@ -89,16 +106,13 @@ def softening(
         STABLE * both if opposed > 1.0 else 0.0, (impact - 1.0) / stiffness[1] if impact > 1.0 else 0.0
     )
     if softer * at_rest < NEGLIGIBLE:
-        return softer
+        return softer, ""
     shorter = max(opposed if damping > 0.0 else np.sqrt(max(opposed, 0.0)), np.sqrt(max(impact, 0.0)))
-    warnings.warn(
+    return softer, (
         f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies as "
         f"light: it is kept stable by softening the contact by {100 * softer * at_rest:.2g} %, "
-        f"and motion near {0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s",
-        CoarseSamplingWarning,
-        stacklevel=3,
+        f"and motion near {0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s"
     )
-    return softer
 
 
 def contact_resonance(stiffness: float, direct: float, alternating: float, time_step: float) -> float:

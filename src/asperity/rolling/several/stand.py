@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.errors import InputError
+from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.pointforce import Prepared
 from asperity.kernels.several import Assembly, ContactsRecord
 from asperity.laws.base import Law, SteppedLaw
@@ -24,7 +25,7 @@ from asperity.rolling.stability import (
     contact_resonance,
     largest_force,
     largest_stiffness,
-    softening,
+    softening_told,
     stiffness_in_impacts,
 )
 from asperity.structures.body import Body
@@ -167,15 +168,21 @@ def _softened(
     rest: Rest,
     time_step: float,
 ) -> tuple[Array, float]:
-    """Compliances in series with the contacts, m/N, and the force that makes no sense any more, N."""
-    softer, largest = np.zeros(len(laws)), 0.0
+    """Compliances in series with the contacts, m/N, and the force that makes no sense any more, N.
+
+    The contact that is softened most is warned of.
+    """
+    softer, largest, told = np.zeros(len(laws)), 0.0, []
     for k, (law, laid) in enumerate(zip(laws, prepared, strict=True)):
         stiffness = float(rest.stiffness[k])
         stiffest, strongest = largest_stiffness(laid, (float(rest.approach[k]), stiffness))
         stiff = stiffest, stiffness_in_impacts(laid, stiffest, stiffness)
         least = float(alternating[0][k]), float(alternating[1][k])
-        softer[k] = softening(least, stiff, law.damping, stiffness, time_step)
+        softer[k], message = softening_told(least, stiff, law.damping, stiffness, time_step)
+        told += [(softer[k] * stiffness, message)] if message else []
         largest = max(largest, largest_force(float(rest.force[k]), strongest))
+    if told:
+        warnings.warn(max(told)[1], CoarseSamplingWarning, stacklevel=4)
     return softer, largest
 
 
