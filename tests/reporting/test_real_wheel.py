@@ -18,6 +18,8 @@ from asperity.kinds.wheel_on_rail.figures.motion import point_labels
 from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
 from asperity.laws import spec_of
 from asperity.reporting.chapter import UNCERTAINTY
+from asperity.studies.columns import columns_of
+from asperity.studies.kept import kept
 
 PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
 
@@ -299,3 +301,32 @@ def test_motion_is_compared_with_practice(tree):
     drawn = PARTS["rail_velocity"].draw(tree).axes[0]
     assert {line.get_label() for line in drawn.lines} >= {"areal", "linear-filtered"}
     assert "linear" not in {line.get_label() for line in drawn.lines}
+
+
+def test_the_passage_follows_from_the_sound_power(tree):
+    """SEL of an axle in each band: L_W + 10 lg(ρc/(2 d v)/(4e-10 Pa² s/W)), d² = 7.5² + 1.2² for the rail."""
+    power = tree["spectra/radiated_power_level"].sel(radiator="rail")
+    exposed = tree["pass_by/sound_exposure_level"].sel(radiator="rail")
+    away = 413.0 * 1e-12 / (2.0 * np.hypot(7.5, 1.2) * tree["rolling"].attrs["speed"]) / 4e-10
+    np.testing.assert_allclose(exposed.values, power.values + 10.0 * np.log10(away), atol=1e-6)
+
+
+def test_axles_are_marked_where_they_pass(tree, folder):
+    axes = PARTS["pass_by_level"].draw(tree).axes[0]
+    (marks,) = [line.get_xdata() for line in axes.lines if line.get_label() == "_axles"]
+    assert list(marks) == [0.0]
+    table = read_csv(folder / "pass_by_level.csv")
+    level = tree["pass_by/pass_by_level"].sel(law="areal", radiator="total").values
+    assert np.array_equal(table["total, areal [dB(A) re 20 µPa]"], level)
+    assert not any("wheel" in head for head in table)  # it is rigid
+
+
+def test_a_study_keeps_noise_by_source_and_the_pass_by(tree):
+    table = kept(tree).expand_dims("speed").assign_attrs(sweep='{"speed": [56]}')
+    table["speed"] = ("speed", [56.0], {"units": "m/s"})
+    heading, rows = columns_of(table, bands=True)
+    for name in ("rail", "sleepers", "wheel", "total"):
+        assert f"radiated_power_level_a {name} [dB(A) re 1 pW]" in heading
+    column = heading.index("pass_by_maximum_level [dB(A) re 20 uPa]")
+    expected = tree["pass_by/pass_by_maximum_level"].sel(radiator="total").values
+    assert [row[column] for row in rows] == list(expected)

@@ -95,7 +95,8 @@ def _quantities(table: xarray.Dataset) -> list[tuple[str, str, float]]:
 
 def _level_label(level: xarray.DataArray) -> str:
     what = str(level.attrs["long_name"]).removeprefix("A-weighted ").partition(",")[0]
-    return f"{textwrap.fill(what, LETTERS)}\n/ {level.attrs['units']}"
+    units = str(level.attrs["units"]).replace("uPa", "µPa")
+    return f"{textwrap.fill(what, LETTERS)}\n/ {units}"
 
 
 def _lines(

@@ -295,13 +295,13 @@ REAR_TIME = _pass_by_attribute("rear_time", "s", "at which its rear is opposite:
 
 KEPT: dict[Entry, dict[str, str]] = {
     POINT_VELOCITY_LEVEL: {},
-    SOUND_POWER_LEVEL: {},
-    SOUND_POWER_LEVEL_A: {"source": "total"},
-    RADIATED_POWER_LEVEL: {},
-    RADIATED_POWER_LEVEL_A: {},
     PASS_BY_MAXIMUM_LEVEL: {"radiator": "total"},
     PASS_BY_EQUIVALENT_LEVEL: {"radiator": "total"},
     TRANSIT_EXPOSURE_LEVEL: {"radiator": "total"},
     SOUND_EXPOSURE_LEVEL_A: {"radiator": "total"},
+    SOUND_POWER_LEVEL: {},
+    SOUND_POWER_LEVEL_A: {"source": "total"},
+    RADIATED_POWER_LEVEL: {},
+    RADIATED_POWER_LEVEL_A: {},
 }
-"""What a study keeps, and where of it."""
+"""What a study keeps, and where of it; the first level of a whole is drawn over what was swept."""

@@ -108,11 +108,10 @@ def pass_by_caption(tree: DataTree) -> str:
     where = ""
     if away is not None and above is not None:
         where = f", {away:g} m from the middle of the track and {above:g} m above the rail head"
-    silent = "" if "wheel" in passing_radiators(tree) else " Without the wheel's part."
     return (
         f"{passing} (ticks), two wheels on each{where}, over reflecting ground. Rail and sleepers radiate "
         "along the track as its vibration decays, a wheel from its axle, evenly in all directions; nothing "
-        f"screens them.{silent}"
+        "screens them."
     )
 
 
@@ -132,12 +131,12 @@ def pass_by_table(tree: DataTree) -> ReportTable | None:
         return [text_cell(law), text_cell(radiator), *(Cell(f"{each:.1f}", "number") for each in levels)]
 
     note = (
-        "Re 20 µPa, SEL and 1 s. L_pAFmax: the largest level, time weighting F. SEL: all of the passage. "
+        "Re 20 µPa, SEL in 1 s. L_pAFmax: the largest level, time weighting F. SEL: all of the passage. "
         "L_pAeq,Tp: from when the front of the train is opposite to when its rear is; TEL: all between the "
         "points 10 dB down, over the same time (ISO 3095)."
     )
     rows = [row(*each) for each in chosen]
-    return ReportTable("pass_by_table", "Pass-by", ["law", "what radiates", *held], rows, note)
+    return ReportTable("pass_by_table", "Single numbers", ["law", "what radiates", *held], rows, note)
 
 
 PASS_BY_PART = Part(
