@@ -23,7 +23,26 @@ WHEEL = {
     "contact": {"spacing": "1 mm", "samples": 2, "sample_length": "60 mm"},
     "numerics": {"highest_frequency": "4 kHz", "poles": 60},
 }
-CASES = {case["kind"]: case for case in (BALL, WHEEL)}
+BODIES = {
+    "kind": "bodies",
+    "over": "beam",
+    "laws": ["areal", "printed", "linear-filtered", "linear"],
+    "start": "0.4 m",
+    "duration": "20 ms",
+    "settling": "0 s",
+    "surface": {"rms": "0.04 um", "longest": "0.4 mm", "shortest": "60 um"},
+    "contact": {"spacing": "20 um", "window": "0.66 mm", "samples": 2, "sample_length": "1.4 mm"},
+    "body": {
+        "type": "bogie",
+        "load": "30 N",
+        "distance": "100 mm",
+        "masses": ["1 kg"],
+        "springs": ["20 kN/m"],
+        "dampers": ["5 N s/m"],
+    },
+    "numerics": {"highest_frequency": "2 kHz"},
+}
+CASES = {case["kind"]: case for case in (BALL, WHEEL, BODIES)}
 
 COARSE = {
     "kind": "ball-on-beam",

@@ -409,7 +409,7 @@ def test_the_module_is_the_program():
 @pytest.mark.parametrize(
     ("words", "completions"),
     [
-        ("asperity new ", {"ball-on-beam", "wheel-on-rail", "study", "optimisation"}),
+        ("asperity new ", {"ball-on-beam", "wheel-on-rail", "bodies", "study", "optimisation"}),
         ("asperity new w", {"wheel-on-rail"}),
         ("asperity new --law sh", {"shifted", "shifted-unfiltered"}),
         ("asperity compare --law dir", {"direct"}),
@@ -496,8 +496,8 @@ def test_what_is_new_survives_any_encoding_of_a_redirection(name):
 def test_no_such_template():
     message = call("new", "ball-on-bam", code=2).stderr
     assert message.startswith(
-        'Error: kind: received \'ball-on-bam\'; allowed: "ball-on-beam", "wheel-on-rail", "study", '
-        '"optimisation". Did you mean "ball-on-beam"?'
+        'Error: kind: received \'ball-on-bam\'; allowed: "ball-on-beam", "wheel-on-rail", "bodies", '
+        '"study", "optimisation". Did you mean "ball-on-beam"?'
     )
 
 

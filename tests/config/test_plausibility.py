@@ -50,7 +50,7 @@ def test_numbers_beyond_their_limits_are_told_with_a_reason(kind, entry):
         given = f"{value!r} {unit}" if unit else value
         several = "tuple" in str(entry.field.annotation)
         keys = {name: [given] if several else given}
-        texture = {"surface": {"rms": "0.3 um"} if kind == "ball-on-beam" else {"smooth": True}}
+        texture = {"surface": {"smooth": True} if kind == "wheel-on-rail" else {"rms": "0.3 um"}}
         case = {"kind": kind, **texture, **({section: keys} if section else keys)}
         with pytest.raises(CaseError) as caught:
             case_of(case)

@@ -7,7 +7,7 @@ from asperity.kinds import KINDS
 from asperity.kinds.report import report
 from small_cases import CASES
 
-HARDNESS = {"ball-on-beam": "0.6 GPa", "wheel-on-rail": "1.2 GPa"}
+HARDNESS = {"ball-on-beam": "0.6 GPa", "wheel-on-rail": "1.2 GPa", "bodies": "0.6 GPa"}
 """Of which the highest crests yield, so that results hold what is said of running-in, too."""
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from pydantic import BaseModel
@@ -15,7 +16,17 @@ from asperity.reference.materials import Material
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import written
 
-InMemory = HeightMap | Profile | np.ndarray
+
+@runtime_checkable
+class Numbers(Protocol):
+    """Any other object that stands for a file: a structure by its modes, for instance."""
+
+    def numbers(self) -> dict[str, Any]:
+        """All arrays that it is made of, by name."""
+        ...
+
+
+InMemory = HeightMap | Profile | np.ndarray | Numbers
 """What Python may hand over where a case file names a file."""
 
 
@@ -39,6 +50,9 @@ def content(value: Any, of_file: Callable[[Path], str] = str) -> Any:
 
 def digest(value: InMemory) -> str:
     """SHA-256 over shape, spacing and numbers."""
+    if isinstance(value, Numbers):
+        held = [[name, digest(np.asarray(each))] for name, each in value.numbers().items()]
+        return hashlib.sha256(json.dumps(held).encode()).hexdigest()
     numbers = np.ascontiguousarray(value if isinstance(value, np.ndarray) else value.heights)
     spacing = None if isinstance(value, np.ndarray) else value.spacing
     found = hashlib.sha256(f"{numbers.dtype.str} {numbers.shape} {spacing}".encode())
@@ -67,6 +81,8 @@ def name_of(value: Path | InMemory | tuple[InMemory, ...]) -> str:
         return ", ".join(dict.fromkeys(map(name_of, value)))
     if isinstance(value, np.ndarray):
         return "a table in memory"
+    if isinstance(value, Numbers):
+        return f"a {type(value).__name__} in memory"
     return value.source or f"a {'height map' if isinstance(value, HeightMap) else 'profile'} in memory"
 
 
@@ -81,6 +97,8 @@ def described_value(value: object) -> str:
         what = f"height map of {value.shape[0]} × {value.shape[1]} points, {dx} × {dy} apart"
     elif isinstance(value, Profile):
         what = f"profile of {value.shape[0]} points, {written(value.spacing, 'm', 'um')} apart"
+    elif isinstance(value, Numbers):
+        what = f"{type(value).__name__} of {sum(map(np.size, value.numbers().values()))} numbers"
     else:
         return str(value)
     return f"{what}, in memory, sha256 {digest(value)[:16]}"

@@ -37,6 +37,7 @@ _WORDS = {
     "N m^2": ("a bending stiffness", "4.7 MN m^2"),
     "kg/m": ("a mass per length", "60 kg/m"),
     "kg m": ("a rotary inertia per length", "0.24 kg m"),
+    "kg m^2": ("a moment of inertia", "1500 kg m^2"),
     "dB": ("a level", "+0 dB"),
     "rad": ("an angle", "30 deg"),
 }

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +76,13 @@ class Chain(Generic[R]):
         return np.stack([getattr(run, name) for run in self.runs.values()])
 
 
+class Further(NamedTuple):
+    """A contact beside the first of a case."""
+
+    textures: Callable[[Textures], Textures]  # its own, from those of the first
+    load: float  # N
+
+
 class Stopwatch:
     """Wall time of consecutive parts of the work."""
 
@@ -106,14 +113,16 @@ def reduce_and_roll(
     case: Case,
     textures: Textures,
     shape: Geometry,
-    roll: Callable[[Law], R],
+    roll: Callable[..., R],
     store: Store,
     progress: Progress,
     watch: Stopwatch,
+    further: Sequence[Further] = (),
 ) -> Chain[R]:
     """Run the textures in where the case asks for it, reduce the samples, build its laws and roll each.
 
-    `roll` rolls a law. The store keeps finished scans; the stopwatch books the wall time.
+    `roll` rolls a law, and beside it the same law of each `further` contact. The store keeps finished scans;
+    the stopwatch books the wall time.
     """
     ran = None
     if case.contact.running_in is not None:
@@ -127,11 +136,20 @@ def reduce_and_roll(
         reduction = reduce(case.contact, case.numerics, textures, shape, planes, needed, store, progress)
     watch.lap("reduction")
     workshop = Workshop(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
+    others = [_of_contact(workshop, contact) for contact in further]
     laws: dict[str, Law] = {}
     runs: dict[str, R] = {}
     for name in case.laws:
         laws[name] = workshop.build(name)
-        runs[name] = roll(laws[name])
+        runs[name] = roll(laws[name], *(other.build(name) for other in others))
         watch.lap(f"law {name}")
     scan = workshop.scan if Need.SCAN in needs_of(case.laws) else None
     return Chain(case, textures, shape, reduction, laws, runs, scan, ran, watch.seconds)
+
+
+def _of_contact(workshop: Workshop, contact: Further) -> Workshop:
+    """The workshop of another contact of the same bodies."""
+    textures = contact.textures(workshop.textures)
+    planes = None if textures.path is None else patch_planes(textures.path, workshop.shape)
+    shape = replace(workshop.shape, load=contact.load)
+    return replace(workshop, textures=textures, shape=shape, planes=planes)

@@ -171,6 +171,16 @@ class ModalStructure:
             mode_shapes=np.column_stack([*rigid, self.mode_shapes]),
         )
 
+    def numbers(self) -> dict[str, Array]:
+        """All that it is made of, by name: a case that holds it is named by these."""
+        found = {"positions": self.positions, "frequencies": self.frequencies, "shapes": self.mode_shapes}
+        flexibility = self.residual_flexibility
+        none = np.zeros(0)
+        return found | {
+            "damping": np.asarray(self.damping),
+            "residual": none if flexibility is None else flexibility,
+        }
+
     @cached_property
     def _static(self) -> Array:
         """Shapes (p, s) of the modes that stand for the residual flexibility."""

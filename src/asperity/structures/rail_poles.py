@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from asperity.errors import ComputationError, InputError
+from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.store import Cache, content_key
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rational_fit import paired, vector_fit
 
+POLES = 100
+"""Poles of a rail where nothing is said of them."""
 CELLS = 192
 """Places in one bay at which residues are tabulated; between them they are linear."""
 LOWEST = 2.0
@@ -83,6 +86,26 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = 
     if not np.isfinite(error):
         raise ComputationError("the fit of the moving kernel by poles broke down", "fewer poles")
     return RailPoles(kernel, fit.poles, fit.residues, error, static)
+
+
+def poles_or_kernel(
+    kernel: MovingKernel, count: int | None = None, *, cache: Cache | None = None
+) -> RailPoles | MovingKernel:
+    """Fit a moving kernel by poles, `POLES` of them where it has lags enough, or as many as are asked for.
+
+    Where they miss it, the kernel itself is returned, with a warning.
+    """
+    wanted = count or min(POLES, most_poles(kernel.weights.shape[1]))
+    found = rail_poles(kernel, count=wanted, cache=cache)
+    if found.accepted:
+        return found
+    warnings.warn(
+        f"{wanted} poles miss the moving kernel by {100 * found.fit_error:.2g} %: the track is scattered "
+        "from the kernel itself, which is slower. Take more poles.",
+        UnconvergedWarning,
+        stacklevel=2,
+    )
+    return kernel
 
 
 def most_poles(lags: int) -> int:

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from collections.abc import Iterator
+from typing import Annotated
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator
 
-from asperity.config.case import (
-    SETTLED,
-    Case,
-    Law,
-    problem_of_steps,
-    problems_of_laws,
-    problems_of_sampling,
-)
+from asperity.config.case import SETTLED, problem_of_steps, problems_of_sampling
 from asperity.config.form import Section, key
 from asperity.config.keys import (
     Choice,
@@ -29,15 +22,11 @@ from asperity.config.keys import (
     Position,
 )
 from asperity.config.sections import ContactCase, Numerics
+from asperity.config.surface_laws import LawsOfSurface, problems_of_surface_laws
 from asperity.errors import InputError
-from asperity.laws import Need, names, spec_of
 from asperity.scenarios.kind import Words
 from asperity.units import written
 
-ROLLED = ("areal", "shifted", "printed", "table", "linear-filtered", "linear")
-"""Laws that are rolled where a case names none, as far as its surface allows them."""
-SMOOTH = "hertz-filtered"
-"""Main law of those where there is no sample of the surface."""
 LONGEST_SETTLING = 0.2
 """Longest run-in that is chosen, s: after it no one-third octave from 40 Hz on holds the start from rest."""
 SETTLING_SHARE = 0.25
@@ -118,7 +107,7 @@ class BeamCase(Section):
                 yield InputError("sensors", f"{position:g} m", allowed)
 
 
-class BallOnBeam(Case):
+class BallOnBeam(LawsOfSurface):
     """A ball rolls over a rough beam.
 
     Every length, time, force and so on is in SI here; units stand in the case file alone. Each key's meaning,
@@ -152,10 +141,6 @@ class BallOnBeam(Case):
     """
 
     kind: Annotated[str, BeforeValidator(Choice(("ball-on-beam",)))] = key("ball-on-beam", "what rolls")
-    laws: tuple[Law, ...] = key(
-        ROLLED,
-        "laws of the contact force; the first is the main one",
-    )
     start: Position | None = key(
         None,
         "where on the beam the record starts",
@@ -182,27 +167,6 @@ class BallOnBeam(Case):
     contact: ContactCase = key({}, "how the rough contact is solved and reduced")
     numerics: Numerics = key({}, "how finely time is resolved")
 
-    @model_validator(mode="before")
-    @classmethod
-    def _laws_that_the_surface_allows(cls, data: Any) -> Any:
-        """Leave out of the default laws those that need more texture than there is."""
-        if not isinstance(data, Mapping) or "laws" in data:
-            return data
-        surface = data.get("surface")
-        keys = surface.given() if isinstance(surface, Section) else surface
-        if not isinstance(keys, Mapping):
-            return data
-        areal = {"spectrum", "lateral"} <= keys.keys()
-        line = "line" in keys or ("spectrum" in keys and not areal)
-        samples = areal or not keys.keys().isdisjoint(("file", "rms"))
-        return {**data, "laws": _rolled(line=line, samples=samples)}
-
-    def default_of(self, name: str) -> Any:
-        """Value of a key that is left out: laws as the surface allows them."""
-        if name == "laws":
-            return _rolled(line=self.surface.has_line, samples=self.surface.has_samples)
-        return super().default_of(name)
-
     @property
     def settled_time(self) -> float:
         """Time in s that is rolled before the record starts.
@@ -227,7 +191,7 @@ class BallOnBeam(Case):
 
     def problems(self) -> Iterator[InputError]:
         """What must fit together across the sections."""
-        yield from _problems_of_laws(self)
+        yield from problems_of_surface_laws(self)
         yield from problems_of_sampling(self)
         yield from _problems_of_path(self)
         highest, modes = self.numerics.highest_frequency, self.beam.modes_up_to
@@ -237,20 +201,6 @@ class BallOnBeam(Case):
         if self.contact.window > 2 * self.ball.radius:
             allowed = f"at most the ball's diameter, {2e3 * self.ball.radius:g} mm"
             yield InputError("contact.window", written(self.contact.window, "m", "mm"), allowed)
-
-
-def _problems_of_laws(case: BallOnBeam) -> Iterator[InputError]:
-    yield from problems_of_laws(case)
-    for law in sorted(set(case.laws)):
-        if case.surface.has_line and spec_of(law).needs_areal_path:
-            allowed = "laws that need no texture beside the line: " + _listed(line=True)
-            yield InputError("laws", f'"{law}" with a path given as a line', allowed)
-        elif not case.surface.has_samples and Need.SAMPLES in spec_of(law).needs:
-            remedy = 'Give samples as well: file = "…" or rms = "…" in [surface].'
-            allowed = _listed(line=True, samples=False)
-            yield InputError("laws", f'"{law}" without samples of the surface', allowed, remedy)
-    if case.contact.linearise == "rough" and not case.surface.has_samples:
-        yield InputError("contact.linearise", '"rough" without samples of the surface', '"hertz"')
 
 
 def _problems_of_path(case: BallOnBeam) -> Iterator[InputError]:
@@ -268,28 +218,6 @@ def _problems_of_path(case: BallOnBeam) -> Iterator[InputError]:
         yield InputError("duration", received, allowed)
     else:
         yield from problem_of_steps(case, case.settled_time + rolled)
-
-
-def _allowed(*, line: bool, samples: bool = True) -> list[str]:
-    """Laws that can be rolled over a line, without or with samples of the surface."""
-    return [
-        name
-        for name in names()
-        if not (line and spec_of(name).needs_areal_path)
-        and (samples or Need.SAMPLES not in spec_of(name).needs)
-    ]
-
-
-def _listed(*, line: bool, samples: bool = True) -> str:
-    return ", ".join(f'"{name}"' for name in _allowed(line=line, samples=samples))
-
-
-def _rolled(*, line: bool, samples: bool) -> tuple[str, ...]:
-    """Laws of a case that names none."""
-    if not line:
-        return ROLLED
-    allowed = _allowed(line=True, samples=samples)
-    return (*(() if samples else (SMOOTH,)), *(law for law in ROLLED if law in allowed))
 
 
 CASE = BallOnBeam

@@ -7,7 +7,7 @@ from asperity.schema.spectra import NO_SIGNAL
 
 ACCELERATION_REFERENCE = 1e-6
 """Of acceleration levels, m/s²."""
-_SENSOR = "position of the accelerometer on the beam"
+_SENSOR = "position of the accelerometer on what is rolled over"
 
 ROLLING_SENSOR = Entry("rolling", "sensor", ("sensor",), "m", _SENSOR)
 ACCELERATION = Entry(
@@ -15,7 +15,7 @@ ACCELERATION = Entry(
     "acceleration",
     ("law", "sensor", "time"),
     "m/s2",
-    "acceleration of the beam, positive downwards",
+    "acceleration of what is rolled over, positive downwards",
 )
 BALL_DISPLACEMENT = Entry(
     "rolling", "ball_displacement", ("law", "time"), "m", "displacement of the ball, positive downwards"
@@ -43,7 +43,7 @@ ACCELERATION_PSD = Entry(
     "acceleration_psd",
     ("law", "sensor", "frequency"),
     "(m/s2)2/Hz",
-    "PSD of the beam acceleration, one-sided",
+    "PSD of the acceleration of what is rolled over, one-sided",
 )
 ACCELERATION_LEVEL = Entry(
     "spectra",

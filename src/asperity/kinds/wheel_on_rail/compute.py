@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.content import content, file_digest
-from asperity.errors import UnconvergedWarning
 from asperity.kinds.wheel_on_rail.bodies import Bodies
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compiling import compile_kernels
@@ -22,15 +20,12 @@ from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.textures import Textures
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
-from asperity.structures.rail_poles import RailPoles, most_poles, rail_poles
+from asperity.structures.rail_poles import RailPoles, poles_or_kernel
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
 if TYPE_CHECKING:
     from asperity.scenarios.preparing import PreparedCase
-
-POLES = 100
-"""Poles of a rail where the case says nothing, if its kernel has lags enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,17 +54,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     kernel = moving_kernel(track, case.speed, case.time_step, cache=store, progress=progress)
     rail: RailPoles | MovingKernel = kernel
     if case.numerics.kernel == "poles":
-        count = case.numerics.poles or min(POLES, most_poles(kernel.weights.shape[1]))
-        found = rail_poles(kernel, count=count, cache=store)
-        if found.accepted:
-            rail = found
-        else:
-            warnings.warn(
-                f"{count} poles miss the moving kernel by {100 * found.fit_error:.2g} %: the "
-                "track is scattered from the kernel itself, which is slower. Take more poles.",
-                UnconvergedWarning,
-                stacklevel=2,
-            )
+        rail = poles_or_kernel(kernel, case.numerics.poles, cache=store)
     watch.lap("track")
     checkpoints = {
         name: Checkpoint(store, _run_key(name, case, textures))

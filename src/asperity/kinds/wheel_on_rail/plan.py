@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from asperity.kinds.wheel_on_rail.compute import POLES
 from asperity.kinds.wheel_on_rail.loss_factors import warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses
 from asperity.kinds.wheel_on_rail.passing import passed_points
@@ -20,7 +19,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
 from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, moving_kernel
-from asperity.structures.rail_poles import RailPoles
+from asperity.structures.rail_poles import POLES, RailPoles
 from asperity.threads import thread_count
 
 REPORT = 13.0

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.compute import POLES
 from asperity.scenarios.refining import Setting, Way
+from asperity.structures.rail_poles import POLES
 
 
 def settings_of(case: WheelOnRail) -> list[Setting]:

@@ -32,8 +32,8 @@ LossFactor = Annotated[float, BeforeValidator(Number(at_least=0, at_most=5))]
 _NAMED = "of the named set"
 
 
-class TrackCase(Section):
-    """The track: a named, cited set; each single key overrides it."""
+class TrackParameters(Section):
+    """The track without what a run records of it: a named, cited set; each single key overrides it."""
 
     name: Annotated[str, BeforeValidator(Choice(tuple(TRACKS)))] = key("x2000", "named set of parameters")
     bending_stiffness: Annotated[float, BeforeValidator(Quantity("N m^2", above=0))] | None = key(
@@ -124,12 +124,33 @@ class TrackCase(Section):
     rail_head_radius: Length = key(
         "0.3 m", "radius of the rail head across the rail", within=("1 mm", "1 km", "rail heads lie between")
     )
+    material: OwnOrNamed = key("steel", "material of the rail")
+
+    @property
+    def overrides(self) -> dict[str, float]:
+        """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
+        told = {name: getattr(self, name) for name in OVERRIDES}
+        return {name: value for name, value in told.items() if value is not None}
+
+    def problems(self) -> Iterator[InputError]:
+        """Each damping either viscous or by a loss factor."""
+        told = self.overrides
+        for part in ("pad", "ballast"):
+            viscous, loss = f"{part}_damping", f"{part}_loss_factor"
+            if viscous in told and loss in told:
+                received = f"{told[viscous]:g} N s/m and {loss} = {told[loss]:g}"
+                remedy = "Remove one: damping is either viscous or by a loss factor."
+                yield InputError(viscous, received, "one of them", remedy)
+
+
+class TrackCase(TrackParameters):
+    """The track, its rail head, and the points at which its motion is recorded."""
+
     rail_profile: SectionFile | None = key(
         None,
         "measured shape of the rail head across the rail, instead of rail_head_radius",
         example='"rail.csv"',
     )
-    material: OwnOrNamed = key("steel", "material of the rail")
     points: tuple[Position, ...] | None = key(
         None,
         "positions at which the motion of the rail is recorded while it is passed, from the sleeper that "
@@ -139,21 +160,9 @@ class TrackCase(Section):
         within=("0 m", "100 km", "tracks are rolled over for less"),
     )
 
-    @property
-    def overrides(self) -> dict[str, float]:
-        """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
-        told = {name: getattr(self, name) for name in OVERRIDES}
-        return {name: value for name, value in told.items() if value is not None}
-
     def problems(self) -> Iterator[InputError]:
-        """Each damping either viscous or by a loss factor, one rail head, and at least one point."""
-        told = self.overrides
-        for part in ("pad", "ballast"):
-            viscous, loss = f"{part}_damping", f"{part}_loss_factor"
-            if viscous in told and loss in told:
-                received = f"{told[viscous]:g} N s/m and {loss} = {told[loss]:g}"
-                remedy = "Remove one: damping is either viscous or by a loss factor."
-                yield InputError(viscous, received, "one of them", remedy)
+        """Dampings as of all tracks, one rail head, and at least one point."""
+        yield from super().problems()
         if {"rail_head_radius", "rail_profile"} <= self.model_fields_set:
             yield InputError("", "both rail_head_radius and rail_profile", "one of them", "Remove one.")
         if self.points == ():

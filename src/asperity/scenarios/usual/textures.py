@@ -46,12 +46,15 @@ def warn_of(case: Case, shape: Geometry, textures: Textures) -> None:
     warn_of_start(case, "shorten the duration or start farther along the path")
 
 
-def gather(case: Case, margin: int) -> Textures:
-    """Read or synthesise all textures of a case, with `margin` rows before the path and beyond its end."""
+def gather(case: Case, margin: int, ahead: float = 0.0) -> Textures:
+    """Read or synthesise all textures of a case, with `margin` rows before the path and beyond its end.
+
+    The path reaches farther than the position of the case by what its contacts are `ahead` of it, m.
+    """
     seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
     ny, spacing = window_cells(case.contact), case.contact.spacing
     lead = math.ceil(case.settled_time * case.speed / spacing)
-    rows = lead + math.ceil(case.rolled_time * case.speed / spacing) + 1 + 2 * margin
+    rows = lead + math.ceil((case.rolled_time * case.speed + ahead) / spacing) + 1 + 2 * margin
     missing, origin, areal = 0.0, "", True
     maps: tuple[HeightMap, ...] = ()
     strips: tuple[HeightMap, ...] = ()

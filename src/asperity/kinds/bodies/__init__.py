@@ -1,0 +1,1 @@
+"""Bodies roll, one or many, over any structure."""

@@ -1,0 +1,121 @@
+"""The bodies of a case, and what they roll over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from asperity.kinds.bodies.case import Bodies
+from asperity.kinds.bodies.smooth import load_of, upper_stiffness
+from asperity.structures.ball import GRAVITY
+from asperity.structures.beam import Beam
+from asperity.structures.body import Body
+from asperity.structures.modal import Modal
+from asperity.structures.suspended import bogie, carriage, chain
+from asperity.structures.track import Track
+
+MODES_BEYOND = 4.0
+"""Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class RolledCase:
+    """What is rolled in a case."""
+
+    over: Modal | Track | None  # None for a rigid plane
+    rolling: list[Body]  # in the order of their positions
+    sensors: tuple[float, ...]  # positions of accelerometers on what is rolled over, m
+    degrees: dict[
+        str, float
+    ]  # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m
+    title: str
+
+
+def bodies_of(case: Bodies) -> RolledCase:
+    """Build the bodies of a case, and what they roll over."""
+    body, count = body_of(case), len(case.body.positions)
+    names = {
+        f"{name}, body {number}" if count > 1 else name: lever
+        for number in range(1, count + 1)
+        for name, lever in degrees_of(case).items()
+    }
+    return RolledCase(structure_of(case), [body] * count, sensors_of(case), names, title_of(case))
+
+
+def degrees_of(case: Bodies) -> dict[str, float]:
+    """Degrees of freedom of one body, from its contacts upwards: 1, or the lever of a pitch, m."""
+    count, above = len(case.body.places), len(case.body.masses or ())
+    lever = 0.5 * case.body.places[-1]
+    if case.body.type == "bogie":
+        return {"rear wheel": 1.0, "front wheel": 1.0, "frame": 1.0, "frame, pitch at its end": lever}
+    if case.body.type == "carriage":
+        elements = {f"element {n}": 1.0 for n in range(1, count + 1)}
+        return elements | {"carriage": 1.0, "carriage, pitch at its end": lever}
+    return {"mass on the contact": 1.0} | {f"mass {n} above": 1.0 for n in range(1, above + 1)}
+
+
+def sensors_of(case: Bodies) -> tuple[float, ...]:
+    """Positions of the accelerometers, m."""
+    if case.over == "beam":
+        return case.beam.sensor_positions
+    return case.structure.sensor_positions if case.over == "structure" else ()
+
+
+def title_of(case: Bodies) -> str:
+    """Say what rolls over what."""
+    count, kind = len(case.body.positions), {"mass": "body", "chain": "suspended body"}
+    name = kind.get(case.body.type, case.body.type)
+    many = {"body": "bodies", "suspended body": "suspended bodies"}.get(name, f"{name}s")
+    what = f"a {name}" if count == 1 else f"{count} {many}"
+    return f"{what[0].upper()}{what[1:]} over a {case.over}"
+
+
+def structure_of(case: Bodies) -> Modal | Track | None:
+    """Build what is rolled over; None for a plane."""
+    if case.over == "beam":
+        beam = case.beam
+        return Beam.rectangular(
+            beam.length, beam.width, beam.height, beam.material,
+            support=beam.support, loss_factor=beam.loss_factor,
+            highest_frequency=highest_beam_mode(case),
+            suspension_frequency=beam.suspension_frequency,
+        )  # fmt: skip
+    if case.over == "structure":
+        return case.structure.model
+    return case.track_model() if case.over == "track" else None
+
+
+def body_of(case: Bodies) -> Body:
+    """Build one of what rolls."""
+    body, mass = case.body, case.body.contact_mass
+    places, above = body.places, list(body.masses or ())
+    extra = load_of(case) * len(places) - GRAVITY * (mass * len(places) + sum(above))
+    springs, dampers = list(body.springs or ()), list(body.dampers or [0.0] * len(above))
+    if body.type == "chain":
+        return chain([mass, *above], springs, dampers, load=extra)
+    if body.type == "bogie":
+        return bogie(mass, places[1], above[0], _inertia(case), springs[0], dampers[0], load=extra)
+    if body.type == "carriage":
+        return carriage(
+            above[0], _inertia(case), places, element_mass=mass,
+            upper_stiffness=upper_stiffness(case),
+            upper_damping=dampers[0], load=extra,
+        )  # fmt: skip
+    return Body.rigid(mass, load_of(case))
+
+
+def _inertia(case: Bodies) -> float:
+    """Moment of inertia of what is above, kg m²: as given, or of a bar as long as its contacts are apart."""
+    body = case.body
+    assert body.masses
+    length = body.places[-1] or 2.0 * body.radius
+    return body.inertia or body.masses[0] * length**2 / 12.0
+
+
+def highest_beam_mode(case: Bodies) -> float:
+    """Frequency up to which the modes of a beam are kept, Hz."""
+    return case.beam.modes_up_to or MODES_BEYOND * case.numerics.highest_frequency
+
+
+def square_transfer(bodies: RolledCase, stiffness: float, frequency: Any) -> None:
+    """Nothing is said of the linear contact force of bodies that are coupled."""

@@ -1,0 +1,82 @@
+"""Figures of the motion of the bodies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from asperity.kinds.bodies.figures.contacts import mark_tones, tones_words
+from asperity.kinds.bodies.schema import BODY_ACCELERATION_PSD, BODY_REFERENCE, SPECTRA_DEGREE
+from asperity.reporting.data import laws, of_law, stored_variable
+from asperity.reporting.part import Data, Part, Series, series
+from asperity.reporting.spectrum_figures import DRAWN, finish_spectrum, narrow_level, shaded_words
+from asperity.reporting.style import new_figure, sequence, styled
+from asperity.schema.spectra import FREQUENCY
+
+MOST_LINES = 6
+"""Degrees of freedom that are drawn."""
+
+
+def degree_names(tree: DataTree) -> list[str]:
+    """Names of the degrees of freedom."""
+    found = stored_variable(tree, SPECTRA_DEGREE)
+    return [] if found is None else [str(name) for name in found.values]
+
+
+def _shown(names: list[str]) -> list[int]:
+    """What is drawn: the last degrees first, which are those of what rests on the others."""
+    return list(range(len(names)))[-MOST_LINES:]
+
+
+def motion_data(tree: DataTree) -> Data:
+    """Acceleration of the bodies in their degrees of freedom, by the main law."""
+    main = laws(tree, BODY_ACCELERATION_PSD)[0]
+    density = of_law(tree, BODY_ACCELERATION_PSD, main, "degree", "frequency")
+    lines: dict[Any, Series] = {
+        index: Series(name, BODY_ACCELERATION_PSD.units, density[index])
+        for index, name in enumerate(degree_names(tree))
+    }
+    return Data(series(tree, FREQUENCY), lines)
+
+
+@styled()
+def motion_figure(tree: DataTree, data: Data) -> Figure:
+    """Acceleration of the bodies over frequency."""
+    figure = new_figure(4.2)
+    axes = figure.subplots()
+    shown = _shown(degree_names(tree))
+    spectra = [narrow_level(tree, data.lines[index].values, BODY_REFERENCE**2) for index in shown]
+    for index, spectrum, colour in zip(shown, spectra, sequence(len(shown)), strict=True):
+        axes.plot(*spectrum, color=colour, label=data.lines[index].name)
+    finish_spectrum(axes, tree, spectra)
+    mark_tones(axes, tree)
+    axes.set_ylabel("acceleration PSD / dB re (1 µm/s²)²/Hz")
+    return figure
+
+
+def _caption(tree: DataTree) -> str:
+    names = degree_names(tree)
+    some = (
+        f" The last {MOST_LINES} of {len(names)} are drawn; the file has all."
+        if len(names) > MOST_LINES
+        else ""
+    )
+    main = laws(tree, BODY_ACCELERATION_PSD)[0]
+    return (
+        f"Acceleration of the bodies by the main law, {main}; {DRAWN}.{some}"
+        f"{tones_words(tree)}{shaded_words(tree)}"
+    )
+
+
+MOTION = (
+    Part(
+        "body_acceleration",
+        "Acceleration of the bodies",
+        (BODY_ACCELERATION_PSD, FREQUENCY),
+        motion_data,
+        motion_figure,
+        _caption,
+    ),
+)

@@ -1,0 +1,53 @@
+"""What rolling bodies on several contacts takes, from a few steps of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from asperity.config.case import Case
+from asperity.laws import HertzLaw
+from asperity.reduction.texture import StateTexture
+from asperity.rolling.several import roll_bodies
+from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.trial import STEPS, timed
+
+
+def rows(case: Any) -> list[tuple[str, str]]:
+    """The contacts, in words."""
+    offsets = case.body.offsets
+    if len(offsets) == 1:
+        return []
+    return [("contacts", f"{len(offsets)}, {min(offsets):g} to {max(offsets):g} m ahead of the position")]
+
+
+def records(case: Any) -> int:
+    """Histories that a law leaves behind."""
+    return 6 * len(case.body.offsets) + 2
+
+
+def step_seconds(prepared: PreparedCase) -> float:
+    """Time of a step of smooth bodies over a smooth path, s."""
+    case: Any = prepared.case
+    law = HertzLaw(prepared.shape.hertz.stiffness_constant, StateTexture.unfiltered(np.zeros(8), 1e4, -4e4))
+    duration = min(STEPS * case.time_step, case.rolled_time)
+    _, taken = timed(lambda: _roll(prepared, law, duration))
+    return taken / max(1.0, duration / case.time_step)
+
+
+def _roll(prepared: PreparedCase, law: HertzLaw, duration: float) -> None:
+    case: Case = prepared.case
+    bodies = prepared.bodies
+    contacts = sum(len(body.places) for body in bodies.rolling)
+    roll_bodies(
+        bodies.over,
+        bodies.rolling,
+        [law] * contacts,
+        positions=prepared.case.body.positions,  # type: ignore[attr-defined]
+        speed=case.speed,
+        start=case.record_start,
+        duration=duration,
+        time_step=case.time_step,
+        sensors=bodies.sensors,
+    )

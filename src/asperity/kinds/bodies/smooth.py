@@ -1,0 +1,69 @@
+"""The contact of the smooth bodies of a case."""
+
+from __future__ import annotations
+
+from asperity.contact import Hertz
+from asperity.errors import InputError
+from asperity.kinds.bodies.case import Bodies
+from asperity.reference.materials import Material, contact_modulus
+from asperity.structures.ball import GRAVITY
+
+
+def smooth_contact(case: Bodies) -> Hertz:
+    """Contact of the smooth bodies, by their relative curvatures along and across the path."""
+    body, modulus = case.body, contact_modulus(case.body.material, over_material(case))
+    along = 1.0 / body.radius
+    if body.raceway_radius is not None:
+        along += (1.0 if body.raceway == "inner" else -1.0) / body.raceway_radius
+    across = 1.0 / body.across
+    if body.groove_radius is not None:
+        across -= 1.0 / body.groove_radius
+    elif case.over == "track":
+        across += 1.0 / case.track.rail_head_radius
+    for key, radius, curvature, what in (
+        ("body.raceway_radius", body.raceway_radius, along, "rolls in it"),
+        ("body.groove_radius", body.groove_radius, across, "lies in it"),
+    ):
+        if curvature <= 0.0:
+            allowed = f"a radius greater than that of the body that {what}"
+            remedy = "The bodies would touch along a line, or at two ends."
+            yet = "infinite" if radius is None else f"{radius:g} m"
+            raise InputError(key, yet, allowed, remedy)
+    return Hertz(modulus, 1.0 / along, 1.0 / across)
+
+
+def load_of(case: Bodies) -> float:
+    """Static force of each contact, N: as given, or the weights, evened out."""
+    body = case.body
+    above = sum(body.masses or ()) / len(body.places)
+    return body.load or GRAVITY * (body.contact_mass + above)
+
+
+def upper_load(case: Bodies) -> float:
+    """What the contact above each element of a carriage carries, N."""
+    above = load_of(case) - GRAVITY * case.body.contact_mass
+    if not above > 0.0:
+        raise InputError("body.load", f"{above:.4g} N above each element", "a carriage that presses on them")
+    return above
+
+
+def upper_stiffness(case: Bodies) -> float:
+    """Stiffness, N/m, of the contact above each element of a carriage: as given, or shaped as that below."""
+    if case.body.springs:
+        return case.body.springs[0]
+    hertz = smooth_contact(case)
+    return hertz.tangent_stiffness(hertz.approach(upper_load(case)))
+
+
+def static_stiffness(case: Bodies) -> float:
+    """What a mass on its contact feels at rest, N/m: the smooth contact, and the one above of an element."""
+    hertz = smooth_contact(case)
+    below = hertz.tangent_stiffness(hertz.approach(load_of(case)))
+    return below + (upper_stiffness(case) if case.body.type == "carriage" else 0.0)
+
+
+def over_material(case: Bodies) -> Material:
+    """Material of what is rolled over."""
+    if case.over == "beam":
+        return case.beam.material
+    return case.track.material if case.over == "track" else case.structure.material

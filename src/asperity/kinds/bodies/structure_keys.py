@@ -1,0 +1,159 @@
+"""What bodies roll over: beams on supports, tracks, and structures known by their modes or receptances."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import BeforeValidator, PlainValidator
+
+from asperity.config.form import Section, key
+from asperity.config.keys import (
+    Choice,
+    File,
+    LengthUnit,
+    Mass,
+    Number,
+    OwnOrNamed,
+    Position,
+    Quantity,
+)
+from asperity.config.sections import Index
+from asperity.errors import InputError
+from asperity.kinds.ball_on_beam.case import BeamCase
+from asperity.kinds.wheel_on_rail.track_keys import TrackParameters
+from asperity.structures.modal_table import ModalStructure
+
+SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
+"""Of the length of a structure, where its acceleration is recorded if the case says nothing."""
+
+ModesFile = Annotated[Path | ModalStructure, PlainValidator(File(held=(ModalStructure,)))]
+Axis = Annotated[str, BeforeValidator(Choice(("x", "y", "z")))]
+
+
+class BeamOnSupports(BeamCase):
+    """A beam."""
+
+
+class Rails(TrackParameters):
+    """A track."""
+
+
+class StructureCase(Section):
+    """Any structure, by its modes along the path; of a plane, its material alone."""
+
+    file: ModesFile | None = key(
+        None,
+        "its modes: a text table, netCDF, or a universal file (.uff, .unv); or a ModalStructure",
+        example='"guide.csv"',
+    )
+    along: Axis | None = key(
+        None,
+        "direction of the path in a universal file",
+        otherwise="the file is none",
+        example='"x"',
+        goes_with="file",
+    )
+    force: Axis | None = key(
+        None,
+        "direction of the contact force in a universal file",
+        otherwise="the file is none",
+        example='"z"',
+        goes_with="file",
+    )
+    length_unit: Annotated[str, BeforeValidator(LengthUnit())] | None = key(
+        None,
+        "unit of length of a universal file that states none",
+        otherwise="from the file",
+        example='"mm"',
+        goes_with="file",
+    )
+    force_unit: Annotated[str, BeforeValidator(Choice(("N", "kN", "mN", "lbf")))] | None = key(
+        None,
+        "unit of force of a universal file that states none",
+        otherwise="from the file",
+        example='"N"',
+        goes_with="file",
+    )
+    damping_ratio: Annotated[float, BeforeValidator(Number(at_least=0, at_most=0.99))] | None = key(
+        None,
+        "damping ratio of all modes of a universal file that states none",
+        otherwise="from the file",
+        example="0.01",
+        goes_with="file",
+    )
+    nodes: tuple[Index, ...] | None = key(
+        None,
+        "numbers of the nodes along the path in a universal file",
+        otherwise="all that have mode shapes",
+        example="[1, 2, 3]",
+        goes_with="file",
+    )
+    mass: Mass | None = key(
+        None,
+        "mass of the structure if nothing holds it and the file lacks its rigid-body modes",
+        otherwise="the file has all modes",
+        example='"20 kg"',
+        goes_with="file",
+        within=("1 mg", "100000 t", "structures that are rolled over lie between"),
+    )
+    inertia: Annotated[float, BeforeValidator(Quantity("kg m^2", above=0))] | None = key(
+        None,
+        "its moment of inertia in pitch",
+        otherwise="it does not pitch",
+        example='"1.5 kg m^2"',
+        goes_with="mass",
+        within=("1e-12 kg m^2", "1e12 kg m^2", "structures that are rolled over lie between"),
+    )
+    sensors: tuple[Position, ...] | None = key(
+        None,
+        "positions whose acceleration is recorded",
+        otherwise="at 20, 35, 50, 65 and 80 % of the length",
+        example='["0.2 m", "0.5 m"]',
+        goes_with="file",
+        within=("0 m", "10 km", "structures are shorter"),
+    )
+    material: OwnOrNamed = key("steel", "material of its surface")
+
+    @cached_property
+    def model(self) -> ModalStructure:
+        """The structure; it must have a file."""
+        assert self.file is not None
+        found = self.file
+        if isinstance(found, Path):
+            from asperity.structures.modal_files import read_modal_structure
+
+            found = read_modal_structure(
+                found,
+                along=self.along,
+                force=self.force,
+                length_unit=self.length_unit,
+                force_unit=self.force_unit,
+                damping=self.damping_ratio,
+                nodes=self.nodes,
+            )
+        return found if self.mass is None else found.with_rigid_body(self.mass, inertia=self.inertia)
+
+    @property
+    def sensor_positions(self) -> tuple[float, ...]:
+        """Positions whose acceleration is recorded, m."""
+        if self.sensors is not None:
+            return self.sensors
+        first, last = self.model.extent
+        return tuple(first + share * (last - first) for share in SENSOR_SHARES)
+
+    def problems(self) -> Iterator[InputError]:
+        """A file that can be read, and sensors on the structure."""
+        if self.file is None:
+            return
+        try:
+            first, last = self.model.extent
+        except InputError as error:
+            yield InputError("file", f"{error.received} ({error.what})", error.allowed, error.remedy)
+            return
+        for position in self.sensors or ():
+            if not first <= position <= last:
+                allowed = f"positions on the structure, {first:g} to {last:g} m"
+                yield InputError("sensors", f"{position:g} m", allowed)

@@ -1,0 +1,214 @@
+"""Cases of any bodies: what may be asked for, and what is said where it may not."""
+
+import numpy as np
+import pytest
+
+from asperity import Bodies, ModalStructure
+from asperity.errors import CaseError, InputError
+from asperity.kinds.bodies.bodies import bodies_of
+from asperity.kinds.bodies.result import passing_frequencies
+from asperity.kinds.bodies.smooth import smooth_contact
+from asperity.kinds.bodies.textures import contacts_of, textures_of
+from asperity.kinds.cases import parse_case, template
+
+ROUGH = {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"}
+COARSE = {"spacing": "20 um", "window": "0.6 mm", "samples": 2, "sample_length": "1.4 mm"}
+BOGIE = {
+    "type": "bogie",
+    "masses": [3000],
+    "springs": [1.2e6],
+    "dampers": [2e4],
+    "distance": 2.5,
+    "mass": 600,
+}
+
+
+def case_of(body=(), **keys):
+    return Bodies(surface=ROUGH, contact=COARSE, **{"body": dict(body), **keys})
+
+
+def test_the_template_reads_as_the_default_case():
+    assert parse_case(template("bodies")) == Bodies(surface={"rms": "0.5 um"})
+
+
+class TestBodies:
+    def test_a_ball_weighs_what_its_sphere_does(self):
+        (ball,) = bodies_of(case_of()).rolling
+        mass = 4.0 / 3.0 * np.pi * 25e-3**3 * 7850.0
+        assert ball.mass[0, 0] == pytest.approx(mass, rel=0.01)
+        assert ball.static_loads == pytest.approx([mass * 9.80665], rel=0.01)
+
+    def test_a_load_holds_all_weights(self):
+        body = {"type": "chain", "mass": 600, "masses": [1000, 5000], "springs": [1e6, 2e5], "load": 65e3}
+        (chain,) = bodies_of(case_of(body)).rolling
+        assert chain.static_loads == pytest.approx([65e3])
+        assert np.diag(chain.mass) == pytest.approx([600, 1000, 5000])
+
+    def test_without_a_load_the_weights_are_carried(self):
+        (bogie,) = bodies_of(case_of(BOGIE, over="plane")).rolling
+        assert bogie.static_loads == pytest.approx(9.80665 * np.full(2, 600 + 1500))
+        assert bogie.mass[3, 3] == pytest.approx(3000 * 2.5**2 / 12)
+
+    def test_bodies_stand_behind_one_another(self):
+        case = case_of(BOGIE | {"positions": ["0 m", "10 m"]}, over="plane")
+        assert case.body.offsets == (0.0, 2.5, 10.0, 12.5)
+        wheels = {"rear wheel, body 2": 1.0, "front wheel, body 2": 1.0}
+        frame = {"frame, body 2": 1.0, "frame, pitch at its end, body 2": 1.25}
+        assert dict(list(bodies_of(case).degrees.items())[4:]) == wheels | frame
+
+    def test_elements_of_a_carriage_press_it_up_by_hertz(self):
+        body = {"type": "carriage", "masses": [0.4], "distance": 0.02, "radius": 3e-3, "load": 20.0}
+        case = case_of(body)
+        (carriage,) = bodies_of(case).rolling
+        hertz = smooth_contact(case)
+        above = 20.0 - 9.80665 * case.body.contact_mass
+        expected = hertz.tangent_stiffness(hertz.approach(above))
+        assert carriage.stiffness[0, 0] == pytest.approx(expected)
+
+    def test_a_carriage_that_does_not_press_is_refused(self):
+        body = {"type": "carriage", "masses": [0.4], "distance": 0.02, "load": 0.1}
+        with pytest.raises(CaseError, match=r"body\.load.*above each element.*presses on them"):
+            case_of(body)
+
+
+class TestSmoothContact:
+    def test_a_ball_on_a_plane_is_round(self):
+        found = smooth_contact(case_of())
+        assert (found.radius_x, found.radius_y) == pytest.approx((25e-3, 25e-3))
+
+    def test_a_groove_conforms_and_a_raceway_bends(self):
+        """1/R: 1/3 − 1/3.12 across; around an inner ring 1/3 + 1/20 along, inside an outer one 1/3 − 1/20."""
+        keys = {"radius": 3e-3, "groove_radius": 3.12e-3, "raceway_radius": 20e-3}
+        inner = smooth_contact(case_of(keys))
+        outer = smooth_contact(case_of(keys | {"raceway": "outer"}))
+        assert inner.radius_y == pytest.approx(78e-3)
+        assert inner.radius_x == pytest.approx(1e-3 / (1 / 3 + 1 / 20))
+        assert outer.radius_x == pytest.approx(1e-3 / (1 / 3 - 1 / 20))
+
+    def test_a_wheel_lies_on_the_head_of_its_rail(self):
+        case = case_of({"radius": 0.46, "transverse_radius": "inf", "load": 65e3, "mass": 600}, over="track")
+        assert smooth_contact(case).radius_y == pytest.approx(0.3)
+
+    @pytest.mark.parametrize(
+        ("key", "words"),
+        [
+            ({"groove_radius": 25e-3}, r"body\.groove_radius: received 0\.025 m; allowed: a radius greater"),
+            ({"raceway_radius": 20e-3, "raceway": "outer"}, r"body\.raceway_radius: received 0\.02 m"),
+            ({"transverse_radius": "inf"}, r"body\.groove_radius: received infinite"),
+        ],
+    )
+    def test_bodies_that_touch_along_a_line_are_refused(self, key, words):
+        with pytest.raises(CaseError, match=words):
+            case_of(key)
+
+
+class TestTextures:
+    def test_the_path_reaches_to_the_foremost_contact(self):
+        near = textures_of(case_of(duration="50 ms", settling="10 ms"))
+        far = textures_of(case_of({"positions": ["0 m", "0.1 m"]}, duration="50 ms", settling="10 ms"))
+        assert len(far.line) - len(near.line) == 5000
+        assert far.start == near.start
+
+    def test_bodies_that_are_smooth_share_one_law(self):
+        case = case_of({"positions": ["0 m", "0.1 m", "0.3 m"]})
+        which, others = contacts_of(case, np.full(3, 5.0))
+        assert (which, others) == ([0, 0, 0], [])
+
+    def test_loads_and_textures_of_their_own_make_laws_of_their_own(self):
+        which, others = contacts_of(case_of(), np.array([5.0, 7.0, 5.0, 7.0]))
+        assert which == [0, 1, 0, 1]
+        assert [other.load for other in others] == [7.0]
+        rough = {"positions": ["0 m", "0.1 m"], "roughness": "disc", "radius": 0.46}
+        case = Bodies(
+            over="plane", speed=20, surface={"spectrum": "iso3095"}, body=rough, duration="0.2 s",
+            contact={"spacing": "1 mm", "window": "20 mm"}, laws=["linear"],
+        )  # fmt: skip
+        which, others = contacts_of(case, np.full(2, 5.0))
+        assert which == [0, 1]
+        first = textures_of(case)
+        second = others[0].textures(first)
+        around = round(2 * np.pi * 0.46 / 1e-3)
+        change = second.line - first.line
+        assert change.std() > 1e-6
+        np.testing.assert_allclose(change[around:], change[:-around], atol=1e-15)  # both turn
+
+
+class TestProblems:
+    @pytest.mark.parametrize(
+        ("keys", "words"),
+        [
+            ({"body": {"positions": []}}, r"body\.positions: received an empty list"),
+            ({"body": {"positions": [0.2, 0.2]}}, "two contacts in the same place"),
+            ({"body": {"masses": [1.0]}}, r"body\.masses: received 1 of a mass; allowed: no masses above"),
+            ({"body": {"type": "chain"}}, "none of a chain"),
+            ({"body": {"type": "bogie", "masses": [1.0], "springs": [1.0]}}, "the distance of its contacts"),
+            (
+                {"body": {"type": "chain", "masses": [1.0, 2.0], "springs": [1.0]}},
+                "1 under 2 masses; allowed: one spring under each mass",
+            ),
+            (
+                {"body": {"type": "chain", "masses": [1.0], "springs": [1.0], "dampers": [1.0, 1.0]}},
+                "2 beside 1 springs",
+            ),
+            ({"body": {"distance": 1.0}}, r"body\.distance: received of a mass"),
+            ({"body": {"contacts": 6}}, 'only together with type = "carriage"'),
+            (
+                {
+                    "body": {
+                        "type": "carriage",
+                        "contacts": 150,
+                        "distance": 1e-3,
+                        "positions": [0, 1],
+                        "masses": [1],
+                    }
+                },
+                "300 contacts; allowed: at most 200",
+            ),
+            ({"body": {"positions": [0, 3.0]}}, "less than the length of what they roll over, 1 m"),
+            ({"start": 0.99, "body": {"positions": [0, 0.5]}}, "where the foremost contact is at the end"),
+            ({"start": 0.01, "settling": 0.1}, "so that the run-in begins at 0 m or later"),
+            ({"start": 0.5, "duration": 2.0}, "in which the foremost contact leaves the structure"),
+            ({"over": "track", "beam": {"length": 2.0}}, r"over: received \"track\".*Remove a \[beam\]"),
+            ({"over": "structure"}, "the file of its modes or receptances"),
+            ({"over": "track", "speed": 2000}, "speed"),
+            ({"contact": {"window": "60 mm", "spacing": "0.1 mm"}}, "smaller diameter of what rolls"),
+        ],
+    )
+    def test_what_does_not_fit_is_told(self, keys, words):
+        with pytest.raises(CaseError, match=words):
+            Bodies(**{"surface": ROUGH, "contact": COARSE, **keys})
+
+    def test_a_plane_has_a_material(self):
+        case = case_of(over="plane", structure={"material": "glass"})
+        assert smooth_contact(case).modulus < smooth_contact(case_of(over="plane")).modulus
+
+
+class TestStructure:
+    def test_modes_from_memory_are_rolled_over_where_they_are(self):
+        x = np.linspace(2.0, 3.0, 41)
+        modes = ModalStructure(x, [200.0], 0.01, np.sin(np.pi * (x - 2.0))[:, None], modal_masses=[2.0])
+        case = case_of({"positions": ["0 m", "0.2 m"]}, over="structure", structure={"file": modes})
+        assert case.rolled_range[0] == pytest.approx(2.0)
+        assert case.rolled_range[1] == pytest.approx(2.8)
+        assert case.structure.sensor_positions[2] == pytest.approx(2.5)
+        other = ModalStructure(x, [201.0], 0.01, np.sin(np.pi * (x - 2.0))[:, None], modal_masses=[2.0])
+        assert case != case.with_(structure={"file": other})
+        with pytest.raises(InputError, match="where a case shall be written"):
+            case.to_toml()
+
+    def test_what_cannot_be_read_is_told(self, tmp_path):
+        (tmp_path / "modes.csv").write_text("frequency (Hz), 10\n")
+        with pytest.raises(CaseError, match=r"structure\.file"):
+            case_of(over="structure", structure={"file": tmp_path / "modes.csv"})
+
+    def test_sensors_stand_on_the_structure(self):
+        x = np.linspace(0.0, 1.0, 41)
+        modes = ModalStructure(x, [200.0], 0.01, np.sin(np.pi * x)[:, None], modal_masses=[2.0])
+        with pytest.raises(CaseError, match=r"structure\.sensors: received 2 m"):
+            case_of(over="structure", structure={"file": modes, "sensors": [2.0]})
+
+
+def test_equal_distances_have_passing_tones():
+    assert passing_frequencies([0.0, 0.02, 0.04], 1.0, 180.0) == pytest.approx([50.0, 100.0, 150.0])
+    assert passing_frequencies([0.0, 0.02, 0.05], 1.0, 180.0).size == 0
+    assert passing_frequencies([0.0], 1.0, 180.0).size == 0
