@@ -12,6 +12,10 @@ from asperity.reduction.texture import StateTexture
 from asperity.rolling.several import roll_bodies
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
+from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
+from asperity.structures.rail_between import RailBetween
+from asperity.structures.rail_poles import POLES, RailPoles
+from asperity.structures.track import Track
 
 
 def rows(case: Any) -> list[tuple[str, str]]:
@@ -39,9 +43,10 @@ def step_seconds(prepared: PreparedCase) -> float:
 def _roll(prepared: PreparedCase, law: HertzLaw, duration: float) -> None:
     case: Case = prepared.case
     bodies = prepared.bodies
+    over = _rail_like(prepared, bodies.over) if isinstance(bodies.over, Track) else bodies.over
     contacts = sum(len(body.places) for body in bodies.rolling)
     roll_bodies(
-        bodies.over,
+        over,
         bodies.rolling,
         [law] * contacts,
         positions=prepared.case.body.positions,  # type: ignore[attr-defined]
@@ -50,4 +55,15 @@ def _roll(prepared: PreparedCase, law: HertzLaw, duration: float) -> None:
         duration=duration,
         time_step=case.time_step,
         sensors=bodies.sensors,
+    )
+
+
+def _rail_like(prepared: PreparedCase, track: Track) -> RailBetween:
+    """A rail that costs as much as that of a case under each wheel, and hardly moves."""
+    case = prepared.case
+    lags = round(SHORTEST / case.time_step)
+    kernel = MovingKernel(track, case.speed, case.time_step, np.full((STARTS, lags), 1e-20))
+    poles = 0.5 * np.exp(1j * np.linspace(0.1, 3.0, POLES // 2))
+    return RailBetween(
+        RailPoles(kernel, poles, np.full((STARTS, len(poles)), 1e-20 + 0j), 0.0, 0.0), {}, reach=0.0
     )
