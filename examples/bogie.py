@@ -20,7 +20,8 @@ bogie = asperity.Bodies(
     surface={"spectrum": "iso3095"},
     body={
         "type": "bogie", "distance": "2.5 m", "radius": "0.46 m", "transverse_radius": "inf",
-        "mass": "600 kg", "masses": ["1500 kg"], "springs": ["0.6 MN/m"], "dampers": ["10 kN s/m"], "load": "60 kN",
+        "mass": "600 kg", "masses": ["1500 kg"], "springs": ["0.6 MN/m"], "dampers": ["10 kN s/m"],
+        "load": "60 kN",
     },
     track={"name": "nordborg", "pad_stiffness": "120 MN/m"},
     contact={"spacing": "0.5 mm", "window": "20 mm"},

@@ -102,9 +102,9 @@ class Body:
         InputError
             If the lists differ in length, or a number is out of range.
         """
-        natural = positive("natural frequencies of the modes (Hz)", frequencies)
-        ratio = positive("damping ratios of the modes", damping_ratios, natural.size)
-        shape = positive("modal masses (kg)", modal_masses, natural.size) ** -0.5
+        natural = positive_numbers("natural frequencies of the modes (Hz)", frequencies)
+        ratio = positive_numbers("damping ratios of the modes", damping_ratios, natural.size)
+        shape = positive_numbers("modal masses (kg)", modal_masses, natural.size) ** -0.5
         if natural.size and ratio.max() >= 1.0:
             raise InputError("damping ratios of the modes", float(ratio.max()), "above 0 and below 1")
         each = np.eye(len(self.places))
@@ -154,7 +154,7 @@ class Body:
         return solution[:d] / scale, solution[d:]
 
 
-def positive(what: str, given: ArrayLike, count: int | None = None, *, zero: bool = False) -> Array:
+def positive_numbers(what: str, given: ArrayLike, count: int | None = None, *, zero: bool = False) -> Array:
     """Take a list of finite numbers above zero, or not below it; as many as `count`, if that is given."""
     allowed = f"finite numbers, {'0 and more' if zero else 'above 0'}"
     values = np.atleast_1d(real_array(what, given, allowed)) if np.size(given) else np.zeros(0)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.arguments import real
 from asperity.errors import InputError
 from asperity.structures.ball import GRAVITY
-from asperity.structures.body import Body, positive
+from asperity.structures.body import Body, positive_numbers
 
 Array = NDArray[np.float64]
 
@@ -37,9 +37,9 @@ def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, loa
         If a mass or stiffness is not positive, a damping negative, a number is missing, or nothing is left
         to press on the contact.
     """
-    mass = positive("masses of the chain (kg)", masses)
-    spring = positive("stiffnesses of the chain (N/m)", stiffnesses, mass.size - 1)
-    damper = positive("dampings of the chain (N s/m)", dampings, mass.size - 1, zero=True)
+    mass = positive_numbers("masses of the chain (kg)", masses)
+    spring = positive_numbers("stiffnesses of the chain (N/m)", stiffnesses, mass.size - 1)
+    damper = positive_numbers("dampings of the chain (N s/m)", dampings, mass.size - 1, zero=True)
     stiffness, damping = np.zeros((2, mass.size, mass.size))
     for i in range(mass.size - 1):
         _connect(stiffness, damping, _unit(mass.size, i + 1) - _unit(mass.size, i), spring[i], damper[i])
@@ -89,20 +89,20 @@ def bogie(
         If a number is not positive (damping may be zero), or nothing is left to press on the contacts.
     """
     numbers = [wheel_mass, wheelbase, frame_mass, frame_inertia, primary_stiffness]
-    wheel, base, frame, inertia, spring = positive(
+    wheel, base, frame, inertia, spring = positive_numbers(
         "wheel mass, wheelbase, frame mass, frame inertia and primary stiffness", numbers, 5
     )
-    damper = positive("primary damping (N s/m)", [primary_damping], 1, zero=True)[0]
+    damper = positive_numbers("primary damping (N s/m)", [primary_damping], 1, zero=True)[0]
     masses, size = [wheel, wheel, frame, inertia], 4
     if car_body is not None:
-        masses, size = [*masses, *positive("mass of the car body (kg)", car_body[:1], 1)], 5
+        masses, size = [*masses, *positive_numbers("mass of the car body (kg)", car_body[:1], 1)], 5
     stiffness, damping = np.zeros((2, size, size))
     places = np.array([0.0, base])
     for i, place in enumerate(places):
         above = _unit(size, 2) + (place - 0.5 * base) * _unit(size, 3)
         _connect(stiffness, damping, above - _unit(size, i), spring, damper)
     if car_body is not None:
-        secondary = positive("secondary stiffness and damping", car_body[1:], 2, zero=True)
+        secondary = positive_numbers("secondary stiffness and damping", car_body[1:], 2, zero=True)
         _connect(stiffness, damping, _unit(size, 4) - _unit(size, 2), *secondary)
     pressing = GRAVITY * np.array(masses)
     pressing[3] = 0.0
@@ -158,7 +158,7 @@ def carriage(
     Elements move with the carriage: that a rolling ball follows at half its speed, and comes back around, is
     left out.
     """
-    heavy, moment = positive("mass (kg) and inertia (kg m^2) of the carriage", [mass, inertia], 2)
+    heavy, moment = positive_numbers("mass (kg) and inertia (kg m^2) of the carriage", [mass, inertia], 2)
     at = np.atleast_1d(np.asarray(places, dtype=float))
     middle = at.mean() if centre is None else real("centre of mass (m)", centre, "a finite number")
     down = _load(load)
@@ -168,12 +168,12 @@ def carriage(
     if element_mass is None:
         none = np.zeros((2, 2))
         return _on(at, lever, np.array([heavy, moment]), none, none, moved)
-    element, spring = positive(
+    element, spring = positive_numbers(
         "mass (kg) of the elements and stiffness (N/m) above them",
         [element_mass, 0.0 if upper_stiffness is None else upper_stiffness],
         2,
     )
-    damper = positive("damping above the elements (N s/m)", [upper_damping], 1, zero=True)[0]
+    damper = positive_numbers("damping above the elements (N s/m)", [upper_damping], 1, zero=True)[0]
     size = at.size + 2
     stiffness, damping = np.zeros((2, size, size))
     for i in range(at.size):
