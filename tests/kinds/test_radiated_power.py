@@ -11,6 +11,11 @@ import asperity
 from asperity import Track
 from asperity.errors import MissingSourceWarning, PhysicsWarning
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.figures.radiated import (
+    RADIATED,
+    noise_headline,
+    radiated_table,
+)
 from asperity.kinds.wheel_on_rail.radiated import RADIATORS, rail_section, silent_wheel
 from asperity.radiation.along import squared_point_mobility
 from asperity.radiation.sleeper import SleeperTop
@@ -113,7 +118,7 @@ def test_a_rigid_wheel_says_that_its_part_is_missing(run):
     both = 10.0 * np.log10(10.0 ** (found["rail"] / 10.0) + 10.0 ** (found["sleepers"] / 10.0))
     np.testing.assert_allclose(found["total"], both, rtol=1e-12)
     why = tree["spectra"]["radiated_power_level"].attrs
-    assert why["wheel"] == "the wheel is rigid, which does not say how its disc and tread vibrate"
+    assert why["wheel"] == "the wheel is rigid"
     assert why["missing"] == "of this wheel it is not known how its disc and tread vibrate"
     told = [w for w in json.loads(tree.attrs["warnings"]) if w["category"] == MissingSourceWarning.__name__]
     assert [w["grade"] for w in told] == ["note"]
@@ -127,7 +132,7 @@ def test_a_rigid_wheel_says_that_its_part_is_missing(run):
         ({"modes": MODES}, ""),
         (
             {"receptance": np.array([[100.0 * n, -1e-9, -1e-11] for n in range(1, 30)])},
-            "the wheel is given by its receptance, which does not say how its disc and tread vibrate",
+            "the wheel's receptance does not say how its disc and tread move",
         ),
     ],
 )
@@ -177,3 +182,27 @@ def test_a_label_that_contradicts_the_track_is_warned_of():
     told = [w["message"] for w in json.loads(tree.attrs["warnings"]) if "CNOSSOS" in w["message"]]
     assert len(told) == 1
     assert "300 MN/m, in range 800 to 1000 MN/m" in told[0]
+
+
+def test_the_report_shows_it_beside_cnossos(run, ringing):
+    _, tree = run
+    data = RADIATED.collect(tree)
+    band, standard = tree["spectra"]["noise_band"].values, tree["spectra"]["sound_power_level"].values[0]
+    found = data.lines["standard", "linear", "track"].values
+    np.testing.assert_allclose(found[np.isfinite(found)], standard[0])
+    assert data.at[np.isfinite(found)] == pytest.approx(band)
+    labels = [line.get_label() for line in RADIATED.plot(tree, data).axes[0].lines]
+    assert labels[:3] == ["rail", "sleepers", "total"]
+    own = RADIATED.plot(ringing[1], RADIATED.collect(ringing[1]))
+    assert "wheel" in [line.get_label() for line in own.axes[0].lines]
+    table = radiated_table(tree)
+    assert table.head[1:5] == ["rail / dB(A)", "sleepers / dB(A)", "wheel / dB(A)", "total / dB(A)"]
+    assert (
+        "The wheel's part is missing, and the total is that of rail and sleepers: the wheel is" in table.note
+    )
+    level = levels(tree, "radiated_power_level_a")
+    cells = [cell.text for cell in table.rows[0]]
+    assert cells[1:5] == [f"{level['rail']:.1f}", f"{level['sleepers']:.1f}", "–", f"{level['total']:.1f}"]
+    assert "missing" not in radiated_table(ringing[1]).note
+    number = noise_headline(tree)  # of one law alone there is no change
+    assert (number.name, number.value) == ("sound power from vibration", f"{level['total']:.1f} dB(A)")

@@ -15,7 +15,7 @@ from asperity.structures.track import Track
 ForceOverBay = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Mean square of the force at places (n,), m from a sleeper, at the frequencies (n, f), in any unit."""
 
-FEWEST_NODES = 10  # of Gauss's rule in a bay, beside one per radian of the shortest wave
+FEWEST_NODES = 4  # of Gauss's rule, beside one per radian of the shortest wave
 
 
 def squared_mobility(
@@ -58,7 +58,7 @@ def squared_mobility(
     within = np.einsum("x,xif,xjf->ijf", weight, along, along.conj(), optimize=True)
     total = _over_bays(waves, driven, within)
     for row, (x0, sent) in enumerate(zip(node, driven, strict=True)):
-        places, lengths = _gauss(len(node), bay - x0)
+        places, lengths = _gauss(_nodes(waves, bay - x0), bay - x0)
         for x, length in zip(x0 + places, lengths, strict=True):
             total[row] += length * np.abs(np.sum(sent * waves.outgoing(x), axis=0)) ** 2
     return 2.0 * omega**2 * _mean(total, node, weight, force)
@@ -89,7 +89,7 @@ def squared_point_mobility(
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
     omega = 2.0 * np.pi * positive(frequency)
     waves = track.waves(omega)
-    node, weight = _gauss(_nodes(waves), track.sleeper_spacing)
+    node, weight = _gauss(_nodes(waves, track.sleeper_spacing), track.sleeper_spacing)
     point = np.stack([np.abs(waves.receptance(x0, x0)) ** 2 for x0 in node])
     return omega**2 * _mean(point, node, weight, force)
 
@@ -128,7 +128,7 @@ def _driven(
     waves: PeriodicWaves,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.complex128]]:
     """Places x₀ of the force (n,) in a bay, their weights (n,), and how strongly each sends out the waves."""
-    node, weight = _gauss(_nodes(waves), waves.spacing)
+    node, weight = _gauss(_nodes(waves, waves.spacing), waves.spacing)
     return node, weight, np.stack([waves.coefficients * waves.incoming(x0) for x0 in node])
 
 
@@ -141,8 +141,8 @@ def _over_bays(
     return np.einsum("xif,xjf,ijf->xf", driven, driven.conj(), behind, optimize=True).real
 
 
-def _nodes(waves: PeriodicWaves) -> int:
-    return FEWEST_NODES + math.ceil(float(np.abs(waves.wavenumbers).max()) * waves.spacing)
+def _nodes(waves: PeriodicWaves, length: float) -> int:
+    return FEWEST_NODES + math.ceil(float(np.abs(waves.wavenumbers).max()) * length)
 
 
 def _gauss(count: int, length: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from asperity.kinds.wheel_on_rail.figures.force import FORCE_BANDS, FORCE_PEAK, FORCE_SPECTRUM
 from asperity.kinds.wheel_on_rail.figures.loss_factors import LOSS_FACTORS
 from asperity.kinds.wheel_on_rail.figures.motion import MOTION
-from asperity.kinds.wheel_on_rail.figures.noise import NOISE, sound_power_change, sound_power_table
+from asperity.kinds.wheel_on_rail.figures.noise import NOISE, sound_power_table
 from asperity.kinds.wheel_on_rail.figures.pass_by import PASS_BY_PART, pass_by_table
+from asperity.kinds.wheel_on_rail.figures.radiated import RADIATED, noise_headline, radiated_table
 from asperity.kinds.wheel_on_rail.figures.roughness import ROUGHNESS_LEVELS
 from asperity.kinds.wheel_on_rail.figures.scene import TRACK_SCENE
 from asperity.kinds.wheel_on_rail.figures.track import TRACK
@@ -32,7 +33,9 @@ CHAPTERS = (
         (FORCE_HISTORY, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS),
         (practice_table, reference_table, loss_table),
     ),
-    Chapter("noise", "Rolling noise", NOISE, (sound_power_table,), sound_power_change),
+    Chapter(
+        "noise", "Rolling noise", (RADIATED, *NOISE), (radiated_table, sound_power_table), noise_headline
+    ),
     Chapter("pass_by", "Pass-by", (PASS_BY_PART,), (pass_by_table,)),
     Chapter("motion", "Motion", MOTION),
 )

@@ -17,7 +17,6 @@ from asperity.scenarios.measure import (
     line_frequencies,
 )
 from asperity.schema import spectra
-from asperity.spectra import energy_sum
 
 ACCELERATION_REFERENCE = 1e-6
 """Of acceleration levels, m/s²."""
@@ -29,7 +28,7 @@ def _sound_power(tree: DataTree, law: str) -> NDArray[np.float64]:
     if schema.SOUND_POWER_LEVEL.name not in held:
         what = "the sound power of rolling is not known"
         raise ComputationError(what, "a rough rail, and bands between 50 Hz and 10 kHz")
-    power = energy_sum(held[schema.SOUND_POWER_LEVEL.name].sel(law=law).values, axis=0)
+    power = held[schema.SOUND_POWER_LEVEL.name].sel(law=law, source="total").values
     centre, frequency = held[schema.NOISE_BAND.name].values, line_frequencies(tree)
     force = density_of(tree, spectra.FORCE_PSD, law)
     step = frequency[1] - frequency[0]

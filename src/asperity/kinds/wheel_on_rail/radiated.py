@@ -68,8 +68,9 @@ def radiating_wheel(case: WheelOnRail) -> RadiatingWheel | None:
 def silent_wheel(case: WheelOnRail) -> str:
     """Say why the sound of a wheel is not computed; nothing where it is."""
     if case.wheel.modes is None:
-        how = "is given by its receptance" if case.wheel.receptance is not None else "is rigid"
-        return f"the wheel {how}, which does not say how its disc and tread vibrate"
+        if case.wheel.receptance is None:
+            return "the wheel is rigid"
+        return "the wheel's receptance does not say how its disc and tread move"
     if radiating_wheel(case) is None:
         return "the table wheel.modes does not say how the modes move disc and tread"
     return ""

@@ -157,7 +157,7 @@ def sound_power_table(tree: DataTree) -> ReportTable | None:
     head += [f"{source} − {name} / dB" for name in compared for source in radiating]
 
     def row(label: str, level: NDArray[np.float64]) -> list[Cell]:
-        cells = [text_cell(label), *(Cell(_told(value), "number") for value in level)]
+        cells = [text_cell(label), *(Cell(told_level(value), "number") for value in level)]
         for name in compared:
             cells += [Cell(signed(d) if label != name else "–", "number") for d in level - levels[name]]
         return cells
@@ -169,7 +169,7 @@ def sound_power_table(tree: DataTree) -> ReportTable | None:
         rows.append(row("CNOSSOS-EU", standard.sel(source=radiating).values))
         name = standard.attrs.get("contact_filter", "")
         note += f" CNOSSOS-EU: the same roughness with its own contact filter ({name})."
-    return ReportTable("sound_power_table", "A-weighted sound power", head, rows, note)
+    return ReportTable("sound_power_table", "Sound power by CNOSSOS-EU, A-weighted", head, rows, note)
 
 
 def sound_power_change(tree: DataTree) -> HeadlineNumber | None:
@@ -188,14 +188,15 @@ def sound_power_change(tree: DataTree) -> HeadlineNumber | None:
     return HeadlineNumber(name, f"{signed(level - compared[0])} dB(A)", "; ".join(told))
 
 
-def _told(value: float) -> str:
+def told_level(value: float) -> str:
+    """Write a level for a table."""
     return f"{value:.1f}" if np.isfinite(value) else "–"
 
 
 NOISE = (
     Part(
         "sound_power",
-        "A-weighted sound power",
+        "A-weighted sound power by CNOSSOS-EU",
         (POWER_A,),
         total_data,
         total_figure,
@@ -206,7 +207,7 @@ NOISE = (
     ),
     Part(
         "sound_power_bands",
-        "Sound power in one-third octaves",
+        "Sound power by CNOSSOS-EU in one-third octaves",
         (POWER, BAND),
         sound_power_data,
         sound_power_figure,

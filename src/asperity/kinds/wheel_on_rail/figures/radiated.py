@@ -1,0 +1,166 @@
+"""Figure and table of the sound power from the vibration itself, with that of CNOSSOS-EU beside it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from asperity.kinds.wheel_on_rail import schema
+from asperity.kinds.wheel_on_rail.figures.noise import sound_power_change, sources, told_level
+from asperity.reporting.data import doubtful, laws, of_law, stored_variable, values
+from asperity.reporting.headline import HeadlineNumber
+from asperity.reporting.part import Data, Part, Series, series
+from asperity.reporting.spectrum_figures import doubtful_words, product_series
+from asperity.reporting.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    VERMILLION,
+    band_axis,
+    legend_above,
+    level_limits,
+    new_figure,
+    shade_doubtful,
+    styled,
+)
+from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
+from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
+from asperity.spectra import a_weighting, energy_sum
+
+POWER, POWER_A = schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A
+STANDARD, STANDARD_A = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A
+_LOOKS: dict[str, Any] = {
+    "rail": {"color": VERMILLION, "marker": "o"},
+    "sleepers": {"color": GREEN, "marker": "s"},
+    "wheel": {"color": BLUE, "marker": "^"},
+    "total": {"color": INK, "linewidth": 1.8},
+}
+_STANDARD_LOOKS: dict[str, Any] = {
+    "track": {"linestyle": (0, (1.5, 1.5))},
+    "wheel": {"linestyle": (0, (6, 1.5, 1.5, 1.5))},
+    "total": {"linestyle": (0, (5, 2)), "linewidth": 1.6},
+}
+_COMPUTED = "computed"
+
+
+def radiators(tree: DataTree) -> list[str]:
+    """What radiates, as ``["rail", "sleepers", "wheel", "total"]``; nothing without the levels."""
+    found = stored_variable(tree, POWER)
+    return [] if found is None else [str(name) for name in found["radiator"].values]
+
+
+def silence(tree: DataTree) -> str:
+    """Say why the wheel's part is missing; nothing where it is there."""
+    found = stored_variable(tree, POWER)
+    reason = _COMPUTED if found is None else str(found.attrs.get("wheel", _COMPUTED))
+    if reason == _COMPUTED:
+        return ""
+    return f"The wheel's part is missing, and the total is that of rail and sleepers: {reason}."
+
+
+def radiated_data(tree: DataTree) -> Data:
+    """Sound power per band, law and radiator, unweighted, the A-weighting, and what CNOSSOS-EU has there."""
+    band = series(tree, BAND, "band centre")
+    lines: dict[Any, Series] = {"A": Series("A-weighting", "dB", a_weighting(band.values))}
+    lines |= product_series(tree, BAND_TIME_PRODUCT)
+    for law in laws(tree, POWER):
+        rows = of_law(tree, POWER, law, "radiator", "band")
+        for name, row in zip(radiators(tree), rows, strict=True):
+            lines[law, name] = Series(f"{name}, {law}", POWER.units, row)
+    for law in laws(tree, STANDARD):
+        rows = of_law(tree, STANDARD, law, "source", "noise_band")
+        at = np.abs(band.values[:, None] / values(tree, schema.NOISE_BAND) - 1.0) < 0.01
+        for name, row in zip(sources(tree, STANDARD), rows, strict=True):
+            found = np.where(at.any(axis=1), row[at.argmax(axis=1)], np.nan)
+            lines["standard", law, name] = Series(f"{name} by CNOSSOS-EU, {law}", STANDARD.units, found)
+    return Data(band, lines)
+
+
+@styled()
+def radiated_figure(tree: DataTree, data: Data) -> Figure:
+    """A-weighted sound power of the main law per one-third octave, by what radiates, beside CNOSSOS-EU."""
+    figure = new_figure(4.4)
+    axes = figure.subplots()
+    main, weighting, levels = laws(tree, POWER)[0], data.lines["A"].values, []
+    for name in radiators(tree):
+        level = data.lines[main, name].values + weighting
+        if np.isfinite(level).any():
+            axes.plot(data.at, level, label=name, markeredgewidth=0, **_LOOKS.get(name, {}))
+            levels.append(level)
+    for name, look in _STANDARD_LOOKS.items():
+        if ("standard", main, name) in data.lines:
+            level = data.lines["standard", main, name].values + weighting
+            axes.plot(data.at, level, label=f"{name}, CNOSSOS-EU", color=MUTED, **look)
+            levels.append(level)
+    level_limits(axes, levels, span=60.0)
+    band_axis(axes, data.at)
+    shade_doubtful(axes, data.at, doubtful(tree, BAND_TIME_PRODUCT))
+    axes.set_ylabel("sound power level / dB(A) re 1 pW")
+    legend_above(axes, columns=4)
+    return figure
+
+
+def _caption(tree: DataTree) -> str:
+    main = laws(tree, POWER)[0]
+    told = [
+        f"A-weighted one-third octaves of {main}, vertical motion: the contact force on two rails moves them "
+        "and their sleepers along the whole track, and each part radiates by its radiation ratio.",
+        silence(tree),
+    ]
+    if laws(tree, STANDARD):
+        told.append(
+            "Grey: the same force by CNOSSOS-EU, of a track and a wheel that it knows by a label; its "
+            "transfer functions hold lateral motion of the rail, and wheels that resonate."
+        )
+    return " ".join(filter(None, told)) + doubtful_words(tree, BAND_TIME_PRODUCT)
+
+
+def radiated_table(tree: DataTree) -> ReportTable | None:
+    """A-weighted sound power per law and radiator, beside that by CNOSSOS-EU."""
+    names, parts = laws(tree, POWER_A), radiators(tree)
+    if not names:
+        return None
+    standard = laws(tree, STANDARD_A)
+    head = ["law", *(f"{part} / dB(A)" for part in parts)]
+    if standard:
+        compared = sources(tree, STANDARD_A)
+        head += [f"{source}, CNOSSOS-EU / dB(A)" for source in compared]
+        head += ["rail and sleepers − track, CNOSSOS-EU / dB"]
+    rows = []
+    for law in names:
+        level = of_law(tree, POWER_A, law, "radiator")
+        cells: list[Cell] = [text_cell(law), *(Cell(told_level(value), "number") for value in level)]
+        if law in standard:
+            by_label = of_law(tree, STANDARD_A, law, "source")
+            cells += [Cell(told_level(value), "number") for value in by_label]
+            track = energy_sum([level[parts.index(part)] for part in ("rail", "sleepers")])
+            cells.append(Cell(signed(float(track) - by_label[compared.index("track")]), "number"))
+        rows.append(cells)
+    note = f"Re 1 pW, over the bands that were computed. {silence(tree)}"
+    return ReportTable("radiated_power_table", "Sound power from vibration, A-weighted", head, rows, note)
+
+
+def noise_headline(tree: DataTree) -> HeadlineNumber | None:
+    """Change of the sound power over linear contact if it is known, else the sound power from vibration."""
+    change = sound_power_change(tree)
+    if change is not None or not laws(tree, POWER_A):
+        return change
+    main = laws(tree, POWER_A)[0]
+    *_, total = of_law(tree, POWER_A, main, "radiator")
+    return HeadlineNumber(
+        "sound power from vibration", f"{told_level(total)} dB(A)", f"re 1 pW ({main}). {silence(tree)}"
+    )
+
+
+RADIATED = Part(
+    "radiated_power_bands",
+    "Sound power from vibration in one-third octaves",
+    (POWER, BAND),
+    radiated_data,
+    radiated_figure,
+    _caption,
+)
