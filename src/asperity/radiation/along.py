@@ -51,7 +51,7 @@ def squared_mobility(
     (λ_i λ_j*)^p = Σ_ij u_i u_j*/(1 − λ_i λ_j*) over all bays. Within a bay by Gauss's rule, in that of the
     force from the force on. A bay is its own mirror image, so both sides of the force are alike in the mean.
     """
-    omega = 2.0 * np.pi * positive(frequency)
+    omega = 2.0 * np.pi * above_zero(frequency)
     waves, bay = track.waves(omega), track.sleeper_spacing
     node, weight, driven = _driven(waves)
     along = np.stack([waves.outgoing(x) for x in node])  # (x, j, f)
@@ -73,7 +73,7 @@ def squared_sleeper_mobility(
     A sleeper on its ballast moves by K_p/(K_p + K_b − m_s ω²) of the rail above it; the rest as in
     `squared_mobility`.
     """
-    omega = 2.0 * np.pi * positive(frequency)
+    omega = 2.0 * np.pi * above_zero(frequency)
     waves = track.waves(omega)
     node, weight, driven = _driven(waves)
     above = waves.outgoing(0.0)
@@ -87,7 +87,7 @@ def squared_point_mobility(
     track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
 ) -> NDArray[np.float64]:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
-    omega = 2.0 * np.pi * positive(frequency)
+    omega = 2.0 * np.pi * above_zero(frequency)
     waves = track.waves(omega)
     node, weight = _gauss(_nodes(waves, track.sleeper_spacing), track.sleeper_spacing)
     point = np.stack([np.abs(waves.receptance(x0, x0)) ** 2 for x0 in node])
@@ -103,7 +103,7 @@ def effective_length(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
     return squared_mobility(track, frequency) / squared_point_mobility(track, frequency)
 
 
-def positive(frequency: ArrayLike) -> NDArray[np.float64]:
+def above_zero(frequency: ArrayLike) -> NDArray[np.float64]:
     """Frequencies (f,), Hz, or an `InputError` where one is not positive."""
     f = np.atleast_1d(np.asarray(frequency, dtype=float))
     if not (np.isfinite(f) & (f > 0.0)).all():

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
 from asperity.radiation.air import IMPEDANCE, wavenumber
-from asperity.radiation.along import ForceOverBay, positive, squared_mobility
+from asperity.radiation.along import ForceOverBay, above_zero, squared_mobility
 from asperity.radiation.elementary import cylinder
 from asperity.structures.track import Track
 
@@ -74,7 +74,7 @@ class RailSection:
 
     def radiation_ratio(self, frequency: ArrayLike) -> NDArray[np.float64]:
         """Ratio σ (f,) at positive frequencies (f,), Hz."""
-        f = positive(frequency)
+        f = above_zero(frequency)
         if self.table is not None:
             at, ratio = self.table
             return np.asarray(np.exp(np.interp(np.log(f), np.log(at), np.log(ratio))))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
 from asperity.radiation.air import IMPEDANCE, wavenumber
-from asperity.radiation.along import ForceOverBay, positive, squared_sleeper_mobility
+from asperity.radiation.along import ForceOverBay, above_zero, squared_sleeper_mobility
 from asperity.radiation.elementary import baffled_piston
 from asperity.structures.track import Track
 
@@ -59,7 +59,7 @@ class SleeperTop:
 
     def radiation_ratio(self, frequency: ArrayLike) -> NDArray[np.float64]:
         """Ratio σ (f,) at positive frequencies (f,), Hz: of the power to ρ c S ⟨v²⟩."""
-        return baffled_piston(wavenumber(positive(frequency)) * self.radius)
+        return baffled_piston(wavenumber(above_zero(frequency)) * self.radius)
 
     def power_per_force(
         self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None

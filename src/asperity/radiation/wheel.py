@@ -18,7 +18,7 @@ from scipy.special import beta, gamma
 
 from asperity.errors import InputError
 from asperity.radiation.air import IMPEDANCE, SPEED_OF_SOUND
-from asperity.radiation.along import positive
+from asperity.radiation.along import above_zero
 
 
 def axial_transition(nodal_diameters: int) -> float:
@@ -122,5 +122,5 @@ class RadiatingWheel:
     def _ratio(
         self, frequency: ArrayLike, transition: NDArray[np.float64], exponent: NDArray[np.int64]
     ) -> NDArray[np.float64]:
-        over = 2.0 * np.pi * positive(frequency) * self.radius / SPEED_OF_SOUND / transition[:, None]
+        over = 2.0 * np.pi * above_zero(frequency) * self.radius / SPEED_OF_SOUND / transition[:, None]
         return np.asarray(1.0 / (1.0 + over ** -exponent[:, None].astype(float)))
