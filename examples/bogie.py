@@ -57,3 +57,5 @@ rear, alone = (
 change = rear - alone
 print(f"{float(change.min()):+.1f} to {float(change.max()):+.1f} dB in a band")
 assert 0.3 < float(np.abs(change).max()) < 8.0
+total = [10 * np.log10(float((10 ** (level / 10)).sum())) for level in (rear, alone)]
+assert abs(total[0] - total[1]) < 1.5
