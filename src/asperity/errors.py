@@ -165,6 +165,10 @@ class ContactFilterWarning(PhysicsWarning):
     """A contact filter is normalised where the texture says little, or applied less exactly than fitted."""
 
 
+class EnergyWarning(PhysicsWarning):
+    """What was given for a passive structure creates energy."""
+
+
 class UnconvergedWarning(PhysicsWarning):
     """An iterative solution stopped before it reached its tolerance."""
 

@@ -33,6 +33,8 @@ class Body:
     natural_frequencies: Array  # (s,), of its modes, Hz
     damping_ratios: Array  # (s,)
     shapes: Array  # Φ, (c, s), kg^(−1/2)
+    fit_error: float = 0.0
+    """Of one that was fitted to receptances: root mean square of the differences of level, dB."""
 
     def __post_init__(self) -> None:
         c, d = self.contacts.shape

@@ -25,7 +25,7 @@ from asperity.structures.residual_flexibility import (
 Array = NDArray[np.float64]
 
 DEGREES = (3, 5, 7, 9)
-"""Of splines through the mode shapes; the best is found by leaving every second point out."""
+"""Of splines through the mode shapes; the best is found by leaving every fifth point out."""
 FEWEST_POINTS = 12
 """From here on a degree above the third is tried."""
 HIGHEST = 0.1 * STATIC
@@ -68,7 +68,7 @@ class ModalStructure:
 
     Notes
     -----
-    Between the points run splines of degree 3 to 9, the one that best meets every second point from the
+    Between the points run splines of degree 3 to 9, the one that best meets every fifth point from the
     others (`degree`). The residual flexibility is that of modes at 100 MHz, which follow a force at once.
 
     Examples
@@ -95,7 +95,7 @@ class ModalStructure:
         flexibility = checked_flexibility(self.residual_flexibility, at.size)
         if natural.size == 0 and flexibility is None:
             raise InputError("natural frequencies (Hz)", "none", "at least one mode")
-        _warn_of_coarse(at, shapes, natural)
+        warn_of_coarse(at, shapes, natural)
         for name, value in (
             ("positions", at),
             ("frequencies", natural),
@@ -204,7 +204,9 @@ class ModalStructure:
     @cached_property
     def degree(self) -> int:
         """Degree of the splines between the positions."""
-        return _best_degree(self.positions, np.hstack([self.mode_shapes, self._static]))
+        natural = self.natural_frequencies
+        softer = np.maximum(natural, natural[natural > 0.0].min(initial=np.inf)) if natural.any() else 1.0
+        return _best_degree(self.positions, np.hstack([self.mode_shapes, self._static]) / softer)
 
     @cached_property
     def _pieces(self) -> tuple[Array, Array]:
@@ -266,7 +268,7 @@ def _each(what: str, given: object, count: int, allowed: str, least: float, belo
     return values
 
 
-def _warn_of_coarse(at: Array, shapes: Array, natural: Array) -> None:
+def warn_of_coarse(at: Array, shapes: Array, natural: Array) -> None:
     """Warn of modes that the positions do not resolve.
 
     A sine of n points in a wavelength has differences 2 sin(π/n) times its own size: of six, the same size.
@@ -293,11 +295,11 @@ def _warn_of_coarse(at: Array, shapes: Array, natural: Array) -> None:
 
 
 def _best_degree(at: Array, table: Array) -> int:
-    """Degree of the splines that miss every second point the least, when those are left out."""
+    """Degree of the splines that miss every fifth point the least, when those are left out."""
     if at.size < FEWEST_POINTS:
         return min(DEGREES[0], at.size - 1)
-    kept = np.unique(np.r_[0 : at.size : 2, at.size - 1])
-    left = np.setdiff1d(np.arange(at.size), kept)
+    left = np.arange(2, at.size - 2, 5)
+    kept = np.setdiff1d(np.arange(at.size), left)
     errors = {}
     for degree in DEGREES:
         if degree < kept.size:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError, UnconvergedWarning
-from asperity.structures.wheel_fit import fit_modes
+from asperity.structures.modal_fit import fit_modes
 
 DOUBTFUL_FIT = 1.0  # dB, from here on a fit is warned of
 REFUSED_FIT = 6.0  # dB, beyond it mass or unit cannot be right

@@ -1,0 +1,287 @@
+"""Modes from receptances: of one point, or of several with their mode shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from itertools import pairwise
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+from scipy.signal import find_peaks
+
+from asperity.errors import ComputationError
+from asperity.structures.rational_fit import vector_fit
+from asperity.threads import one_thread_in_linear_algebra
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Modes = tuple[Array, Array, Array]
+M = TypeVar("M")
+
+MOST_PEAKS = 60
+MOST_RESPONSES = 8  # that poles are looked for in
+SPARE_POLES = (0, 2, 5, 10)  # start poles beyond the peaks seen, tried in turn
+GOOD_FIT = 1e-4  # relative error at which no further poles are tried
+WORTHWHILE = 0.9  # or when they leave more than this share of the error
+NEGLIGIBLE = 1e-3  # of the squared error: a mode below it only follows noise
+ONLY_NOISE = 0.1  # the same for a mode with shapes, which has more numbers to follow noise with
+RESIDUAL_MODES = (1.5, 3.0)  # of the highest frequency: the stiffness of all modes above the band
+RESIDUAL_DAMPING = 0.01
+FLOOR = 0.05  # of the rms of all responses at a frequency, below which errors count no more
+MOST_RANKS, SMALL_RANK = 8, 0.02  # of the residual stiffness: its largest parts, and of the largest
+SINGULAR = 1e-9  # of the largest eigenvalue of normal equations, below which one is left out
+SWEEPS, SETTLED = 30, 1e-6  # of mode shapes at the places of excitation, and their last change
+
+
+def fit_modes(frequency: Array, receptance: Complex, rigid: Complex) -> Modes:
+    """Modes with positive modal masses that add to the rigid motion of a wheel.
+
+    Frequency (n,), Hz, above zero and rising; receptances (n,) of the whole wheel, not zero, and of its rigid
+    motion, m/N. Returns frequencies, Hz, damping ratios and modal masses, kg, in order of frequency; none of
+    a rigid wheel.
+
+    Poles come from vector fitting, modal masses from non-negative least squares: the sum takes energy at
+    every frequency, also outside of the band. Relative errors count the same at all points. Modes that
+    contribute nothing are left out.
+    """
+    flexible, weights = receptance - rigid, 1.0 / np.abs(receptance)
+    nothing = (np.zeros(0), np.zeros(0), np.zeros(0))
+
+    def masses(poles: Complex) -> tuple[Modes, float, int]:
+        found, error = _modal_masses(frequency, flexible, weights, poles)
+        return found, error, len(found[0])
+
+    return _searched(frequency, flexible[None], weights, np.abs(receptance), nothing, masses)
+
+
+def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: NDArray[np.intp]) -> Modes:
+    """Modes with real shapes that add to the rigid motion of a structure.
+
+    Frequency (n,), Hz, above zero and rising; receptances (n, p, e) of p places under forces at e of them,
+    whose numbers are `driven`, and of the rigid motion, m/N. Returns frequencies, Hz, damping ratios and mode
+    shapes (p, m), kg^(−1/2), in order of frequency.
+
+    Poles are common to all responses; the residues of each are the products of its shape at both places, so
+    that all modal masses are positive. Errors count relative to each response, but for responses far below
+    the others.
+    """
+    flexible = receptance - rigid
+    level = np.sqrt(np.mean(np.abs(receptance) ** 2, axis=(1, 2)))
+    weights = 1.0 / np.hypot(np.abs(receptance), FLOOR * level[:, None, None])
+    nothing = (np.zeros(0), np.zeros(0), np.zeros((receptance.shape[1], 0)))
+
+    def shapes(poles: Complex) -> tuple[Modes, float, int]:
+        found, error = _mode_shapes(frequency, flexible, weights, driven, poles)
+        return found, error, len(found[0])
+
+    responses, none = flexible.reshape(len(frequency), -1).T, float(np.linalg.norm(weights * flexible))
+    with one_thread_in_linear_algebra():
+        return _searched(frequency, responses, 1.0 / level, level, nothing, shapes, none)
+
+
+def _searched(
+    frequency: Array,
+    responses: Complex,
+    weights: Array,
+    level: Array,
+    nothing: M,
+    residues: Callable[[Complex], tuple[M, float, int]],
+    error_of_none: float | None = None,
+) -> M:
+    """Modes of the start poles that leave the least error, tried in turn while more of them are worthwhile.
+
+    Responses (q, n), common weights (n,) and the level (n,) in which peaks are looked for. `residues` makes
+    modes of given poles: they, the weighted error that they leave, and their number.
+    """
+    best = nothing
+    best_error = float(np.linalg.norm(weights * responses[0])) if error_of_none is None else error_of_none
+    mixed = responses
+    if len(responses) > MOST_RESPONSES:  # every pole is in every sum of them
+        mixed = np.random.default_rng(0).standard_normal((MOST_RESPONSES, len(responses))) @ responses
+    for start in _start_poles(frequency, level):
+        if best_error <= GOOD_FIT * np.sqrt(responses.size):
+            break
+        try:
+            poles = vector_fit(2j * np.pi * frequency, mixed, start, weights=weights).poles
+        except ComputationError:
+            continue
+        modes, error, count = residues(_with_residual(poles, frequency))
+        before = best_error
+        if error < before:
+            best, best_error = modes, error
+        if count and error > WORTHWHILE * before:
+            break
+    return best
+
+
+def _start_poles(frequency: Array, level: Array) -> list[NDArray[Any]]:
+    """A weakly damped pole at each high peak, and spare ones spread over the widest gaps between."""
+    peaks, found = find_peaks(20.0 * np.log10(level), prominence=3.0)
+    peaks = peaks[np.argsort(-found["prominences"])[:MOST_PEAKS]]
+    starts = []
+    for spare in SPARE_POLES:
+        natural = list(frequency[peaks])
+        for _ in range(max(spare, 2 - len(natural))):
+            knots = sorted([frequency[0], *natural, 1.2 * frequency[-1]])
+            low, high = max(pairwise(knots), key=lambda gap: gap[1] - gap[0])
+            natural.append(0.5 * (low + high))
+        if 2 * len(natural) < frequency.size:
+            starts.append(2.0 * np.pi * np.sort(natural) * (1j - 0.01))
+    return starts
+
+
+def _with_residual(poles: Complex, frequency: Array) -> Complex:
+    """Oscillating poles near the band, and those of the residual stiffness above it."""
+    natural = np.abs(poles) / (2.0 * np.pi)
+    upper = RESIDUAL_MODES[-1] * frequency[-1]
+    near = (poles.imag > 0.0) & (poles.real < 0.0) & (natural > 0.5 * frequency[0]) & (natural < upper)
+    residual = 2.0 * np.pi * frequency[-1] * np.array(RESIDUAL_MODES)
+    damped = np.sqrt(1.0 - RESIDUAL_DAMPING**2)
+    return np.concatenate([poles[near], residual * (1j * damped - RESIDUAL_DAMPING)])
+
+
+def _answers(frequency: Array, poles: Complex) -> tuple[Complex, Array, Array]:
+    """What each mode of unit mass answers (n, m), and its natural frequency, rad/s, and damping ratio."""
+    omega, natural = 2.0 * np.pi * frequency[:, None], np.abs(poles)
+    ratio = -poles.real / natural
+    return np.asarray(1.0 / (natural**2 - omega**2 + 2j * ratio * natural * omega)), natural, ratio
+
+
+def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Complex) -> tuple[Modes, float]:
+    """Modes of given poles by non-negative least squares, and the weighted error that they leave."""
+    omega, natural = 2.0 * np.pi * frequency[:, None], np.abs(poles)
+    ratio = -poles.real / natural
+    columns = weights[:, None] / (natural**2 - omega**2 + 2j * ratio * natural * omega)
+    matrix = np.concatenate([columns.real, columns.imag])
+    right = np.concatenate([(weights * flexible).real, (weights * flexible).imag])
+    size = np.linalg.norm(matrix, axis=0)
+    shares, error = nnls(matrix / size, right)  # a share is the norm of what a mode contributes
+    kept = np.flatnonzero(shares**2 > max(NEGLIGIBLE * error**2, 1e-12 * shares.max(initial=0.0) ** 2))
+    kept = kept[np.argsort(natural[kept])]
+    shares, error = nnls(matrix[:, kept] / size[kept], right)
+    kept, shares = kept[shares > 0.0], shares[shares > 0.0]
+    return (natural[kept] / (2.0 * np.pi), ratio[kept], size[kept] / shares), float(error)
+
+
+class _Sums(NamedTuple):
+    """Weighted sums over frequency of what modes answer: with one another, and with the responses."""
+
+    products: Array  # (p, e, m, m)
+    targets: Array  # (p, e, m)
+
+
+def _mode_shapes(
+    frequency: Array, flexible: Complex, weights: Array, driven: NDArray[np.intp], poles: Complex
+) -> tuple[Modes, float]:
+    """Modes of given poles with real shapes, and the weighted error that they leave."""
+    answers, natural, ratio = _answers(frequency, poles)
+    scale = np.linalg.norm(answers, axis=0)
+    answers, target = answers / scale, weights * flexible
+    sums = _summed(answers, target, weights)
+    mode, at_driven = _first_shapes(sums, driven, len(RESIDUAL_MODES))
+    for _ in range(2):  # the second time without modes that contribute nothing
+        at_driven = _settled(sums, driven, mode, at_driven)
+        shapes = _rows(sums, range(target.shape[1]), mode, at_driven)
+        shapes[driven] = at_driven
+        size = np.einsum("ijrr->ijr", sums.products)[:, :, mode]
+        parts = np.sqrt(np.einsum("ijr,ir,jr->r", size, shapes**2, at_driven**2))
+        left = target - weights * np.einsum(
+            "nr,ir,jr->nij", answers[:, mode], shapes, at_driven, optimize=True
+        )
+        error = float(np.linalg.norm(left))
+        kept = np.flatnonzero(parts**2 > max(ONLY_NOISE * error**2, 1e-12 * parts.max(initial=0.0) ** 2))
+        kept = kept[np.argsort(natural[mode[kept]], kind="stable")]
+        mode, at_driven, shapes = mode[kept], at_driven[:, kept], shapes[:, kept]
+    found = natural[mode] / (2.0 * np.pi), ratio[mode], shapes / np.sqrt(scale[mode])
+    return found, error
+
+
+def _summed(answers: Complex, target: Complex, weights: Array) -> _Sums:
+    products = np.array(
+        [
+            [(((answers.conj() * w[:, None] ** 2).T) @ answers).real for w in row.T]
+            for row in weights.swapaxes(0, 1)
+        ]
+    )
+    targets = np.einsum("nr,nij->ijr", answers.conj(), weights * target).real
+    return _Sums(products, targets)
+
+
+def _first_shapes(sums: _Sums, driven: NDArray[np.intp], residual: int) -> tuple[NDArray[np.intp], Array]:
+    """Shapes at the places of excitation from residues without constraint: the pole of each, and (e, modes).
+
+    Those of a mode are of rank one; the last `residual` poles stand for many modes and may have any rank.
+    """
+    e, count = len(driven), sums.targets.shape[-1]
+    residues = np.zeros((count, e, e))
+    for i in range(e):
+        for j in range(e):
+            residues[:, i, j] = _solved(sums.products[driven[i], j], sums.targets[driven[i], j], e == 1)
+    values, vectors = np.linalg.eigh(0.5 * (residues + residues.swapaxes(1, 2)))
+    chosen = np.zeros_like(values, dtype=bool)
+    chosen[:, -1] = True
+    chosen[count - residual :, -MOST_RANKS:] = True
+    chosen &= values > np.maximum(0.0, SMALL_RANK * values[:, -1:])
+    mode, rank = np.nonzero(chosen)
+    return mode, (np.sqrt(values[mode, rank])[:, None] * vectors[mode, :, rank]).T
+
+
+def _settled(sums: _Sums, driven: NDArray[np.intp], mode: NDArray[np.intp], shapes: Array) -> Array:
+    """Shapes (e, modes) at the places of excitation of least squares, by Levenberg and Marquardt."""
+    products = sums.products[driven][:, :, mode[:, None], mode]
+    targets = sums.targets[driven][:, :, mode]
+    error, slope, curvature = _error_of(shapes, products, targets)
+    damping = 1e-3
+    for _ in range(SWEEPS):
+        matrix = curvature + damping * np.diag(np.diagonal(curvature) + np.finfo(float).tiny)
+        change = -np.linalg.solve(matrix, slope.ravel()).reshape(shapes.shape)
+        found = _error_of(shapes + change, products, targets)
+        if found[0] < error:
+            shapes, damping = shapes + change, 0.1 * damping
+            error, slope, curvature = found
+            if np.linalg.norm(change) <= SETTLED * np.linalg.norm(shapes):
+                break
+        else:
+            damping *= 10.0
+            if damping > 1e8:
+                break
+    return shapes
+
+
+def _error_of(shapes: Array, products: Array, targets: Array) -> tuple[float, Array, Array]:
+    """Squared error of shapes (e, modes) but for a constant, half its slope and Gauss's half curvature."""
+    residues = shapes[:, None] * shapes
+    pulled = np.einsum("ijrs,ijs->ijr", products, residues)
+    error = float(np.sum(residues * (pulled - 2.0 * targets)))
+    left = pulled - targets
+    slope = np.einsum("ijr,jr->ir", left + left.swapaxes(0, 1), shapes)
+    both = products + products.swapaxes(0, 1)
+    curvature = np.einsum("jr,ijrs,is->irjs", shapes, both, shapes)
+    for i in range(len(shapes)):
+        curvature[i, :, i] += np.einsum("jr,jrs,js->rs", shapes, both[i], shapes)
+    return error, slope, curvature.reshape(shapes.size, shapes.size)
+
+
+def _rows(sums: _Sums, places: Iterable[int], mode: NDArray[np.intp], at_driven: Array) -> Array:
+    """Shapes (places, modes) by least squares, for given ones (e, modes) at the places of excitation."""
+    rows = []
+    for i in places:
+        products = sums.products[i][:, mode[:, None], mode]
+        matrix = np.einsum("jr,jrs,js->rs", at_driven, products, at_driven)
+        rows.append(_solved(matrix, np.einsum("jr,jr->r", at_driven, sums.targets[i][:, mode])))
+    return np.array(rows)
+
+
+def _solved(matrix: Array, right: Array, positive: bool = False) -> Array:
+    """Least squares from their normal equations, in columns of size one."""
+    size = np.sqrt(np.diagonal(matrix))
+    size = np.where(size > 0.0, size, 1.0)
+    values, vectors = np.linalg.eigh(matrix / np.outer(size, size))
+    kept = values > SINGULAR * values[-1]
+    root, vectors = np.sqrt(values[kept]), vectors[:, kept]
+    turned = (vectors.T @ (right / size)) / root
+    if positive:
+        return np.asarray(nnls(root[:, None] * vectors.T, turned)[0] / size)
+    return np.asarray(vectors @ (turned / root) / size)
