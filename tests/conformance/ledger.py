@@ -29,6 +29,7 @@ ROOMS = {
     "lines": "Spectra, weighting and bands",
     "textures": "Roughness: processing, statistics, files",
     "noises": "Railway tables and sound power",
+    "radiations": "Sound radiation from vibration",
     "passings": "Pass-by",
 }
 """Modules of this folder that hold the checks, and their headings."""

@@ -1,0 +1,171 @@
+"""Numbers of docs/noise.md: sound power from vibration against CNOSSOS-EU, and the rail's radiation ratio.
+
+    python benchmarks/noise_against_cnossos.py     # prints tables, writes noise.png and noise_rail.png
+
+In the frequency domain, without rolling: sound power level per axle less roughness level, linear contact.
+The transfer functions of CNOSSOS-EU are the same quantity. Nothing is fitted.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from asperity import Track, Wheel
+from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
+from asperity.kinds.wheel_on_rail.sound_power import rolling_sound_power
+from asperity.radiation.air import SPEED_OF_SOUND
+from asperity.radiation.along import effective_length
+from asperity.radiation.rail import RailSection
+from asperity.radiation.sleeper import SleeperTop
+from asperity.reference import cnossos
+from asperity.spectra import nominal
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))
+from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
+
+BANDS = 10.0 ** (np.arange(17, 38) / 10.0)  # 50 Hz to 5 kHz
+WITHIN = 10.0 ** (0.1 * (np.arange(25) - 12.0) / 25.0)
+PADS = {"soft": 225e6, "medium": 447e6, "hard": 894e6}  # as printed; geometric means of the classes
+LOAD, STIFFNESS = 50e3, 1.143e9  # N; of Hertz's contact under it, radii of 0.46 m and 0.3 m
+SPEED = 100.0 / 3.6
+COLOURS = {"soft": "#0067a5", "medium": "#00805c", "hard": "#c8500a"}
+
+
+def track(pads: float) -> Track:
+    """Ballasted track of Math. Probl. Eng. 2017, 5872419, table 1, with other pads."""
+    area, density, moment = 7.745e-3, 7750.0, 3.217e-5
+    return Track(
+        bending_stiffness=210e9 * moment,
+        mass_per_length=density * area,
+        shear_stiffness=80.8e9 * area * 0.5329,
+        rotary_inertia=density * moment,
+        rail_loss_factor=0.02,  # not printed there
+        pad_stiffness=pads,
+        pad_loss_factor=0.25,
+        sleeper_mass=170.0,
+        ballast_stiffness=20e6,
+        ballast_loss_factor=1.0,
+        sleeper_spacing=0.55,
+    )
+
+
+def transfer(pads: float) -> dict[str, np.ndarray]:
+    """Sound power level per axle less roughness level, dB re 1 pW and 1 µm, of rail, sleepers and both."""
+    body, wheel = track(pads), Wheel.rigid(600.0, LOAD)
+    f = (BANDS[:, None] * WITHIN).ravel()
+    section = RailSection(0.150, 0.072, 7.745e-3)
+
+    def spread(x):
+        return np.abs(force_transfer(f, wheel, body, STIFFNESS, x)) ** 2
+
+    node, weight = np.polynomial.legendre.leggauss(30)
+    square = 0.5 * weight @ spread(0.5 * body.sleeper_spacing * (node + 1.0))
+    parts = {
+        "rail": section.power_per_force(body, f, spread),
+        "sleepers": SleeperTop(2.6, 0.25).power_per_force(body, f, spread),
+    }
+    power = {
+        name: np.mean((2.0 * part * square).reshape(len(BANDS), -1), axis=1) for name, part in parts.items()
+    }
+    power["track"] = power["rail"] + power["sleepers"]
+    return {name: 10.0 * np.log10(each) for name, each in power.items()}  # (1 µm)² over 1 pW is 1 m²/W
+
+
+def total(levels: np.ndarray) -> float:
+    """A-weighted sound power of a track, dB, at 100 km/h, roughnesses and contact filter of CNOSSOS-EU."""
+    silent = np.full(len(BANDS), -200.0)
+    power = rolling_sound_power(
+        SPEED,
+        cnossos.rail_roughness("iso3095"),
+        cnossos.wheel_roughness("disc"),
+        (BANDS, levels),
+        (BANDS, silent),
+        contact_filter=cnossos.contact_filter("50 kN, 920 mm"),
+    )
+    return float(power.a_weighted[0])
+
+
+def octaves(axes: Axes) -> None:
+    """Name the octaves along an axis of frequency."""
+    axes.set_xticks(1000.0 * 10.0 ** (0.3 * np.arange(-4, 3)), ["63", "125", "250", "500", "1k", "2k", "4k"])
+    axes.minorticks_off()
+    axes.grid(alpha=0.4)
+
+
+def against_cnossos() -> None:
+    """Print and draw our transfers beside those of the directive."""
+    ours = {name: transfer(pads) for name, pads in PADS.items()}
+    theirs = {name: cnossos.track_transfer(name)[1][: len(BANDS)] for name in PADS}
+    print("| band / Hz | rail | sleepers | track | CNOSSOS-EU | difference | soft − hard | CNOSSOS-EU |")
+    print("|---:|---:|---:|---:|---:|---:|---:|---:|")
+    medium = ours["medium"]
+    for i, band in enumerate(BANDS):
+        change, label = (
+            ours["soft"]["track"][i] - ours["hard"]["track"][i],
+            theirs["soft"][i] - theirs["hard"][i],
+        )
+        cells = [medium["rail"][i], medium["sleepers"][i], medium["track"][i], theirs["medium"][i]]
+        signed = [medium["track"][i] - theirs["medium"][i], change, label]
+        row = [f"{cell:.1f}" for cell in cells] + [f"{cell:+.1f}" for cell in signed]
+        print(f"| {nominal(band):g} | " + " | ".join(row) + " |")
+    print("\n| pads | rail | sleepers | track | CNOSSOS-EU |\n|---|---:|---:|---:|---:|")
+    for name in PADS:
+        parts = [total(ours[name][part]) for part in ("rail", "sleepers", "track")]
+        cells = [f"{cell:.1f}" for cell in (*parts, total(theirs[name]))]
+        print(f"| {name}, {PADS[name] / 1e6:.0f} MN/m | " + " | ".join(cells) + " |")
+    figure = Figure(figsize=(10.5, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for name, colour in COLOURS.items():
+        left.semilogx(BANDS, ours[name]["track"], color=colour, label=f"{name}, {PADS[name] / 1e6:.0f} MN/m")
+        left.semilogx(BANDS, theirs[name], "--", color=colour, label=f"{name}, CNOSSOS-EU")
+    left.set(xlabel="one-third octave / Hz", ylabel="sound power per axle − roughness / dB", ylim=(40, 125))
+    left.set_title("Track")
+    left.legend(fontsize=8)
+    for part, marker in (("rail", "o"), ("sleepers", "s")):
+        for name in ("soft", "hard"):
+            look = {"color": COLOURS[name], "marker": marker, "markersize": 3}
+            right.semilogx(BANDS, ours[name][part], label=f"{part}, {name} pads", **look)
+    right.set(xlabel="one-third octave / Hz", ylim=(40, 125))
+    right.set_title("Rail and sleepers")
+    right.legend(fontsize=8)
+    for axes in (left, right):
+        octaves(axes)
+    figure.savefig("noise.png", dpi=90)
+
+
+def radiation_of_the_rail() -> None:
+    """Print and draw the radiation ratio of a 60E1 section by boundary elements, and by the model."""
+    bands = 10.0 ** (np.arange(20, 38) / 10.0)
+    section = RailSection(0.150, 0.072, 60.21 / 7850.0)
+    field = []
+    for band in bands:
+        at = band * 10.0 ** (0.1 * (np.arange(5) - 2.0) / 5.0)
+        found = [
+            power_per_length(mirrored(SECTION_60E1), INSIDE_60E1, 2 * np.pi * f / SPEED_OF_SOUND, 3e-3)
+            for f in at
+        ]
+        field.append(np.mean(found) / section.radiating_width)
+    model, field = 10 * np.log10(section.radiation_ratio(bands)), 10 * np.log10(field)
+    print("\n| band / Hz | boundary elements / dB | model / dB | difference |\n|---:|---:|---:|---:|")
+    for band, exact, own in zip(bands, field, model, strict=True):
+        print(f"| {nominal(band):g} | {exact:.1f} | {own:.1f} | {own - exact:+.1f} |")
+    figure = Figure(figsize=(7.0, 3.6), layout="constrained")
+    axes = figure.subplots()
+    axes.semilogx(bands, field, "o-", color="#1c2126", label="boundary elements, section 60E1")
+    axes.semilogx(bands, model, color="#c8500a", label="model: dipole, then both faces of the foot")
+    axes.set(xlabel="one-third octave / Hz", ylabel="10 lg radiation ratio / dB", ylim=(-30, 6))
+    octaves(axes)
+    axes.legend()
+    figure.savefig("noise_rail.png", dpi=90)
+
+
+if __name__ == "__main__":
+    against_cnossos()
+    radiation_of_the_rail()
+    length = effective_length(track(PADS["medium"]), [500.0, 1000.0, 2000.0])
+    print("\nEffective lengths at 500, 1000, 2000 Hz:", ", ".join(f"{each:.1f} m" for each in length))

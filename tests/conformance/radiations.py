@@ -1,0 +1,72 @@
+"""Checks of sound radiation from vibration."""
+
+from __future__ import annotations
+
+import mpmath as mp
+import numpy as np
+from ledger import Check
+
+from asperity.radiation.along import effective_length, squared_sleeper_mobility
+from asperity.radiation.elementary import baffled_piston, cylinder
+from asperity.radiation.rail import RailSection
+from asperity.radiation.wheel import axial_transition
+from asperity.structures.track import Track
+
+
+def elementary():
+    """Radiation ratios in closed form and at their limits."""
+    oscillating = "oscillating rigid cylinder"
+    for ka in ("0.3", "1", "4"):
+        slope = mp.diff(lambda z: mp.hankel2(1, z), mp.mpf(ka))
+        expected = 2 / (mp.pi * mp.mpf(ka) * abs(slope) ** 2)
+        found = float(cylinder(float(ka)))
+        what = f"{oscillating}, ka = {ka}: radiation ratio"
+        yield Check(what, "2/(π ka abs(H₁'(ka))²), mpmath", float(expected), found, 1e-9)
+    low = float(mp.pi / 2 * mp.mpf("1e-3") ** 3)
+    what = f"{oscillating}, ka = 0.001: radiation ratio"
+    yield Check(what, "line dipole, (π/2)(ka)³", low, float(cylinder(1e-3)), 1e-5)
+    yield Check(f"{oscillating}, ka = 1000: radiation ratio", "plane wave", 1.0, float(cylinder(1e3)), 1e-5)
+    expected = 1 - mp.besselj(1, 4) / 2
+    found = float(baffled_piston(2.0))
+    yield Check(
+        "piston in a plane, ka = 2: radiation ratio", "1 − J₁(2ka)/ka, mpmath", float(expected), found, 1e-9
+    )
+    found = float(baffled_piston(1e-3))
+    yield Check("piston in a plane, ka = 0.001: radiation ratio", "(ka)²/2", 5e-7, found, 1e-5)
+    expected = (27 * mp.pi**2 / 8) ** mp.mpf("0.25")
+    what = "rigid disc in free air: ka at which its low-frequency power is that of a plane wave"
+    yield Check(what, "Rayleigh, 8(ka)⁴/(27π²) = 1", float(expected), axial_transition(0), 1e-9)
+    section = RailSection(0.150, 0.072, 0.00767)
+    dipole = mp.mpf("0.00767") + mp.pi / 4 * (mp.mpf("0.15") ** 2 + mp.mpf("0.072") ** 2)
+    wave = 2 * mp.pi / mp.mpf("343.2")
+    found = section.radiating_width * float(section.radiation_ratio(1.0)[0])
+    what = "60E1 rail at 1 Hz: sound power per length over ρ c ⟨v²⟩"
+    yield Check(what, "line dipole, k³D²/8", float(wave**3 * dipole**2 / 8), found, 1e-4, "m")
+
+
+def along_the_track():
+    """Length of a single wave, and where the power of a force goes."""
+    rail = Track(
+        bending_stiffness=1e9, mass_per_length=60.0, pad_stiffness=1e3, sleeper_mass=0.0,
+        ballast_stiffness=1e3, sleeper_spacing=0.05, rail_loss_factor=0.05,
+        shear_stiffness=2e7, rotary_inertia=1e-3,
+    )  # fmt: skip
+    decay = -mp.im(2 * mp.pi * 500 * mp.sqrt(60 / (mp.mpf("2e7") * mp.mpc(1, "0.05"))))
+    found = float(effective_length(rail, 500.0)[0])
+    what = "rail that shears and hardly bends, 500 Hz: effective length"
+    yield Check(what, "one wave, 1/−Im ω√(m'/S)", float(1 / decay), found, 1e-3, "m")
+    track, frequency = Track.named("uic60", rail_loss_factor=0.0), 400.0
+    omega, bay = 2.0 * np.pi * frequency, track.sleeper_spacing
+    node, weight = np.polynomial.legendre.leggauss(24)
+    places = 0.5 * bay * (node + 1.0)
+    point = [(1j * omega * track.receptance(frequency, x, x)).real.item() for x in places]
+    pad, ballast = track.layer_stiffnesses(omega)
+    below = pad / (pad + ballast - track.sleeper_mass * omega**2)
+    lost = track.pad_damping * np.abs((1.0 - below) / below) ** 2 + track.ballast_damping
+    taken = float(lost * squared_sleeper_mobility(track, frequency)[0])
+    put_in = float(0.5 * weight @ np.array(point))
+    what = "UIC 60 track, 400 Hz: power lost in pads and ballast over that put in by a force"
+    yield Check(what, "energy balance", 1.0, taken / put_in, 1e-9)
+
+
+CHECKS = (elementary, along_the_track)
