@@ -1,10 +1,12 @@
 """Cases of any bodies: what may be asked for, and what is said where it may not."""
 
+import warnings
+
 import numpy as np
 import pytest
 
-from asperity import Bodies, ModalStructure
-from asperity.errors import CaseError, InputError
+from asperity import Beam, Bodies, ModalStructure, Wheel, material
+from asperity.errors import CaseError, EnergyWarning, InputError, PhysicsWarning, UnconvergedWarning
 from asperity.kinds.bodies.bodies import bodies_of
 from asperity.kinds.bodies.result import passing_frequencies
 from asperity.kinds.bodies.smooth import smooth_contact
@@ -169,7 +171,7 @@ class TestProblems:
             ({"start": 0.01, "settling": 0.1}, "so that the run-in begins at 0 m or later"),
             ({"start": 0.5, "duration": 2.0}, "in which the foremost contact leaves the structure"),
             ({"over": "track", "beam": {"length": 2.0}}, r"over: received \"track\".*Remove a \[beam\]"),
-            ({"over": "structure"}, "the file of its modes or receptances"),
+            ({"over": "structure"}, "the file of its modes, or receptances"),
             ({"over": "track", "speed": 2000}, "speed"),
             ({"contact": {"window": "60 mm", "spacing": "0.1 mm"}}, "smaller diameter of what rolls"),
         ],
@@ -212,3 +214,69 @@ def test_equal_distances_have_passing_tones():
     assert passing_frequencies([0.0, 0.02, 0.04], 1.0, 180.0) == pytest.approx([50.0, 100.0, 150.0])
     assert passing_frequencies([0.0, 0.02, 0.05], 1.0, 180.0).size == 0
     assert passing_frequencies([0.0], 1.0, 180.0).size == 0
+
+
+def receptances(beam, frequency, noise=0.0):
+    """Table of the receptances of a beam at 19 places under a force at one of them."""
+    places, driven = np.linspace(0.0, beam.length, 21), 0.3 * beam.length
+    random = np.random.default_rng(1)
+    rows = []
+    for place in places[1:-1]:
+        found = beam.receptance(frequency, place, driven)
+        found = found * (1.0 + noise * (random.normal(size=len(found)) + 1j * random.normal(size=len(found))))
+        rows += [[f, place, driven, h.real, h.imag] for f, h in zip(frequency, found, strict=True)]
+    return np.array(rows)
+
+
+class TestReceptances:
+    BEAM = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), loss_factor=0.02, highest_frequency=500.0)
+
+    def test_they_are_fitted_by_modes(self):
+        table = receptances(self.BEAM, np.arange(2.0, 400.0, 0.5))
+        case = case_of(over="structure", structure={"receptances": table}, start=0.2, duration=0.1)
+        model = bodies_of(case).over
+        assert case.structure.sensor_positions[0] == pytest.approx(0.23)
+        measured = self.BEAM.receptance([80.0], 0.3, 0.3)
+        assert model.receptance([80.0], 0.3, 0.3) == pytest.approx(measured, rel=0.02)
+
+    def test_doubts_are_those_of_the_run_not_of_reading(self):
+        """Noise of a third of the receptance is told where the bodies are built, not where keys are read."""
+        table = receptances(self.BEAM, np.arange(2.0, 400.0, 1.0), noise=0.3)
+        keys = {"over": "structure", "structure": {"receptances": table}, "start": 0.2, "duration": 0.1}
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            case = case_of(**keys)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", PhysicsWarning)
+            bodies_of(case)
+        assert {EnergyWarning, UnconvergedWarning} <= {each.category for each in caught}
+
+    def test_one_source_and_a_complete_table(self):
+        table = receptances(self.BEAM, np.arange(2.0, 400.0, 0.5))
+        with pytest.raises(CaseError, match=r"structure\.receptances.*Complete the table"):
+            case_of(over="structure", structure={"receptances": table[1:]})
+        x = np.linspace(0.0, 1.0, 41)
+        modes = ModalStructure(x, [200.0], 0.01, np.sin(np.pi * x)[:, None], modal_masses=[2.0])
+        with pytest.raises(CaseError, match="both file and receptances"):
+            case_of(over="structure", structure={"receptances": table, "file": modes})
+
+
+class TestResonances:
+    MODES = np.array([[800.0, 0.01, 20.0], [1500.0, 0.02, 15.0]])
+
+    def test_what_touches_resonates_at_each_contact(self):
+        (bogie,) = bodies_of(case_of(BOGIE | {"modes": self.MODES}, over="plane")).rolling
+        assert bogie.natural_frequencies == pytest.approx([800.0, 1500.0, 800.0, 1500.0])
+        assert bogie.shapes[1] == pytest.approx([0.0, 0.0, 20.0**-0.5, 15.0**-0.5])
+
+    def test_a_mass_is_known_by_its_receptance(self):
+        wheel = Wheel.from_modes(600.0, 65e3, *self.MODES.T)
+        frequency = np.arange(20.0, 3000.0, 2.0)
+        found = wheel.receptance(frequency)
+        table = np.column_stack([frequency, found.real, found.imag])
+        body = {"mass": 600.0, "load": 65e3, "receptance": table, "radius": 0.46}
+        (fitted,) = bodies_of(case_of(body, over="plane")).rolling
+        assert fitted.natural_frequencies[:2] == pytest.approx([800.0, 1500.0], rel=1e-3)
+        assert fitted.static_loads == pytest.approx([65e3])
+        with pytest.raises(CaseError, match="that of a mass, alone"):
+            case_of(body | {"modes": self.MODES}, over="plane")

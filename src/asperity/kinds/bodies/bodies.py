@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
 from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.bodies.smooth import load_of, upper_stiffness
+from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
 from asperity.structures.ball import GRAVITY
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
+from asperity.structures.receptance_fit import fit_body
 from asperity.structures.suspended import bogie, carriage, chain
 from asperity.structures.track import Track
 
@@ -81,12 +84,22 @@ def structure_of(case: Bodies) -> Modal | Track | None:
             suspension_frequency=beam.suspension_frequency,
         )  # fmt: skip
     if case.over == "structure":
+        for doubt in case.structure.doubts:
+            warnings.warn(doubt, stacklevel=2)
         return case.structure.model
     return case.track_model() if case.over == "track" else None
 
 
 def body_of(case: Bodies) -> Body:
-    """Build one of what rolls."""
+    """Build one of what rolls, with the resonances of what touches."""
+    if case.body.receptance is not None:
+        measured = read_receptance(case.body.receptance)
+        return fit_body(case.body.contact_mass, load_of(case), *measured)
+    body = _rigid_body(case)
+    return body if case.body.modes is None else body.with_modes(*read_modes(case.body.modes))
+
+
+def _rigid_body(case: Bodies) -> Body:
     body, mass = case.body, case.body.contact_mass
     places, above = body.places, list(body.masses or ())
     extra = load_of(case) * len(places) - GRAVITY * (mass * len(places) + sum(above))

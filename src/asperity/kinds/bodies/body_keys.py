@@ -15,6 +15,7 @@ from asperity.config.keys import (
     Choice,
     ChoiceOrFile,
     Damping,
+    File,
     Force,
     Length,
     LengthOrInfinite,
@@ -28,6 +29,7 @@ from asperity.config.keys import (
 )
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
+from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
 
 MOST_CONTACTS = 200
 KINDS_OF_BODY = ("mass", "chain", "bogie", "carriage")
@@ -36,6 +38,7 @@ ROUGHNESSES = ("cast-iron", "composite", "disc")
 Roughness = Annotated[
     str | Path | NDArray[np.float64], PlainValidator(ChoiceOrFile(ROUGHNESSES, TABLE_OF_LEVELS, columns=2))
 ]
+TableFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=3))]
 _LIE_BETWEEN = "bodies that roll lie between"
 
 
@@ -129,6 +132,20 @@ class BodyCase(Section):
         example='"1500 kg m^2"',
         within=("1e-15 kg m^2", "1e9 kg m^2", _LIE_BETWEEN),
     )
+    modes: TableFile | None = key(
+        None,
+        "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
+        "modal mass (kg)",
+        otherwise="rigid",
+        example='"modes.csv"',
+    )
+    receptance: TableFile | None = key(
+        None,
+        "table of the receptance of a mass, which is fitted by modes: frequency (Hz), real and imaginary "
+        "part (m/N)",
+        otherwise="rigid",
+        example='"receptance.csv"',
+    )
     roughness: Roughness | None = key(
         None,
         "one-third-octave wavelength spectrum of what rolls, around its circumference, another texture at "
@@ -178,6 +195,13 @@ class BodyCase(Section):
             received = "two contacts in the same place"
             yield InputError("positions", received, "contacts that are apart", "Move one of them.")
         yield from problems_of_table(self, "roughness", read_levels)
+        yield from problems_of_table(self, "modes", read_modes)
+        yield from problems_of_table(self, "receptance", read_receptance)
+        if self.receptance is not None and (self.type != "mass" or self.modes is not None):
+            received = f"beside {'modes' if self.modes is not None else f'type {self.type}'}"
+            yield InputError(
+                "receptance", received, "that of a mass, alone", "Give modes, or the receptance."
+            )
 
     def _problems_of_type(self) -> Iterator[InputError]:
         above = {"mass": 0, "bogie": 1, "carriage": 1}.get(self.type)

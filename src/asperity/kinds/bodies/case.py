@@ -79,14 +79,14 @@ class Bodies(LawsOfSurface):
     def room(self) -> float | None:
         """Position of the run in m at which the foremost contact is at the end; None where there is none."""
         end = self.beam.length if self.over == "beam" else None
-        if self.over == "structure" and self.structure.file is not None:
+        if self.over == "structure" and self.structure.is_known:
             end = self.structure.model.extent[1]
         return None if end is None else end - max(self.body.offsets)
 
     @property
     def beginning(self) -> float:
         """Position in m before which nothing can be rolled over."""
-        known = self.over == "structure" and self.structure.file is not None
+        known = self.over == "structure" and self.structure.is_known
         return self.structure.model.extent[0] if known else 0.0
 
     @property
@@ -160,9 +160,9 @@ def _problems_of_structure(case: Bodies) -> Iterator[InputError]:
             yield InputError(
                 "over", f'"{case.over}"', f'"{name}", where it is described', f"Remove {received}."
             )
-    if case.over == "structure" and case.structure.file is None:
+    if case.over == "structure" and not case.structure.is_known:
         remedy = 'As file = "guide.csv".'
-        yield InputError("structure.file", "nothing", "the file of its modes or receptances", remedy)
+        yield InputError("structure.file", "nothing", "the file of its modes, or receptances", remedy)
     if case.over == "track":
         try:
             case.track_model().refuse_speed(case.speed)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, PlainValidator
 
+from asperity.config.content import name_of
 from asperity.config.form import Section, key
 from asperity.config.keys import (
     Choice,
@@ -21,7 +25,8 @@ from asperity.config.keys import (
     Quantity,
 )
 from asperity.config.sections import Index
-from asperity.errors import InputError
+from asperity.config.tables import Column, read_table
+from asperity.errors import InputError, PhysicsWarning
 from asperity.kinds.ball_on_beam.case import BeamCase
 from asperity.kinds.wheel_on_rail.track_keys import TrackParameters
 from asperity.structures.modal_table import ModalStructure
@@ -30,6 +35,14 @@ SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
 
 ModesFile = Annotated[Path | ModalStructure, PlainValidator(File(held=(ModalStructure,)))]
+TableFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=5))]
+RECEPTANCES = (
+    Column("frequency", "Hz"),
+    Column("position of the response", "m"),
+    Column("position of the force", "m"),
+    Column("real part", "m/N"),
+    Column("imaginary part", "m/N"),
+)
 Axis = Annotated[str, BeforeValidator(Choice(("x", "y", "z")))]
 
 
@@ -91,12 +104,18 @@ class StructureCase(Section):
         example="[1, 2, 3]",
         goes_with="file",
     )
+    receptances: TableFile | None = key(
+        None,
+        "its measured receptances instead, which are fitted by modes: frequency (Hz), position of the "
+        "response (m), position of the force (m), real and imaginary part (m/N)",
+        example='"receptances.csv"',
+    )
     mass: Mass | None = key(
         None,
-        "mass of the structure if nothing holds it and the file lacks its rigid-body modes",
-        otherwise="the file has all modes",
+        "mass of the structure if nothing holds it and its rigid-body modes are not in the file",
+        otherwise="something holds it, or the file has all modes",
         example='"20 kg"',
-        goes_with="file",
+        goes_with="file or receptances",
         within=("1 mg", "100000 t", "structures that are rolled over lie between"),
     )
     inertia: Annotated[float, BeforeValidator(Quantity("kg m^2", above=0))] | None = key(
@@ -112,14 +131,44 @@ class StructureCase(Section):
         "positions whose acceleration is recorded",
         otherwise="at 20, 35, 50, 65 and 80 % of the length",
         example='["0.2 m", "0.5 m"]',
-        goes_with="file",
+        goes_with="file or receptances",
         within=("0 m", "10 km", "structures are shorter"),
     )
     material: OwnOrNamed = key("steel", "material of its surface")
 
-    @cached_property
+    @property
+    def is_known(self) -> bool:
+        """Whether there is anything that it is known by."""
+        return self.file is not None or self.receptances is not None
+
+    @property
     def model(self) -> ModalStructure:
-        """The structure; it must have a file."""
+        """The structure, if it is known."""
+        return self._made[0]
+
+    @property
+    def doubts(self) -> list[Warning]:
+        """What was warned of when it was read or fitted."""
+        return self._made[1]
+
+    @cached_property
+    def _made(self) -> tuple[ModalStructure, list[Warning]]:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", PhysicsWarning)
+            found = self._fitted() if self.file is None else self._read()
+        return found, [each.message for each in caught if isinstance(each.message, Warning)]
+
+    def _fitted(self) -> ModalStructure:
+        """Modes that meet the receptances."""
+        from asperity.structures.receptance_fit import fit_structure, receptances_in
+
+        assert self.receptances is not None
+        rows = read_table(self.receptances, RECEPTANCES)
+        at, driven, frequency, given = receptances_in(rows, name_of(self.receptances))
+        return fit_structure(at, driven, frequency, given, mass=self.mass, inertia=self.inertia)
+
+    def _read(self) -> ModalStructure:
+        """Modes of the file, with those of the rigid body."""
         assert self.file is not None
         found = self.file
         if isinstance(found, Path):
@@ -145,13 +194,16 @@ class StructureCase(Section):
         return tuple(first + share * (last - first) for share in SENSOR_SHARES)
 
     def problems(self) -> Iterator[InputError]:
-        """A file that can be read, and sensors on the structure."""
-        if self.file is None:
+        """One source, which can be read, and sensors on the structure."""
+        if self.file is not None and self.receptances is not None:
+            yield InputError("", "both file and receptances", "one of them", "Remove one.")
+        if not self.is_known:
             return
         try:
             first, last = self.model.extent
         except InputError as error:
-            yield InputError("file", f"{error.received} ({error.what})", error.allowed, error.remedy)
+            name = "receptances" if self.file is None else "file"
+            yield InputError(name, f"{error.received} ({error.what})", error.allowed, error.remedy)
             return
         for position in self.sensors or ():
             if not first <= position <= last:
