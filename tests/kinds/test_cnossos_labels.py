@@ -3,8 +3,9 @@
 import pytest
 
 from asperity import WheelOnRail
-from asperity.errors import Grade, InputError
+from asperity.errors import Grade, InputError, OutOfRangeWarning
 from asperity.kinds.wheel_on_rail.labels import findings_of_labels, track_label, wheel_label
+from asperity.kinds.wheel_on_rail.plan import rows
 from asperity.reference.cnossos import nearest_pad_class, nearest_wheel_transfer
 
 
@@ -85,3 +86,13 @@ def test_a_wheel_far_from_its_label_is_told():
 def test_what_is_not_positive_has_no_class(nearest, message):
     with pytest.raises(InputError, match=message):
         nearest(0.0)
+
+
+def test_a_check_says_whose_sound_power_is_computed():
+    found = dict(rows(case()))
+    assert found["sound power"] == (
+        "of rail and sleepers, for the wheel is rigid; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
+    )
+    with pytest.warns(OutOfRangeWarning, match='those of the class "hard"'):
+        rows(case({"track_pad": "hard"}))
+    assert "CNOSSOS" not in dict(rows(case({"track_pad": "hard"}).with_(laws=["hertz"])))["sound power"]

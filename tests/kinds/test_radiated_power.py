@@ -89,7 +89,7 @@ def test_the_power_is_that_of_the_force_on_two_rails_of_an_axle(run):
 
 @pytest.mark.parametrize("pads", [{}, {"pad_stiffness": 1200e6, "pad_loss_factor": 0.25}])
 def test_the_motion_at_the_contact_is_that_of_the_force(pads):
-    """Where the moving deflection under the load does not matter, the contact moves by F |Y|.
+    """Where the deflection from bay to bay does not matter, the contact moves by F |Y|.
 
     At the pinned-pinned frequency, 1063 Hz, this holds because the force is spread over a bay as it is.
     """

@@ -9,15 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from asperity.kinds.wheel_on_rail.labels import findings_of_labels, track_label, wheel_label
 from asperity.kinds.wheel_on_rail.loss_factors import warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses
 from asperity.kinds.wheel_on_rail.passing import passed_points
+from asperity.kinds.wheel_on_rail.radiated import silent_wheel
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
-from asperity.laws import HertzLaw
+from asperity.laws import HertzLaw, Role, in_role
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
+from asperity.scenarios.validity import warn_of_findings
 from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, moving_kernel
 from asperity.structures.rail_poles import POLES, RailPoles
 from asperity.threads import thread_count
@@ -45,6 +48,12 @@ def rows(case: Any) -> list[tuple[str, str]]:
     """Characteristic numbers of the track, in words."""
     track, losses = case.track_model(), expected_error_of_losses(case)
     warn_of_loss_factors(losses)
+    known = "rail, sleepers and wheel"
+    if reason := silent_wheel(case):
+        known = f"rail and sleepers, for {reason}"
+    if in_role(Role.BARE, case.laws) is not None:
+        known += f"; by CNOSSOS-EU for {track_label(case)} pads and a wheel of {wheel_label(case)}"
+        warn_of_findings(findings_of_labels(case))
     frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, sleeper passing"
     passing = f"{case.speed / track.sleeper_spacing:.4g} Hz, critical speed {track.critical_speed:.4g} m/s"
     points = ", ".join(f"{position:g} m" for position in case.point_positions)
@@ -52,6 +61,7 @@ def rows(case: Any) -> list[tuple[str, str]]:
         ("track", f"{frequencies} {passing}"),
         *described_losses(losses, case.wheel.load),
         ("rail motion recorded at", points),
+        ("sound power", f"of {known}"),
     ]
 
 
