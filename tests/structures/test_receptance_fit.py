@@ -109,7 +109,7 @@ def test_what_nothing_holds_has_its_rigid_motion():
     below = f[f < 1000.0]
     for x in (0.31, 0.57):
         error = 20.0 * np.log10(np.abs(found.receptance(below, x, x) / free.receptance(below, x, x)))
-        assert np.median(np.abs(error)) < 0.1
+        assert np.median(np.abs(error)) < 0.3
         assert np.abs(error[below < 30.0]).max() < 0.01  # the rigid body, below the first mode
 
 
