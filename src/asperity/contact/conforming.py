@@ -66,8 +66,8 @@ def in_groove(
     radius : float
         Of the ball, m.
     groove_radius : float
-        Of the groove across the path, m, greater than that of the ball, as 0.52 ball diameters; infinite for a
-        flat path.
+        Of the groove across the path, m, greater than that of the ball, as 0.52 ball diameters; infinite
+        for a flat path.
     raceway_radius : float
         Along the path, where the contact is, m: positive of an inner ring, which the ball rolls around,
         negative of an outer ring, in which it rolls; infinite for a straight path.
@@ -167,8 +167,8 @@ def check_half_space(
     if radius > CONFORMITY * groove_radius:
         warnings.warn(
             f"The radius of the ball is {percent(1.0 - radius / groove_radius)} below that of the groove: "
-            "the width of the contact follows from form errors of the groove as much as from its radius. Take "
-            "the measured radius.",
+            "the width of the contact follows from form errors of the groove as much as from its radius. "
+            "Take the measured radius.",
             HalfSpaceWarning,
             stacklevel=2,
         )
