@@ -25,6 +25,7 @@ ROOMS = {
     "contacts": "Contact",
     "reductions": "Contact filters, laws and rolling",
     "bodies": "Beams, balls and wheels",
+    "together": "Several contacts at once",
     "tracks": "Track",
     "lines": "Spectra, weighting and bands",
     "textures": "Roughness: processing, statistics, files",

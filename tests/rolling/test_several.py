@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from asperity.contact import Hertz
 from asperity.errors import CoarseSamplingWarning
 from asperity.kinds.ball_on_beam import roll as ball_on_beam
-from asperity.laws import HertzLaw, Linear
+from asperity.laws import Direct, HertzLaw, Linear
 from asperity.laws.layout import force as force_of
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
@@ -248,6 +249,22 @@ def test_a_sprung_carriage_answers_tones_and_balls_cancel():
     assert tilted[[3, 7]].max() < 1e-3 * tilted[[0, 1, 2]].min()
 
 
+def test_a_coordinate_too_fast_for_the_step_follows_at_rest():
+    """A wheel whose rim sits on a spring of 200 kHz is a wheel with a softer contact, at steps of 10 µs."""
+    stiff, light, mass = 6e10, 0.04, 0.46
+    rim = assembled(
+        np.diag([light, mass]), np.zeros((2, 2)), [[stiff, -stiff], [-stiff, stiff]], [[1.0, 0.0]],
+        [0.0, 5.0], [0.0],
+    )  # fmt: skip
+    texture = waves(3e-8, 4e-4, 0.28, 0.4)
+    between = (mass / (mass + light)) ** 2 / stiff  # static compliance of its mode at the rim
+    hard, soft = (Linear(5.0, k, 0.0, texture, damping=300.0) for k in (5e8, 1 / (1 / 5e8 + between)))
+    found = roll_bodies(None, [rim], [hard], positions=[0.0], **PATH)
+    expected = roll_bodies(None, [Body.rigid(mass + light, 5.0)], [soft], positions=[0.0], **PATH)
+    assert expected.contact_force.std() > 1.0
+    same(found.contact_force, expected.contact_force, 0.01)
+
+
 # --- energy ------------------------------------------------------------------------------------
 
 
@@ -348,6 +365,25 @@ def test_laws_that_python_steps_stand_beside_compiled_ones():
     assert compiled.contact_force[1].std() > 0.1 * BALL.static_load
     same(found.contact_force, compiled.contact_force, 2e-5)
     assert mixed[1].accepted == 200
+
+
+def test_the_direct_law_stands_beside_one_in_closed_form():
+    """A smooth ball on a flat: the half-space solved in every step, and Hertz's law, under one carriage."""
+    dx, n, radius, modulus = 5e-6, 41, 10e-3, 115e9
+    x = (np.arange(n) - n // 2) * dx
+    body, flat = (x[:, None] ** 2 + x**2) / (2 * radius), np.zeros((400, n))
+    bump = -4e-8 * np.exp(-(((np.arange(400) - 130) / 15.0) ** 2))  # a dale
+    direct = Direct(flat + bump[:, None], body, (dx, dx), modulus, start=0.0)
+    hertz = HertzLaw(Hertz(modulus, radius, radius).stiffness_constant)
+    run = roll_bodies(
+        None, [carriage(0.2, 4.0, [-2e-4, 2e-4])], [direct, hertz], positions=[4e-4], speed=1.0, start=0.2e-3,
+        duration=4e-4, time_step=4e-6,
+    )  # fmt: skip
+    assert run.unconverged_steps == 0
+    np.testing.assert_allclose(run.contact_force[:, 0], 2.0, rtol=0.02)  # the grid is coarse
+    assert run.contact_force[0].min() < 1.9  # in the dale
+    approach = run.relative_displacement[1]
+    np.testing.assert_allclose(run.contact_force[1], hertz.stiffness * approach**1.5, rtol=1e-6)
 
 
 def records(run):
