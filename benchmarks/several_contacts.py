@@ -27,6 +27,7 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
@@ -143,11 +144,12 @@ def by_integrator(
     modes, n, load = len(natural), len(at), BALL.static_load
     grid = law.texture
     places = grid.start + grid.spacing * np.arange(grid.heights.shape[1])
+    height = CubicSpline(places, grid.heights[0], bc_type="natural")
 
     def forces(t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         x = 0.3 + at + t
         shapes = beam.shapes(x)[0]
-        approach = -(shapes @ y[:modes] + y[modes : modes + n]) - np.interp(x, places, grid.heights[0])
+        approach = -(shapes @ y[:modes] + y[modes : modes + n]) - height(x)
         return STIFFNESS * np.maximum(approach, 0.0) ** 1.5, shapes
 
     def rates(t: float, y: np.ndarray) -> np.ndarray:
@@ -158,7 +160,7 @@ def by_integrator(
 
     shapes = beam.shapes(0.3 + at)[0]
     q = load * shapes.sum(axis=0) / natural**2
-    heights = np.interp(0.3 + at, places, grid.heights[0])
+    heights = height(0.3 + at)
     start = np.concatenate([q, -(shapes @ q + heights + (load / STIFFNESS) ** (2 / 3)), np.zeros(modes + n)])
     scale = tolerance * np.concatenate([np.full(modes + n, 1e-6), np.full(modes + n, 1e-3)])
     found = solve_ivp(rates, times[[0, -1]], start, "LSODA", times, rtol=tolerance, atol=scale)
