@@ -103,7 +103,9 @@ def passing_balls():
         found = 2 * np.abs(np.fft.rfft(heave)[line]) / len(heave)
         what = f"carriage on four balls 2 mm apart, waves of {wave * 1e3:g} mm: amplitude of heave per 10 nm"
         source = "mean over the balls · K/(K − Mω²)"
-        yield Check(what, source, float(mp.chop(expected)), found * 1e9, 0.02, "nm", absolute=True)
+        yield Check(
+            what, source, float(mp.chop(expected)), round(float(found) * 1e9, 3), 0.02, "nm", absolute=True
+        )
 
 
 CHECKS = (two_moving_forces, rig, passing_balls)
