@@ -93,6 +93,12 @@ def test_a_rail_that_rings_farther_is_heard_longer_and_less_loudly():
         assert difference == pytest.approx(change, abs=0.8 if change else 1e-9)
 
 
+def test_a_rail_that_hardly_decays_is_still_heard_for_a_while_only():
+    found = pass_by_group(case(), spectra(decay=1e-9))
+    assert float(found["time"][-1]) < 100.0
+    assert_allclose(found["sound_exposure_level_a"].sel(radiator="rail"), sel(100.0, 1), atol=1e-3)
+
+
 def test_what_is_not_known_is_missing_and_not_in_the_total():
     found = pass_by_group(case(), spectra())
     wheel = found["sound_exposure_level_a"].sel(radiator="wheel")

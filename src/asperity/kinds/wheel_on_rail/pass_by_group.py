@@ -27,6 +27,8 @@ KEPT_STEP = 0.02
 PICOWATT = 1e-12
 ONE_WAVE = 20.0 * math.log10(math.e)
 """Decay rate, dB/m, times the length of a wave that radiates."""
+LONGEST = 1000.0
+"""Greatest of these lengths, m; the exposure depends on none of them."""
 
 
 def pass_by_group(case: WheelOnRail, found: xarray.Dataset) -> xarray.Dataset:
@@ -64,7 +66,8 @@ def _sources(case: WheelOnRail, found: xarray.Dataset) -> list[AxleSource]:
     """What one axle makes radiate: a wheel from its axle, the others along the rail as its waves decay."""
     level = found[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
     power = PICOWATT * np.nan_to_num(10.0 ** (level.values / 10.0)) / case.noise.axles
-    length = ONE_WAVE / found[schema.BAND_DECAY_RATE.name].values
+    decay = found[schema.BAND_DECAY_RATE.name].values
+    length = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
     places = {"wheel": (0.0, case.wheel.radius)}
     return [
         AxleSource(power[:, number], *places.get(name, (length, 0.0)))
