@@ -17,6 +17,8 @@ _HOME = {
     "Material": "reference.materials",
     "ModalStructure": "structures.modal_table",
     "Profile": "surfaces.heightmap",
+    "Support": "structures.supported_beam",
+    "SupportedBeam": "structures.supported_beam",
     "Track": "structures.track",
     "Wheel": "structures.wheel",
     "compare": "kinds.comparing",

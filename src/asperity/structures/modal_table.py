@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import factorial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +12,6 @@ from scipy.interpolate import make_interp_spline
 
 from asperity.arguments import real, real_array
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.kernels.piecewise import evaluate_pieces
 from asperity.structures.modal import modal_receptance
 from asperity.structures.residual_flexibility import (
     STATIC,
@@ -21,6 +19,7 @@ from asperity.structures.residual_flexibility import (
     checked_flexibility,
     static_modes,
 )
+from asperity.structures.spline_shapes import Pieces, pieces_of, shapes_at
 
 Array = NDArray[np.float64]
 
@@ -209,15 +208,9 @@ class ModalStructure:
         return _best_degree(self.positions, np.hstack([self.mode_shapes, self._static]) / softer)
 
     @cached_property
-    def _pieces(self) -> tuple[Array, Array]:
-        """Splines through the shapes as polynomials: coefficients (pieces, degree + 1, modes) and breaks."""
-        spline = make_interp_spline(
-            self.positions, np.hstack([self.mode_shapes, self._static]), k=self.degree
-        )
-        breaks = np.unique(spline.t)
-        powers = range(self.degree, -1, -1)
-        coefficients = np.stack([spline(breaks[:-1], nu=p) / factorial(p) for p in powers], axis=1)
-        return np.ascontiguousarray(coefficients), breaks
+    def _pieces(self) -> Pieces:
+        table = np.hstack([self.mode_shapes, self._static])
+        return pieces_of(make_interp_spline(self.positions, table, k=self.degree))
 
     def shapes(self, x: ArrayLike) -> tuple[Array, Array]:
         """Mass-normalised mode shapes and their slopes.
@@ -237,15 +230,7 @@ class ModalStructure:
         InputError
             If a position is off the structure.
         """
-        at = np.atleast_1d(np.asarray(x, dtype=float))
-        first, last = self.extent
-        slack = 1e-9 * (last - first)
-        if not (at.min() >= first - slack and at.max() <= last + slack):
-            received = f"{at.min():.6g} to {at.max():.6g}"
-            raise InputError("positions on the structure (m)", received, f"{first:.6g} to {last:.6g}")
-        shapes, slopes = np.empty((2, at.size, len(self.natural_frequencies)))
-        evaluate_pieces(*self._pieces, np.ascontiguousarray(at), shapes, slopes)
-        return shapes, slopes
+        return shapes_at(self._pieces, x)
 
     def shapes_along(self, start: float, spacing: float, count: int) -> tuple[Array, Array]:
         """As `shapes`, at equally spaced positions from a first one, m."""
