@@ -171,6 +171,10 @@ class TestProblems:
             ({"start": 0.01, "settling": 0.1}, "so that the run-in begins at 0 m or later"),
             ({"start": 0.5, "duration": 2.0}, "in which the foremost contact leaves the structure"),
             ({"over": "track", "beam": {"length": 2.0}}, r"over: received \"track\".*Remove a \[beam\]"),
+            ({"beam": {"supports": [0.0]}}, "none where an end is held"),
+            ({"beam": {"supports": []}}, r"beam\.supports: received an empty list"),
+            ({"beam": {"supports": [0.3, 1.2]}}, "different positions on the beam of 1 m"),
+            ({"beam": {"supports": [0.3], "support": "free"}}, "two supports or more"),
             ({"over": "structure"}, "the file of its modes, or receptances"),
             ({"over": "track", "speed": 2000}, "speed"),
             ({"contact": {"window": "60 mm", "spacing": "0.1 mm"}}, "smaller diameter of what rolls"),
@@ -183,6 +187,27 @@ class TestProblems:
     def test_a_plane_has_a_material(self):
         case = case_of(over="plane", structure={"material": "glass"})
         assert smooth_contact(case).modulus < smooth_contact(case_of(over="plane")).modulus
+
+
+class TestSupports:
+    def test_a_support_in_the_middle_makes_two_spans(self):
+        """Twice the length on three supports: the antisymmetric modes are those of one span."""
+        one = bodies_of(case_of(beam={"length": 0.5, "modes_up_to": "20 kHz"})).over
+        two = bodies_of(case_of(beam={"supports": [0.5], "modes_up_to": "20 kHz"})).over
+        np.testing.assert_allclose(two.natural_frequencies[:8:2], one.natural_frequencies[:4], rtol=1e-8)
+
+    def test_springs_carry_a_free_beam(self):
+        """The bounce of a stiff beam on two springs: sqrt(2k/m), damped by half their loss factor."""
+        keys = {
+            "support": "free",
+            "supports": [0.2, 0.8],
+            "support_stiffness": 10.0,
+            "support_loss_factor": 0.1,
+        }
+        beam = bodies_of(case_of(beam=keys)).over
+        mass = 0.05 * 0.01 * 7850.0
+        assert beam.natural_frequencies.min() < np.sqrt(20.0 / mass) / (2 * np.pi) * 1.01
+        assert beam.damping_ratios[:2] == pytest.approx([0.05, 0.05], rel=1e-3)
 
 
 class TestStructure:

@@ -14,6 +14,7 @@ from asperity.structures.beam import Beam
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.receptance_fit import fit_body
+from asperity.structures.supported_beam import SupportedBeam
 from asperity.structures.suspended import bogie, carriage, chain
 from asperity.structures.track import Track
 
@@ -76,18 +77,29 @@ def title_of(case: Bodies) -> str:
 def structure_of(case: Bodies) -> Modal | Track | None:
     """Build what is rolled over; None for a plane."""
     if case.over == "beam":
-        beam = case.beam
-        return Beam.rectangular(
-            beam.length, beam.width, beam.height, beam.material,
-            support=beam.support, loss_factor=beam.loss_factor,
-            highest_frequency=highest_beam_mode(case),
-            suspension_frequency=beam.suspension_frequency,
-        )  # fmt: skip
+        return _beam(case)
     if case.over == "structure":
         for doubt in case.structure.doubts:
             warnings.warn(doubt, stacklevel=2)
         return case.structure.model
     return case.track_model() if case.over == "track" else None
+
+
+def _beam(case: Bodies) -> Modal:
+    """Build the beam: of one span, or on further supports."""
+    beam, highest = case.beam, highest_beam_mode(case)
+    section = (beam.length, beam.width, beam.height, beam.material)
+    if beam.supports is not None:
+        return SupportedBeam.rectangular(
+            *section, beam.held, loss_factor=beam.loss_factor, highest_frequency=highest
+        )
+    return Beam.rectangular(
+        *section,
+        support=beam.support,
+        loss_factor=beam.loss_factor,
+        highest_frequency=highest,
+        suspension_frequency=beam.suspension_frequency,
+    )
 
 
 def body_of(case: Bodies) -> Body:

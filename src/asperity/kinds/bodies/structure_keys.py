@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterator
 from functools import cached_property
@@ -30,6 +31,7 @@ from asperity.errors import InputError, PhysicsWarning
 from asperity.kinds.ball_on_beam.case import BeamCase
 from asperity.kinds.wheel_on_rail.track_keys import TrackParameters
 from asperity.structures.modal_table import ModalStructure
+from asperity.structures.supported_beam import Support
 
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
@@ -47,7 +49,49 @@ Axis = Annotated[str, BeforeValidator(Choice(("x", "y", "z")))]
 
 
 class BeamOnSupports(BeamCase):
-    """A beam."""
+    """A beam, whose ends are held by `support`, and which has further supports along it."""
+
+    supports: tuple[Position, ...] | None = key(
+        None,
+        "positions of supports beside those of the ends",
+        otherwise="one span",
+        example='["0.4 m", "0.8 m"]',
+        within=("0 m", "1 km", "beams lie between"),
+    )
+    support_stiffness: Annotated[float, BeforeValidator(Quantity("N/m", above=0, infinite=True))] = key(
+        "inf",
+        "stiffness of each of these supports",
+        goes_with="supports",
+        within=("1 mN/m", "1e15 N/m", 'stiffer ones are rigid: write "inf"'),
+    )
+    support_loss_factor: Annotated[float, BeforeValidator(Number(at_least=0, at_most=1))] = key(
+        0.0, "loss factor of these supports", goes_with="supports"
+    )
+
+    @property
+    def held(self) -> list[Support]:
+        """All supports, those of the ends among them."""
+        ends = {"simply-supported": 0.0, "clamped": math.inf}.get(self.support)
+        at_ends = [] if ends is None else [Support(x, rotational_stiffness=ends) for x in (0.0, self.length)]
+        stiffness, loss = self.support_stiffness, self.support_loss_factor
+        return [*at_ends, *(Support(x, stiffness, loss_factor=loss) for x in self.supports or ())]
+
+    def problems(self) -> Iterator[InputError]:
+        """Sensors, and supports on the beam, in places of their own."""
+        yield from super().problems()
+        if self.supports is None:
+            return
+        if not self.supports:
+            yield InputError("supports", "an empty list", "at least one position", "Remove the key.")
+        ends = () if self.support == "free" else (0.0, self.length)
+        places = [*ends, *self.supports]
+        if len(set(places)) < len(places) or max(places, default=0.0) > self.length:
+            received = ", ".join(f"{x:g} m" for x in self.supports)
+            allowed = f"different positions on the beam of {self.length:g} m, none where an end is held"
+            yield InputError("supports", received, allowed)
+        elif len(places) < 2:
+            remedy = "A beam on one support rocks: add another."
+            yield InputError("supports", f"{len(places)} of a free beam", "two supports or more", remedy)
 
 
 class Rails(TrackParameters):
