@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 from asperity import Beam, Bodies, ModalStructure, Wheel, material
-from asperity.errors import CaseError, EnergyWarning, InputError, PhysicsWarning, UnconvergedWarning
+from asperity.errors import (
+    CaseError,
+    EnergyWarning,
+    HalfSpaceWarning,
+    InputError,
+    PhysicsWarning,
+    UnconvergedWarning,
+)
 from asperity.kinds.bodies.bodies import bodies_of
+from asperity.kinds.bodies.geometry import geometry_of
 from asperity.kinds.bodies.result import passing_frequencies
 from asperity.kinds.bodies.smooth import smooth_contact
 from asperity.kinds.bodies.textures import contacts_of, textures_of
@@ -26,7 +34,7 @@ BOGIE = {
 
 
 def case_of(body=(), **keys):
-    return Bodies(surface=ROUGH, contact=COARSE, **{"body": dict(body), **keys})
+    return Bodies(**{"surface": ROUGH, "contact": COARSE, "body": dict(body), **keys})
 
 
 def test_the_template_reads_as_the_default_case():
@@ -94,14 +102,46 @@ class TestSmoothContact:
     @pytest.mark.parametrize(
         ("key", "words"),
         [
-            ({"groove_radius": 25e-3}, r"body\.groove_radius: received 0\.025 m; allowed: a radius greater"),
-            ({"raceway_radius": 20e-3, "raceway": "outer"}, r"body\.raceway_radius: received 0\.02 m"),
-            ({"transverse_radius": "inf"}, r"body\.groove_radius: received infinite"),
+            (
+                {"groove_radius": 25e-3},
+                r"body\.groove_radius \(m\): received 0\.025 and -0\.025; allowed: bodies",
+            ),
+            (
+                {"raceway_radius": 20e-3, "raceway": "outer"},
+                r"body\.raceway_radius \(m\): received 0\.025 and -0",
+            ),
+            ({"transverse_radius": "inf"}, r"body\.groove_radius \(m\): received inf and inf"),
         ],
     )
     def test_bodies_that_touch_along_a_line_are_refused(self, key, words):
         with pytest.raises(CaseError, match=words):
             case_of(key)
+
+
+class TestGroove:
+    KEYS = {"radius": 3e-3, "groove_radius": 3.12e-3, "mass": 0.05}  # noqa: RUF012
+
+    def contact(self, load, **keys):
+        grid = {"spacing": "10 um", "window": "2 mm", "samples": 1, "sample_length": "5 mm"}
+        return geometry_of(case_of(self.KEYS | {"load": load} | keys, contact=grid))
+
+    def test_the_gap_is_that_of_circle_in_circle(self):
+        """Distance of the ball from points along the arc of the groove."""
+        found = self.contact(5.0)
+        s = 1e-5 * (np.arange(found.body.shape[1]) - found.body.shape[1] // 2)
+        middle = found.body[found.body.shape[0] // 2]
+        ball, groove = 3e-3, 3.12e-3
+        x, y = groove * np.sin(s / groove), groove * (1 - np.cos(s / groove))
+        np.testing.assert_allclose(middle, np.hypot(x, y - ball) - ball, rtol=1e-3, atol=1e-12)
+        assert found.semi_axes[1] > 5 * found.semi_axes[0]
+
+    def test_where_the_half_space_ends_in_it(self):
+        with pytest.warns(HalfSpaceWarning, match="rad of the groove to either side"):
+            self.contact(800.0, groove_radius=3.05e-3, mass=1.0)
+        with pytest.raises(InputError, match=r"fills .* rad of the groove"):
+            self.contact(20000.0)
+        with pytest.raises(InputError, match=r"width of the groove.*The edge would carry"):
+            self.contact(20.0, groove_width=0.2e-3)
 
 
 class TestTextures:

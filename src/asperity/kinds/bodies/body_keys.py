@@ -69,6 +69,14 @@ class BodyCase(Section):
         example='"26 mm"',
         within=("10 um", "100 m", "grooves lie between"),
     )
+    groove_width: Length | None = key(
+        None,
+        "width of the groove between its edges",
+        otherwise="wider than the contact",
+        example='"4 mm"',
+        goes_with="groove_radius",
+        within=("10 um", "100 m", "grooves lie between"),
+    )
     raceway_radius: Length | None = key(
         None,
         "radius of a curved raceway along the path",

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from asperity.contact import Hertz
+from asperity.contact.conforming import relative_radius
 from asperity.errors import InputError
 from asperity.kinds.bodies.case import Bodies
 from asperity.reference.materials import Material, contact_modulus
@@ -12,24 +15,21 @@ from asperity.structures.ball import GRAVITY
 def smooth_contact(case: Bodies) -> Hertz:
     """Contact of the smooth bodies, by their relative curvatures along and across the path."""
     body, modulus = case.body, contact_modulus(case.body.material, over_material(case))
-    along = 1.0 / body.radius
-    if body.raceway_radius is not None:
-        along += (1.0 if body.raceway == "inner" else -1.0) / body.raceway_radius
-    across = 1.0 / body.across
+    along = relative_radius(body.radius, raceway_radius(case), what="body.radius and body.raceway_radius (m)")
     if body.groove_radius is not None:
-        across -= 1.0 / body.groove_radius
-    elif case.over == "track":
-        across += 1.0 / case.track.rail_head_radius
-    for key, radius, curvature, what in (
-        ("body.raceway_radius", body.raceway_radius, along, "rolls in it"),
-        ("body.groove_radius", body.groove_radius, across, "lies in it"),
-    ):
-        if curvature <= 0.0:
-            allowed = f"a radius greater than that of the body that {what}"
-            remedy = "The bodies would touch along a line, or at two ends."
-            yet = "infinite" if radius is None else f"{radius:g} m"
-            raise InputError(key, yet, allowed, remedy)
-    return Hertz(modulus, 1.0 / along, 1.0 / across)
+        beside = -body.groove_radius
+    else:
+        beside = case.track.rail_head_radius if case.over == "track" else math.inf
+    across = relative_radius(body.across, beside, what="body.transverse_radius and body.groove_radius (m)")
+    return Hertz(modulus, along, across)
+
+
+def raceway_radius(case: Bodies) -> float:
+    """Radius of what is rolled over along the path, m: positive where it bulges, infinite where straight."""
+    radius = case.body.raceway_radius
+    if radius is None:
+        return math.inf
+    return radius if case.body.raceway == "inner" else -radius
 
 
 def load_of(case: Bodies) -> float:
