@@ -61,7 +61,7 @@ for pad, maximum in zip(pads, table["pass_by_maximum_level"].values, strict=True
 # %%
 # What textbooks say (D. J. Thompson, Railway Noise and Vibration, 2009): the rail gets quieter with stiffer
 # pads, the sleepers louder, the wheel changes least, and the quietest pad lies between. With a viscous damper
-# that stays, the loss factor would fall as pads get stiffer, and the rail would gain nothing.
+# that stays, the loss factor would fall as pads get stiffer, and the rail would gain little.
 
 assert (np.diff(power.sel(radiator="rail"))[:-1] < -0.5).all()
 assert (np.diff(power.sel(radiator="sleepers")) > 0.5).all()

@@ -31,8 +31,8 @@ from asperity.units import factor, unit_in
 
 MOST_MEMBERS = 10_000
 MOST_KEYS = 100  # that are swept: more than a case has
-FORMAT = 2
-"""Raise it when what is kept of a member no longer means what it meant."""
+FORMAT = 3
+"""Raise it when more is kept of a member, or when what is kept no longer means what it meant."""
 TEMPLATE = """\
 # A case for every combination of the values of some keys. Run it with: asperity study STUDY
 # The case: its path, from the folder of this file, or a section [case] with its keys.
