@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import mpmath as mp
 import numpy as np
 from ledger import Check
@@ -10,6 +12,8 @@ from asperity.reference.materials import contact_modulus, material
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 from asperity.structures.relaxation import Relaxation
+from asperity.structures.supported_beam import Support, SupportedBeam
+from asperity.structures.suspended import carriage, chain
 from asperity.structures.wheel import Wheel
 
 STEEL = material("steel")
@@ -107,4 +111,56 @@ def relaxing_springs():
         yield Check(what, "Im K/Re K of iωτ/(1 + iωτ)", float(loss), stiffness.imag / stiffness.real, 1e-12)
 
 
-CHECKS = (beam_frequencies, beam_compliance, ball, wheels, relaxing_springs)
+def supported_beams():
+    """Spans, springs and ends of beams."""
+    bar, per_length = 4375.0, 3.925
+    pinned, clamped = Support(0.0), Support(0.0, rotational_stiffness=math.inf)
+    wave = math.sqrt(bar / per_length) / (2 * math.pi)  # Hz of a root of one over a span of 1 m
+    root = mp.findroot(lambda x: mp.tan(x) - mp.tanh(x), 3.9)
+    spans = SupportedBeam(2.0, bar, per_length, [pinned, Support(1.0), Support(2.0)], highest_frequency=30e3)
+    body, source = "beam on three supports", "Euler–Bernoulli, frequency equation solved by mpmath"
+    for number, value in (("first", mp.pi), ("second", root)):
+        found = spans.natural_frequencies[0 if number == "first" else 1]
+        what = f"{body}, two spans of 1 m: {number} frequency"
+        yield Check(what, source, float(value**2) * wave, found, 1e-9, "Hz")
+    source = "three-moment equation; tolerance: modes up to 30 kHz"
+    found = spans.receptance(0.0, 0.5, 0.5).real * bar
+    yield Check(f"{body}: deflection under a load amid a span, B w/FL³", source, 23 / 1536, found, 2e-5)
+    found = spans.receptance(0.0, 1.5, 0.5).real * bar
+    yield Check(f"{body}: amid the other span", source, -3 / 512, found, 2e-5)
+    propped = SupportedBeam(1.0, bar, per_length, [clamped, Support(1.0)], highest_frequency=90e3)
+    found = propped.receptance(0.0, 0.5, 0.5).real * bar
+    source = "three-moment equation; tolerance: modes up to 90 kHz"
+    yield Check("beam clamped and pinned: deflection amid, B w/FL³", source, 7 / 768, found, 1e-5)
+    kappa = 40.0
+    sprung = SupportedBeam(1.0, bar, per_length, [clamped, Support(1.0, kappa * bar)], highest_frequency=2e3)
+
+    def equation(x):
+        bent = mp.sin(x) * mp.cosh(x) - mp.cos(x) * mp.sinh(x)
+        return x**3 * (1 + mp.cos(x) * mp.cosh(x)) + kappa * bent
+
+    source = "Euler–Bernoulli, frequency equation solved by mpmath"
+    expected = float(mp.findroot(equation, 3.4) ** 2) * wave
+    what = "cantilever with a spring of 40 B/L³ at its tip: first frequency"
+    yield Check(what, source, expected, sprung.natural_frequencies[0], 1e-9, "Hz")
+
+
+def suspended_bodies():
+    """Two masses in a row, and a rigid carriage off its centre."""
+    body, f = chain([600.0, 4000.0], [1.2e6], [8e3]), 4.0
+    s = 2j * math.pi * f
+    link = 1.2e6 + 8e3 * s
+    expected = abs((4000 * s**2 + link) / ((600 * s**2 + link) * (4000 * s**2 + link) - link**2))
+    found = float(np.abs(body.receptance(f))[0, 0, 0])
+    what = "wheel of 600 kg under 4 t on a spring and damper: receptance at 4 Hz"
+    yield Check(what, "Newton's equations, by hand", expected * 1e6, found * 1e6, 1e-12, "µm/N")
+    loaded = carriage(2.0, 0.01, [0.0, 0.03, 0.09], centre=0.03)
+    expected = abs((1 / 2.0 + 0.06 * 0.06 / 0.01) / s**2)
+    found = float(np.abs(loaded.receptance(f))[0, 2, 2])
+    what = "rigid carriage at the contact farthest from its centre: receptance at 4 Hz"
+    yield Check(what, "1/m + x²/J over ω²", expected * 1e6, found * 1e6, 1e-12, "µm/N")
+
+
+CHECKS = (
+    beam_frequencies, beam_compliance, supported_beams, suspended_bodies, ball, wheels, relaxing_springs,
+)  # fmt: skip

@@ -10,6 +10,7 @@ import numpy as np
 from ledger import Check
 
 from asperity.contact import HalfSpace, Hertz
+from asperity.contact.conforming import in_groove
 
 DATA = Path(__file__).parent / "data"
 STEEL = 210e9 / (1 - 0.3**2) / 2  # E*, both bodies of steel
@@ -387,8 +388,50 @@ def cold_start():
     )
 
 
+def bearings():
+    """A printed bearing, and the printed table of contacts over the difference of curvatures."""
+    book = "Harris, Rolling Bearing Analysis"
+    for ring, raceway, total, difference in (
+        ("inner", 26.15e-3, 0.202, 0.9399),
+        ("outer", -38.85e-3, 0.138, 0.9120),
+    ):
+        contact = in_groove(STEEL, 6.35e-3, 0.52 * 12.7e-3, raceway)
+        along, across = 1.0 / contact.radius_x, 1.0 / contact.radius_y
+        body = f"ball bearing 209, {ring} ring"
+        source = f"{book}, example; tolerance: digits printed"
+        yield Check(f"{body}: curvature sum", source, total, (along + across) / 1e3, 3e-3, "1/mm")
+        found = (along - across) / (along + across)
+        yield Check(f"{body}: curvature difference", source, difference, found, 2e-4)
+    for difference, major, minor, approach in (
+        (0.83495, 2.494, 0.5186, 0.7602), (0.93657, 3.738, 0.4166, 0.6112), (0.97290, 5.267, 0.3490, 0.4960),
+    ):  # fmt: skip
+        contact, load = Hertz(1.0, 2.0 / (1.0 + difference), 2.0 / (1.0 - difference)), 1e-9
+        unit, depth = (1.5 * load) ** (1.0 / 3.0), contact.approach(load)
+        b, a = contact.semi_axes(depth)
+        body, source = f"elliptic contact, F(ρ) = {difference}", f"{book}, table; tolerance: digits printed"
+        yield Check(f"{body}: a*", source, major, a / unit, 3e-4)
+        yield Check(f"{body}: b*", source, minor, b / unit, 3e-4)
+        yield Check(f"{body}: δ*", source, approach, 2.0 * depth / unit**2, 3e-4)
+
+
+def slender_ellipse_on_the_grid():
+    """Ball in a groove of 0.52 diameters: axis ratio 9.3, eight cells to the minor semi-axis."""
+    contact = in_groove(STEEL, 6.35e-3, 0.52 * 12.7e-3, 26.15e-3)
+    approach = contact.approach(200.0)
+    along, across = contact.semi_axes(approach)
+    h = along / 8
+    x, y = (h * np.arange(-round(1.15 * a / h), round(1.15 * a / h) + 1) for a in (along, across))
+    gap = x[:, None] ** 2 / (2 * contact.radius_x) + y**2 / (2 * contact.radius_y)
+    solved = HalfSpace(gap.shape, (h, h), STEEL).solve(gap, approach=approach)
+    body, source = "ball in a groove on the grid, axis ratio 9.3", "Hertz; tolerance: the grid"
+    yield Check(f"{body}: force", source, 200.0, solved.force, 3e-4, "N")
+    peak = contact.peak_pressure(approach)
+    yield Check(f"{body}: peak pressure", source, peak / 1e9, solved.pressure.max() / 1e9, 1e-3, "GPa")
+
+
 CHECKS = (
-    hertz_sphere, hertz_wheel_on_rail, sphere_on_the_grid, flat_punch, influence, traps_of_convolution,
+    hertz_sphere, hertz_wheel_on_rail, bearings, slender_ellipse_on_the_grid,
+    sphere_on_the_grid, flat_punch, influence, traps_of_convolution,
     contact_program, contact_test_bank, peers, plastic_peer, hardness, full_plasticity, scratch_hardness,
     shakedown, first_touch, cold_start,
 )  # fmt: skip
