@@ -9,11 +9,9 @@ from numpy.testing import assert_allclose
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.laws import HertzLaw
 from asperity.reference.materials import material
-from asperity.rolling.ball import RollingBall
-from asperity.rolling.beam import RolledBeam
-from asperity.rolling.pair import roll_pair
-from asperity.structures.ball import Ball
+from asperity.rolling.several import roll_bodies
 from asperity.structures.beam import SUPPORTS, Beam
+from asperity.structures.body import Body
 from asperity.structures.modal_table import ModalStructure
 
 STEEL = material("steel")
@@ -25,27 +23,17 @@ def tabled(beam, positions, **options):
     return ModalStructure(positions, beam.natural_frequencies, beam.damping_ratios, shapes, **options)
 
 
-class AsBeam:
-    """A modal structure under the names of a beam."""
-
-    def __init__(self, structure):
-        self.structure, self.length = structure, structure.extent[1]
-        self.damping_ratio = structure.damping_ratios[0]
-
-    def __getattr__(self, name):
-        return getattr(self.structure, name)
-
-
-def rolled(beam):
-    law = HertzLaw(2.4e10)
-    options = {"speed": 2.0, "start": 0.2, "duration": 0.04, "time_step": 1e-5}
-    return roll_pair(RolledBeam(beam), RollingBall(Ball(0.025, STEEL, load=30.0)), law, **options)
+def rolled(structure):
+    """Two balls one behind the other."""
+    balls = [Body.rigid(0.5, 30.0)] * 2
+    options = {"speed": 2.0, "start": 0.2, "duration": 0.04, "time_step": 5e-6, "positions": [0.0, 0.15]}
+    return roll_bodies(structure, balls, [HertzLaw(2.4e10)] * 2, **options)
 
 
 def test_forty_modes_from_a_table_roll_as_the_beam_does():
     assert len(FORTY.natural_frequencies) == 40
     table = tabled(FORTY, np.linspace(0.0, 1.0, 1001))
-    expected, found = rolled(FORTY), rolled(AsBeam(table))
+    expected, found = rolled(FORTY), rolled(table)
     assert np.ptp(expected.contact_force) > 1.0  # N
     assert_allclose(found.contact_force, expected.contact_force, rtol=0.0, atol=1e-9 * 30.0)
     deflection = np.abs(expected.over_displacement).max()
