@@ -2,6 +2,7 @@
 
 import dataclasses
 import importlib.util
+from pathlib import Path
 
 import h5netcdf
 import numpy as np
@@ -61,6 +62,16 @@ def test_a_text_table_with_residual_flexibility(tmp_path):
     file = tmp_path / "beam.txt"
     file.write_text(text_of(residual=residual))
     assert_allclose(read_modal_structure(file).residual_flexibility, residual, rtol=1e-12)
+
+
+def test_the_table_of_the_documentation_is_one(tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "bodies.md").read_text(encoding="utf-8")
+    (tmp_path / "page.csv").write_text(page.partition("```text\n")[2].partition("```")[0])
+    found = read_modal_structure(tmp_path / "page.csv")
+    assert found.frequencies.tolist() == [52.4, 209.8]
+    assert found.extent == (0.0, 1.0)
+    assert found.residual_flexibility[4] == pytest.approx(69e-9)
+    assert found.mode_shapes[4].tolist() == [0.714, 0.0]
 
 
 def write_netcdf(path, *, transposed=False, without=(), units="mm"):

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
 from scipy.optimize import nnls
 
-from asperity.structures.modal_fit import RESIDUAL_DAMPING, Complex, Modes
+from asperity.structures.modal_fit import RESIDUAL_DAMPING, Complex, Modes, modal_answers
 
 Array = NDArray[np.float64]
 
@@ -30,12 +30,6 @@ def in_band(modes: Modes, highest: float) -> Modes:
     natural, ratios, shapes = modes
     inside = natural <= INSIDE * highest
     return natural[inside], ratios[inside], shapes[:, inside]
-
-
-def modal_answers(frequency: Array, natural: Array, ratios: Array) -> Complex:
-    """Displacement of modes of unit mass per modal force (n, m), s²; frequencies in Hz, e^{+iωt}."""
-    omega, own = 2.0 * np.pi * frequency[:, None], 2.0 * np.pi * natural
-    return np.asarray(1.0 / (own**2 - omega**2 + 2j * ratios * own * omega))
 
 
 def with_stiffness_above(

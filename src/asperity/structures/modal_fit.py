@@ -142,11 +142,10 @@ def _with_residual(poles: Complex, frequency: Array) -> Complex:
     return np.concatenate([poles[near], residual * (1j * damped - RESIDUAL_DAMPING)])
 
 
-def _answers(frequency: Array, poles: Complex) -> tuple[Complex, Array, Array]:
-    """What each mode of unit mass answers (n, m), and its natural frequency, rad/s, and damping ratio."""
-    omega, natural = 2.0 * np.pi * frequency[:, None], np.abs(poles)
-    ratio = -poles.real / natural
-    return np.asarray(1.0 / (natural**2 - omega**2 + 2j * ratio * natural * omega)), natural, ratio
+def modal_answers(frequency: Array, natural: Array, ratios: Array) -> Complex:
+    """Displacement of modes of unit mass per modal force (n, m), s²; frequencies in Hz, e^{+iωt}."""
+    omega, own = 2.0 * np.pi * frequency[:, None], 2.0 * np.pi * natural
+    return np.asarray(1.0 / (own**2 - omega**2 + 2j * ratios * own * omega))
 
 
 def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Complex) -> tuple[Modes, float]:
@@ -176,7 +175,9 @@ def _mode_shapes(
     frequency: Array, flexible: Complex, weights: Array, driven: NDArray[np.intp], poles: Complex
 ) -> tuple[Modes, float]:
     """Modes of given poles with real shapes, and the weighted error that they leave."""
-    answers, natural, ratio = _answers(frequency, poles)
+    natural = np.abs(poles)
+    ratio = -poles.real / natural
+    answers = modal_answers(frequency, natural / (2.0 * np.pi), ratio)
     scale = np.linalg.norm(answers, axis=0)
     answers, target = answers / scale, weights * flexible
     sums = _summed(answers, target, weights)

@@ -12,8 +12,8 @@ from asperity.arguments import real_array
 from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, UnconvergedWarning, percent
 from asperity.structures.ball import GRAVITY
 from asperity.structures.body import Body
-from asperity.structures.even_stiffness import FINER, in_band, modal_answers, with_stiffness_above
-from asperity.structures.modal_fit import Modes, fit_shapes
+from asperity.structures.even_stiffness import FINER, in_band, with_stiffness_above
+from asperity.structures.modal_fit import Modes, fit_shapes, modal_answers
 from asperity.structures.modal_table import ModalStructure, warn_of_coarse
 from asperity.structures.suspended import carriage
 from asperity.structures.wheel import DOUBTFUL_FIT, REFUSED_FIT, Wheel
