@@ -31,6 +31,14 @@ SHORT = {
         "surface": {"spectrum": "iso3095"},
         "contact": {"samples": 1},
     },
+    "bodies": {
+        "duration": "20 ms",
+        "settling": "10 ms",
+        "laws": ["hertz", "linear"],
+        "surface": {"rms": "0.2 um"},
+        "contact": {"samples": 1},
+        "body": {"positions": ["0 m", "0.2 m"], "load": "20 N"},
+    },
 }
 LAWS = ["areal", "shifted", "printed", "table", "hertz", "linear", "linear-filtered", "hertz-filtered"]
 LEFT = ("duration", "settling", "laws", "kind", "seed", "samples", "window", "spacing", "time_step")

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import asperity
-from asperity import BallOnBeam, HeightMap, Material, Profile, WheelOnRail
+from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail
 from asperity.config.describing import entries
 from asperity.config.form import extra_of
 from asperity.config.keys import Choice, Flag, MaterialOrName, Number, Quantity, is_list, value_kind
@@ -21,7 +21,7 @@ from asperity.units import quantity, written
 MAP = HeightMap(1e-7 * np.random.default_rng(1).normal(size=(40, 30)), 8e-6)
 ROUGH = BallOnBeam(surface={"rms": 0.5e-6})
 RAIL = WheelOnRail(surface={"spectrum": "iso3095"})
-BASES = {"ball-on-beam": ROUGH, "wheel-on-rail": RAIL}
+BASES = {"ball-on-beam": ROUGH, "wheel-on-rail": RAIL, "bodies": Bodies(surface={"rms": 0.5e-6})}
 
 
 def listed(case, key):
