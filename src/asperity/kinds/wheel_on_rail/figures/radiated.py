@@ -70,13 +70,15 @@ def radiated_data(tree: DataTree) -> Data:
     for law in laws(tree, POWER):
         rows = of_law(tree, POWER, law, "radiator", "band")
         for name, row in zip(radiators(tree), rows, strict=True):
-            lines[law, name] = Series(f"{name}, {law}", POWER.units, row)
+            if np.isfinite(row).any():
+                lines[law, name] = Series(f"{name}, {law}", POWER.units, row)
     for law in laws(tree, STANDARD):
         rows = of_law(tree, STANDARD, law, "source", "noise_band")
         at = np.abs(band.values[:, None] / values(tree, schema.NOISE_BAND) - 1.0) < 0.01
         for name, row in zip(sources(tree, STANDARD), rows, strict=True):
             found = np.where(at.any(axis=1), row[at.argmax(axis=1)], np.nan)
-            lines["standard", law, name] = Series(f"{name} by CNOSSOS-EU, {law}", STANDARD.units, found)
+            if np.isfinite(found).any():
+                lines["standard", law, name] = Series(f"{name} by CNOSSOS-EU, {law}", STANDARD.units, found)
     return Data(band, lines)
 
 
@@ -87,8 +89,8 @@ def radiated_figure(tree: DataTree, data: Data) -> Figure:
     axes = figure.subplots()
     main, weighting, levels = laws(tree, POWER)[0], data.lines["A"].values, []
     for name in radiators(tree):
-        level = data.lines[main, name].values + weighting
-        if np.isfinite(level).any():
+        if (main, name) in data.lines:
+            level = data.lines[main, name].values + weighting
             axes.plot(data.at, level, label=name, markeredgewidth=0, **_LOOKS.get(name, {}))
             levels.append(level)
     for name, look in _STANDARD_LOOKS.items():
