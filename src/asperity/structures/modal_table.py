@@ -48,7 +48,7 @@ class ModalStructure:
     mode_shapes : array_like (p, m)
         Displacements along the contact force, mass-normalised, kg^(−1/2); or of any scale with modal masses.
     modal_masses : array_like (m,), optional
-        kg, that belong to the scale of the mode shapes.
+        kg, that belong to the scale of the mode shapes; these are kept mass-normalised, without them.
     residual_flexibility : array_like (p,) or (p, p), optional
         Static displacement at the points for each newton, by all modes that are not among these, m/N: of the
         force at its own place, or the symmetric matrix of all places, which several contacts need. Of a
