@@ -128,10 +128,10 @@ def radiated_table(tree: DataTree) -> ReportTable | None:
         return None
     standard = laws(tree, STANDARD_A)
     head = ["law", *(f"{part} / dB(A)" for part in parts)]
-    if standard:
-        compared = sources(tree, STANDARD_A)
-        head += [f"{source}, CNOSSOS-EU / dB(A)" for source in compared]
-        head += ["rail and sleepers − track, CNOSSOS-EU / dB"]
+    compared = sources(tree, STANDARD_A)
+    head += [f"{source}, CNOSSOS-EU / dB(A)" for source in compared]
+    of_track = {"rail", "sleepers"} <= set(parts) and "track" in compared
+    head += ["rail and sleepers − track, CNOSSOS-EU / dB"] if of_track else []
     rows = []
     for law in names:
         level = of_law(tree, POWER_A, law, "radiator")
@@ -139,8 +139,9 @@ def radiated_table(tree: DataTree) -> ReportTable | None:
         if law in standard:
             by_label = of_law(tree, STANDARD_A, law, "source")
             cells += [Cell(told_level(value), "number") for value in by_label]
-            track = energy_sum([level[parts.index(part)] for part in ("rail", "sleepers")])
-            cells.append(Cell(signed(float(track) - by_label[compared.index("track")]), "number"))
+            if of_track:
+                track = energy_sum([level[parts.index(part)] for part in ("rail", "sleepers")])
+                cells.append(Cell(signed(float(track) - by_label[compared.index("track")]), "number"))
         rows.append(cells)
     note = f"Re 1 pW, over the bands that were computed. {silence(tree)}"
     return ReportTable("radiated_power_table", "Sound power from vibration, A-weighted", head, rows, note)
