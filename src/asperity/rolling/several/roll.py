@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import Outcome
-from asperity.kernels.several import (
+from asperity.kernels.several import ContactsMotion
+from asperity.kernels.several_records import (
     BODY_DAMPING,
     CONTACT_DAMPING,
     CONTACT_WORK,
     OVER_DAMPING,
     SLOPE_WORK,
     THROUGHPUT,
-    ContactsMotion,
 )
 from asperity.laws.base import Law
 from asperity.progress import Progress

@@ -11,20 +11,17 @@ from numpy.typing import NDArray
 from asperity.kernels.modal import solve_step
 from asperity.kernels.pointforce import Prepared
 from asperity.kernels.several import (
-    CONTACT_DAMPING,
     SWEEPS,
     Assembly,
     ContactsMotion,
     ContactsRecord,
     begin_step,
-    book,
     complete_contacts,
-    damper_power,
     free_of,
-    observe_contacts,
     roll_contacts,
     take,
 )
+from asperity.kernels.several_records import CONTACT_DAMPING, book, damper_power, observe_contacts
 from asperity.laws.base import Law, SteppedLaw
 from asperity.rolling.outcome import evaluation
 from asperity.rolling.path import Path
@@ -59,8 +56,12 @@ class ContactsStepper:
         self.stack = Stack(compiled) if len(compiled) == len(prepared) else None
         self.along = ShapesUnder(over, paths, len(system.stiffness))
         self.piece = self.stack.piece(0, 1) if self.stack else None
-        shapes, slopes = self.along.at(0)
-        observe_contacts(system, motion, record, 0, shapes, slopes)
+        self.along.hold(0)
+        if self.stack is None:
+            observe_contacts(system, motion, record, 0, *self.along.at(0))
+        else:
+            motion.counts[0] = -1
+            self._compiled(0, np.inf)
         motion.approach[1] = motion.approach[0]
 
     def advance(self, largest: float) -> bool:
@@ -72,19 +73,14 @@ class ContactsStepper:
             return self._from_python(min(done + STEPPED_BLOCK, end), largest)
         if fresh or self.piece is None or self.piece.planes.shape[1] != end + 1 - self.along.offset:
             self.piece = self.stack.piece(self.along.offset, end + 1)
-        along = self.along
-        rolled = roll_contacts(
-            self.system,
-            self.motion,
-            self.record,
-            self.piece,
-            along.shapes,
-            along.slopes,
-            along.offset,
-            end,
-            largest,
+        return self._compiled(end, largest)
+
+    def _compiled(self, stop: int, largest: float) -> bool:
+        """Go on to a step of the chunk."""
+        along, bodies = self.along, (self.system, self.motion, self.record)
+        return bool(
+            roll_contacts(*bodies, self.piece, along.shapes, along.slopes, along.offset, stop, largest)
         )
-        return bool(rolled)
 
     def _from_python(self, stop: int, largest: float) -> bool:
         """The loop of `asperity.kernels.several.roll_contacts` with laws that Python evaluates."""
