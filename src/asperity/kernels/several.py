@@ -13,7 +13,7 @@ from typing import NamedTuple
 from numpy.typing import NDArray
 
 from asperity.kernels.modal import FORCE_TOLERANCE, backward, solve_step
-from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
 from asperity.kernels.pointforce import Prepared, evaluate
 from asperity.kernels.several_rail import Channels, advance_channels, press_rail, rail_compliance
 from asperity.kernels.several_records import CONTACT_DAMPING, book, damper_power, observe_contacts
@@ -187,7 +187,7 @@ def press(system, motion, shapes, k, change):  # type: ignore[no-untyped-def]
         press_rail(system.channels, motion, k, change)
 
 
-@compiled(**INNER, **REASSOCIATE)
+@compiled(**ONCE)
 def over_ahead(motion, shapes, k):  # type: ignore[no-untyped-def]
     """Displacement of what is rolled over under a contact at the end of the step, m."""
     total = motion.rail_ahead[k]
@@ -196,7 +196,7 @@ def over_ahead(motion, shapes, k):  # type: ignore[no-untyped-def]
     return total
 
 
-@compiled(**INNER, **REASSOCIATE)
+@compiled(**ONCE)
 def body_ahead(system, motion, k):  # type: ignore[no-untyped-def]
     """Displacement of the body at a contact at the end of the step, m, upwards."""
     b, total = system.body[k], 0.0
@@ -207,7 +207,7 @@ def body_ahead(system, motion, k):  # type: ignore[no-untyped-def]
     return total
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def free_of(system, motion, shapes, k):  # type: ignore[no-untyped-def]
     """What `solve_step` needs of one contact while the forces of the others stay."""
     approach = -(over_ahead(motion, shapes, k) + body_ahead(system, motion, k))
@@ -217,7 +217,7 @@ def free_of(system, motion, shapes, k):  # type: ignore[no-untyped-def]
     return backward(approach, compliance, before, h)
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def take(system, motion, shapes, k, sweep, force, evaluations, converged):  # type: ignore[no-untyped-def]
     """Take the force that a contact has found, N; whether it had been right before."""
     change, trial = force - motion.trial[k], motion.trial[k]
@@ -229,7 +229,7 @@ def take(system, motion, shapes, k, sweep, force, evaluations, converged):  # ty
     return converged and abs(change) <= SETTLED * (abs(trial) + system.loads[k])
 
 
-@compiled(**INNER)
+@compiled(**INNER, **REASSOCIATE)
 def solve_contacts(system, motion, laws, row, shapes):  # type: ignore[no-untyped-def]
     """Forces at the end of a step; whether all meet their laws to FORCE_TOLERANCE."""
     for sweep in range(SWEEPS):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from numpy.typing import NDArray
 
-from asperity.kernels.options import INNER, LOOP, compiled
+from asperity.kernels.options import LOOP, ONCE, compiled
 from asperity.kernels.rail import advance_poles, direct_at, scatter
 
 
@@ -48,7 +48,7 @@ class ChannelMotion(NamedTuple):
     ring: NDArray
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def advance_channels(channels, motion, force, step):  # type: ignore[no-untyped-def]
     """Advance the rail over the step that ends at `step`, under the forces (n,) at its start, N.
 
@@ -80,14 +80,14 @@ def advance_channels(channels, motion, force, step):  # type: ignore[no-untyped-
             motion.rail_ahead[k] += motion.ring[k, step % taps]
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def press_rail(channels, motion, k, change):  # type: ignore[no-untyped-def]
     """Add to the force of a contact at the end of the step, N."""
     for p in range(channels.first[k], channels.first[k + 1]):
         motion.rail_ahead[channels.receiver[p]] += motion.rail_now[p] * change
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def rail_compliance(channels, motion, k):  # type: ignore[no-untyped-def]
     """Displacement of the rail under a contact for one newton there at the end of the step, m/N."""
     total = 0.0

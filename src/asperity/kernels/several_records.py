@@ -5,14 +5,14 @@ Systems, motions and records are those of `asperity.kernels.several`.
 
 from __future__ import annotations
 
-from asperity.kernels.options import INNER, REASSOCIATE, compiled
+from asperity.kernels.options import INNER, ONCE, REASSOCIATE, compiled
 
 OVER_DAMPING, BODY_DAMPING, CONTACT_DAMPING, THROUGHPUT, CONTACT_WORK, SLOPE_WORK = range(6)
 POWERS = 4
 """Those of the ledger that are integrated from their powers; work of contacts and slope is by the step."""
 
 
-@compiled(**INNER, **REASSOCIATE)
+@compiled(**ONCE)
 def contact_rates(system, motion, shapes, slopes, k):  # type: ignore[no-untyped-def]
     """Now at a contact: displacement of structure and of body, their rates, and the climb on the slope, m/s.
 
@@ -36,7 +36,7 @@ def contact_rates(system, motion, shapes, slopes, k):  # type: ignore[no-untyped
     return over, over_rate, system.speed * slope, body, body_rate
 
 
-@compiled(**INNER, **REASSOCIATE)
+@compiled(**ONCE)
 def dissipated(system, motion):  # type: ignore[no-untyped-def]
     """Power that goes into the damping of the structure, and of the bodies, W."""
     over, bodies = 0.0, 0.0
@@ -53,7 +53,7 @@ def dissipated(system, motion):  # type: ignore[no-untyped-def]
     return over, bodies
 
 
-@compiled(**INNER, **REASSOCIATE)
+@compiled(**ONCE)
 def accelerations(system, motion, record, step):  # type: ignore[no-untyped-def]
     """Write those of the structure at its sensors."""
     for s in range(system.sensors.shape[0]):
@@ -67,7 +67,7 @@ def accelerations(system, motion, record, step):  # type: ignore[no-untyped-def]
         record.acceleration[s, step] = total
 
 
-@compiled(**INNER)
+@compiled(**INNER, **REASSOCIATE)
 def observe_contacts(system, motion, record, step, shapes, slopes):  # type: ignore[no-untyped-def]
     """Write the records of a step and the powers of its energy ledger, but for the contacts' dampers.
 
@@ -97,7 +97,7 @@ def observe_contacts(system, motion, record, step, shapes, slopes):  # type: ign
     accelerations(system, motion, record, step)
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def work(system, motion, k, closer, rate, climb):  # type: ignore[no-untyped-def]
     """Add to the ledger what the force of a contact did over a step: on the contact, and against the slope.
 
@@ -113,7 +113,7 @@ def work(system, motion, k, closer, rate, climb):  # type: ignore[no-untyped-def
     motion.ledger[SLOPE_WORK] += h * product
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def damper_power(system, motion, k, elastic):  # type: ignore[no-untyped-def]
     """Power into the damper of a contact, W, whose law without it gives the force `elastic`, N."""
     rate = motion.rate[k]
@@ -122,7 +122,7 @@ def damper_power(system, motion, k, elastic):  # type: ignore[no-untyped-def]
     return (motion.force[0, k] - elastic) * rate
 
 
-@compiled(**INNER)
+@compiled(**ONCE)
 def book(system, motion):  # type: ignore[no-untyped-def]
     """Add half a step of the present powers to the ledger."""
     for i in range(POWERS):
