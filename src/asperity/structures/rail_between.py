@@ -75,9 +75,9 @@ def rail_between(
     places : array_like (n,)
         Of the contacts along the path, m.
     reach : float, optional
-        m; by default the distance from which on the rms of a kernel is below 1 % of the direct one. On a lightly
-        damped rail (loss factor 0.4 %) that is 40 m; leaving two wheels there alone changed the varying part of
-        their forces by 3 % rms, at the pinned–pinned frequency, and no one-third octave by more than 0.05 dB.
+        m; by default the distance from which on the rms of a kernel is below 1 % of the direct one. On a
+        lightly damped rail (loss factor 0.4 %) that is 40 m; leaving two wheels there alone changed the
+        varying part of their forces by 3 % rms, and no one-third octave by more than 0.05 dB.
     cache : Cache, optional
         Keeps kernels and poles.
     progress : callable, optional
