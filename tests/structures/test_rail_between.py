@@ -59,15 +59,20 @@ def test_no_distance_changes_nothing(moving):
     np.testing.assert_array_equal(again.weights, moving.weights)
 
 
-def test_crossing_kernels_are_fitted_within_half_a_percent_of_the_direct_one(poles):
-    between = rail_between(poles, [0.0, 2.5, 10.0])
-    assert set(between.crossing) == {2.5, -2.5, 7.5, -7.5, 10.0, -10.0}
+def test_crossing_kernels_are_fitted_within_half_a_percent_of_the_direct_one_and_kept(poles, tmp_path):
+    told, cache = [], Store(tmp_path)
+    between, again = (
+        rail_between(poles, [0.0, 2.5], cache=cache, progress=lambda *args: told.append(args))
+        for _ in range(2)
+    )
+    assert told == [(1, 1, "rail between contacts")] * 2
+    assert set(between.crossing) == {2.5, -2.5}
     for distance, rail in between.crossing.items():
-        kernel = rail.kernel if isinstance(rail, RailPoles) else rail
-        left = (rail.weights() if isinstance(rail, RailPoles) else rail.weights) - kernel.weights
+        assert isinstance(rail, RailPoles)
+        left = rail.weights() - rail.kernel.weights
         error = np.linalg.norm(left) / np.linalg.norm(poles.kernel.weights)
         assert error <= between.errors[distance] + 1e-15 <= TOLERANCE
-    assert isinstance(between.crossing[2.5], RailPoles)
+        np.testing.assert_array_equal(again.crossing[distance].residues, rail.residues)
 
 
 def test_a_train_costs_in_proportion_to_its_wheels(moving):
@@ -90,19 +95,6 @@ def test_what_is_too_far_to_feel_is_left_out_by_itself(moving):
     assert between.between(57.5) is None
     far = moving_kernel(TRACK, 56.0, STEP, duration=0.08, positions=12, distance=57.5)
     assert np.linalg.norm(far.weights) < NEGLIGIBLE * np.linalg.norm(moving.weights)
-
-
-def test_kernels_are_kept(poles, tmp_path):
-    told = []
-    cache = Store(tmp_path)
-    found = [
-        rail_between(poles, [0.0, 2.5], cache=cache, progress=lambda *args: told.append(args))
-        for _ in range(2)
-    ]
-    assert told == [(1, 1, "rail between contacts")] * 2
-    for sign in (1, -1):
-        rails = [each.crossing[2.5 * sign] for each in found]
-        np.testing.assert_array_equal(rails[0].residues, rails[1].residues)
 
 
 @pytest.mark.parametrize(
