@@ -1,6 +1,6 @@
 """Numbers of docs/noise.md: sound power from vibration against CNOSSOS-EU, and the rail's radiation ratio.
 
-    python benchmarks/noise_against_cnossos.py     # prints tables, writes noise.png and noise_rail.png
+    python benchmarks/noise_against_cnossos.py     # tables, noise.png, noise_wheel.png, noise_rail.png
 
 In the frequency domain, without rolling: sound power level per axle less roughness level, linear contact.
 The transfer functions of CNOSSOS-EU are the same quantity. Nothing is fitted.
@@ -22,10 +22,12 @@ from asperity.radiation.air import SPEED_OF_SOUND
 from asperity.radiation.along import effective_length
 from asperity.radiation.rail import RailSection
 from asperity.radiation.sleeper import SleeperTop
+from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
 from asperity.spectra import nominal
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))
+import railway_wheel
 from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 BANDS = 10.0 ** (np.arange(17, 38) / 10.0)  # 50 Hz to 5 kHz
@@ -90,6 +92,21 @@ def total(levels: np.ndarray) -> float:
     return float(power.a_weighted[0])
 
 
+def wheel_transfer(pads: float) -> np.ndarray:
+    """As `transfer`, of the two wheels of `railway_wheel.py` on an axle."""
+    body, table = track(pads), railway_wheel.table()
+    wheel = Wheel.from_modes(600.0, LOAD, *table[:, :3].T)
+    radiator = RadiatingWheel(0.46, 0.135, *table[:, 3:].T)
+    f = (BANDS[:, None] * 10.0 ** (0.1 * (np.arange(400) - 199.5) / 400.0)).ravel()
+    node, weight = np.polynomial.legendre.leggauss(12)
+    places = 0.5 * body.sleeper_spacing * (node + 1.0)
+    square = 0.5 * weight @ np.abs(force_transfer(f, wheel, body, STIFFNESS, places)) ** 2
+    omega, natural = 2.0 * np.pi * f, 2.0 * np.pi * table[:, :1]
+    answer = 1.0 / (table[:, 2:3] * (natural**2 - omega**2 + 2j * table[:, 1:2] * natural * omega))
+    power = radiator.power(f, np.abs(omega * answer) ** 2 * 2.0 * square)
+    return 10.0 * np.log10(np.mean(power.reshape(len(BANDS), -1), axis=1))
+
+
 def octaves(axes: Axes) -> None:
     """Name the octaves along an axis of frequency."""
     axes.set_xticks(1000.0 * 10.0 ** (0.3 * np.arange(-4, 3)), ["63", "125", "250", "500", "1k", "2k", "4k"])
@@ -138,6 +155,24 @@ def against_cnossos() -> None:
     figure.savefig("noise.png", dpi=90)
 
 
+def wheel_against_cnossos() -> None:
+    """Print and draw the wheel beside that of the directive."""
+    ours, theirs = wheel_transfer(PADS["medium"]), cnossos.wheel_transfer("920 mm")[1][: len(BANDS)]
+    print("\n| band / Hz | wheel | CNOSSOS-EU, 920 mm | difference |\n|---:|---:|---:|---:|")
+    for band, own, label in zip(BANDS, ours, theirs, strict=True):
+        print(f"| {nominal(band):g} | {own:.1f} | {label:.1f} | {own - label:+.1f} |")
+    print(f"\nA-weighted, as the tracks: {total(ours):.1f}, CNOSSOS-EU {total(theirs):.1f} dB(A)")
+    figure = Figure(figsize=(7.0, 3.6), layout="constrained")
+    axes = figure.subplots()
+    axes.semilogx(BANDS, ours, "o-", color="#0067a5", markersize=3, label="by the modes of a drawn wheel")
+    axes.semilogx(BANDS, theirs, "--", color="#0067a5", label="CNOSSOS-EU, 920 mm")
+    axes.set(xlabel="one-third octave / Hz", ylabel="sound power per axle − roughness / dB")
+    axes.set(ylim=(20, 125), title="Two wheels")
+    octaves(axes)
+    axes.legend()
+    figure.savefig("noise_wheel.png", dpi=90)
+
+
 def radiation_of_the_rail() -> None:
     """Print and draw the radiation ratio of a 60E1 section by boundary elements, and by the model."""
     bands = 10.0 ** (np.arange(20, 38) / 10.0)
@@ -166,6 +201,7 @@ def radiation_of_the_rail() -> None:
 
 if __name__ == "__main__":
     against_cnossos()
+    wheel_against_cnossos()
     radiation_of_the_rail()
     length = effective_length(track(PADS["medium"]), [500.0, 1000.0, 2000.0])
     print("\nEffective lengths at 500, 1000, 2000 Hz:", ", ".join(f"{each:.1f} m" for each in length))
