@@ -21,8 +21,8 @@ SHORT = {
     "ball-on-beam": {
         "duration": "20 ms",
         "laws": ["hertz", "linear"],
-        "surface": {"rms": "0.2 um"},
-        "contact": {"samples": 1},
+        "surface": {"rms": "0.2 um", "shortest": "50 um"},
+        "contact": {"samples": 1, "spacing": "20 um"},
     },
     "wheel-on-rail": {
         "duration": "30 ms",
@@ -35,8 +35,8 @@ SHORT = {
         "duration": "20 ms",
         "settling": "10 ms",
         "laws": ["hertz", "linear"],
-        "surface": {"rms": "0.2 um"},
-        "contact": {"samples": 1},
+        "surface": {"rms": "0.2 um", "shortest": "50 um"},
+        "contact": {"samples": 1, "spacing": "20 um"},
         "body": {"positions": ["0 m", "0.2 m"], "load": "20 N"},
     },
 }

@@ -101,7 +101,8 @@ class TestResult:
             assert all(s["symbol"].startswith("R") for s in json.loads(found.attrs["statistics"]))
 
     def test_groups_and_fixed_variables(self, tree):
-        assert set(tree.children) == {"scenario", "surface", "track", "contact", "rolling", "spectra"}
+        groups = {"scenario", "surface", "track", "contact", "rolling", "spectra", "pass_by"}
+        assert set(tree.children) == groups
         assert tree["contact/filter"].dims == ("approach", "wavenumber")
         for name in ("contact_force", "relative_displacement", "rail_displacement", "wheel_displacement"):
             assert tree[f"rolling/{name}"].dims == ("law", "time")

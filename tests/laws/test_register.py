@@ -94,7 +94,7 @@ def case(kind, *names):
     return as_case(CASES[kind] | {"laws": names})
 
 
-@pytest.mark.parametrize("kind", CASES)
+@pytest.mark.parametrize("kind", ["ball-on-beam", "wheel-on-rail"])
 def test_a_law_of_the_test_runs_through_result_report_and_csv(kind, registered, tmp_path):
     registered(TWIN)
     registered(SPRING)

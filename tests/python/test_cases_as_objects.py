@@ -233,7 +233,7 @@ KNOWN = {
 
 
 @settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
+    max_examples=100, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
 )
 @given(st.data())
 @pytest.mark.parametrize("kind", sorted(BASES))
@@ -251,7 +251,7 @@ def test_a_case_that_is_written_and_read_is_the_same(kind, data):
     assert hash(again) == hash(case)
     assert again.parameters() == case.parameters()
     assert again.to_toml() == case.to_toml() == case.text
-    assert eval(repr(case), {"BallOnBeam": BallOnBeam, "WheelOnRail": WheelOnRail}) == case  # noqa: S307
+    assert eval(repr(case), {each.__name__: each for each in (BallOnBeam, WheelOnRail, Bodies)}) == case  # noqa: S307
     for name, value in changes.items():
         section, _, key = name.rpartition(".")
         if isinstance(value, float):

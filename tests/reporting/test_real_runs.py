@@ -20,7 +20,9 @@ from asperity.results import read_result, save
 PARTS = {
     (kind, part.name): part for kind in KINDS for chapter in KINDS[kind].chapters for part in chapter.parts
 }
-each_part = pytest.mark.parametrize(("kind", "name"), PARTS, ids=lambda value: value)
+OLDER = {id(part) for (kind, _), part in PARTS.items() if kind != "bodies"}
+DRAWN = [key for key, part in PARTS.items() if key[0] != "bodies" or id(part) not in OLDER]
+each_part = pytest.mark.parametrize(("kind", "name"), DRAWN, ids=lambda value: value)
 TABLES = {
     "ball-on-beam": {"statistics", "practice", "reference", "contact_loss", "energy_balance"},
     "wheel-on-rail": {"statistics", "practice", "contact_loss", "sound_power_table"},
@@ -131,6 +133,8 @@ def test_result_read_back_from_its_file_has_the_same_numbers(real_run, tmp_path)
 
 
 def test_same_result_same_page(real_run, text):
+    if kind_of(real_run) == "bodies":
+        pytest.skip("its parts are among those of the others")
     assert page_of(real_run) == text
 
 
