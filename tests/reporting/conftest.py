@@ -16,12 +16,29 @@ def run_in(case):
     return case | {"contact": contact}
 
 
+class Made(dict):
+    """Values that are made when they are first asked for: not every process needs every kind."""
+
+    def __init__(self, make):
+        super().__init__()
+        self.make = make
+
+    def __missing__(self, key):
+        self[key] = self.make(key)
+        return self[key]
+
+
 @pytest.fixture(scope="session")
 def real_runs(tmp_path_factory):
     """Results by kind of case."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
-        return {kind: asperity.run(run_in(CASES[kind])) for kind in KINDS}
+    cache = str(tmp_path_factory.mktemp("cache"))
+
+    def run(kind):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("ASPERITY_CACHE", cache)
+            return asperity.run(run_in(CASES[kind]))
+
+    return Made(run)
 
 
 @pytest.fixture(scope="session", params=list(KINDS))
@@ -34,4 +51,4 @@ def real_run(request, real_runs):
 def reports(real_runs, tmp_path_factory):
     """Folders of the reports, by kind."""
     folder = tmp_path_factory.mktemp("reports")
-    return {kind: report(tree, folder / kind).parent for kind, tree in real_runs.items()}
+    return Made(lambda kind: report(real_runs[kind], folder / kind).parent)
