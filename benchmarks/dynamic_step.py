@@ -26,6 +26,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike
+from step_clock import Clock
 
 from asperity.errors import PhysicsWarning
 from asperity.kinds.ball_on_beam.compute import Computed, compute
@@ -99,23 +100,6 @@ def direct_law(computed: Computed) -> Law:
         lambda *_: None,
     )
     return workshop.build("direct")
-
-
-class Clock:
-    """CPU time against steps done, from what the rolling reports as it goes: its start is left out."""
-
-    def __init__(self) -> None:
-        self.marks: list[tuple[int, float]] = []
-
-    def __call__(self, done: int, total: int, message: str) -> None:
-        """Mark the steps done."""
-        self.marks.append((done, time.process_time()))
-
-    @property
-    def seconds_per_step(self) -> float:
-        """From the first report to the last, s."""
-        (first, began), (last, ended) = self.marks[0], self.marks[-1]
-        return (ended - began) / (last - first)
 
 
 def rolled(computed: Computed, law: Law, duration: float) -> tuple[float, float, Rolling]:

@@ -22,6 +22,7 @@ import time
 
 import numpy as np
 from numpy.typing import ArrayLike
+from step_clock import Clock
 
 from asperity.contact import HertzLaw as HertzContact
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
@@ -40,23 +41,6 @@ from asperity.surfaces.synthesis import from_bands
 SPEED, STEP, LOAD, MASS = 56.0, 40e-6, 65e3, 600.0  # m/s, s (25 kHz), N, kg
 STATES = 14
 SPACING = 1e-3  # of the texture, m
-
-
-class Clock:
-    """CPU time between the first and the last report of a run: its start is left out."""
-
-    def __init__(self) -> None:
-        self.marks: list[tuple[int, float]] = []
-
-    def __call__(self, done: int, total: int, message: str) -> None:
-        """Mark the steps done."""
-        self.marks.append((done, time.process_time()))
-
-    @property
-    def seconds_per_step(self) -> float:
-        """From the first report to the last, s."""
-        (first, began), (last, ended) = self.marks[0], self.marks[-1]
-        return (ended - began) / (last - first)
 
 
 class LaidOut:

@@ -28,6 +28,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
+from step_clock import Clock
 
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
@@ -52,23 +53,6 @@ COACHES, REACH = 26.0, 9.0  # m
 SPEED, STEP = 56.0, 50e-6  # of the train, m/s, and its time step, s
 
 
-class Clock:
-    """CPU time between the first and the last report of a run: its start is left out."""
-
-    def __init__(self) -> None:
-        self.marks: list[tuple[int, float]] = []
-
-    def __call__(self, done: int, total: int, message: str) -> None:
-        """Mark the steps done."""
-        self.marks.append((done, time.process_time()))
-
-    @property
-    def per_step(self) -> float:
-        """From the first report to the last, s."""
-        (first, began), (last, ended) = self.marks[0], self.marks[-1]
-        return (ended - began) / (last - first)
-
-
 def rough(rms: float, spacing: float, start: float, end: float) -> StateTexture:
     """A rough path from start to end, m."""
     points = int((end - start) / spacing) + 2
@@ -76,24 +60,24 @@ def rough(rms: float, spacing: float, start: float, end: float) -> StateTexture:
     return StateTexture.unfiltered(rms * heights / heights.std(), spacing, start)
 
 
-def per_step(run: Callable[[Clock], object]) -> float:
+def seconds_per_step(run: Callable[[Clock], object]) -> float:
     """CPU time of a step of one run, s."""
     clock = Clock()
     run(clock)
-    return clock.per_step
+    return clock.seconds_per_step
 
 
 def balls(count: int, beam: Beam, law: HertzLaw, steps: int) -> tuple[float, float]:
     """Time of a step and contact, s: all at once, and one after another."""
     path = {"speed": 1.0, "duration": steps * 1e-5, "time_step": 1e-5}
     bodies, at = [Body.rigid(BALL.mass, BALL.static_load)] * count, APART * np.arange(count)
-    together = per_step(
+    together = seconds_per_step(
         lambda clock: roll_bodies(
             beam, bodies, [law] * count, positions=at, start=0.3, progress=clock, **path
         )
     )
     single = [
-        per_step(
+        seconds_per_step(
             lambda clock, start=0.3 + place: roll_ball(
                 beam, BALL, law, sensors=[], start=start, progress=clock, **path
             )
@@ -109,14 +93,14 @@ def wheels(
     """The same of the wheels of a train."""
     at = (COACH + COACHES * np.arange(8)[:, None]).ravel()[:count]
     body, wheel = Body.rigid(600.0, 65e3), Wheel.rigid(600.0, 65e3)
-    together = per_step(
+    together = seconds_per_step(
         lambda clock: roll_bodies(
             between, [body] * count, [law] * count, positions=at, start=0.3, speed=SPEED, time_step=STEP,
             duration=steps * STEP, progress=clock,
         )
     )  # fmt: skip
     single = [
-        per_step(
+        seconds_per_step(
             lambda clock, start=0.3 + place: roll_wheel(
                 rail, wheel, law, start=start, duration=steps * STEP, settling=0.0, progress=clock
             )

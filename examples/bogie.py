@@ -38,7 +38,7 @@ for name, run in runs.items():
     level = run["spectra"].to_dataset()["contact_force_levels"].isel(law=0)
     for contact, style in zip(level, ("-", "--"), strict=False):
         above.semilogx(level["band"], contact, style, label=f"{name}, wheel {int(contact['contact'])}")
-track, frequency = bogie.track_model(), np.geomspace(40, 2800, 400)
+track, frequency = bogie.track.model(), np.geomspace(40, 2800, 400)
 for distance, label in ((0.0, "under the force"), (2.5, "2.5 m away")):
     magnitude = np.abs(track.receptance(frequency, 0.3 + distance, 0.3))
     below.loglog(frequency, magnitude, label=label)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from shelf import Shelf
 
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kinds.ball_on_beam import roll as ball_on_beam
@@ -93,18 +94,6 @@ class SteppedOnPath:
 
     def warn_of_flaws(self):
         pass
-
-
-class Shelf:
-    """A checkpoint in memory."""
-
-    arrays = None
-
-    def load(self):
-        return self.arrays
-
-    def save(self, arrays):
-        self.arrays = {name: np.array(value) for name, value in arrays.items()}
 
 
 # --- the same as compiled ----------------------------------------------------------------------

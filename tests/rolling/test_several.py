@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from shelf import Shelf
 
 from asperity.contact import Hertz
 from asperity.errors import CoarseSamplingWarning
@@ -341,18 +342,6 @@ class Stepped:
 
     def warn_of_flaws(self):
         warnings.warn("seen", UserWarning, stacklevel=2)
-
-
-class Shelf:
-    """A checkpoint in memory."""
-
-    arrays = None
-
-    def load(self):
-        return self.arrays
-
-    def save(self, arrays):
-        self.arrays = {name: np.array(value) for name, value in arrays.items()}
 
 
 def test_laws_that_python_steps_stand_beside_compiled_ones():

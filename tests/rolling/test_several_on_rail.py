@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from shelf import Shelf
 
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
@@ -206,18 +207,6 @@ def test_the_energy_of_sprung_wheels_on_a_rail_closes(bogie):
     assert energy.residual < 1e-5
     assert energy.body_damping > 1e-3 * energy.throughput
     assert energy.contact_damping > 1e-3 * energy.throughput
-
-
-class Shelf:
-    """A checkpoint in memory."""
-
-    arrays = None
-
-    def load(self):
-        return self.arrays
-
-    def save(self, arrays):
-        self.arrays = {name: np.array(value) for name, value in arrays.items()}
 
 
 @pytest.mark.parametrize("scattered", [False, True], ids=["poles", "scattered"])

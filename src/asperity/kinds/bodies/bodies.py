@@ -29,9 +29,8 @@ class RolledCase:
     over: Modal | Track | None  # None for a rigid plane
     rolling: list[Body]  # in the order of their positions
     sensors: tuple[float, ...]  # positions of accelerometers on what is rolled over, m
-    degrees: dict[
-        str, float
-    ]  # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m
+    # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m
+    degrees: dict[str, float]
     title: str
 
 
@@ -82,7 +81,7 @@ def structure_of(case: Bodies) -> Modal | Track | None:
         for doubt in case.structure.doubts:
             warnings.warn(doubt, stacklevel=2)
         return case.structure.model
-    return case.track_model() if case.over == "track" else None
+    return case.track.model() if case.over == "track" else None
 
 
 def _beam(case: Bodies) -> Modal:

@@ -17,7 +17,6 @@ from asperity.errors import InputError
 from asperity.kinds.bodies.body_keys import BodyCase
 from asperity.kinds.bodies.structure_keys import BeamOnSupports, Rails, StructureCase
 from asperity.scenarios.kind import Words
-from asperity.structures.track import Track
 from asperity.units import written
 
 STRUCTURES = ("plane", "beam", "track", "structure")
@@ -129,10 +128,6 @@ class Bodies(LawsOfSurface):
         finest = 1.0 / (STEPS_PER_RESONANCE * self.contact_resonance)
         return usual if usual <= finest else time_step_on_grid(finest, self.contact.spacing / self.speed)
 
-    def track_model(self) -> Track:
-        """Build the track of this case: the named set with the case's own keys in it."""
-        return Track.named(self.track.name, **self.track.overrides)
-
     def problems(self) -> Iterator[InputError]:
         """What must fit together across the sections: bodies that touch in a point first."""
         from asperity.kinds.bodies.smooth import static_stiffness
@@ -164,10 +159,7 @@ def _problems_of_structure(case: Bodies) -> Iterator[InputError]:
         remedy = 'As file = "guide.csv".'
         yield InputError("structure.file", "nothing", "the file of its modes, or receptances", remedy)
     if case.over == "track":
-        try:
-            case.track_model().refuse_speed(case.speed)
-        except InputError as error:
-            yield InputError("speed", f"{case.speed:g} m/s", error.allowed, error.remedy)
+        yield from case.track.problems_at(case.speed)
 
 
 def _problems_of_room(case: Bodies) -> Iterator[InputError]:

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from asperity.config.content import content, file_digest
 from asperity.kinds.bodies.bodies import RolledCase
 from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.bodies.compiling import compile_kernels
 from asperity.kinds.bodies.roll import FirstContact, first_of
 from asperity.kinds.bodies.textures import contacts_of, loads_of
-from asperity.laws import Law, spec_of
+from asperity.laws import Law
 from asperity.progress import Progress
 from asperity.rolling.several import roll_bodies
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.usual.compute import checkpoint_of
 from asperity.scenarios.usual.textures import recorded_time
-from asperity.store import Checkpoint, Store, content_key
+from asperity.store import Store
 from asperity.structures.modal import Modal
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_between import RailBetween, rail_between
 from asperity.structures.rail_poles import poles_or_kernel
 from asperity.structures.track import Track
+
+Over = Modal | RailBetween | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +32,7 @@ class Computed:
 
     case: Bodies
     bodies: RolledCase
-    over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
+    over: Over  # what was rolled over, as it was carried on in time
     chain: Chain[FirstContact]  # textures, state functions, laws and runs
 
 
@@ -42,14 +44,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     store, watch = Store(), Stopwatch(textures=prepared.seconds)
     compile_kernels(progress)  # not before the files are known to be right
     watch.lap("compiled functions")
-    over: Modal | RailBetween | None = None
-    if isinstance(bodies.over, Track):
-        kernel = moving_kernel(bodies.over, case.speed, case.time_step, cache=store, progress=progress)
-        direct = poles_or_kernel(kernel, cache=store)
-        over = rail_between(direct, case.body.offsets, cache=store, progress=progress)
-        watch.lap("track")
-    else:
-        over = bodies.over
+    over = _carried(case, bodies.over, store, progress)
+    watch.lap("structure")
     which, others = contacts_of(case, loads_of(bodies.rolling))
     duration = recorded_time(case, textures)
 
@@ -68,7 +64,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             sensors=bodies.sensors,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=_checkpoint(first, prepared, store),
+            checkpoint=checkpoint_of(first, prepared, store),
         )
         return first_of(every)
 
@@ -76,10 +72,10 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     return Computed(case, bodies, over, chain)
 
 
-def _checkpoint(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
-    """Where a law that is solved in every step is kept, by all that its motion depends on."""
-    path = prepared.textures.path
-    if path is None or not spec_of(law.name).solved_every_step:
-        return None
-    rows = path.rows(0, path.shape[0])
-    return Checkpoint(store, content_key(law.name, rows, content(prepared.case, file_digest)))
+def _carried(case: Bodies, over: Modal | Track | None, store: Store, progress: Progress) -> Over:
+    """What is rolled over, as it is carried on in time: a track by its kernels."""
+    if not isinstance(over, Track):
+        return over
+    kernel = moving_kernel(over, case.speed, case.time_step, cache=store, progress=progress)
+    direct = poles_or_kernel(kernel, cache=store)
+    return rail_between(direct, case.body.offsets, cache=store, progress=progress)

@@ -7,7 +7,7 @@ import math
 from asperity.contact.conforming import check_half_space, groove_gap
 from asperity.kinds.bodies.bodies import bodies_of
 from asperity.kinds.bodies.case import Bodies
-from asperity.kinds.bodies.smooth import raceway_radius, smooth_contact
+from asperity.kinds.bodies.smooth import raceway_radius, radius_across, smooth_contact
 from asperity.kinds.bodies.textures import loads_of
 from asperity.scenarios.geometry import Geometry, across_window, geometry, parabola
 
@@ -24,9 +24,9 @@ def body_geometry(case: Bodies, load: float) -> Geometry:
     In a groove the gap is that of circle in circle, and the half-space is asked for the angle that it fills.
     """
     body, hertz = case.body, smooth_contact(case)
-    groove, beside = body.groove_radius, _convex_beside(case)
+    groove = body.groove_radius
     if groove is None:
-        smallest = min(body.radius, body.across, beside, abs(raceway_radius(case)))
+        smallest = min(body.radius, body.across, radius_across(case), abs(raceway_radius(case)))
         section = parabola(case.contact, hertz.radius_y)
     else:
         smallest = math.inf  # looked at below
@@ -34,11 +34,6 @@ def body_geometry(case: Bodies, load: float) -> Geometry:
         _check_groove(case, load, groove)
     shape = geometry(case.contact, section, hertz, load, smallest_radius=smallest, body="body")
     return shape.within_window()
-
-
-def _convex_beside(case: Bodies) -> float:
-    """Radius across the path of what is rolled over, m."""
-    return case.track.rail_head_radius if case.over == "track" else math.inf
 
 
 def _check_groove(case: Bodies, load: float, groove: float) -> None:

@@ -16,12 +16,17 @@ def smooth_contact(case: Bodies) -> Hertz:
     """Contact of the smooth bodies, by their relative curvatures along and across the path."""
     body, modulus = case.body, contact_modulus(case.body.material, over_material(case))
     along = relative_radius(body.radius, raceway_radius(case), what="body.radius and body.raceway_radius (m)")
-    if body.groove_radius is not None:
-        beside = -body.groove_radius
-    else:
-        beside = case.track.rail_head_radius if case.over == "track" else math.inf
-    across = relative_radius(body.across, beside, what="body.transverse_radius and body.groove_radius (m)")
+    across = relative_radius(
+        body.across, radius_across(case), what="body.transverse_radius and body.groove_radius (m)"
+    )
     return Hertz(modulus, along, across)
+
+
+def radius_across(case: Bodies) -> float:
+    """Radius of what is rolled over across the path, m: negative of a groove, infinite where flat."""
+    if case.body.groove_radius is not None:
+        return -case.body.groove_radius
+    return case.track.rail_head_radius if case.over == "track" else math.inf
 
 
 def raceway_radius(case: Bodies) -> float:

@@ -118,9 +118,7 @@ class WheelOnRail(Case):
 
     def track_model(self) -> Track:
         """Build the track of this case: the named set with the case's own keys in it."""
-        from asperity.structures.track import Track
-
-        return Track.named(self.track.name, **self.track.overrides)
+        return self.track.model()
 
     def parameters(self) -> list[dict[str, Any]]:
         """List the keys that matter, as `Case.parameters`, with the values of the named track."""
@@ -144,7 +142,7 @@ class WheelOnRail(Case):
         yield from problem_of_steps(self, self.settling + self.duration)
         yield from _problems_of_texture(self)
         yield from _problems_of_levels(self)
-        yield from _problems_of_track(self)
+        yield from self.track.problems_at(self.speed)
         yield from _problem_of_poles(self)
         yield from _problems_of_path(self)
         widest = 2 * min(self.wheel.radius, self.track.rail_head_radius)
@@ -179,22 +177,6 @@ def _problems_of_levels(case: WheelOnRail) -> Iterator[InputError]:
                 check_band_levels(levels + level, name)
             except InputError as error:
                 yield error
-
-
-def _problems_of_track(case: WheelOnRail) -> Iterator[InputError]:
-    """A track that exists and is damped, on which the wheel is slower than the waves that it sends out."""
-    try:
-        track = case.track_model()
-    except InputError as error:
-        yield InputError("track", error.received, error.allowed, error.remedy)
-        return
-    if not track.is_damped:
-        remedy = "Give the rail a loss factor, or damping to pads or ballast."
-        yield InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
-    try:
-        track.refuse_speed(case.speed)
-    except InputError as error:
-        yield InputError("speed", f"{case.speed:g} m/s", error.allowed, error.remedy)
 
 
 def _problem_of_poles(case: WheelOnRail) -> Iterator[InputError]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator
 
@@ -25,6 +25,9 @@ from asperity.config.keys import (
 from asperity.config.sections import ContactCase, Numerics
 from asperity.errors import InputError
 from asperity.reference.tracks import TRACKS
+
+if TYPE_CHECKING:
+    from asperity.structures.track import Track
 
 LossFactor = Annotated[float, BeforeValidator(Number(at_least=0, at_most=5))]
 
@@ -131,6 +134,27 @@ class TrackParameters(Section):
         """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
         told = {name: getattr(self, name) for name in OVERRIDES}
         return {name: value for name, value in told.items() if value is not None}
+
+    def model(self) -> Track:
+        """Build the track: the named set with the keys of the case in it."""
+        from asperity.structures.track import Track
+
+        return Track.named(self.name, **self.overrides)
+
+    def problems_at(self, speed: float) -> Iterator[InputError]:
+        """A track that exists and is damped, over which a speed, m/s, is slower than the waves sent out."""
+        try:
+            track = self.model()
+        except InputError as error:
+            yield InputError("track", error.received, error.allowed, error.remedy)
+            return
+        if not track.is_damped:
+            remedy = "Give the rail a loss factor, or damping to pads or ballast."
+            yield InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
+        try:
+            track.refuse_speed(speed)
+        except InputError as error:
+            yield InputError("speed", f"{speed:g} m/s", error.allowed, error.remedy)
 
     def problems(self) -> Iterator[InputError]:
         """Each damping either viscous or by a loss factor."""

@@ -42,7 +42,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             time_step=case.time_step,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=_checkpoint(law, prepared, store),
+            checkpoint=checkpoint_of(law, prepared, store),
         )
 
     return Computed(
@@ -50,7 +50,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     )
 
 
-def _checkpoint(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
+def checkpoint_of(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
     """Where a law that is solved in every step is kept, by all that its motion depends on."""
     path = prepared.textures.path
     if path is None or not spec_of(law.name).solved_every_step:
