@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from step_clock import Clock
 
-from asperity.contact import HertzLaw as HertzContact
+from asperity.contact import Hertz as HertzContact
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw, Law, Linear, Shifted, Table
 from asperity.reduction.fir import filtered_texture

@@ -239,19 +239,19 @@ def note_at(axes: Axes, x: float, height: float, text: str, va: str) -> None:
 
 
 def legend_above(axes: Axes, columns: int = 7) -> None:
-    """Legend in one row above the axes, clear of the data; in more rows where the page is narrow."""
-    if is_narrow():
-        columns = _columns(axes.get_legend_handles_labels()[1], columns)
+    """Legend in one row above the axes, clear of the data; in more rows where the page has no room for it."""
+    columns = _columns(axes.get_legend_handles_labels()[1], columns)
     axes.legend(
         loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=columns, handlelength=2.6, columnspacing=1.6
     )
 
 
 def _columns(labels: Sequence[str], most: int) -> int:
-    """Columns of a legend that a narrow page has room for."""
+    """Columns of a legend that the page has room for."""
+    room = NARROW_LETTERS * _width.get() / NARROW
     for columns in range(min(most, len(labels)), 1, -1):
         widest = [max(map(len, column)) for column in np.array_split(labels, columns)]
-        if sum(widest) + HANDLE_LETTERS * len(widest) <= NARROW_LETTERS:
+        if sum(widest) + HANDLE_LETTERS * len(widest) <= room:
             return columns
     return 1
 
