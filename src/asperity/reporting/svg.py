@@ -14,6 +14,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from asperity.reporting.style import COLOURS, RC, is_narrow
+from asperity.reporting.ticks import one_tick_each
 
 LONG = 1500
 """Letters of a path beyond which tenths of a point will do: it is drawn by its density."""
@@ -52,7 +53,7 @@ def drawing_of(figure: Figure, name: str) -> Drawing:
     """Draw a figure; identifiers in it get the prefix `name`, which is its own in a page."""
     canvas, text = FigureCanvasSVG(figure), StringIO()
     coarser = {"path.simplify_threshold": 0.5} if is_narrow() else {}  # half a page needs fewer points
-    with rc_context(RC | coarser):
+    with rc_context(RC | coarser), one_tick_each(figure):
         engine = figure.get_layout_engine()
         if engine is not None:  # lay out once; `savefig` would draw everything twice
             with warnings.catch_warnings():  # names may be longer than a narrow page is wide
