@@ -10,6 +10,7 @@ from scipy.optimize import lsq_linear
 
 from asperity import HalfSpace
 from asperity.contact import Hertz
+from asperity.contact.in_place import ContactInPlace
 from asperity.kernels import projected_cg as cg
 from asperity.kernels.box import empty_box
 from asperity.kernels.contact import room
@@ -232,25 +233,35 @@ def energies(known, overlap, room, task, done, found):
     for i in range(nx):
         for j in range(ny):
             b.overlap[i * b.pitch + j] = overlap[i, j]
-    cg.true_residual(c, b)
+    cg.true_residual(c, b, task.compliance)
     for step in range(done, done + len(found)):
-        once = cg.Task(task.hardness, task.total, task.largest, task.rtol, task.softest, step + 1)
+        once = cg.Task(
+            task.hardness, task.total, task.compliance, task.largest, task.rtol, task.softest, step + 1
+        )
         cg.solve(c, known.taps, b, once, step)
         found[step - done] = 0.0
         for q in range(len(b.pressure)):
             found[step - done] += 0.5 * b.pressure[q] * (b.residual[q] - b.overlap[q])
 
 
+@pytest.mark.parametrize("yielding", [0.0, 3.0])
 @pytest.mark.parametrize("done", [0, cg.PATIENCE])
-def test_no_iteration_raises_the_energy(done):
-    """Neither those of conjugate gradients nor the steps of the projected gradient among them."""
+def test_no_iteration_raises_the_energy(done, yielding):
+    """Neither those of conjugate gradients nor the steps of the projected gradient among them.
+
+    Nor where bodies yield to the force by so many times what one cell yields to its pressure.
+    """
     n, hardness = 40, 2e9
     overlap = 1e-7 * np.random.default_rng(5).standard_normal((n, n))
     half_space = HalfSpace((n, n), (1e-6, 1e-6), MODULUS, hardness)
-    p = half_space.solve(-overlap, approach=0.0, rtol=1e-9).pressure
-    least = 0.5 * np.vdot(p, half_space.displacement(p)) - np.vdot(p, overlap)
-    known, found = half_space.influence, np.empty(200)
-    task = cg.Task(hardness, -1.0, overlap.max(), 1e-12, known.softest, 0)
+    compliance = yielding * half_space.influence.table[0, 0]
+    contact = ContactInPlace(half_space, -overlap, 1e-9)
+    contact.solve(np.zeros((n, n)), 0.0, compliance / half_space.cell_area)
+    p, known = contact.pressure, half_space.influence
+    least = 0.5 * (np.vdot(p, half_space.displacement(p)) + compliance * p.sum() ** 2) - np.vdot(p, overlap)
+    found = np.empty(200)
+    softest = known.softest + compliance * n**2
+    task = cg.Task(hardness, -1.0, compliance, overlap.max(), 1e-12, softest, 0)
     energies(known, overlap, room(known, n, n).outer, task, done, found)
     assert np.all(np.diff(found) <= 1e-13 * abs(least))
     assert found[-1] == pytest.approx(least, rel=1e-6)

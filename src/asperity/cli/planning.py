@@ -75,7 +75,7 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
     list of (str, str)
         Name and value, with units.
     """
-    from asperity.scenarios.expecting import SOLUTIONS_PER_STEP, steps_of
+    from asperity.scenarios.expecting import steps_of
     from asperity.scenarios.reducing import STATES
 
     case, (nx, ny) = prepared.case, prepared.shape.body.shape
@@ -87,7 +87,7 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
     run_in = f", and {settling:g} s before it" if settling else ""
     solves = {f"scan for the {name}": scan.solutions for name, scan in expected.scans.items()}
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    solves |= dict.fromkeys(solved, SOLUTIONS_PER_STEP * steps)
+    solves |= dict.fromkeys(solved, steps)
     scanned = expected.scans.get("path")
     return [
         *_measured(case),

@@ -492,23 +492,41 @@ class HalfSpace:
         `start` (nx, ny), Pa, is the pressure at the first position and approach to start from. In single
         precision the iteration is half again as fast, down to a tolerance of about 1e-6.
         """
+        block = self.block(rows, body, planes, approaches, stride, rtol, single, load)
+        if start is not None:
+            block.pressures[1, 0], block.solved[0] = start, 1
+        self.solve_block(block, single)
+        return block
+
+    def block(
+        self,
+        rows: NDArray[np.float64],
+        body: NDArray[np.float64],
+        planes: NDArray[np.float64],
+        approaches: NDArray[np.float64],
+        stride: int,
+        rtol: float,
+        single: bool = False,
+        load: float = -1.0,
+    ) -> Block:
+        """Lay out contacts to be solved, with nothing known of them; arguments as in `scanning.Block`."""
         rows, body, planes, approaches = map(_array, (rows, body, planes, approaches))
         k, shape, size = len(approaches), self.shape, (len(approaches), len(planes))
-        block = Block(
-            rows, body, planes, approaches, stride, load, self.pressure_cap, rtol, MAX_ITERATIONS,
+        return Block(
+            rows, body, planes, approaches, stride, load, 0.0, self.pressure_cap, rtol, MAX_ITERATIONS,
             room(self._known(single), *shape), np.empty(shape), np.empty(shape), np.zeros((2, *shape)),
             np.zeros((2, k, *shape)), np.zeros(k, dtype=np.int64), np.zeros(size), np.zeros(size),
             np.zeros(size), np.zeros(4, dtype=np.int64),
         )  # fmt: skip
-        if start is not None:
-            block.pressures[1, 0], block.solved[0] = start, 1
-        position, level = 0, 0
-        while position < len(planes):
-            end = min(position + AT_ONCE, len(planes))
+
+    def solve_block(self, block: Block, single: bool = False) -> None:
+        """Solve the contacts of a block, each from what is known of those before."""
+        position, level, count = 0, 0, len(block.planes)
+        while position < count:
+            end = min(position + AT_ONCE, count)
             position, level, nx, ny = solve_positions(self._known(single), block, position, level, end)
             if position < end:
                 self._prepare(nx, ny, single)
-        return block
 
     def at_load(
         self, gap: NDArray[np.float64], load: float, start: NDArray[np.float64] | None, rtol: float

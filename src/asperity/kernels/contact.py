@@ -35,7 +35,7 @@ class Solution(NamedTuple):
     iterations: int  # of conjugate gradients
     residual: float  # largest complementarity residual relative to the largest overlap
     total: float  # sum of the pressure over the cells, Pa
-    level: float  # at a given load, by how much the approach is beyond the one that was given, m
+    level: float  # by how much the approach is beyond the given one, m: at a load, or if bodies yield
     nx: int  # box of the overlap, or the one that is not prepared, cells
     ny: int
 
@@ -62,6 +62,7 @@ def solve_contact(
     gap: NDArray[np.float64],
     approach: float,
     load: float,
+    compliance: float,
     start: NDArray[np.float64],
     hardness: float,
     rtol: float,
@@ -73,9 +74,11 @@ def solve_contact(
 
     Gap, m, at zero approach, pressures, Pa, (nx, ny); approach in m, positive closing. `load` is the sum of
     the pressure, Pa, less than the hardness over all that overlap; negative if the approach is given, which
-    else is REACH times what is expected beyond first touch. `start` is within the bounds, and zero on all of
-    the overlap if nothing is known. `rtol` is the largest complementarity residual relative to the largest
-    overlap. `pressure` receives the pressure, unless a convolution is missing.
+    else is REACH times what is expected beyond first touch. Bodies that yield to the sum of the pressure, by
+    a compliance in m/Pa, have the given approach without it; the compliance is zero at a given load. `start`
+    is within the bounds, and zero on all of the overlap if nothing is known. `rtol` is the largest
+    complementarity residual relative to the largest overlap. `pressure` receives the pressure, unless a
+    convolution is missing.
     """
     largest, first, end, left, right = overlap_box(gap, approach, room.lowest)
     nx, ny = end - first, right - left
@@ -84,16 +87,17 @@ def solve_contact(
     if nx == 0:
         _clear(pressure)
         return Solution(NO_CONTACT, 0, 0.0, 0.0, 0.0, 0, 0)
-    task = Task(hardness, load, largest, rtol, known.softest, max_iterations)
+    softest = known.softest + compliance * nx * ny
+    task = Task(hardness, load, compliance, largest, rtol, softest, max_iterations)
     outer, everywhere = empty_box(nx, ny, room.outer), convolution(known, nx, ny)
     guessed = not _enter(outer, gap, approach, start, first, left, NOTHING * known.taps[0] * largest)
     if guessed:
         _guess(outer, largest, largest / REACH if load >= 0.0 else largest, known.taps[0])
     if load >= 0.0:
         carry(outer, hardness, load, known.taps[0])
-    true_residual(everywhere, outer)
+    true_residual(everywhere, outer, compliance)
     if guessed and load < 0.0 and not _scale(outer, hardness):
-        true_residual(everywhere, outer)
+        true_residual(everywhere, outer, compliance)
     worst, level, top, bottom, near, far = survey(outer, task)
     iterations, moving, last = 0, True, (0, 0, 0, 0)
     while moving and worst > rtol * (largest + level) and iterations < max_iterations:
@@ -111,7 +115,7 @@ def solve_contact(
         if part:
             paste(b, outer, row, column)
         if part or not _recurs(outer, rtol):
-            true_residual(everywhere, outer)
+            true_residual(everywhere, outer, compliance)
         worst, level, top, bottom, near, far = survey(outer, task)
         moving = moving and not (again and worst > 0.9 * before)  # else rounding hides what is left
     total = _leave(outer, pressure, first, left)

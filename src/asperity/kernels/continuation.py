@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 
 
 @compiled(**LOOP, nogil=True)
@@ -32,6 +32,43 @@ def continue_pressure(
     for i in range(nx - stride, nx):
         for j in range(ny):
             start[i, j] = 0.0
+
+
+@compiled(**LOOP, nogil=True)
+def continue_rolling(
+    last: NDArray[np.float64],
+    before: NDArray[np.float64],
+    stride: int,
+    stride_before: int,
+    cap: float,
+    start: NDArray[np.float64],
+) -> None:
+    """Continue the pressures of two contacts to a third, with the surface or with the window.
+
+    As in `continue_pressure`; the window moved by `stride_before` rows between the two. Where asperities
+    carry, their pressures move with the surface; where the whole patch carries, and more so in long strides,
+    it stays in the window. Taken is what would have been nearer from the one before to the last.
+    """
+    nx = len(last)
+    with_surface, in_window = 0.0, 0.0
+    for i in range(nx):
+        in_window += _squares(last[i], before[i], 1.0)
+        moved = i + stride_before
+        with_surface += _squares(last[i], before[min(moved, nx - 1)], 1.0 if moved < nx else 0.0)
+    if with_surface <= in_window:
+        share = 1.0 if stride == stride_before else 0.0
+        continue_pressure(last, before, stride, share, cap, start)
+    else:
+        continue_pressure(last, before, np.int64(0), 0.0, cap, start)
+
+
+@compiled(**INNER, **REASSOCIATE)
+def _squares(p: NDArray[np.float64], q: NDArray[np.float64], share: float) -> float:
+    """Sum of squares of p less a share of q."""
+    total = 0.0
+    for j in range(len(p)):
+        total += (p[j] - share * q[j]) ** 2
+    return total
 
 
 @compiled(**LOOP)

@@ -10,6 +10,9 @@ M. Raydan, SIAM J. Optim. 10 (2000) 1196): the iteration ends from any start, wh
 
 At a given load the sum of the pressure is kept in every step; the approach is the multiplier that belongs to
 it, the mean residual of the cells between the bounds.
+
+Bodies that yield to the force add one number to all of K, their compliance: contact and bodies are one such
+problem, at the approach that they would have without the force.
 """
 
 from __future__ import annotations
@@ -40,6 +43,8 @@ class Task(NamedTuple):
 
     hardness: float  # upper bound of the pressure, Pa (may be infinite)
     total: float  # sum of the pressure over the cells, Pa; negative at a given approach
+    # by how much the approach falls with the sum of the pressure, m/Pa: the bodies yield; zero at a load
+    compliance: float
     largest: float  # largest overlap of the undeformed bodies, m
     rtol: float  # largest complementarity residual relative to that overlap
     # no pressure of unit norm displaces by more, m/Pa: bounds the step of the projected gradient
@@ -144,10 +149,24 @@ def _advance(b: Box, share: float, hardness: float, margin: float) -> None:
         b.residual[q] += factor * b.response[q]
 
 
+@compiled(**INNER, **REASSOCIATE)
+def _yield(pressure: NDArray[np.float64], compliance: float, response: NDArray[np.float64]) -> float:
+    """Add what bodies yield to a pressure, Pa, to what it displaces, m; return that."""
+    total = pressure.dtype.type(0.0)
+    for q in range(len(pressure)):
+        total += pressure[q]
+    yielded = response.dtype.type(compliance * total)
+    for q in range(len(response)):
+        response[q] += yielded
+    return yielded
+
+
 @compiled(**ONCE)
-def true_residual(c: Convolution, b: Box) -> None:
-    """Compute the residual of the pressure, with the kernel (m/Pa) for this box."""
+def true_residual(c: Convolution, b: Box, compliance: float) -> None:
+    """Compute the residual of the pressure, with the kernel for this box and the compliance, m/Pa."""
     convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
+    if compliance > 0.0:
+        _yield(b.pressure, compliance, b.response)
     for q in range(len(b.residual)):
         b.residual[q] = b.response[q] - b.overlap[q]
 
@@ -156,20 +175,22 @@ def true_residual(c: Convolution, b: Box) -> None:
 def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
     """Find how well a pressure with a known residual solves the task, and where something is left to solve.
 
-    Returns the largest complementarity residual, m; the approach beyond that of the overlap, m, zero unless
-    the load is given; and first and end row and column of the smallest box that holds all cells under
-    pressure or in overlap, zeros if there are none.
+    Returns the largest complementarity residual, m; the approach beyond that of the overlap, m, zero if that
+    is given and the bodies do not yield; and first and end row and column of the smallest box that holds all
+    cells under pressure or in overlap, zeros if there are none.
     """
     level = find_level(b, task.hardness) if task.total >= 0.0 else 0.0
     first, end, left, right = b.nx, 0, b.ny, 0
-    worst = 0.0
+    worst, total = 0.0, 0.0
     for i in range(b.nx):
         for j in range(b.ny):
             p, r = b.pressure[i * b.pitch + j], b.residual[i * b.pitch + j] - level
             if p > 0.0 or r < 0.0:
                 worst = max(worst, abs(r) if p < task.hardness else r)
+                total += p
                 first, end = min(first, i), i + 1
                 left, right = min(left, j), max(right, j + 1)
+    level -= task.compliance * total
     return (worst, level, first, end, left, right) if end else (worst, level, 0, 0, 0, 0)
 
 
@@ -182,11 +203,13 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
     """
     cap, at_load, level = task.hardness, task.total >= 0.0, 0.0
     margin = rounding(cap, task.total)
-    rho, length, iteration, moving = 0.0, 1.0, done, True
+    rho, length, iteration, moving, yielded = 0.0, 1.0, done, True, 0.0
+    for q in range(len(b.pressure)):
+        yielded += task.compliance * b.pressure[q]
     while iteration < task.max_iterations:
         if at_load:
             level = find_level(b, cap)
-        if not _free(b.pressure, b, cap, level, task.rtol * (task.largest + level)):
+        if not _free(b.pressure, b, cap, level, task.rtol * (task.largest + level - yielded)):
             break
         iteration += 1
         before = rho
@@ -207,6 +230,7 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
         if not moving:
             break
         convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)
+        further = _yield(b.step, task.compliance, b.response) if task.compliance > 0.0 else 0.0
         curvature = _dot(b.step, b.response)
         moving = curvature > 0.0
         if not moving:
@@ -221,6 +245,7 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
         elif share > 1.0 and _leaves(b, share, cap):
             share = 1.0
         _advance(b, share, cap, margin)
+        yielded += share * further
     return iteration, moving
 
 

@@ -25,6 +25,7 @@ class Block(NamedTuple):
     approaches: NDArray[np.float64]  # (k,), increasing, m
     stride: int  # rows between positions
     load: float  # as in `contact.solve_contact`; if given, there is one approach, an upper estimate
+    compliance: float  # of the bodies, as in `contact.solve_contact`
     hardness: float  # Pa
     rtol: float  # as in `contact.solve_contact`
     max_iterations: int  # of a contact
@@ -39,7 +40,7 @@ class Block(NamedTuple):
     totals: NDArray[np.float64]  # (k, positions), receives the sum of the pressure over the cells, Pa
     # (k, positions), receives the largest complementarity residual relative to the largest overlap
     residuals: NDArray[np.float64]
-    # (k, positions), receives how far the approach is beyond that estimate, m; zero unless the load is given
+    # (k, positions), receives how far the approach is beyond the given one, m: at a load, or if bodies yield
     levels: NDArray[np.float64]
     counts: NDArray[np.int64]  # (4,), solutions, iterations, unconverged and truncated solutions so far
 
@@ -62,8 +63,8 @@ def solve_positions(
             _set_start(b, m, i, touch)
             pressure = b.pressures[m % 2, i]
             found = solve_contact(
-                known, b.gap, b.approaches[i], b.load, b.start, b.hardness, b.rtol, b.max_iterations, b.room,
-                pressure,
+                known, b.gap, b.approaches[i], b.load, b.compliance, b.start, b.hardness, b.rtol,
+                b.max_iterations, b.room, pressure,
             )  # fmt: skip
             if found.status == UNPREPARED:
                 return m, i, found.nx, found.ny

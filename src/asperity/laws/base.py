@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeGuard, runtime_checkable
 
 from asperity.errors import InputError
 
@@ -36,6 +36,19 @@ class SteppedLaw(Protocol):
     def warn_of_flaws(self) -> None:
         """Warn of evaluations that went wrong on the way."""
         ...
+
+
+class SettlingLaw(SteppedLaw, Protocol):
+    """A stepped law that finds its force together with what the bodies yield to it."""
+
+    def settle(self, step: int, approach: float, compliance: float) -> float:
+        """Elastic force F, N, at `approach` − `compliance` F: approach without force, m, compliance, m/N."""
+        ...
+
+
+def settles(law: object) -> TypeGuard[SettlingLaw]:
+    """Whether a law is a `SettlingLaw`; asked in every step, where `isinstance` would take half as long."""
+    return hasattr(law, "settle")
 
 
 @runtime_checkable

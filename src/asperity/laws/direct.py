@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from scipy.interpolate import BSpline
 
-    from asperity.contact.halfspace import Contact, HalfSpace
+    from asperity.contact.in_place import ContactInPlace
     from asperity.laws.materials import Materials
 
 
@@ -71,6 +71,7 @@ class Direct:
     def prepare(self, positions: ArrayLike) -> DirectOnPath:
         """Lay the law out on positions (n,) of the contact, m."""
         from asperity.contact.halfspace import HalfSpace
+        from asperity.contact.in_place import ContactInPlace
 
         index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / self.spacing[0]
         half = self.body.shape[0] // 2
@@ -85,19 +86,23 @@ class Direct:
                 "Shorten the duration or provide a longer texture.",
             )
         shape = (self.body.shape[0], self.body.shape[1])
-        return DirectOnPath(self, HalfSpace(shape, self.spacing, self.modulus, self.hardness), index - half)
+        half_space = HalfSpace(shape, self.spacing, self.modulus, self.hardness)
+        heights = np.require(self.heights, np.float64, ["C", "W"])
+        return DirectOnPath(self, ContactInPlace(half_space, self.body, self.rtol), heights, index - half)
 
 
 @dataclass(eq=False)
 class DirectOnPath:
-    """The law on a path, with the pressure that the next solution starts from.
+    """The law on a path, with the pressures that the next solution starts from.
 
     Attributes
     ----------
     law : Direct
         The law.
-    half_space : HalfSpace
+    contact : ContactInPlace
         The solver.
+    heights : ndarray, shape (rows, ny)
+        Texture of the path, m, contiguous.
     offsets : ndarray, shape (n,)
         First row of the window at each position; between rows the texture is interpolated.
     iterations, solves, unconverged, truncated : int
@@ -105,55 +110,67 @@ class DirectOnPath:
     """
 
     law: Direct
-    half_space: HalfSpace
+    contact: ContactInPlace
+    heights: NDArray[np.float64]
     offsets: NDArray[np.float64]
     iterations: int = 0
     solves: int = 0
     unconverged: int = 0
     truncated: int = 0
     overlap: float = 0.0
-    _gap: tuple[int, NDArray[np.float64]] | None = None
-    _trial: Contact | None = None
-    _pressure: NDArray[np.float64] | None = None
-    _row: int = 0
+    _under: tuple[int, NDArray[np.float64]] | None = None
+    _tried: bool = False
     _spline: BSpline | None = None
-    _start: tuple[int, NDArray[np.float64] | None] = field(default=(-1, None))
+    _last: _Accepted | None = None
+    _before: _Accepted | None = None
 
     def evaluate(self, step: int, approach: float) -> tuple[float, float]:
         """Elastic force, N, and its exact tangent dF/dδ, N/m, at a step of the path."""
-        from asperity.kernels.scanning import TRUNCATED
+        force = self.settle(step, approach, 0.0)
+        contact = self.contact
+        return force, contact.half_space.tangent_stiffness(contact.pressure) if force > 0.0 else 0.0
 
-        contact = self.half_space.at_approach(
-            self._gap_at(step), approach, self._start_at(step), self.law.rtol
-        )
-        self._trial = contact
-        self.truncated += contact.edge_share > TRUNCATED
-        self.overlap = max(self.overlap, approach - float(self._gap_at(step).min()))
-        self.iterations += contact.iterations
-        self.solves += contact.force > 0.0
-        self.unconverged += not contact.converged
-        return contact.force, contact.stiffness
+    def settle(self, step: int, approach: float, compliance: float) -> float:
+        """Elastic force, N, of bodies that yield to it by a compliance, m/N; approach without force, m."""
+        heights = self._heights_at(step)
+        if self._tried:
+            self.contact.start_again()
+        else:
+            self._start(step)
+        found = self.contact.solve(heights, approach, compliance)
+        self._tried = True
+        self.truncated += found.truncated
+        self.overlap = max(self.overlap, found.overlap)
+        self.iterations += found.iterations
+        self.solves += found.force > 0.0
+        self.unconverged += not found.converged
+        return found.force
 
     def accept(self, step: int) -> None:
         """Keep the last solution of this step: shifted against the motion, it starts the next."""
-        if self._trial is not None:
-            self._pressure = self._trial.pressure
-            self._row = round(self.offsets[step])
-        self._trial = None
+        if self._tried:
+            kept = self._before.pressure if self._before else np.empty_like(self.contact.pressure)
+            kept[:] = self.contact.pressure
+            self._before, self._last = self._last, _Accepted(kept, round(self.offsets[step]))
+        self._tried = False
 
     def state(self) -> dict[str, NDArray[Any]]:
         """What `restore` needs to go on from here exactly."""
-        counts = [self.iterations, self.solves, self.unconverged, self.truncated, self._row]
-        pressure = np.zeros((0, 0)) if self._pressure is None else self._pressure
-        return {"counts": np.array(counts), "pressure": pressure, "overlap": np.array(self.overlap)}
+        held = [a for a in (self._last, self._before) if a is not None]
+        return {
+            "counts": np.array([self.iterations, self.solves, self.unconverged, self.truncated]),
+            "overlap": np.array(self.overlap),
+            "pressures": np.array([a.pressure for a in held]),
+            "rows": np.array([a.row for a in held], dtype=np.int64),
+        }
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
-        counts = (int(c) for c in state["counts"])
-        self.iterations, self.solves, self.unconverged, self.truncated, self._row = counts
+        self.iterations, self.solves, self.unconverged, self.truncated = state["counts"].tolist()
         self.overlap = float(state["overlap"])
-        self._pressure = state["pressure"] if state["pressure"].size else None
-        self._gap, self._trial, self._start = None, None, (-1, None)
+        held = [_Accepted(p.copy(), int(r)) for p, r in zip(state["pressures"], state["rows"], strict=True)]
+        self._last, self._before = [*held, None, None][:2]
+        self._under, self._tried = None, False
 
     def warn_of_flaws(self) -> None:
         """Warn of contacts that did not converge or were cut off."""
@@ -164,36 +181,39 @@ class DirectOnPath:
         counts = Counts(self.solves, self.iterations, self.unconverged, self.truncated)
         warn_of_flaws(counts, "the direct law", "numerics.rtol", remedy)
 
-    def _gap_at(self, step: int) -> NDArray[np.float64]:
-        if self._gap is None or self._gap[0] != step:
-            self._gap = (step, self.law.body - self._rows_at(float(self.offsets[step])))
-        return self._gap[1]
+    def _heights_at(self, step: int) -> NDArray[np.float64]:
+        if self._under is None or self._under[0] != step:
+            self._under, self._tried = (step, self._rows_at(float(self.offsets[step]))), False
+        return self._under[1]
 
     def _rows_at(self, offset: float) -> NDArray[np.float64]:
         """Rows of the texture from an offset on; between rows by quintic splines, which keep short waves."""
         first, count = round(offset), self.law.body.shape[0]
         if abs(offset - first) < 1e-6:
-            return self.law.heights[first : first + count]
+            return self.heights[first : first + count]
         if self._spline is None:
             from scipy.interpolate import make_interp_spline
 
-            rows = np.arange(len(self.law.heights))
-            self._spline = make_interp_spline(rows, self.law.heights, k=5)
-        return np.asarray(self._spline(offset + np.arange(count)))
+            rows = np.arange(len(self.heights))
+            self._spline = make_interp_spline(rows, self.heights, k=5)
+        return np.ascontiguousarray(self._spline(offset + np.arange(count)))
 
-    def _start_at(self, step: int) -> NDArray[np.float64] | None:
-        """Start of the step: its last trial, else the accepted pressure moved with the surface."""
-        if self._trial is not None and self._gap is not None and self._start[0] == step:
-            return self._trial.pressure
-        pressure = self._pressure
-        if pressure is not None:
-            shift = round(self.offsets[step]) - self._row
-            if shift >= len(pressure) or shift < 0:
-                pressure = None
-            elif shift:
-                pressure = np.vstack([pressure[shift:], np.zeros((shift, pressure.shape[1]))])
-        self._start = (step, pressure)
-        return pressure
+    def _start(self, step: int) -> None:
+        """Let a step start from the accepted pressures."""
+        last, before = self._last, self._before
+        if last is None or not 0 <= (rows := round(self.offsets[step]) - last.row) < len(last.pressure):
+            self.contact.forget()
+            return
+        if before is None or not 0 <= last.row - before.row < len(last.pressure):
+            before = last
+        self.contact.start_from(last.pressure, before.pressure, rows, last.row - before.row)
+
+
+class _Accepted(NamedTuple):
+    """A pressure (nx, ny), Pa, and the first row of its window."""
+
+    pressure: NDArray[np.float64]
+    row: int
 
 
 def _build(materials: Materials) -> Direct:

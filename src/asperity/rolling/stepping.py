@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.modal import refine, tolerance
 from asperity.kernels.pointforce import Prepared, with_damping
-from asperity.laws.base import SteppedLaw
+from asperity.laws.base import SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
 from asperity.store import Checkpoint
 
@@ -182,7 +182,14 @@ def _step_from_python(stepper: Stepper, law: SteppedLaw, damping: float, stop: i
 def solve_from_python(
     law: SteppedLaw, step: int, free: Free, load: float, guess: float, damping: float
 ) -> tuple[float, int, bool]:
-    """The iteration of `asperity.kernels.modal.solve_step` for a law that Python evaluates."""
+    """The iteration of `asperity.kernels.modal.solve_step` for a law that Python evaluates.
+
+    A law that settles with the bodies does without, but where its damper engages or lets go.
+    """
+    if settles(law):
+        settled = _settled(law, step, free, damping)
+        if settled is not None:
+            return settled, 1, True
     free_approach, rate, compliance, rate_compliance = free
     low, high, approach = -np.inf, np.inf, free_approach - compliance * guess
     for iteration in range(STEPPED_ITERATIONS):
@@ -196,6 +203,22 @@ def solve_from_python(
         if damping > 0.0 and abs(high - low) <= limit:
             return (free_approach - approach) / compliance, iteration + 1, True
     return (free_approach - approach) / compliance, STEPPED_ITERATIONS, False
+
+
+def _settled(law: SettlingLaw, step: int, free: Free, damping: float) -> float | None:
+    """Contact force, N, found together with what the bodies yield to it; None where its damper decides.
+
+    With the damper in contact, as `asperity.kernels.pointforce.with_damping` has it, the force is still
+    straight in the elastic one. Whether it is in contact is known only then.
+    """
+    free_approach, rate, compliance, rate_compliance = free
+    share = 1.0 / (1.0 + damping * rate_compliance)
+    pushed = share * damping * rate
+    elastic = law.settle(step, free_approach - compliance * pushed, compliance * share)
+    force = share * elastic + pushed
+    if elastic > 0.0:
+        return force if force >= 0.0 else None
+    return 0.0 if pushed <= 0.0 else None
 
 
 def _state(stepper: Advanced, laws: Prepared | Remembers) -> dict[str, NDArray[Any]]:

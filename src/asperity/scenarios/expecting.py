@@ -21,8 +21,6 @@ from asperity.threads import one_thread_in_linear_algebra, thread_count
 
 SINGLE_TIME = 0.65
 """Time of a contact solution in single precision to that in double."""
-SOLUTIONS_PER_STEP = 3
-"""Solutions of `direct` in a time step: two or three."""
 STATE_TIME = 1.5e-7
 """Time of laying a state function out for a time step, s."""
 NUMBER_TIME = 5e-7
@@ -133,7 +131,7 @@ def _contact_seconds(
     if any(scan.single for scan in scans.values()):
         found["compiling"] = SINGLE_COMPILED * pace
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    found |= dict.fromkeys(solved, SOLUTIONS_PER_STEP * steps_of(case) * trial.direct)
+    found |= dict.fromkeys(solved, steps_of(case) * trial.direct)
     return found
 
 

@@ -22,7 +22,7 @@ from asperity.kernels.several import (
     take,
 )
 from asperity.kernels.several_records import CONTACT_DAMPING, book, damper_power, observe_contacts
-from asperity.laws.base import Law, SteppedLaw
+from asperity.laws.base import Law, SteppedLaw, settles
 from asperity.rolling.outcome import evaluation
 from asperity.rolling.path import Path
 from asperity.rolling.several.stacked import Stack
@@ -115,7 +115,9 @@ class ContactsStepper:
                     found = solve_step(law, step, free, load, guess)
                 else:
                     found = solve_from_python(law, step, free, load, guess, self.laws[k].damping)
-                right = take(system, motion, shapes, k, sweep, *found)
+                # one evaluation says that the guess was right, but of a law that settles: its force does
+                known = 0 if settles(law) else sweep
+                right = take(system, motion, shapes, k, known, *found)
                 settled = settled and (right if system.coupled else found[2])
             if settled or not system.coupled:
                 return settled
