@@ -1,11 +1,16 @@
 """A wheel rolling on a track: steady loads, closed forms, the frequency domain, convergence, flights."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
-from asperity.kinds.wheel_on_rail.passing import passed_points
+from asperity.kinds.wheel_on_rail.passing import _Path, passed_points
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
@@ -194,6 +199,30 @@ class TestPassedPoints:
         assert error < 0.1  # second against sixth order
         far = passed_points(kernel, [run], [16.2 + 300.0])[0]
         assert np.abs(far).max() < 1e-3 * np.abs(displacement).max()
+
+    def test_a_steady_load_makes_no_sound_when_steps_end_on_sleepers(self):
+        """A step that counted twice, or not at all, would hit the rail with 65 kN."""
+        step = 0.6 / 400 / SPEED
+        rail = moving_kernel(TRACK, SPEED, step, duration=0.12, positions=4)
+        time = np.arange(9000) * step
+        for start in (-16.8, 0.1):
+            run: Any = SimpleNamespace(history=np.full(9000, LOAD), history_start=start, time=time)
+            _, velocity = passed_points(rail, [run], [start + 6.6, start + 6.9])
+            heard = velocity[0][:, 3000:] * np.hanning(6000)  # the load is there at once at first
+            spectrum = np.abs(np.fft.rfft(heard, axis=1)) ** 2
+            frequency = np.fft.rfftfreq(6000, step)
+            high = (frequency > 2000.0) & (frequency < 5000.0)
+            assert spectrum[:, high].sum() < 1e-6 * spectrum.sum()
+
+    @given(st.floats(-50.0, 50.0), st.integers(1, 4000), st.floats(1e-4, 3.0))
+    def test_every_step_lies_in_one_bay(self, first, steps, stride):
+        path = _Path(np.zeros((1, steps)), first, stride)
+        pieces = [path.within(bay) for bay in path.bays]
+        assert [begin for begin, *_ in pieces] == list(np.cumsum([0, *(len(p[2]) for p in pieces)])[:-1])
+        places = np.concatenate([places for *_, places in pieces])
+        assert len(places) == steps
+        assert places.min() > -1e-9
+        assert places.max() < 1.0 + 1e-9
 
     def test_points_must_be_finite(self, kernel, poles):
         run = roll_wheel(poles, WHEEL, linear(), start=0.0, duration=0.01, settling=0.0)

@@ -372,3 +372,12 @@ def test_bad_questions_are_refused():
         Track.named("nordburg")
     with pytest.raises(InputError, match="track parameter"):
         Track.named("nordborg", pad_mass=1.0)
+
+
+def test_symmetric_places_share_the_work_for_their_shapes():
+    model = track()
+    waves = model.waves(np.array([200.0, 5000.0, 60000.0]) - 20j)
+    places = np.array([0.0, 0.1, 0.3, 0.5, 0.6]) * model.sleeper_spacing / 0.6
+    outgoing, incoming = waves.symmetric_shapes(places)
+    np.testing.assert_allclose(outgoing, [waves.outgoing(x) for x in places], rtol=1e-9)
+    np.testing.assert_allclose(incoming, [waves.incoming(x) for x in places], rtol=1e-9)

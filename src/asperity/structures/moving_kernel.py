@@ -159,12 +159,9 @@ def _weights(
 ) -> NDArray[np.float64]:
     """All rows of the kernel."""
     spacing = track.sleeper_spacing / positions
-    nodes = spacing * np.arange(positions)
+    nodes = np.linspace(0.0, track.sleeper_spacing, positions + 1)
     near, far = (HatResponse(track, time_step, taps, zones) for zones in (ZONES, 1))
-    shapes = {
-        grid: [np.array([shape(x) for x in nodes]) for shape in (grid.waves.outgoing, grid.waves.incoming)]
-        for grid in (near, far)
-    }
+    shapes = {grid: [s[:-1] for s in grid.waves.symmetric_shapes(nodes)] for grid in (near, far)}
 
     def row(start: int) -> NDArray[np.float64]:
         at = start + distance / spacing + np.arange(taps) * (speed * time_step / spacing)  # in nodes

@@ -40,6 +40,17 @@ class PeriodicWaves:
         """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= L: phi_{1/lambda}(x), scaled."""
         return self._shapes(x, 1.0 / self.multipliers)
 
+    def symmetric_shapes(
+        self, places: NDArray[np.float64]
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Shapes at places (p,), m, that lie symmetrically about the middle of the bay: two of (p, 2, f).
+
+        The first decay towards growing x, the second grow: `outgoing` and `incoming` for less work.
+        """
+        sines = np.sin(self.wavenumbers * places[:, None, None])
+        near = np.einsum("ijf,pif->pjf", self.weights, sines)
+        return near[::-1] + self.multipliers * near, near[::-1] + near / self.multipliers
+
     def _shapes(self, x: float, multipliers: NDArray[np.complex128]) -> NDArray[np.complex128]:
         near, far = np.sin(self.wavenumbers * x), np.sin(self.wavenumbers * (self.spacing - x))
         return np.sum(self.weights * (far[:, None] + multipliers * near[:, None]), axis=0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,6 @@ import numpy as np
 from asperity.kinds.wheel_on_rail.labels import findings_of_labels, track_label, wheel_label
 from asperity.kinds.wheel_on_rail.loss_factors import warn_of_loss_factors
 from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses
-from asperity.kinds.wheel_on_rail.passing import passed_points
 from asperity.kinds.wheel_on_rail.radiated import silent_wheel
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw, Role, in_role
@@ -31,8 +29,8 @@ POLE_TIME = 6e-3
 """Time of fitting a pole, s."""
 SHORT_KERNEL, FEW = 0.03, (4, 12)
 """Length, s, and start positions of the moving kernels that are tried."""
-LAGS = 4
-"""Times shorter than that is the kernel with which passed points are tried."""
+LAG_TIME = 2e-7
+"""Time of points that are passed, per bay, law and lag of the moving kernel, s."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +39,6 @@ class TrackTrial:
 
     length: float  # of the moving kernel, s
     kernel: float  # the moving kernel, with the shorter ones before it
-    points: float  # one passed point, all laws together
 
 
 def rows(case: Any) -> list[tuple[str, str]]:
@@ -75,10 +72,12 @@ def seconds(prepared: PreparedCase, progress: Progress, pace: float) -> dict[str
     case: Any = prepared.case
     trial = try_track(prepared, progress)
     poles = (case.numerics.poles or POLES) if case.numerics.kernel == "poles" else 0
+    first, last = case.rolled_range
+    bays, lags = (last - first) / case.track_model().sleeper_spacing, trial.length / case.time_step
     return {
         "moving kernel": trial.kernel / thread_count(),
         "poles": poles * POLE_TIME * pace,
-        "passed points": len(case.point_positions) * trial.points,
+        "passed points": bays * len(case.laws) * lags * LAG_TIME * pace,
     }
 
 
@@ -104,7 +103,7 @@ def _rail_like(prepared: PreparedCase) -> RailPoles | MovingKernel:
 
 
 def try_track(prepared: PreparedCase, progress: Progress) -> TrackTrial:
-    """Compute short moving kernels of a track, and let the wheel pass a point that remembers little."""
+    """Compute short moving kernels of a track."""
     case: Any = prepared.case
     track, speed, step = case.track_model(), case.speed, case.time_step
     message = "trying the track"
@@ -123,20 +122,5 @@ def try_track(prepared: PreparedCase, progress: Progress) -> TrackTrial:
         lengths.append(1.6 * lengths[-1])
     for each_length in lengths:
         kernel += shared * each_length + each * STARTS**2 * each_length * (bays * each_length + 2)
-    points = _point_time(prepared, length)
     progress(3, 3, message)
-    return TrackTrial(length, kernel, points)
-
-
-def _point_time(prepared: PreparedCase, length: float) -> float:
-    """Time of a passed point, from one whose responses are shorter: it grows with their length."""
-    case: Any = prepared.case
-    short = length / LAGS
-    lags = max(8, round(short / case.time_step))
-    kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.zeros((1, lags)))
-    first, last = case.rolled_range
-    steps = round((last - first) / case.speed / case.time_step)
-    run: Any = SimpleNamespace(history=np.ones(steps), history_start=first, time=np.zeros(steps))
-    middle = 0.5 * (first + last)
-    _, seconds = timed(lambda: passed_points(kernel, [run] * len(case.laws), [middle]))
-    return seconds * LAGS
+    return TrackTrial(length, kernel)
