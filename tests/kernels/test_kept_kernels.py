@@ -61,13 +61,13 @@ def test_a_kernel_is_compiled_once(folder, module):
 
 
 CALLING = """
-from asperity.kernels.options import INNER, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
 @compiled(**INNER)
 def inlined(x):
     return x + 1.0
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def called(x):
     return 2.0 * inlined(x)
 
@@ -77,27 +77,74 @@ def calling(x):
 """
 
 
-def test_a_kernel_is_linked_with_those_it_calls_as_when_it_was_compiled(folder, tmp_path, monkeypatch):
-    """Its own copies of them may differ in the last digit, and a second run would from the first."""
+@pytest.fixture
+def again(folder, tmp_path, monkeypatch):
+    """Imports the kernels above as a new process does: nothing is compiled or loaded yet."""
     path = tmp_path / "calling_kernel.py"
     path.write_text(CALLING)
-    read = []
-    verified = kept._verified
-    monkeypatch.setattr(kept, "_verified", lambda place, name: read.append(name) or verified(place, name))
-    for _ in range(2):
-        read.clear()
+
+    def import_again():
         monkeypatch.setattr(kept, "_CALLED", {})
         spec = importlib.util.spec_from_file_location("calling_kernel", path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-        assert module.calling(1.0) == 5.0
-    assert sum(module.calling.stats.cache_hits.values()) == 1
-    assert ["calling" in read[0], "called" in read[1], len(read)] == [True, True, 2]
-    files(folder)[0].parent.joinpath(read[1]).unlink()
-    spec.loader.exec_module(module)
-    monkeypatch.setattr(kept, "_CALLED", {})
+        return module
+
+    return import_again
+
+
+def kept_file(folder, name):
+    (found,) = folder.rglob(f"calling_kernel.{name}-*")
+    return found
+
+
+def compiled_and_loaded(module, name):
+    stats = getattr(module, name).stats
+    return sum(stats.cache_misses.values()), sum(stats.cache_hits.values())
+
+
+def test_a_kernel_calls_another_one_as_it_was_compiled(folder, again):
+    """It holds nothing of it: without its file it is worth nothing, and both are compiled again."""
+    assert again().calling(1.0) == 5.0
+    assert len(files(folder)) == 3
+    module = again()
     assert module.calling(1.0) == 5.0
-    assert sum(module.calling.stats.cache_misses.values()) == 1
+    assert compiled_and_loaded(module, "calling") == (0, 1)
+    assert [name.partition("-")[0] for name in kept._CALLED] == [
+        "calling_kernel.called",
+        "calling_kernel.calling",
+    ]
+    kept_file(folder, "called").unlink()
+    module = again()
+    assert module.calling(1.0) == 5.0
+    assert compiled_and_loaded(module, "calling") == (1, 0)
+
+
+def test_a_kernel_whose_callee_was_compiled_anew_is_compiled_again(folder, again):
+    """The callee has another symbol then; where none is found the linker ends the process."""
+    assert again().calling(1.0) == 5.0
+    kept_file(folder, "called").unlink()
+    assert again().called(1.0) == 4.0  # another entry of it, which Python can call
+    assert len(list(folder.rglob("calling_kernel.called-*"))) == 1
+    for file in folder.rglob("calling_kernel.called-*"):
+        file.unlink()
+    calling = kept_file(folder, "calling").read_bytes()
+    kept_file(folder, "calling").unlink()
+    assert again().calling(1.0) == 5.0
+    kept_file(folder, "calling").write_bytes(calling)
+    module = again()
+    assert module.calling(1.0) == 5.0
+    assert compiled_and_loaded(module, "calling") == (1, 0)
+
+
+def test_a_kernel_that_kernels_call_can_be_called_from_python(folder, again):
+    module = again()
+    assert module.inlined(1.0) == 2.0
+    assert module.calling(1.0) == 5.0
+    assert (module.called(1.0), module.inlined(1.0)) == (4.0, 2.0)
+    module = again()
+    assert (module.called(2.0), module.inlined(2.0), module.calling(2.0)) == (6.0, 3.0, 7.0)
+    assert len(files(folder)) == 5
 
 
 def test_a_kept_kernel_is_dropped_when_a_source_changes(folder, module, monkeypatch):

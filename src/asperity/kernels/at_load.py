@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.box import FAR, REACH, Box
-from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
 
 EXACT, SHIFTS = 1e-13, 100
 """Accuracy of the sum, some hundred roundings of it, and how often it is tried to reach it."""
@@ -34,7 +34,7 @@ def find_level(b: Box, hardness: float) -> float:
     return added / count if count > 0.0 else _between_bounds(b)
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def _between_bounds(b: Box) -> float:
     """Level between the residuals of those cells that are at the one and the other bound."""
     capped, empty = -FAR, FAR
@@ -100,7 +100,7 @@ def _sum(values: NDArray[np.float64]) -> float:
     return total
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def project_at_load(
     b: Box, length: float, level: float, hardness: float, total: float
 ) -> tuple[float, float, bool]:
@@ -129,7 +129,7 @@ def project_at_load(
     return 0.0, 0.0, False
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def carry(b: Box, hardness: float, total: float, stiffness: float) -> None:
     """Scale about the pressure of a box to the sum that it has to carry, Pa, within the bounds.
 

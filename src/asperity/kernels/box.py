@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.convolution import whole_vectors, workspace
 from asperity.kernels.lanes import lanes
-from asperity.kernels.options import INNER, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
 REACH = 2
 """How many cells the preconditioning stencil reaches from its centre."""
@@ -55,7 +55,7 @@ def box_room(nx: int, ny: int, mx: int, my: int, lanes: int) -> int:
     return 10 * size + 2 * REACH * pitch + workspace(mx, my, lanes)
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def empty_box(nx: int, ny: int, room: NDArray[np.float64]) -> Box:
     """Make a box without overlap and pressure, whose fields lie in `room`, as long as `box_room` says."""
     pitch, size = _extent(nx, ny, lanes(room))

@@ -99,7 +99,8 @@ def solve_contact(
     if guessed and load < 0.0 and not _scale(outer, hardness):
         true_residual(everywhere, outer, compliance)
     worst, level, top, bottom, near, far = survey(outer, task)
-    iterations, moving, last = 0, True, (0, 0, 0, 0)
+    iterations: int = np.int64(0)  # type: ignore[assignment]  # a literal one would be compiled apart
+    moving, last = True, (0, 0, 0, 0)
     while moving and worst > rtol * (largest + level) and iterations < max_iterations:
         row, rows = _grown(known, top, bottom, nx)
         column, columns = _grown(known, near, far, ny)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, REASSOCIATE, compiled
 
 
-@compiled(**LOOP, nogil=True)
+@compiled(**CALLED, nogil=True)
 def continue_pressure(
     last: NDArray[np.float64],
     before: NDArray[np.float64],
@@ -71,7 +71,7 @@ def _squares(p: NDArray[np.float64], q: NDArray[np.float64], share: float) -> fl
     return total
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def correct_start(
     now: NDArray[np.float64],
     expected: NDArray[np.float64],
@@ -85,7 +85,7 @@ def correct_start(
             start[i, j] = min(max(now[i, j] + (found[i, j] - expected[i, j]), 0.0), cap)
 
 
-@compiled(**LOOP, **REASSOCIATE)
+@compiled(**CALLED, **REASSOCIATE)
 def misfits(
     found: NDArray[np.float64],
     expected: NDArray[np.float64],

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from asperity.kernels.fourier import roots, transform
 from asperity.kernels.lanes import lanes, load, store, transpose
-from asperity.kernels.options import INNER, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, compiled
 
 
 class Convolution(NamedTuple):
@@ -140,7 +140,7 @@ def _across(c: Convolution, block: int, rows: NDArray, ny: int, a: NDArray, b: N
                 store(rows, o + part, im + load(s, o + part))
 
 
-@compiled(**LOOP, nogil=True)
+@compiled(**CALLED, nogil=True)
 def convolve(
     c: Convolution, field: NDArray, nx: int, ny: int, pitch: int, work: NDArray, out: NDArray
 ) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.lanes import lanes, load, store
-from asperity.kernels.options import INNER, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, compiled
 
 
 @lru_cache
@@ -143,7 +143,7 @@ def _by_five(x: NDArray, y: NDArray, n: int, stride: int, w: NDArray) -> None:
             _put(y, o + 3 * stride * row, f - g, fi - gi, w, 3 * p * unit)
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def transform(x: NDArray, y: NDArray, radices: NDArray[np.int64], w: NDArray) -> bool:
     """Transform every column of a batch, forward and not normalised; return whether it is in `y`.
 

@@ -10,7 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 from asperity.kernels.convolution import Convolution, quarter_turn, spectrum, whole_vectors
 from asperity.kernels.fourier import factors, roots, smooth_length
 from asperity.kernels.lanes import lanes, width
-from asperity.kernels.options import LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, compiled
 
 UNIT = 8
 """Boxes are convolved in multiples of this length."""
@@ -74,14 +74,14 @@ def prepared(known: Influence, nx: int, ny: int) -> Influence:
     return known._replace(places=places, spectra=np.concatenate([known.spectra, added]))
 
 
-@compiled(**LOOP)
+@compiled(**INNER)
 def is_prepared(known: Influence, nx: int, ny: int) -> bool:
     """Whether the convolution on a box of nx × ny cells is there."""
     mx, my = known.lengths[-(-nx // UNIT)], known.lengths[-(-ny // UNIT)]
     return known.places[mx // UNIT, my // UNIT] >= 0
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def convolution(known: Influence, nx: int, ny: int) -> Convolution:
     """Convolution on a box of nx × ny cells, which is prepared."""
     i, j = known.lengths[-(-nx // UNIT)] // UNIT, known.lengths[-(-ny // UNIT)] // UNIT

@@ -47,11 +47,11 @@ class Kept:
 
     Stands for `numba.core.caching.FunctionCache`, which trusts what it finds and fails where it cannot write;
     numba has no public way to put another in its place, nor to write its results: hence the private names.
-    `inlined` says that nothing is left of the function where other kernels call it.
+    `inlined` says that nothing is left of it where other kernels call it, `entry` that Python can.
     """
 
-    def __init__(self, function: Callable[..., Any], *, inlined: bool = False) -> None:
-        self.inlined = inlined
+    def __init__(self, function: Callable[..., Any], *, inlined: bool = False, entry: bool = True) -> None:
+        self.inlined, self.entry = inlined, entry
         self.name = re.sub(r"[^\w.]", "", f"{function.__module__}.{function.__qualname__}")
         own = Path(function.__code__.co_filename)
         self.source = own.read_bytes() if own.is_file() else b""
@@ -76,17 +76,17 @@ class Kept:
         COMPILATION.end(name)
         if result.lifted or result.library.has_dynamic_globals:  # holds objects or addresses of this process
             return
-        linked = result.library._linking_libraries
-        called = [kernel for kernel, library in _CALLED.items() if library in linked]
+        named = {function.name for function in result.library._final_module.functions}
+        called = [(kernel, symbol) for kernel, (symbol, _) in _CALLED.items() if symbol in named]
         payload = dumps((called, result._reduce()))
         if not self.inlined:
-            _CALLED[name] = result.library
+            _CALLED[name] = result.fndesc.llvm_func_name, result.library
         if not any(_written(folder, name, payload) for folder in folders()):
             _warn_unkept()
 
     def file_name(self, signature: Any, codegen: Any) -> str:
         """Name of a signature's file: the function's name, and a digest of all that the code depends on."""
-        known = repr((self.name, str(signature), codegen.magic_tuple())).encode()
+        known = repr((self.name, self.entry, str(signature), codegen.magic_tuple())).encode()
         return f"{self.name}-{hashlib.sha256(known + self.source).hexdigest()[:24]}"
 
     def is_kept(self) -> bool:
@@ -103,26 +103,29 @@ class Kept:
         """Do nothing: what is out of date is not found."""
 
 
-_CALLED: dict[str, Any] = {}
-"""Libraries of this process by the names of their files, but for functions that are inlined."""
+_CALLED: dict[str, tuple[str, Any]] = {}
+"""Kernels of this process by the names of their files: symbol and library, but for those that are inlined."""
 
 
 def _loaded(name: str, context: Any) -> Any:
     """Load a file, after those of the kernels that it calls; None if one of them cannot be trusted.
 
-    A kernel brings copies of those that it calls, compiled again beside it: their last digits may differ. The
-    linker takes the first it gets, which is that of the kernel itself where it has just been compiled.
+    It calls them by their symbols, which another compilation may have named otherwise. Of those that are
+    linked into it, it brings copies, whose last digits may differ. The linker takes the first it gets, which
+    is that of the kernel itself where it has just been compiled.
     """
     for folder in folders():
         payload = _verified(folder / SOURCES, name)
         if payload is None:
             continue
         called, data = pickle.loads(payload)  # noqa: S301 (our own, see above)
-        for other in called:
+        for other, symbol in called:
             if other not in _CALLED and _loaded(other, context) is None:
                 return None
+            if _CALLED[other][0] != symbol:
+                return None
         result = CompileResult._rebuild(context, *data)
-        _CALLED.setdefault(name, result.library)
+        _CALLED.setdefault(name, (result.fndesc.llvm_func_name, result.library))
         return result
     return None
 

@@ -7,13 +7,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import CALLED, LOOP, REASSOCIATE, compiled
 
 BALL = 4.0 / 3.0 / math.sqrt(math.pi / 2.0)
 """Makes the estimate of the approach exact for a ball: Hertz's force over √A × (mean overlap on A)."""
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def overlap_box(
     gap: NDArray[np.float64], approach: float, lowest: NDArray[np.float64]
 ) -> tuple[float, int, int, int, int]:

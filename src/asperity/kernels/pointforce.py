@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import INNER, compiled
+from asperity.kernels.options import ENTERED, INNER, compiled
 
 SHIFTED = 0  # F = f(approach - h)
 SECANT = 1  # F = f(approach)/r (r - h), r = approach + datum: Eq. 2.1 as printed
@@ -115,7 +115,7 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
     return g, slope
 
 
-@compiled(**INNER)
+@compiled(**ENTERED)
 def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     """Elastic force of a law at a position, N, for an approach, m, and its derivative by that, N/m."""
     approach -= law.planes[step]

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from asperity.kernels.at_load import balance_load, find_level, mark_free, project_at_load, rounding
 from asperity.kernels.box import REACH, Box
 from asperity.kernels.convolution import Convolution, convolve
-from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
+from asperity.kernels.options import CALLED, INNER, ONCE, REASSOCIATE, compiled
 from asperity.kernels.preconditioner import precondition
 
 WHOLE = 0.85
@@ -161,7 +161,7 @@ def _yield(pressure: NDArray[np.float64], compliance: float, response: NDArray[n
     return yielded
 
 
-@compiled(**ONCE)
+@compiled(**CALLED)
 def true_residual(c: Convolution, b: Box, compliance: float) -> None:
     """Compute the residual of the pressure, with the kernel for this box and the compliance, m/Pa."""
     convolve(c, b.pressure, b.nx, b.ny, b.pitch, b.work, b.response)
@@ -171,7 +171,7 @@ def true_residual(c: Convolution, b: Box, compliance: float) -> None:
         b.residual[q] = b.response[q] - b.overlap[q]
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
     """Find how well a pressure with a known residual solves the task, and where something is left to solve.
 
@@ -194,7 +194,7 @@ def survey(b: Box, task: Task) -> tuple[float, float, int, int, int, int]:
     return (worst, level, first, end, left, right) if end else (worst, level, 0, 0, 0, 0)
 
 
-@compiled(**ONCE)
+@compiled(**CALLED)
 def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: int) -> tuple[int, bool]:
     """Solve the task on a box, from a residual and a pressure that is within the bounds and carries the load.
 
@@ -222,11 +222,11 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
         aim = CONJUGATE if beta > 0.0 else PRECONDITIONED
         if iteration > PATIENCE and iteration % OFTEN == 0:
             aim = STEEPEST
-        work, clipped = _aim(b, aim, beta, length, level, task)
-        while not work < 0.0 and aim < STEEPEST:
-            aim += 1
+        moving, work, clipped = False, 0.0, 0.0
+        while not moving and aim <= STEEPEST:
             work, clipped = _aim(b, aim, beta, length, level, task)
-        moving = work < 0.0
+            moving = work < 0.0
+            aim += not moving
         if not moving:
             break
         convolve(c, b.step, b.nx, b.ny, b.pitch, b.work, b.response)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.modal import backward, solve_step
-from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import ENTERED, INNER, LOOP, REASSOCIATE, compiled
 
 
 class Vehicle(NamedTuple):
@@ -72,14 +72,14 @@ def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
     return cell, at - cell
 
 
-@compiled(**INNER)
+@compiled(**ENTERED)
 def direct_at(vehicle, step):  # type: ignore[no-untyped-def]
     """Displacement of the rail at a step for unit force there, m/N."""
     cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
     return vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
 
 
-@compiled(**INNER)
+@compiled(**ENTERED)
 def cubic_weights(t):  # type: ignore[no-untyped-def]
     """Lagrange weights of the nodes -1, 0, 1, 2 at a place t between 0 and 1."""
     before, after, beyond = t + 1.0, t - 1.0, t - 2.0

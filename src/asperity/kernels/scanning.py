@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from asperity.kernels.contact import CONVERGED, UNPREPARED, Room, solve_contact
 from asperity.kernels.continuation import continue_pressure, correct_start, misfits
 from asperity.kernels.influence import Influence
-from asperity.kernels.options import INNER, LOOP, compiled
+from asperity.kernels.options import CALLED, INNER, LOOP, compiled
 
 TRUNCATED = 0.01
 """Share of the force on the window's edge from which a contact counts as cut off."""
@@ -94,7 +94,7 @@ def _set_gap(b: Block, m: int) -> float:
     return touch
 
 
-@compiled(**LOOP)
+@compiled(**CALLED)
 def _set_start(b: Block, m: int, i: int, touch: float) -> None:
     """Continue the pressure of the last positions or approaches, whichever was nearer one approach before.
 
@@ -130,7 +130,7 @@ def _share(b: Block, i: int) -> float:
     return (b.approaches[i] - b.approaches[i - 1]) / (b.approaches[i - 1] - b.approaches[i - 2])
 
 
-@compiled(**LOOP)
+@compiled(**INNER)
 def _on_edge(pressure: NDArray[np.float64]) -> float:
     """Sum of the pressure over the outermost cells."""
     nx, ny = pressure.shape
