@@ -9,7 +9,7 @@ import warnings
 import pytest
 
 from asperity import store
-from asperity.kernels import kept
+from asperity.kernels import kept, turns
 
 MODULE = """
 from asperity.kernels.options import LOOP, compiled
@@ -50,7 +50,7 @@ def fresh(path):
 
 
 def files(folder):
-    return sorted(path for path in folder.rglob("*") if path.is_file())
+    return sorted(path for path in folder.rglob("*") if path.is_file() and path.name != turns.FILE)
 
 
 def test_a_kernel_is_compiled_once(folder, module):
@@ -258,3 +258,69 @@ def test_without_a_home_and_an_entry_of_the_user(tmp_path):
     private = tmp_path / f"asperity-{os.getuid()}"
     assert done.stdout.strip() == f"(2, 2) {private}"
     assert files(private / "kernels")
+
+
+SLOW = """
+import sys, time
+sys.path.insert(0, sys.argv[1])
+from asperity.kernels import kept
+keep = kept.Kept._keep
+
+def slowly(*arguments):
+    print("compiling", flush=True)
+    sys.stdin.readline()
+    keep(*arguments)
+
+kept.Kept._keep = slowly
+import kept_kernel
+kept_kernel.twice(2.0)
+"""
+
+
+@pytest.fixture
+def other(folder, module, tmp_path):
+    """Another process that compiles the first kernel of the module, and keeps it when it gets a line."""
+    command = [sys.executable, "-c", SLOW, str(tmp_path)]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes) as process:
+        assert process.stdout.readline() == "compiling\n"
+        yield process
+        process.kill()
+
+
+needs_locks = pytest.mark.skipif(turns.fcntl is None, reason="nothing can be locked")
+
+
+@needs_locks
+def test_what_another_process_compiles_is_waited_for_and_loaded(other, module, monkeypatch):
+    waited = []
+
+    def sleep(seconds):
+        if not waited:
+            other.communicate("keep it\n")
+        waited.append(seconds)
+
+    monkeypatch.setattr(turns.time, "sleep", sleep)
+    assert fresh(module) == (1, 0)
+    assert waited
+
+
+@needs_locks
+def test_nobody_waits_for_a_process_that_was_killed(other, module, monkeypatch):
+    monkeypatch.setattr(turns.time, "sleep", lambda seconds: (other.kill(), other.wait()))
+    assert fresh(module) == (0, 1)
+
+
+@needs_locks
+def test_nobody_waits_for_ever(other, module, monkeypatch):
+    monkeypatch.setattr(turns, "PATIENCE", 0.0)
+    assert fresh(module) == (0, 1)
+    assert other.poll() is None
+
+
+def test_without_locks_nobody_waits(folder, module, monkeypatch):
+    monkeypatch.setattr(turns, "fcntl", None)
+    turns._opened.cache_clear()
+    assert fresh(module) == (0, 1)
+    assert fresh(module) == (1, 0)
+    turns._opened.cache_clear()

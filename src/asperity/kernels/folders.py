@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from asperity.files import is_part, left_overs
+from asperity.files import left_overs
 from asperity.store import default_root, is_private, temporary_folder
 
 VARIABLE = "ASPERITY_KERNELS"
@@ -34,6 +34,6 @@ def kept_files(folder: Path) -> tuple[list[Path], list[Path]]:
         return [], []
     for place in places:
         if is_private(place):
-            kernels += [file for file in place.iterdir() if not is_part(file)]
+            kernels += [file for file in place.iterdir() if not file.name.startswith(".")]
             parts += left_overs(place)
     return sorted(kernels), sorted(parts)

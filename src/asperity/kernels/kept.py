@@ -8,11 +8,13 @@ damaged, incomplete or of another version counts as missing.
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
 import re
 import sys
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -24,6 +26,7 @@ from numba.core.serialize import dumps
 
 from asperity.files import replace
 from asperity.kernels.folders import STAMP, VARIABLE, folders
+from asperity.kernels.turns import end_turn, take_turn
 from asperity.progress import COMPILATION
 from asperity.store import is_private
 
@@ -68,12 +71,22 @@ class Kept:
         found = _loaded(name, context)
         if found is None:
             COMPILATION.begin(name)
+            found = _awaited(name, context)
+            if found is not None:
+                COMPILATION.end(name)
         return found
 
     def save_overload(self, signature: Any, result: Any) -> None:
         """Keep the machine code of a signature, in the first folder that takes it."""
         name = self.file_name(signature, result.codegen)
         COMPILATION.end(name)
+        try:
+            self._keep(name, result)
+        finally:
+            if (place := _place()) is not None:
+                end_turn(place, name)
+
+    def _keep(self, name: str, result: Any) -> None:
         if result.lifted or result.library.has_dynamic_globals:  # holds objects or addresses of this process
             return
         named = {function.name for function in result.library._final_module.functions}
@@ -127,6 +140,29 @@ def _loaded(name: str, context: Any) -> Any:
         result = CompileResult._rebuild(context, *data)
         _CALLED.setdefault(name, (result.fndesc.llvm_func_name, result.library))
         return result
+    return None
+
+
+def _awaited(name: str, context: Any) -> Any:
+    """Take the turn to compile a kernel; load it if another process has kept it meanwhile, else None."""
+    place = _place()
+    if place is None:
+        return None
+    take_turn(place, name)
+    found = _loaded(name, context)
+    if found is not None:
+        end_turn(place, name)
+    return found
+
+
+def _place() -> Path | None:
+    """First folder of this version's kernels that can be written to, made if it is missing."""
+    for root in folders():
+        with suppress(OSError):
+            folder = root / SOURCES
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if is_private(folder) and os.access(folder, os.W_OK):
+                return folder
     return None
 
 

@@ -1,0 +1,64 @@
+"""One process at a time compiles a kernel: the others wait for it, and load what it has kept."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import time
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # Windows: each process compiles for itself
+    fcntl = None  # type: ignore[assignment]
+
+FILE = ".turns"
+"""File of a folder of kernels; each kernel has a byte of it, which the process locks that compiles it."""
+PATIENCE = 60.0
+"""Longest time to wait for another process, s; then the kernel is compiled here, too."""
+POLL = 0.01
+"""Time between looks, s."""
+
+
+def take_turn(folder: Path, kernel: str) -> None:
+    """Wait until no other process compiles a kernel, at most `PATIENCE`; not where nothing can be locked.
+
+    A process that ends, however it does, gives its turns back.
+    """
+    file, begun = _opened(folder), time.monotonic()
+    while file is not None and not _locked(file, kernel) and time.monotonic() - begun < PATIENCE:
+        time.sleep(POLL)
+
+
+def end_turn(folder: Path, kernel: str) -> None:
+    """Let other processes have it."""
+    file = _opened(folder)
+    if file is not None:
+        with suppress(OSError):
+            fcntl.lockf(file, fcntl.LOCK_UN, 1, _place(kernel))
+
+
+@cache
+def _opened(folder: Path) -> int | None:
+    """Descriptor of the file, which stays open: closing any descriptor of it would give all turns back."""
+    if fcntl is None:
+        return None
+    with suppress(OSError):
+        return os.open(folder / FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    return None
+
+
+def _locked(file: int, kernel: str) -> bool:
+    try:
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, _place(kernel))
+    except (BlockingIOError, PermissionError):
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
+
+
+def _place(kernel: str) -> int:
+    return int.from_bytes(hashlib.sha256(kernel.encode()).digest()[:4]) // 2
