@@ -3,6 +3,7 @@
 import os
 import signal
 import tempfile
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,8 @@ from browser import chromium
 os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pytest_cache" / "kernels"))
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
 os.environ["ASPERITY_CACHE"] = _cache.name
+
+from asperity.kinds.drawing import DrawingProcess  # noqa: E402
 
 
 def pytest_configure():
@@ -25,6 +28,12 @@ def pytest_configure():
 
 def pytest_unconfigure():
     _cache.cleanup()
+
+
+@pytest.fixture(autouse=True)
+def drawn_alone(monkeypatch):
+    """Runs of tests are short, and processors busy: a second process takes longer to start than to draw."""
+    monkeypatch.setattr("asperity.cli.running.drawing_process", lambda: nullcontext(DrawingProcess()))
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from asperity.cli.planning import announce_scan
 from asperity.config.case import Case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, require_space
+from asperity.kinds.drawing import DrawingProcess, drawing_process
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import rolling, spectra
 from asperity.terminal import detail, remark, say
@@ -58,7 +60,8 @@ def run_into(
     refuse_folder(case, directory, overwrite=overwrite)
     with alone_in(directory):
         refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
-        return _run_alone(case, directory, source, report=report, converge=converge)
+        with drawing_process() if report else nullcontext() as drawing:
+            return _run_alone(case, directory, source, drawing, converge=converge)
 
 
 def prepared_case(case: Case, source: str) -> PreparedCase:
@@ -72,7 +75,9 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
     return prepared
 
 
-def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> dict[str, Any]:
+def _run_alone(
+    case: Case, directory: Path, source: str, drawing: DrawingProcess | None, *, converge: bool
+) -> dict[str, Any]:
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.running import run
     from asperity.store import Store
@@ -91,13 +96,13 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, conver
         from asperity.kinds.report import remove_report
 
         remove_report(directory)
-    written = _written(tree, directory, report=report)
+    written = _written(tree, directory, drawing)
     if converge:
         from asperity.convergence.running import with_convergence
 
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)
-        written = _written(tree, directory, report=report)
+        written = _written(tree, directory, drawing)
     if verdict := tree.attrs.get("verdict"):
         say(verdict)
     for name, path in written.items():
@@ -152,15 +157,16 @@ def band_summaries(tree: DataTree) -> dict[str, Any]:
     }
 
 
-def _written(tree: DataTree, directory: Path, *, report: bool) -> dict[str, Path]:
+def _written(tree: DataTree, directory: Path, drawing: DrawingProcess | None) -> dict[str, Path]:
     """Write a result, and its report if it is wanted; the paths, each with what it is."""
     from asperity.results import save
 
     written = {"Results": save(tree, directory / "run.nc")}
-    if report:
-        from asperity.kinds.report import report as written_report
+    if drawing is not None:
+        from asperity.kinds.report import parts_of, write_report
 
-        written["Report"] = written_report(tree, directory)
+        drawn = drawing.pictures(tree, written["Results"], parts_of(tree))
+        written["Report"] = write_report(tree, directory / PAGE, drawn)
     return written
 
 

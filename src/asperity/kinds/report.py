@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from asperity.kinds import KINDS
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.csv_files import write_columns
 from asperity.reporting.data import stated
-from asperity.reporting.page import drawable_parts, page, pictures, sections
+from asperity.reporting.page import Picture, drawable_parts, page, pictures, sections
 from asperity.reporting.part import Part
 from asperity.schema.provenance import KIND
 
@@ -76,10 +77,15 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     target = file_path("report", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
         target /= "report.html"
+    return write_report(result, target)
+
+
+def write_report(result: DataTree, target: Path, drawn: Mapping[str, Picture] | None = None) -> Path:
+    """Write the page of a result and, beside it, the files of its figures, which may have been drawn."""
     chapters = chapters_of(result)
-    drawn = sections(result, chapters)
-    text = page(result, chapters, drawn)
-    for picture in pictures(drawn):
+    found = sections(result, chapters, drawn)
+    text = page(result, chapters, found)
+    for picture in pictures(found):
         _write(target.parent / f"{picture.name}.svg", picture.file)
     for part in parts_of(result):
         write_columns(part.columns(result), target.parent / f"{part.name}.csv")

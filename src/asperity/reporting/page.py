@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -54,11 +54,8 @@ def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
     return [part for chapter in chapters for part in chapter.parts if part.drawable(tree)]
 
 
-def _pictures(tree: DataTree, parts: tuple[Part, ...]) -> list[Picture | ReportTable]:
-    return [_picture(tree, part) for part in parts if part.drawable(tree)]
-
-
-def _picture(tree: DataTree, part: Part) -> Picture:
+def picture(tree: DataTree, part: Part) -> Picture:
+    """Draw a figure for a wide and for a narrow page."""
     data, colours = part.collect(tree), law_colours(tree)
     drawn = drawing_of(part.plot(tree, data), part.name)
     shown = {
@@ -75,17 +72,19 @@ def _picture(tree: DataTree, part: Part) -> Picture:
     return Picture(part.name, part.title, caption, file=drawn.for_file(part.title), **shown)
 
 
-def sections(tree: DataTree, chapters: Sequence[Chapter]) -> list[PageSection]:
-    """Chapters of the page; a chapter without any data is left out."""
-    found = (
-        PageSection(
-            chapter.name,
-            chapter.title,
-            [*_pictures(tree, chapter.parts), *(t for make in chapter.tables if (t := make(tree)))],
-        )
-        for chapter in chapters
-    )
-    return [section for section in found if section.blocks]
+def sections(
+    tree: DataTree, chapters: Sequence[Chapter], drawn: Mapping[str, Picture] | None = None
+) -> list[PageSection]:
+    """Chapters of the page, with figures drawn before, by name, or now; one without any data is left out."""
+    found = []
+    for chapter in chapters:
+        parts = [part for part in chapter.parts if part.drawable(tree)]
+        figures = [picture(tree, part) if drawn is None else drawn[part.name] for part in parts]
+        tables = (table for make in chapter.tables if (table := make(tree)))
+        blocks: list[Picture | ReportTable] = [*figures, *tables]
+        if blocks:
+            found.append(PageSection(chapter.name, chapter.title, blocks))
+    return found
 
 
 def pictures(drawn: Sequence[PageSection]) -> list[Picture]:
