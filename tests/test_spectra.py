@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import scipy.signal
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
@@ -173,3 +174,18 @@ def test_product_of_band_and_time_says_how_far_a_level_scatters():
     product = spectra.band_product(band, spectra.averaging_time(samples, step, segment=segment))
     assert_allclose(product[band.searchsorted(99.0)], 23.08 * 2.0 * 0.8384, rtol=1e-3)
     assert_allclose(level.std(axis=0), 4.34 / np.sqrt(product), rtol=0.06)
+
+
+@pytest.mark.parametrize(("length", "overlap"), [(64, 0.5), (65, 0.0), (100, 0.75), (1000, 0.5)])
+def test_psd_agrees_with_scipy(length, overlap):
+    signals = np.random.default_rng(2).normal(size=(2, 1000)) + 3.0
+    expected = scipy.signal.welch(
+        signals - signals.mean(axis=1, keepdims=True),
+        fs=50.0,
+        nperseg=length,
+        noverlap=int(overlap * length),
+        detrend=False,
+    )
+    found = spectra.psd(signals, 0.02, segment=length, overlap=overlap)
+    np.testing.assert_allclose(found[0], expected[0], rtol=1e-12)
+    np.testing.assert_allclose(found[1], expected[1], rtol=1e-10, atol=1e-18)

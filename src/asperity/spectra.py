@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import signal as _signal
+from scipy.fft import rfft
 
 from asperity.errors import InputError
 
@@ -42,17 +42,20 @@ def psd(
         raise InputError("segment", length, f"2 to {values.shape[-1]} samples", "Shorten the segment.")
     if not 0.0 <= overlap < 1.0:
         raise InputError("overlap", overlap, "0 <= overlap < 1")
-    frequency, density = _signal.welch(
-        values - values.mean(axis=-1, keepdims=True),
-        fs=1.0 / spacing,
-        window="hann",
-        nperseg=length,
-        noverlap=int(overlap * length),
-        detrend=False,
-        scaling="density",
-        axis=-1,
-    )
-    return frequency, density
+    values = values - values.mean(axis=-1, keepdims=True)
+    window, advance = hann_window(length), length - int(overlap * length)
+    starts = range(0, values.shape[-1] - length + 1, advance)
+    power = sum(np.abs(rfft(values[..., start : start + length] * window)) ** 2 for start in starts)
+    density = np.asarray(power) * (2.0 * spacing / (len(starts) * (window**2).sum()))
+    density[..., 0] *= 0.5
+    if length % 2 == 0:
+        density[..., -1] *= 0.5  # zero and half the sampling frequency have no other side
+    return np.asarray(np.fft.rfftfreq(length, spacing), dtype=np.float64), density
+
+
+def hann_window(length: int) -> NDArray[np.float64]:
+    """Periodic Hann window of `length` samples."""
+    return 0.5 - 0.5 * np.cos(2.0 * np.pi / length * np.arange(length))
 
 
 def averaging_time(
@@ -66,7 +69,7 @@ def averaging_time(
     """
     length = samples if segment is None else int(segment)
     shared = int(overlap * length)
-    window = _signal.get_window("hann", length) ** 2
+    window = hann_window(length) ** 2
     weight = np.zeros(samples)
     for first in range(0, samples - length + 1, length - shared):
         weight[first : first + length] += window

@@ -126,6 +126,7 @@ def overlaps(job, rows, planes):
 
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
     monkeypatch.setattr("asperity.reduction.areal.PIECE", 500)
+    monkeypatch.setattr("asperity.contact.scan.TOUCHED", 500)
     axes = [(20e-6, 20e-6), (30e-6, 35e-6)]
 
     def work(rows):

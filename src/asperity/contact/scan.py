@@ -28,6 +28,8 @@ F = TypeVar("F")
 
 BLOCK = 256
 """Positions solved in one go, from a cold start: the unit of parallel work and of what is kept on disk."""
+TOUCHED = 8192
+"""Positions whose first touch is sought in one go."""
 BATCH = 4096
 """Positions of a block on a device: enough to fill it, and few enough to be kept often."""
 BLOCK_BYTES = 1200
@@ -221,10 +223,12 @@ def first_touch(
     strip, nx = Rows(surface) if isinstance(surface, np.ndarray) else surface, body.shape[0]
     starts = range(0, strip.shape[0] - nx + 1, stride)
     result = np.empty(len(starts))
-    for first in range(0, len(starts), BLOCK):
-        block = starts[first : first + BLOCK]
-        rows = strip.rows(block[0], block[-1] + nx)
-        for m, start in enumerate(block):
-            at = start - block[0]
-            result[first + m] = (body - rows[at : at + nx]).min()
+    for first in range(0, len(starts), TOUCHED):
+        block = starts[first : first + TOUCHED]
+        lines = np.ascontiguousarray(strip.rows(block[0], block[-1] + nx).T)
+        nearest, gap = np.full(len(block), np.inf), np.empty(len(block))
+        for (offset, line), height in np.ndenumerate(body):  # a cell of the body over all positions at once
+            under = lines[line, offset : offset + (len(block) - 1) * stride + 1 : stride]
+            np.minimum(nearest, np.subtract(height, under, out=gap), out=nearest)
+        result[first : first + len(block)] = nearest
     return result

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import lfilter
+from scipy.linalg import solve_banded
 
 from asperity.errors import ComputationError, InputError
 
@@ -75,9 +75,12 @@ def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) 
         raise InputError("time step (s)", step, "a finite positive number")
     kept = np.exp(-step / time_constant)
     mean = -np.expm1(-step / time_constant) * time_constant / step
-    start = values[..., :1] * (1.0 - (1.0 - mean))  # the state that holds a steady value
-    found, _ = lfilter([1.0 - mean, mean - kept], [1.0, -kept], values, axis=-1, zi=start)
-    return np.asarray(found)
+    forced = (1.0 - mean) * values
+    forced[..., 1:] += (mean - kept) * values[..., :-1]
+    forced[..., 0] = values[..., 0]  # steady before
+    bands = np.stack([np.ones(values.shape[-1]), np.full(values.shape[-1], -kept)])
+    found = solve_banded((1, 0), bands, forced.reshape(-1, values.shape[-1]).T)  # y_n − kept y_n−1 = forced
+    return np.asarray(found.T.reshape(values.shape))
 
 
 def pressure_level(squared: ArrayLike) -> NDArray[np.float64]:

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import oaconvolve
 
 from asperity.errors import InputError
+from asperity.reduction.convolving import convolved
 from asperity.reduction.texture import StateTexture
 from asperity.surfaces.strip import Rows, Strip
 
@@ -71,16 +71,19 @@ def areal_texture(
     middle = ny // 2
     halves = [_half(punch_weights(spacing, (float(a), float(b))), middle) for a, b in axes]
     reach = max(half.shape[0] // 2 for half in halves)
+    weights = np.zeros((len(halves), max(half.shape[1] for half in halves), 2 * reach + 1))
+    for row, half in zip(weights, halves, strict=True):
+        side = reach - half.shape[0] // 2
+        row[: half.shape[1], side : 2 * reach + 1 - side] = -half.T
     result = np.empty((len(axes), n))
     for first in range(0, n, PIECE):
         low, high = max(0, first - reach), min(n, first + PIECE + reach)
         rows = strip.rows(low, high)
-        folded = rows[:, middle:].copy()
-        folded[:, 1:] += rows[:, middle - 1 :: -1] if middle else 0.0  # the patch is symmetric across
-        for i, half in enumerate(halves):
-            filtered = oaconvolve(folded[:, : half.shape[1]], half, mode="full", axes=0).sum(axis=1)
-            piece = result[i, first : first + PIECE]
-            piece[:] = -filtered[half.shape[0] // 2 + first - low :][: len(piece)]
+        folded = rows[:, middle : middle + weights.shape[1]].copy()
+        folded[:, 1:] += rows[:, middle - 1 :: -1][:, : folded.shape[1] - 1] if middle else 0.0
+        last = min(first + PIECE, n)
+        beyond = (reach - (first - low), reach - (high - last))  # zeros
+        result[:, first:last] = convolved(np.pad(folded.T, ((0, 0), beyond)), weights, PIECE)
     return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing[0])
 
 

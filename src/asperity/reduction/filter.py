@@ -9,10 +9,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.ndimage import median_filter
-from scipy.signal.windows import hann
 
 from asperity.errors import InputError
+from asperity.spectra import hann_window
 
 Normalise = Literal["low-wavenumber", "tangent"]
 
@@ -122,7 +121,7 @@ def filter_spectra(
 
 def _windowed(rows: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Spectra of rows without their means, under a Hann window."""
-    return np.fft.rfft((rows - rows.mean(axis=1, keepdims=True)) * hann(rows.shape[1], sym=False))
+    return np.fft.rfft((rows - rows.mean(axis=1, keepdims=True)) * hann_window(rows.shape[1]))
 
 
 def estimate_filter(
@@ -185,7 +184,8 @@ def _excited(wavenumber: NDArray[np.float64], density: NDArray[np.float64]) -> N
     longer waves alone. A single tone, as of corrugation, stands out above what is typical of its octave.
     """
     weighted = density * wavenumber**CUT_OFF_SLOPE
-    typical = median_filter(weighted, BANDS + 1, mode="nearest")
+    octaves = np.lib.stride_tricks.sliding_window_view(np.pad(weighted, BANDS // 2, mode="edge"), BANDS + 1)
+    typical = np.median(octaves, axis=1)
     return np.asarray(weighted > CUT_OFF * np.maximum.accumulate(typical))
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
-from scipy.signal import fftconvolve, firwin2
 
 from asperity.errors import InputError
+from asperity.reduction.convolving import convolved
 from asperity.reduction.filter import ContactFilter
 from asperity.reduction.texture import StateTexture
 
@@ -104,9 +104,11 @@ def design_fir(
 
 def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
     """Taps from the inverse transform of the magnitude under a Hamming window."""
-    grid = np.linspace(0.0, 1.0, 513)
-    gain = _target(contact_filter, grid * (0.5 / spacing))
-    return _summed(contact_filter, np.array([firwin2(order + 1, grid, row) for row in gain]))
+    grid = np.linspace(0.0, 0.5 / spacing, 513)
+    gain = _target(contact_filter, grid)
+    fine = np.linspace(0.0, 0.5 / spacing, 1 + 2 ** math.ceil(math.log2(order + 1)))
+    even = np.fft.irfft([np.interp(fine, grid, row) for row in gain])[:, : order // 2 + 1]
+    return _summed(contact_filter, np.hamming(order + 1) * np.hstack((even[:, :0:-1], even)))
 
 
 def _least_relative_error(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
@@ -164,5 +166,5 @@ def filtered_texture(
     """
     half = taps.shape[1] // 2
     padded = np.pad(-np.asarray(heights, dtype=np.float64), half, mode="reflect")
-    result = np.array([fftconvolve(padded, b, mode="valid") for b in taps])
+    result = convolved(padded[None], taps[:, None])
     return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing)

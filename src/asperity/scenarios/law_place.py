@@ -14,6 +14,7 @@ from asperity.scenarios.geometry import Geometry
 from asperity.spectra import psd
 from asperity.surfaces.correlation import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
+from asperity.threads import thread_count
 
 ROWS = 2**15
 """Most rows of a path, from its middle, that are looked at."""
@@ -70,10 +71,11 @@ def _without_slow(heights: NDArray[np.float64], spacing: float, lowest: float) -
     one such wave of these, up to an eighth, is cut off.
     """
     mirrored = np.concatenate([heights, heights[::-1]])
-    spectrum = fft.rfft(mirrored, axis=0)
+    spectrum = fft.rfft(mirrored, axis=0, workers=thread_count())
     share = fft.rfftfreq(len(mirrored), spacing) / lowest
     gain = share**STEEPNESS / (1.0 + share**STEEPNESS)
-    kept = fft.irfft(spectrum * gain.reshape(-1, *[1] * (heights.ndim - 1)), len(mirrored), axis=0)
+    spectrum *= gain.reshape(-1, *[1] * (heights.ndim - 1))
+    kept = fft.irfft(spectrum, len(mirrored), axis=0, overwrite_x=True, workers=thread_count())
     cut = min(round(1.0 / (lowest * spacing)), len(heights) // 8)
     return np.asarray(kept[cut : len(heights) - cut])
 
@@ -84,7 +86,7 @@ def correlation_lengths(heights: NDArray[np.float64], spacing: tuple[float, floa
     The threshold is that of ISO 25178-2 for Sal. Where it is not reached: half the length, or half the width.
     """
     rows, columns = heights.shape
-    spectrum = fft.rfft(heights, fft.next_fast_len(2 * rows, real=True), axis=0)
+    spectrum = fft.rfft(heights, fft.next_fast_len(2 * rows, real=True), axis=0, workers=thread_count())
     sums = fft.irfft(np.sum(np.abs(spectrum) ** 2, axis=1))[: rows // 2 + 1]
     along = sums / (rows - np.arange(rows // 2 + 1))
     across = [np.mean(heights[:, : columns - lag] * heights[:, lag:]) for lag in range(columns // 2 + 1)]

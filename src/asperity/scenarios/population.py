@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage, stats
+from scipy import ndimage
+from scipy.special import fdtrc
 
 from asperity.errors import Grade, ShortRecordWarning
 from asperity.laws import spec_of
@@ -207,7 +208,7 @@ def told_apart(groups: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
     if within == 0.0:
         return (1.0, 0.0) if between == 0.0 else (0.0, float(means.std(ddof=1)))
     size = (total - np.sum(sizes**2) / total) / (count - 1)
-    p = float(stats.f.sf(between / within, count - 1, total - count))
+    p = float(fdtrc(count - 1, total - count, between / within))
     return p, math.sqrt(max(0.0, (between - within) / size))
 
 

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
-from scipy.signal import find_peaks
 
 from asperity.errors import ComputationError
 from asperity.structures.rational_fit import vector_fit
@@ -118,6 +117,8 @@ def _searched(
 
 def _start_poles(frequency: Array, level: Array) -> list[NDArray[Any]]:
     """A weakly damped pole at each high peak, and spare ones spread over the widest gaps between."""
+    from scipy.signal import find_peaks  # takes a second to import
+
     peaks, found = find_peaks(20.0 * np.log10(level), prominence=3.0)
     peaks = peaks[np.argsort(-found["prominences"])[:MOST_PEAKS]]
     starts = []

@@ -14,6 +14,7 @@ from asperity.errors import InputError
 from asperity.spectra import band_energies, third_octave_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levels import MICROMETRE
+from asperity.threads import thread_count
 
 SAME_COHERENCE = 1.05
 """Wavenumbers within this ratio share one lateral coherence."""
@@ -93,7 +94,7 @@ def strip_from_bands(
         share[-1] = 1.0
     found = np.mean(np.square(amplitudes.real) + np.square(amplitudes.imag), axis=0)
     amplitudes *= nx * share * np.sqrt(lines.energies * _correction(lines, lines.energies * found))
-    heights = fft.irfft(amplitudes, nx, axis=1, overwrite_x=True).T
+    heights = fft.irfft(amplitudes, nx, axis=1, overwrite_x=True, workers=thread_count()).T
     return HeightMap(heights, spacing, f"{lines.description}, lateral {lateral:g}, seed {seed}")
 
 

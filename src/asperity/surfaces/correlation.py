@@ -10,6 +10,7 @@ from scipy import fft, ndimage
 
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap
+from asperity.threads import thread_count
 
 CORRELATION_THRESHOLD = 0.2
 """Default of ISO 25178-3 for Sal and Str."""
@@ -41,11 +42,19 @@ def lag_sums(
     """
     lags = (reach, heights.shape[1] // 2)
     size = [fft.next_fast_len(n + lag + 1, real=True) for n, lag in zip(heights.shape, lags, strict=True)]
-    products, pairs = (
-        fft.irfft2(np.abs(fft.rfft2(a, s=size)) ** 2, s=size) for a in (heights, valid.astype(np.float64))
-    )
     kept = np.ix_(*(np.arange(-lag, lag + 1) for lag in lags))
-    return products[kept], np.rint(pairs[kept])
+
+    def sums(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        workers = thread_count()
+        power = np.abs(fft.rfft2(values, s=size, workers=workers)) ** 2
+        return np.asarray(fft.irfft2(power, s=size, workers=workers)[kept])
+
+    if valid.all():
+        along, across = (
+            n - np.abs(np.arange(-lag, lag + 1)) for n, lag in zip(valid.shape, lags, strict=True)
+        )
+        return sums(heights), np.outer(along, across).astype(np.float64)
+    return sums(heights), np.rint(sums(valid.astype(np.float64)))
 
 
 def autocorrelation_lengths(

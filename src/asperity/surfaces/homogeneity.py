@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import binom
+from scipy.special import bdtrc
 
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
@@ -93,4 +93,4 @@ def more_than_chance(p_values: Sequence[float]) -> bool:
     One of one, two of two to seven, three of eight or more, and so on: the binomial tail.
     """
     count = sum(p <= SIGNIFICANCE for p in p_values)
-    return bool(binom.sf(count - 1, len(p_values), SIGNIFICANCE) <= SIGNIFICANCE * (1 + 1e-9))
+    return bool(bdtrc(count - 1, len(p_values), SIGNIFICANCE) <= SIGNIFICANCE * (1 + 1e-9))

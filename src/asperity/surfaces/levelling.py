@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft, interpolate, signal, sparse
+from scipy import fft
 
 from asperity.arguments import real
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
@@ -83,7 +83,9 @@ def _gaussian(
 
 
 def _convolve(values: NDArray[np.float64], kernel: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
-    full = signal.oaconvolve(values, kernel, mode="full", axes=axis)
+    from scipy.signal import oaconvolve  # takes a second to import
+
+    full = oaconvolve(values, kernel, mode="full", axes=axis)
     start = (kernel.shape[axis] - 1) // 2
     return np.take(full, np.arange(start, start + values.shape[axis]), axis=axis)
 
@@ -115,6 +117,7 @@ def _harmonic(
     heights: NDArray[np.float64], missing: NDArray[np.bool_], spacings: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Heights of the missing points, from the discrete Laplace equation."""
+    from scipy import sparse
     from scipy.sparse.linalg import spsolve
 
     index = np.full(heights.shape, -1)
@@ -190,5 +193,7 @@ def _resample_axis(
     positions = np.concatenate(
         [-centres[margin - 1 :: -1], centres, 2 * length - centres[: -margin - 1 : -1]]
     )
-    spline = interpolate.make_interp_spline(positions, mirrored, k=5, axis=-1)
+    from scipy.interpolate import make_interp_spline
+
+    spline = make_interp_spline(positions, mirrored, k=5, axis=-1)
     return np.moveaxis(spline(new_centres), -1, axis)
