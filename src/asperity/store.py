@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.files import amount, atomic_write, discard, is_sealed, left_overs
 
-FORMAT = 1  # raise it when a stored result no longer means what it meant
+FORMAT = 2  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
 MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
 
