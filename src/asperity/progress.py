@@ -18,6 +18,7 @@ from asperity.terminal import manner, write
 
 NOTEBOOK_INTERVAL = 0.2  # s between drawings of a bar
 QUIET_INTERVAL = 10.0  # s between lines where standard error is not a terminal
+COMPILING_INTERVAL = 3.0  # s, likewise while functions are compiled: nobody expects that
 WINDOW = 30.0  # s over which a rate is taken
 
 
@@ -28,6 +29,10 @@ class Progress(Protocol):
         """Report that `done` of `total` steps of the work called `message` are finished."""
 
 
+def _nothing() -> None:
+    """Do nothing."""
+
+
 class Compilation:
     """Time that the compiler took in this process: its first use of a kernel, never that of the work."""
 
@@ -35,6 +40,7 @@ class Compilation:
         self.functions = 0  # that were compiled
         self._told: Callable[[], None] | None = None
         self._said = False
+        self.hear: Callable[[], None] = _nothing  # called as compilation goes on
         self._spent, self._begun = 0.0, 0.0  # s
         self._open: set[str] = set()
         self._lock = threading.Lock()
@@ -54,6 +60,16 @@ class Compilation:
             self._open.add(name)
         if told is not None:
             told()
+        self.hear()
+
+    @contextmanager
+    def heard_by(self, hear: Callable[[], None]) -> Iterator[None]:
+        """Call a function as compilation goes on, while the ``with`` statement runs."""
+        before, self.hear = self.hear, hear
+        try:
+            yield
+        finally:
+            self.hear = before
 
     @contextmanager
     def told_to(self, tell: Callable[[str], None]) -> Iterator[None]:
@@ -76,11 +92,16 @@ class Compilation:
                 self.functions += 1
                 if not self._open:
                     self._spent += time.monotonic() - self._begun
+        self.hear()
 
 
 COMPILING = "compiling functions, once: later runs load them …"
 COMPILATION = Compilation()
 """Of this process."""
+COMPILED = "compiled functions"
+"""The piece of work that is compiling: its time counts."""
+ENOUGH = 0.2
+"""Share of it from which on the time left is told: kernels differ."""
 
 
 class Pace:
@@ -100,8 +121,8 @@ class Pace:
 
     @property
     def compiling(self) -> float:
-        """Time in which something was compiled meanwhile, s."""
-        return COMPILATION.seconds - self._compiled
+        """Time in which something was compiled meanwhile, s; none of it where this is the work."""
+        return 0.0 if self.message == COMPILED else COMPILATION.seconds - self._compiled
 
     @property
     def worked(self) -> float:
@@ -120,6 +141,8 @@ class Pace:
 
     def told(self, total: int) -> str:
         """Rate and time left in words, as ``"5.2/s, about 9 s left"``; nothing before any is done."""
+        if self.message == COMPILED and self._seen[-1][1] < ENOUGH * total:
+            return ""
         rate, left = self.rate, self.left(total)
         return f"{per_second(rate)}, about {duration(left)} left" if math.isfinite(left) else ""
 
@@ -267,7 +290,7 @@ class _PlainProgress:
             write(self.stream, f"{message} …")
         else:
             self.pace.report(done)
-            if now - self.written >= QUIET_INTERVAL:
+            if now - self.written >= (COMPILING_INTERVAL if message == COMPILED else QUIET_INTERVAL):
                 self.written = now
                 told = self.pace.told(total)
                 write(self.stream, f"{message}: {done} of {total}" + f", {told}" * bool(told))

@@ -14,6 +14,7 @@ from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, require_space
 from asperity.kinds.drawing import DrawingProcess, drawing_process
 from asperity.progress import COMPILATION, duration, progress_bar
+from asperity.scenarios.second_process import contact_compiled_beside
 from asperity.schema import rolling, spectra
 from asperity.terminal import detail, remark, say
 
@@ -79,14 +80,16 @@ def _run_alone(
     case: Case, directory: Path, source: str, drawing: DrawingProcess | None, *, converge: bool
 ) -> dict[str, Any]:
     """Compute a case and write its results, while no other run does into this folder."""
-    from asperity.running import run
     from asperity.store import Store
 
     before = time.monotonic(), COMPILATION.seconds
-    prepared = prepared_case(case, source)
-    with progress_bar() as progress:
-        announce_scan(prepared, progress)
-        tree: DataTree = run(prepared, progress=progress)
+    with contact_compiled_beside():
+        from asperity.running import run
+
+        prepared = prepared_case(case, source)
+        with progress_bar() as progress:
+            announce_scan(prepared, progress)
+            tree: DataTree = run(prepared, progress=progress)
     warnings = json.loads(tree.attrs.get("warnings", "[]"))
     for warning in warnings:
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""

@@ -16,8 +16,7 @@ from asperity.config.content import content, file_digest
 from asperity.convergence.group import Comparison, convergence_group
 from asperity.convergence.levels import Levels, halves
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
-from asperity.progress import Progress
-from asperity.scenarios.compiling import MESSAGE as COMPILED
+from asperity.progress import COMPILED, Progress
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.preparing import PreparedCase, prepare_of_kind
 from asperity.scenarios.refining import Setting, Way, shared_settings

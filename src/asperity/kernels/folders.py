@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from asperity.files import left_overs
@@ -22,6 +25,22 @@ def folders() -> Iterator[Path]:
         yield Path(os.environ.get(VARIABLE) or default_root() / "kernels").absolute()
     with suppress(OSError):
         yield temporary_folder() / "kernels"
+
+
+def stamp() -> str:
+    """Name of the folder of these kernels: by what they are made of, as one may be compiled into another."""
+    versions = f"{version('numba')} {version('llvmlite')} {sys.version}"
+    digest = hashlib.sha256(versions.encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:STAMP]
+
+
+def is_kept(function: str) -> bool:
+    """Whether the machine code of a kernel lies in one of the folders, without importing the compiler."""
+    with suppress(OSError, PackageNotFoundError):
+        return any(any((folder / stamp()).glob(f"{function}-*")) for folder in folders())
+    return False
 
 
 def kept_files(folder: Path) -> tuple[list[Path], list[Path]]:

@@ -11,7 +11,6 @@ import hashlib
 import os
 import pickle
 import re
-import sys
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
@@ -19,13 +18,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import llvmlite  # type: ignore[import-untyped]
-import numba
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from asperity.files import replace
-from asperity.kernels.folders import STAMP, VARIABLE, folders
+from asperity.kernels.folders import VARIABLE, folders, stamp
 from asperity.kernels.turns import end_turn, take_turn
 from asperity.progress import COMPILATION
 from asperity.store import is_private
@@ -34,15 +31,8 @@ DIGEST = 32
 """Bytes of a digest."""
 
 
-def _stamp() -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__} {sys.version}".encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:STAMP]
-
-
-SOURCES = _stamp()
-"""What all kernels are made of: one that is called by another is compiled into it."""
+SOURCES = stamp()
+"""Folder of this version."""
 
 
 class Kept:
@@ -92,6 +82,7 @@ class Kept:
         named = {function.name for function in result.library._final_module.functions}
         called = [(kernel, symbol) for kernel, (symbol, _) in _CALLED.items() if symbol in named]
         payload = dumps((called, result._reduce()))
+        _COMPILED.add(self.name)
         if not self.inlined:
             _CALLED[name] = result.fndesc.llvm_func_name, result.library
         if not any(_written(folder, name, payload) for folder in folders()):
@@ -101,10 +92,6 @@ class Kept:
         """Name of a signature's file: the function's name, and a digest of all that the code depends on."""
         known = repr((self.name, self.entry, str(signature), codegen.magic_tuple())).encode()
         return f"{self.name}-{hashlib.sha256(known + self.source).hexdigest()[:24]}"
-
-    def is_kept(self) -> bool:
-        """Whether there is a file of the function, for any signature."""
-        return any(any((f / SOURCES).glob(f"{self.name}-*")) for f in folders())
 
     def enable(self) -> None:
         """Do nothing: it is always enabled."""
@@ -118,6 +105,19 @@ class Kept:
 
 _CALLED: dict[str, tuple[str, Any]] = {}
 """Kernels of this process by the names of their files: symbol and library, but for those that are inlined."""
+
+
+_COMPILED: set[str] = set()
+"""Names of the functions that this process has compiled."""
+
+
+def kept_names() -> set[str]:
+    """Functions whose machine code is there, for any signature: in this process, or in one of the folders."""
+    found = set(_COMPILED)
+    for folder in folders():
+        with suppress(OSError):
+            found |= {name.partition("-")[0] for name in os.listdir(folder / SOURCES)}
+    return found
 
 
 def _loaded(name: str, context: Any) -> Any:
@@ -148,7 +148,7 @@ def _awaited(name: str, context: Any) -> Any:
     place = _place()
     if place is None:
         return None
-    take_turn(place, name)
+    take_turn(place, name, COMPILATION.hear)
     found = _loaded(name, context)
     if found is not None:
         end_turn(place, name)

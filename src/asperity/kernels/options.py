@@ -73,8 +73,3 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         return kernel
 
     return decorate
-
-
-def is_kept(kernel: Any) -> bool:
-    """Whether the machine code of a kernel is on disk, for any signature; False if it is not to be kept."""
-    return isinstance(kernel._cache, Kept) and kernel._cache.is_kept()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -22,13 +23,14 @@ POLL = 0.01
 """Time between looks, s."""
 
 
-def take_turn(folder: Path, kernel: str) -> None:
+def take_turn(folder: Path, kernel: str, meanwhile: Callable[[], None]) -> None:
     """Wait until no other process compiles a kernel, at most `PATIENCE`; not where nothing can be locked.
 
-    A process that ends, however it does, gives its turns back.
+    A process that ends, however it does, gives its turns back. `meanwhile` is called again and again.
     """
     file, begun = _opened(folder), time.monotonic()
     while file is not None and not _locked(file, kernel) and time.monotonic() - begun < PATIENCE:
+        meanwhile()
         time.sleep(POLL)
 
 

@@ -2,72 +2,89 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
+import math
+import time
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
-from asperity.kernels.options import is_kept
-from asperity.progress import COMPILATION, Progress
-from asperity.threads import processors
+from asperity.kernels import along, contact, love, overlap, pointforce, scanning
+from asperity.kernels.census import Census
+from asperity.laws import HertzLaw
+from asperity.progress import COMPILATION, COMPILED, Progress
+from asperity.reduction.texture import StateTexture
+from asperity.scenarios.second_process import contact_compiled_beside
 
-MESSAGE = "compiled functions"
+CONTACT = (
+    scanning.solve_positions,
+    contact.indent,
+    contact.displace,
+    love.influence_table,
+    overlap.foundation_approach,
+    overlap.box_of_positive,
+)
+LAWS = pointforce.evaluate_all, pointforce.count_beyond, along.splines_along
+FIRST = 0.07
+"""Share of the time that passes before the first kernel is there: the compiler gets ready."""
+INTERVAL = 0.1  # s between looks at what is compiled
 
 
-def call_kernels(progress: Progress, stepping: Any, rolling: Callable[[], None]) -> None:
+def call_kernels(progress: Progress, stepping: Iterable[Any], rolling: Callable[[], None]) -> None:
     """Call every kernel of a kind of case once on next to nothing: it is compiled now, or loaded from disk.
 
-    `stepping` is the one whose compilation takes longest; `rolling`, a function of a module, rolls a few
-    steps, so that all that is stepped is compiled.
+    `stepping` are the kernels by which `rolling` rolls a few steps. A second process takes its share.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)
-        progress(0, 2, MESSAGE)
-        with _beside(stepping, rolling):
-            x = np.arange(-4.0, 5.0) ** 2
-            HalfSpace((9, 9), (1.0, 1.0), 1.0).solve(np.add.outer(x, x), approach=5.0)
-        progress(1, 2, MESSAGE)
-        rolling()
-        press_and_displace()
-        progress(2, 2, MESSAGE)
+        with COMPILATION.heard_by(Telling(progress, stepping)), contact_compiled_beside():
+            rolling()
+            evaluate_once()
+            displace_once()  # the second process begins with the other
+            press_once()
+        progress(100, 100, COMPILED)
 
 
-@contextmanager
-def _beside(stepping: Any, rolling: Callable[[], None]) -> Iterator[None]:
-    """Compile the rolling in a second process beside the contact, where it is not on disk yet.
+class Telling:
+    """Tells in percent how far compilation is, whoever compiles; nothing where all is on disk."""
 
-    The compiler takes one function at a time in a process; what the second one compiles, the first loads.
-    """
-    if processors() < 2 or is_kept(stepping):
-        yield
-        return
-    name = rolling.__name__
-    pressing = press_and_displace.__name__
-    code = (
-        f"from {rolling.__module__} import {name}; {name}(); from {__name__} import {pressing}; {pressing}()"
-    )
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    with subprocess.Popen([sys.executable, "-W", "ignore", "-c", code], env=environment, **quiet) as other:
-        try:
-            yield
-        except BaseException:
-            other.kill()
-            raise
-        COMPILATION.begin(name)  # waiting for it is compiling, too
-        other.wait()
-        COMPILATION.end(name)
+    def __init__(self, progress: Progress, stepping: Iterable[Any]) -> None:
+        self.progress, self.stepping = progress, stepping
+        self.census: Census | None = None
+        self.before, self.told = 0.0, -math.inf  # share that was there before, time of the last look, s
+
+    def __call__(self) -> None:
+        """Look what is there, unless that was done just now."""
+        if time.monotonic() - self.told < INTERVAL:
+            return
+        if self.census is None:
+            self.census = Census((*CONTACT, *LAWS, *self.stepping))
+            self.before = self.census.done()
+        share = (self.census.done() - self.before) / max(1.0 - self.before, 1e-9)
+        percent = 100.0 * (FIRST + (1.0 - FIRST) * share) if share > 0.0 else 0.0
+        self.progress(int(percent), 100, COMPILED)
+        self.told = time.monotonic()
 
 
-def press_and_displace() -> None:
+def press_once() -> None:
+    """Press a body, to an approach and under a load."""
+    half_space, x = HalfSpace((9, 9), (1.0, 1.0), 1.0), np.arange(-4.0, 5.0) ** 2
+    half_space.solve(np.add.outer(x, x), approach=5.0)
+    half_space.solve(np.add.outer(x, x), load=5.0)
+
+
+def displace_once() -> None:
     """Find the stiffness of a contact, and what a pressure displaces."""
     half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0)
     half_space.tangent_stiffness(np.ones((9, 9)))
     half_space.displacement(np.ones((9, 9)))
+
+
+def evaluate_once() -> None:
+    """Evaluate a law."""
+    law = HertzLaw(1e10, StateTexture.unfiltered(np.zeros(8), 0.2)).prepare(np.zeros(2))
+    pointforce.evaluate_all(law, np.zeros(2))
+    pointforce.count_beyond(law, np.zeros(2))

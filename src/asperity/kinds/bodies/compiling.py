@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.kernels import several
+from asperity.kernels import several, waves
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
@@ -17,7 +17,7 @@ from asperity.structures.body import Body
 
 def compile_kernels(progress: Progress) -> None:
     """Call every kernel once on next to nothing, see `asperity.scenarios.compiling`."""
-    compiling.call_kernels(progress, several.roll_contacts, roll_two)
+    compiling.call_kernels(progress, (several.roll_contacts, waves.turn_on), roll_two)
 
 
 def roll_two() -> None:

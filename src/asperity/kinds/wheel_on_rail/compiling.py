@@ -18,7 +18,7 @@ from asperity.structures.wheel import Wheel
 
 def compile_kernels(progress: Progress) -> None:
     """Call every kernel once on next to nothing, see `asperity.scenarios.compiling`."""
-    compiling.call_kernels(progress, rail.roll_rail, roll_a_wheel)
+    compiling.call_kernels(progress, (rail.roll_rail, rail.preload), roll_a_wheel)
 
 
 def roll_a_wheel() -> None:

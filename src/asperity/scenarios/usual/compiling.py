@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.kernels import modal
+from asperity.kernels import modal, waves
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
@@ -19,7 +19,7 @@ from asperity.structures.beam import Beam
 
 def compile_kernels(progress: Progress) -> None:
     """Call every kernel once on next to nothing, see `asperity.scenarios.compiling`."""
-    compiling.call_kernels(progress, modal.solve_step, roll_a_pair)
+    compiling.call_kernels(progress, (modal.solve_step, waves.turn_on), roll_a_pair)
 
 
 def roll_a_pair() -> None:
