@@ -57,13 +57,14 @@ class ContactInPlace:
     def solve(self, heights: NDArray[np.float64], approach: float, compliance: float = 0.0) -> Found:
         """Solve at an approach, m, or where it falls with the force by a compliance of the bodies, m/N.
 
-        Heights under the body (nx, ny), m, contiguous. In the second case `approach` is that without force:
-        the contact and what the bodies yield are found together.
+        Heights under the body (nx, ny), m. In the second case `approach` is that without force: the contact
+        and what the bodies yield are found together.
         """
         space, counts = self.half_space, self.block.counts
         counts[:] = 0
         self.block.approaches[0] = approach
-        block = self.block._replace(rows=heights, compliance=compliance * space.cell_area)
+        self.block.rows[:] = heights
+        block = self.block._replace(compliance=compliance * space.cell_area)
         space.solve_block(block)
         overlap = approach - float(block.room.lowest.min())
         if not counts[0]:

@@ -17,7 +17,7 @@ from asperity.kernels.overlap import overlap_box
 from asperity.kernels.projected_cg import Task, solve, survey, true_residual, unit_indentation
 
 MARGIN = 1
-"""Cells left around pressure and overlap of what a solution starts from; what then sticks out is solved again."""
+"""Cells left around pressure and overlap of what a solution starts from; what sticks out is solved again."""
 NO_CONTACT, CONVERGED, ITERATION_LIMIT, STALLED, UNPREPARED = range(5)
 """How a solution can end."""
 REACH = 1.3

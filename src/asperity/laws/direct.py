@@ -87,8 +87,7 @@ class Direct:
             )
         shape = (self.body.shape[0], self.body.shape[1])
         half_space = HalfSpace(shape, self.spacing, self.modulus, self.hardness)
-        heights = np.require(self.heights, np.float64, ["C", "W"])
-        return DirectOnPath(self, ContactInPlace(half_space, self.body, self.rtol), heights, index - half)
+        return DirectOnPath(self, ContactInPlace(half_space, self.body, self.rtol), index - half)
 
 
 @dataclass(eq=False)
@@ -101,8 +100,6 @@ class DirectOnPath:
         The law.
     contact : ContactInPlace
         The solver.
-    heights : ndarray, shape (rows, ny)
-        Texture of the path, m, contiguous.
     offsets : ndarray, shape (n,)
         First row of the window at each position; between rows the texture is interpolated.
     iterations, solves, unconverged, truncated : int
@@ -111,7 +108,6 @@ class DirectOnPath:
 
     law: Direct
     contact: ContactInPlace
-    heights: NDArray[np.float64]
     offsets: NDArray[np.float64]
     iterations: int = 0
     solves: int = 0
@@ -190,13 +186,13 @@ class DirectOnPath:
         """Rows of the texture from an offset on; between rows by quintic splines, which keep short waves."""
         first, count = round(offset), self.law.body.shape[0]
         if abs(offset - first) < 1e-6:
-            return self.heights[first : first + count]
+            return self.law.heights[first : first + count]
         if self._spline is None:
             from scipy.interpolate import make_interp_spline
 
-            rows = np.arange(len(self.heights))
-            self._spline = make_interp_spline(rows, self.heights, k=5)
-        return np.ascontiguousarray(self._spline(offset + np.arange(count)))
+            rows = np.arange(len(self.law.heights))
+            self._spline = make_interp_spline(rows, self.law.heights, k=5)
+        return np.asarray(self._spline(offset + np.arange(count)))
 
     def _start(self, step: int) -> None:
         """Let a step start from the accepted pressures."""
