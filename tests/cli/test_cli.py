@@ -566,6 +566,19 @@ def test_check_reads_the_measured_map():
     assert "pixel" in call("check", "measured.toml", code=2).stderr
 
 
+def test_a_second_check_says_the_same_and_computes_nothing_until_a_file_changes(monkeypatch):
+    heights = np.random.default_rng(0).normal(size=(64, 64))
+    np.save("map.npy", heights)
+    keys = 'file = "map.npy"\nheight_unit = "um"\npixel = "8 um"\n'
+    Path("measured.toml").write_text(CASE.replace('rms = "0.5 um"\n', keys))
+    first = call("check", "measured.toml")
+    monkeypatch.setattr("asperity.running.prepare_case", None)
+    assert call("check", "measured.toml").stdout == first.stdout
+    np.save("map.npy", 2.0 * heights)
+    with pytest.raises(TypeError, match="NoneType"):
+        call("check", "measured.toml")
+
+
 def test_the_plan_counts_contact_solutions(monkeypatch):
     from asperity.cli.planning import plan
     from asperity.running import prepare_case

@@ -147,13 +147,13 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
     Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
     which law to take and how far the others are off.
     """
-    from asperity.cli.planning import show_plan
-    from asperity.cli.running import prepared_case, refuse_folder
+    from asperity.cli.checking import show_plan
+    from asperity.cli.running import refuse_folder
     from asperity.kinds.cases import load_case
 
     loaded = load_case(case)
     refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
-    return show_plan(prepared_case(loaded, str(case)), str(case), converge=converge)
+    return show_plan(loaded, str(case), converge=converge)
 
 
 @main.command(

@@ -11,7 +11,7 @@ from asperity.config.sections import MeasuredLine
 from asperity.errors import Grade, PhysicsWarning
 from asperity.laws import spec_of
 from asperity.progress import Progress, duration, progress_bar
-from asperity.terminal import say, say_table
+from asperity.terminal import say
 
 if TYPE_CHECKING:
     from asperity.scenarios.expecting import Work
@@ -23,35 +23,15 @@ ANNOUNCED_SOLUTIONS = 100_000  # of a scan that is tried to find out
 SMALL_PART = 0.05  # of the work: shorter parts are not named
 
 
-def show_plan(prepared: PreparedCase, source: str, *, converge: bool = False) -> dict[str, Any]:
-    """Print the values of a case, and what will be computed from it, with convergence if it is asked for.
-
-    Returns what a program wants to know of it.
-    """
+def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]:
+    """What will be computed from a case, with convergence if it is asked for: rows, seconds and warnings."""
     from asperity.scenarios.expecting import expect
 
-    for warning in prepared.caught:
-        grade = getattr(warning.message, "grade", Grade.WARNING).value.capitalize()
-        say(f"{grade}: {warning.message}", err=True)
     with progress_bar() as progress:
         expected = expect(prepared, progress)
         more = [("convergence", _described_convergence(prepared, expected, progress))] if converge else []
-    items = prepared.case.parameters()
-    defaults = ["" if item["is_default"] else item["default"] or "none" for item in items]
-    values = [
-        (item["key"], item["value"], default, item["note"])
-        for item, default in zip(items, defaults, strict=True)
-    ]
-    changed = {number for number, item in enumerate(items) if not item["is_default"]}
-    headings = ("key", "value", "default", "what it is")
-    say_table(f"{source}: a valid case", headings, values, width=120, bold=changed)
-    planned = [*plan(prepared, expected), *more]
-    say_table("What will be computed", (), planned, width=120)
     return {
-        "case": source,
-        "kind": prepared.case.kind,
-        "parameters": items,
-        "plan": [{"name": name, "value": value} for name, value in planned],
+        "plan": [{"name": name, "value": value} for name, value in [*plan(prepared, expected), *more]],
         "work": {"seconds": expected.total, "parts": expected.seconds},
         "warnings": [
             {"grade": getattr(each.message, "grade", Grade.WARNING).value, "message": str(each.message)}

@@ -8,7 +8,6 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from asperity.cli.planning import announce_scan
 from asperity.config.case import Case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, require_space
@@ -80,6 +79,7 @@ def _run_alone(
     case: Case, directory: Path, source: str, drawing: DrawingProcess | None, *, converge: bool
 ) -> dict[str, Any]:
     """Compute a case and write its results, while no other run does into this folder."""
+    from asperity.cli.planning import announce_scan
     from asperity.store import Store
 
     before = time.monotonic(), COMPILATION.seconds
