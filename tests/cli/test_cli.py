@@ -575,8 +575,7 @@ def test_a_second_check_says_the_same_and_computes_nothing_until_a_file_changes(
     monkeypatch.setattr("asperity.running.prepare_case", None)
     assert call("check", "measured.toml").stdout == first.stdout
     np.save("map.npy", 2.0 * heights)
-    with pytest.raises(TypeError, match="NoneType"):
-        call("check", "measured.toml")
+    assert "NoneType" in call("check", "measured.toml", code=3).stderr
 
 
 def test_the_plan_counts_contact_solutions(monkeypatch):
@@ -598,7 +597,7 @@ def test_the_plan_counts_contact_solutions(monkeypatch):
     path = 7502 + 2 * window  # rounded up
     assert rows["contact solutions, scan for the filters"] == f"at most {2 * 2 * (strip - window + 1)}"
     assert rows["contact solutions, scan for the path"] == f"at most {2 * (path - window + 1)}"
-    assert rows["contact solutions, direct"] == f"at most {3 * 7500}"
+    assert rows["contact solutions, direct"] == f"at most {7500}"
     assert rows["work"] == "about 44 s, less what the cache holds: rolling 40 s, report 4 s"
     monkeypatch.setattr("asperity.contact.device.find_device", lambda name=None: object())
     assert rows_of(laws + CASE + contact)["work"].startswith(

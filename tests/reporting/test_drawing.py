@@ -8,7 +8,7 @@ import pytest
 
 import asperity
 from asperity.kinds.drawing import DrawingProcess, drawing_process
-from asperity.kinds.report import parts_of, write_report
+from asperity.kinds.report import parts_of, write_page
 from asperity.reporting import page
 from asperity.reporting.page import picture
 
@@ -33,7 +33,7 @@ def test_two_processes_draw_what_one_does(kept, reports, monkeypatch):
         drawn = drawing.pictures(tree, path, parts)
     assert 0 < len(here) < len(parts)
     assert drawing.process.poll() is not None
-    written = write_report(tree, path.parent / "report.html", drawn)
+    written = write_page(tree, path.parent / "report.html", drawn)
     assert written.read_text() == (reports[KIND] / "report.html").read_text()
 
 

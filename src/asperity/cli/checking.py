@@ -11,7 +11,7 @@ from asperity.config.case import Case
 from asperity.config.content import content, file_digest
 from asperity.store import Store, content_key
 from asperity.terminal import say, say_table
-from asperity.threads import thread_count
+from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,5 +61,5 @@ def _key(case: Case, *, converge: bool) -> str:
     package = Path(__file__).parents[1]
     program = [[file.name, *os.stat(file)[6:9:2]] for file in sorted(package.rglob("*.py"))]  # size, change
     files = content(case, lambda path: f"{path} {file_digest(path)}")
-    machine = [thread_count(), os.environ.get("ASPERITY_DEVICE", "")]
+    machine = [processors(), os.environ.get(THREADS, ""), os.environ.get("ASPERITY_DEVICE", "")]
     return content_key("plan", files, converge, machine, program)

@@ -166,10 +166,10 @@ def _written(tree: DataTree, directory: Path, drawing: DrawingProcess | None) ->
 
     written = {"Results": save(tree, directory / "run.nc")}
     if drawing is not None:
-        from asperity.kinds.report import parts_of, write_report
+        from asperity.kinds.report import parts_of, write_page
 
         drawn = drawing.pictures(tree, written["Results"], parts_of(tree))
-        written["Report"] = write_report(tree, directory / PAGE, drawn)
+        written["Report"] = write_page(tree, directory / PAGE, drawn)
     return written
 
 

@@ -14,7 +14,7 @@ from threading import Thread
 from typing import IO, TYPE_CHECKING
 
 from asperity.interrupts import no_interrupt_for_children
-from asperity.threads import thread_count
+from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
     from xarray import DataTree
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[1]); "
-    "from asperity.kinds.drawing import serve; serve()"
+    "from asperity.kinds.drawing import draw_on_request; draw_on_request()"
 )
 
 
@@ -76,7 +76,7 @@ class DrawingProcess:
 @contextmanager
 def drawing_process() -> Iterator[DrawingProcess]:
     """A process that gets ready to draw while the body of the ``with`` statement runs."""
-    if thread_count() == 1:
+    if "1" in (os.environ.get(THREADS), str(processors())):
         yield DrawingProcess()
         return
     command = [sys.executable, "-c", _START, json.dumps(sys.path)]
@@ -101,7 +101,7 @@ def drawing_process() -> Iterator[DrawingProcess]:
             process.communicate()
 
 
-def serve() -> None:
+def draw_on_request() -> None:
     """Draw what standard input asks for, as the process that `drawing_process` starts, until it ends."""
     from asperity.kinds.report import parts_of
     from asperity.reporting.page import picture

@@ -77,10 +77,10 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     target = file_path("report", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
         target /= "report.html"
-    return write_report(result, target)
+    return write_page(result, target)
 
 
-def write_report(result: DataTree, target: Path, drawn: Mapping[str, Picture] | None = None) -> Path:
+def write_page(result: DataTree, target: Path, drawn: Mapping[str, Picture] | None = None) -> Path:
     """Write the page of a result and, beside it, the files of its figures, which may have been drawn."""
     chapters = chapters_of(result)
     found = sections(result, chapters, drawn)
