@@ -1,0 +1,158 @@
+"""The time a person waits: whole runs of the working tree against those of a commit, in one run.
+
+Default wheel on rail, default ball on beam, the demonstration, and a check of each, as commands: start-up,
+files and report included, kernels compiled and finished work kept by a first round. Both trees run in turn.
+wall times, processor times of all processes, and the largest memory of one process; then where the time of
+the default wheel goes, part after part in one process.
+
+    python benchmarks/whole_runs.py ac0672f
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+COMMANDS = {
+    "wheel, run": ["run", "wheel.toml", "-o", "wheel"],
+    "wheel, check": ["check", "wheel.toml", "-o", "wheel"],
+    "ball, run": ["run", "ball.toml", "-o", "ball"],
+    "ball, check": ["check", "ball.toml", "-o", "ball"],
+    "demo": ["demo", "-o", "demo"],
+}
+PARTS = """
+import json, sys, time, warnings
+clock = [time.perf_counter()]
+def lap(): clock.append(time.perf_counter())
+warnings.simplefilter("ignore")
+from asperity.kinds.cases import load_case
+case = load_case("wheel.toml")
+from asperity.running import prepare_case, run
+lap()
+prepared = prepare_case(case, "wheel.toml")
+lap()
+import asperity
+tree = run(prepared)
+lap()
+asperity.save(tree, "parts/run.nc")
+lap()
+asperity.report(tree, "parts")
+lap()
+names = ("start", "textures", "computing", "writing run.nc", "report")
+print(json.dumps(dict(zip(names, [b - a for a, b in zip(clock, clock[1:])]))))
+"""
+
+
+@dataclass(frozen=True)
+class Took:
+    """What a command took."""
+
+    wall: float  # s
+    processor: float  # s, of all processes
+    memory: float  # MiB, of the largest process
+
+
+class Tree:
+    """A version of the package, with a folder, kernels and kept work of its own."""
+
+    def __init__(self, source: Path, folder: Path) -> None:
+        self.folder = folder
+        folder.mkdir()
+        own = {
+            "PYTHONPATH": source,
+            "ASPERITY_KERNELS": folder / "kernels",
+            "ASPERITY_CACHE": folder / "kept",
+        }
+        self.environment = os.environ | {name: str(value) for name, value in own.items()}
+        for name, kind in (("wheel", "wheel-on-rail"), ("ball", "ball-on-beam")):
+            (folder / f"{name}.toml").write_bytes(self.called(["new", kind], subprocess.PIPE))
+
+    def called(self, arguments: list[str], output: int) -> bytes:
+        """Run a command of the program."""
+        command = [sys.executable, "-m", "asperity", *arguments]
+        done = subprocess.run(
+            command,
+            cwd=self.folder,
+            env=self.environment,
+            stdout=output,
+            stderr=subprocess.DEVNULL,
+            check=True,
+        )
+        return done.stdout or b""
+
+    def took(self, arguments: list[str]) -> Took:
+        """Time a command, in a process whose children are its own alone."""
+        timed = (
+            "import json, resource, subprocess, sys, time; begin = time.perf_counter(); "
+            "subprocess.run([sys.executable, '-m', 'asperity', *sys.argv[1:]], check=True, "
+            "stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL); wall = time.perf_counter() - begin; "
+            "used = resource.getrusage(resource.RUSAGE_CHILDREN); "
+            "print(json.dumps([wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024]))"
+        )
+        command = [sys.executable, "-c", timed, *arguments]
+        done = subprocess.run(
+            command, cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, check=True
+        )
+        return Took(*json.loads(done.stdout))
+
+    def parts(self) -> dict[str, float]:
+        """Wall time of each part of the default wheel, in one process, s."""
+        begin = time.perf_counter()
+        done = subprocess.run(
+            [sys.executable, "-c", PARTS],
+            cwd=self.folder,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            check=True,
+        )
+        found: dict[str, float] = json.loads(done.stdout.splitlines()[-1])
+        found["whole"] = time.perf_counter() - begin
+        return found
+
+
+@contextmanager
+def two_trees(commit: str) -> Iterator[tuple[Tree, Tree]]:
+    """The commit and the working tree."""
+    with tempfile.TemporaryDirectory() as folder:
+        archive = subprocess.run(["git", "archive", commit, "src"], cwd=ROOT, check=True, capture_output=True)
+        subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
+        yield Tree(Path(folder) / "src", Path(folder) / "old"), Tree(ROOT / "src", Path(folder) / "new")
+
+
+def main() -> None:
+    """Compare."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("commit", nargs="?", default="HEAD", help="what the working tree is compared with")
+    parser.add_argument("--rounds", type=int, default=3, help="rounds that count")
+    arguments = parser.parse_args()
+    with two_trees(arguments.commit) as trees:
+        print(f"{'':14} {arguments.commit[:10]:>28} {'here':>28}")
+        print(f"{'':14} " + 2 * f"{'wall s':>9} {'cpu s':>9} {'MiB':>8} " + "  ratio")
+        for name, command in COMMANDS.items():
+            found: list[list[Took]] = [[], []]
+            for number in range(arguments.rounds + 1):
+                for which in (0, 1) if number % 2 else (1, 0):
+                    took = trees[which].took(command)
+                    if number:
+                        found[which].append(took)
+            best = [min(rounds, key=lambda took: took.wall) for rounds in found]
+            told = "".join(f"{b.wall:9.2f} {b.processor:9.2f} {b.memory:8.0f} " for b in best)
+            print(f"{name:14} {told} {best[1].wall / best[0].wall:6.2f}", flush=True)
+        print(f"\n{'part, s':14} {arguments.commit[:10]:>10} {'here':>10}")
+        before, after = ([tree.parts() for _ in range(2)][1] for tree in trees)
+        for name, seconds in before.items():
+            print(f"{name:14} {seconds:10.2f} {after[name]:10.2f}")
+
+
+if __name__ == "__main__":
+    main()
