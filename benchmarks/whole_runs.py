@@ -2,8 +2,8 @@
 
 Default wheel on rail, default ball on beam, the demonstration, and a check of each, as commands: start-up,
 files and report included, kernels compiled and finished work kept by a first round. Both trees run in turn.
-wall times, processor times of all processes, and the largest memory of one process; then where the time of
-the default wheel goes, part after part in one process.
+Printed are least wall times, with processor times of all processes and the memory of the largest; then where
+the time of the default wheel goes, part after part in one process.
 
     python benchmarks/whole_runs.py ac0672f
 """

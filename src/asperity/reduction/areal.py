@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
-from asperity.reduction.convolving import convolved
+from asperity.reduction.convolving import Convolution
 from asperity.reduction.texture import StateTexture
 from asperity.surfaces.strip import Rows, Strip
 
@@ -75,7 +75,7 @@ def areal_texture(
     for row, half in zip(weights, halves, strict=True):
         side = reach - half.shape[0] // 2
         row[: half.shape[1], side : 2 * reach + 1 - side] = -half.T
-    result = np.empty((len(axes), n))
+    averaged, result = Convolution(weights, min(PIECE, n)), np.empty((len(axes), n))
     for first in range(0, n, PIECE):
         low, high = max(0, first - reach), min(n, first + PIECE + reach)
         rows = strip.rows(low, high)
@@ -83,7 +83,7 @@ def areal_texture(
         folded[:, 1:] += rows[:, middle - 1 :: -1][:, : folded.shape[1] - 1] if middle else 0.0
         last = min(first + PIECE, n)
         beyond = (reach - (first - low), reach - (high - last))  # zeros
-        result[:, first:last] = convolved(np.pad(folded.T, ((0, 0), beyond)), weights, PIECE)
+        result[:, first:last] = averaged.of(np.pad(folded.T, ((0, 0), beyond)))
     return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing[0])
 
 
