@@ -91,9 +91,9 @@ def compile_case(kind: str, folder: Path, *, ahead: bool) -> None:
     tempfile.tempdir = str(folder)  # kernels are looked for there, too
     from asperity.kinds.cases import as_case, demo_case, kind_of, template
     from asperity.running import run
-    from asperity.scenarios import compiling
+    from asperity.scenarios import second_process
 
-    compiling.processors = lambda: 1  # else a second process takes its share
+    second_process.processors = lambda: 1  # else another takes its share
     case = demo_case() if kind == "demo" else as_case(tomllib.loads(template(kind)))
     if ahead:
         kind_of(case).compile_kernels(lambda *_: None)

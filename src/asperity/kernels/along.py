@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.kernels.options import compiled
+from asperity.kernels.options import CALLED, compiled
 
 BLOCK = 512
 """Points whose coefficients are found at once."""
@@ -12,31 +12,29 @@ OVERLAP = 24
 """Points by which blocks overlap: from point to point an end is felt by 2 − √3 less, 2e-14 over these."""
 
 
-@compiled(cache=True, nogil=True)
-def spline_coefficients(values):  # type: ignore[no-untyped-def]
-    """B-spline coefficients (m + 2, s) of natural cubic splines through values (m, s), m ≥ 2.
+@compiled(**CALLED, nogil=True)
+def spline_coefficients(values, first, end, coefficients, factor):  # type: ignore[no-untyped-def]
+    """B-spline coefficients of natural cubic splines through rows (s, n) from one place to before another.
 
-    One lies beyond each end. c[i−1] + 4 c[i] + c[i+1] = 6 f[i], and c = f at both ends, where the curvature
-    is zero.
+    One lies beyond each end: they fill (places + 2, s) of `coefficients`; `factor` is room. With
+    c[i−1] + 4 c[i] + c[i+1] = 6 f[i], and c = f at both ends, where the curvature is zero.
     """
-    m, s = values.shape
-    coefficients = np.empty((m + 2, s))
-    factor = np.zeros(m)
+    m, s = end - first, values.shape[0]
+    factor[0] = 0.0
     for j in range(s):
-        coefficients[1, j] = values[0, j]
+        coefficients[1, j] = values[j, first]
     for i in range(1, m - 1):
         factor[i] = 1.0 / (4.0 - factor[i - 1])
         for j in range(s):
-            coefficients[i + 1, j] = (6.0 * values[i, j] - coefficients[i, j]) * factor[i]
+            coefficients[i + 1, j] = (6.0 * values[j, first + i] - coefficients[i, j]) * factor[i]
     for j in range(s):
-        coefficients[m, j] = values[m - 1, j]
+        coefficients[m, j] = values[j, end - 1]
     for i in range(m - 2, 0, -1):
         for j in range(s):
             coefficients[i + 1, j] -= factor[i] * coefficients[i + 2, j]
     for j in range(s):
         coefficients[0, j] = 2.0 * coefficients[1, j] - coefficients[2, j]
         coefficients[m + 1, j] = 2.0 * coefficients[m, j] - coefficients[m - 1, j]
-    return coefficients
 
 
 @compiled(cache=True, nogil=True)
@@ -50,14 +48,14 @@ def splines_along(values, index):  # type: ignore[no-untyped-def]
     s, m = values.shape
     result = np.empty((index.shape[0], s))
     first, end, origin = 0, 0, 0
-    coefficients = np.empty((0, s))
+    most = min(m, BLOCK + 1 + 2 * OVERLAP)
+    coefficients, factor = np.empty((most + 2, s)), np.empty(most)
     for k in range(index.shape[0]):
         i = min(int(index[k]), m - 2)
         if not first <= i < end:
             first, end = i, min(i + BLOCK, m - 1)
             origin = max(0, first - OVERLAP)
-            piece = np.ascontiguousarray(values[:, origin : min(m, end + 1 + OVERLAP)].T)
-            coefficients = spline_coefficients(piece)
+            spline_coefficients(values, origin, min(m, end + 1 + OVERLAP), coefficients, factor)
         t = index[k] - i
         u = 1.0 - t
         w0, w3 = u * u * u / 6.0, t * t * t / 6.0
