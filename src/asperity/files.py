@@ -219,6 +219,39 @@ def _taken(part: Path) -> Iterator[None]:
         yield
 
 
+@contextmanager
+def taken(path: Path) -> Iterator[bool]:
+    """Hold what stands for a file that is to be made, until it is; tell whether nobody else holds it.
+
+    What stands for it is an empty file beside it, swept like a part if its process ends. Where such files
+    cannot be made or locked, nobody holds any.
+    """
+    stand_in = path.with_name(f".{path.name}.{'0' * 8}.part")
+    descriptor = None
+    try:
+        if fcntl is not None:
+            with suppress(OSError):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                descriptor = os.open(stand_in, os.O_RDWR | os.O_CREAT, 0o600)
+        free = True
+        if descriptor is not None:
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                free = False
+            except OSError:  # a file system without locks
+                free = True
+        try:
+            yield free
+        finally:
+            if descriptor is not None and free:
+                with suppress(OSError):
+                    stand_in.unlink()
+    finally:
+        if descriptor is not None:
+            os.close(descriptor)
+
+
 def _sweep_once(folder: Path) -> None:
     """Remove the left-overs of a folder when this process first writes into it."""
     if folder not in _swept:

@@ -22,6 +22,7 @@ def run(
     progress: Progress | None = None,
     *,
     converge: bool = False,
+    brief: bool = False,
 ) -> Result:
     """Compute a case.
 
@@ -35,6 +36,9 @@ def run(
     converge : bool
         Whether the case is computed again with each of its settings made finer in turn: the result then has
         the group convergence, which says how far it depends on them.
+    brief : bool
+        Whether what only a report shows is left out: statistics and spectra of the path, and the expected
+        errors of the laws. Everything else has the same digits.
 
     Returns
     -------
@@ -77,7 +81,7 @@ def run(
             warnings.simplefilter("always", PhysicsWarning)
             prepared = loaded if isinstance(loaded, PreparedCase) else prepare_case(loaded)
             caught += prepared.caught
-            result = prepared.kind.computed(prepared, told, caught)
+            result = prepared.kind.computed(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence.running import with_convergence
 

@@ -7,9 +7,11 @@ import json
 import os
 import sys
 import tempfile
+import time
 import warnings
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -18,10 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import ComputationError, InputError
-from asperity.files import amount, atomic_write, discard, is_sealed, left_overs
+from asperity.files import amount, atomic_write, discard, is_sealed, left_overs, taken
 
 FORMAT = 2  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
+PATIENCE = 0.02  # how often is looked for what another process makes, s
 MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
 
 
@@ -57,6 +60,10 @@ def _feed(digest: Any, part: object) -> None:
         digest.update(b"\0" + json.dumps(value, ensure_ascii=False).encode() + b"\0")
 
 
+Make = Callable[[], Mapping[str, NDArray[Any]]]
+"""Makes what is to be kept."""
+
+
 class Cache(Protocol):
     """Where finished work is kept: `Store` is one."""
 
@@ -65,6 +72,12 @@ class Cache(Protocol):
 
     def put(self, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Keep arrays under the key."""
+
+    def claim(self, key: str) -> AbstractContextManager[bool]:
+        """Try to be the only one who makes what belongs under the key; tell whether it was free."""
+
+    def made(self, key: str, make: Make, meanwhile: Callable[[], object] = ...) -> dict[str, NDArray[Any]]:
+        """Return what is kept under the key; make it first where nobody does, or wait for who makes it."""
 
 
 @dataclass(frozen=True)
@@ -144,6 +157,33 @@ class Store:
                 stacklevel=3,
             )
         self._held[key] = {name: value.copy() for name, value in arrays.items()}
+
+    @contextmanager
+    def claim(self, key: str) -> Iterator[bool]:
+        """Try to be the only process, and thread, that makes the result called `key`; tell whether it is free.
+
+        A claim ends with the context, or with its process. Where files cannot be locked all are free.
+        """
+        with taken(self.path(key)) as free:
+            yield free
+
+    def made(
+        self, key: str, make: Make, meanwhile: Callable[[], object] = lambda: time.sleep(PATIENCE)
+    ) -> dict[str, NDArray[Any]]:
+        """Return what is kept under the key; make it first where nobody does, or wait for who makes it.
+
+        `meanwhile` is called as long as another makes it.
+        """
+        while True:
+            if (kept := self.get(key)) is not None:
+                return kept
+            with self.claim(key) as free:
+                if free and (kept := self.get(key)) is None:
+                    found = dict(make())
+                    self.put(key, found)
+                    return found
+            if not free:
+                meanwhile()
 
     def files(self) -> list[Path]:
         """List the files of this store, sorted by name."""

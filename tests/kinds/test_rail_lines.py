@@ -64,7 +64,7 @@ class TestRail:
     def test_line_is_the_same_all_across(self, folder):
         write_line(folder, 6.0)
         found = textures_of(case(folder, LINE.format("refuse")))
-        np.testing.assert_allclose(np.ptp(found.path.heights, axis=1), 0.0, atol=1e-15)
+        np.testing.assert_allclose(np.ptp(found.path.rows(0, found.path.shape[0]), axis=1), 0.0, atol=1e-15)
         assert np.std(found.line) == pytest.approx(1e-6 * np.std(turn(6000)), rel=0.1)
         assert "EN 15610" in found.origin
         assert "spikes kept" in found.origin
@@ -89,7 +89,7 @@ class TestRail:
         with pytest.raises(InputError, match=r"surface\.line_distance: received no distance for 3 lines"):
             textures_of(case(folder, LINES))
         found = textures_of(case(folder, LINES + 'line_distance = "5 mm"'))
-        assert np.ptp(found.path.heights, axis=1).max() > 0.0
+        assert np.ptp(found.path.rows(0, found.path.shape[0]), axis=1).max() > 0.0
 
     def test_wrong_unit_asks(self, folder):
         np.savez(folder / "lines.npz", rail=turn(6000)[None])
@@ -133,7 +133,7 @@ class TestWheel:
         np.savez(folder / "lines.npz", wheel=np.stack([same, same[::-1], np.roll(same, 7)]))
         found = textures_of(case(folder, wheel=LINES + 'line_distance = "5 mm"'))
         assert "2 brought into register (1 turned round)" in found.origin
-        inside = found.path.heights[:, 5:-5]
+        inside = found.path.rows(0, found.path.shape[0])[:, 5:-5]
         np.testing.assert_allclose(np.ptp(inside, axis=1), 0.0, atol=1e-7)
 
 

@@ -60,13 +60,13 @@ def failing(monkeypatch):
     """Let members of some seeds fail; returns the seeds that were computed."""
     computed = []
 
-    def fails(case):
+    def fails(case, **options):
         computed.append(case.seed)
         if case.seed == 2:
             raise ComputationError(f"at {case.speed} m/s it failed", "another one")
         if case.seed == 3:
             raise ZeroDivisionError("by nothing")
-        return run(case)
+        return run(case, **options)
 
     monkeypatch.setattr("asperity.running.run", fails)
     return computed
@@ -221,8 +221,8 @@ class TestTable:
             asperity.study("ball.toml", {"seed": [2]}, executor=Here())
 
     def test_warnings_are_counted_by_member(self, monkeypatch):
-        def warns(case):
-            tree = run(case)
+        def warns(case, **options):
+            tree = run(case, **options)
             met = [{"category": "Coarse", "message": f"{0.1 * case.seed} mm is coarse", "count": 7}]
             tree.attrs["warnings"] = json.dumps(met if case.seed < 3 else [])
             return tree

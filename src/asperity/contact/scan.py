@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+import time
+from collections import deque
+from collections.abc import Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -17,7 +20,7 @@ from asperity.contact.flaws import Counts, total
 from asperity.errors import InputError
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress
-from asperity.store import Cache, content_key
+from asperity.store import PATIENCE, Cache, content_key
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import in_order, thread_count
 
@@ -128,6 +131,11 @@ class ScanJob:
         )
         return block.totals * space.cell_area, block.counts
 
+    def solved(self, rows: NDArray[np.float64], planes: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+        """Forces and counts of a block, as a cache keeps them."""
+        forces, counts = self.solve(rows, planes)
+        return {"forces": forces, "counts": counts}
+
     def _solve_batched(
         self, rows: NDArray[np.float64], planes: NDArray[np.float64], device: Device
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -170,22 +178,34 @@ def solved_blocks(
     workers: int | None = None,
     progress: Progress | None = None,
     message: str = "scanning the contact",
+    beside: Sequence[ScanJob] = (),
 ) -> Generator[SolvedBlock]:
     """Blocks of a scan in order, from the cache or solved, on so many threads (by default `thread_count`).
 
     A scan that was interrupted goes on after the last block kept; the number of threads changes no digit.
+    Processes that need the same scan share its work: while another one solves a block, the last one that
+    nobody solves is solved here, of this scan or of those that are done `beside` it.
     """
     count = (workers or thread_count()) if job.device is None else 1  # one block fills a device
+    spare = deque((other, start) for other in (beside or [job]) for start in other.starts)
+
+    def help_along() -> None:
+        while spare:
+            other, start = spare.pop()
+            rows, planes = other.under(start)
+            key = other.key(rows, planes)
+            assert cache is not None
+            with cache.claim(key) as free:
+                if free and cache.get(key) is None:
+                    cache.put(key, other.solved(rows, planes))
+                    return
+        time.sleep(PATIENCE)
 
     def block(start: int) -> SolvedBlock:
         rows, planes = job.under(start)
         key = "" if cache is None else job.key(rows, planes)
-        kept = None if cache is None else cache.get(key)
-        if kept is None:
-            forces, counts = job.solve(rows, planes)
-            kept = {"forces": forces, "counts": counts}
-            if cache is not None:
-                cache.put(key, kept)
+        solve = partial(job.solved, rows, planes)
+        kept = solve() if cache is None else cache.made(key, solve, help_along)
         return SolvedBlock(key, kept["forces"], Counts(*kept["counts"].tolist()))
 
     done = 0
@@ -205,9 +225,10 @@ def scan_forces(
     cache: Cache | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
+    beside: Sequence[ScanJob] = (),
 ) -> ScannedForces[NDArray[np.float64]]:
     """Scan, and hold the forces in memory; arguments as in `solved_blocks`."""
-    blocks = list(solved_blocks(job, cache, workers, progress))
+    blocks = list(solved_blocks(job, cache, workers, progress, beside=beside))
     forces = np.concatenate([block.forces for block in blocks], axis=1)
     return ScannedForces(forces, total(block.counts for block in blocks), job.single)
 

@@ -14,10 +14,14 @@ from asperity.contact import HalfSpace, Hertz
 from asperity.contact.flaws import window_for
 from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
 
-HIGHEST_FORCE = 8.0
-"""Largest force that the chosen states cover, in working loads."""
+HIGHEST_FORCE = 10.0
+"""Largest force that the chosen states cover, in loads of the class of the working load."""
 FILLED = 0.9
 """Share of the window's width for the smooth contact of the largest chosen state; rough ones vary."""
+CLASS = 4.0
+"""Ratio of the largest working load of a class to the smallest."""
+WIDEST = 0.75
+"""Share of the window's width for the smooth contact under the largest working load of a class."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +42,28 @@ class Geometry:
         """Semi-axes of the nominal patch under the working load, m."""
         return self.axes(self.load)
 
+    @property
+    def filling_force(self) -> float:
+        """Force whose smooth contact is as wide as the window, N."""
+        sides = [n * d for n, d in zip(self.body.shape, self.spacing, strict=True)]
+        one = self.axes(1.0)  # contacts grow as the cube root of the force
+        return float(min(side / (2 * a) for side, a in zip(sides, one, strict=True)) ** 3)
+
+    @property
+    def class_load(self) -> float:
+        """Load in the middle of the class that the working load belongs to, N.
+
+        Samples are reduced alike for all loads of a class, so that they share every scan. Classes are counted
+        from a contact that is `WIDEST` in the window.
+        """
+        top = WIDEST**3 * self.filling_force
+        return top / CLASS ** (math.floor(math.log(top / self.load, CLASS)) + 0.5)
+
+    @property
+    def class_axes(self) -> tuple[float, float]:
+        """Semi-axes of the nominal patch under the load of the class, m: within 26 % of `semi_axes`."""
+        return self.axes(self.class_load)
+
     def axes(self, force: float) -> tuple[float, float]:
         """Semi-axes (a_x, a_y) of the nominal patch under a force, N; m."""
         return self.hertz.semi_axes(self.hertz.approach(force))
@@ -53,7 +79,7 @@ class Geometry:
         Approaches of the highest state and under the working load, m; d0 of the states, m, minus the lowest
         first touch; widest window that the samples allow, m. One sentence.
         """
-        wanted = max(HIGHEST_FORCE * self.load, self.largest_force)
+        wanted = max(HIGHEST_FORCE * self.class_load, self.largest_force)
         kept_out = self.hertz.approach(wanted) - self.hertz.approach(self.largest_force)
         overlap = highest + kept_out + datum
         side = window_for(self.body, self.spacing, overlap)
@@ -72,17 +98,20 @@ class Geometry:
         """Bound the states: above by a contact that the window holds, below by the working approach.
 
         States below minus the working approach, which a hollow deeper than it asks for, would take those away
-        that carry load.
+        that carry load. It is that of the class of the load.
         """
-        sides = [n * d for n, d in zip(self.body.shape, self.spacing, strict=True)]
-        room = min(FILLED * side / (2 * a) for side, a in zip(sides, self.semi_axes, strict=True))
-        largest = min(self.largest_force, self.load * max(room, 1.0) ** 3)
-        return replace(self, largest_force=largest, lowest_approach=-self.hertz.approach(self.load))
+        largest = min(self.largest_force, max(FILLED**3 * self.filling_force, self.load))
+        return replace(self, largest_force=largest, lowest_approach=-self.hertz.approach(self.class_load))
 
 
 def window_cells(contact: ContactCase) -> int:
     """Cells along the window's side: odd, so that the lowest point of the gap lies on a cell."""
     return 2 * (contact.cells // 2) + 1
+
+
+def cells_over(length: float, spacing: float) -> int:
+    """Cells of a spacing that cover a length, both in m; one that is missed by rounding counts."""
+    return math.ceil(length / spacing - 1e-6)
 
 
 def across_window(contact: ContactCase) -> NDArray[np.float64]:
@@ -114,7 +143,8 @@ def geometry(
     """
     n, h = window_cells(contact), contact.spacing
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
-    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, HIGHEST_FORCE * load)
+    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
+    shape = replace(shape, largest_force=HIGHEST_FORCE * shape.class_load)
     axes = shape.semi_axes
     _check_half_space(max(axes), smallest_radius, f"a working load of {load:.3g} N", body)
     if contact.approaches is not None:

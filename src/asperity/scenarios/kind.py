@@ -60,7 +60,7 @@ class Kind:
         textures   ``textures_of(case)``; ``warn_of(case, shape, textures)``, before anything is computed
         compiling  ``compile_kernels(progress)``, of all that is stepped
         compute    ``compute(prepared, progress)``, from textures to runs
-        result     ``layout(computed, caught)``, the tree of a run
+        result     ``layout(computed, caught, brief)``, the tree of a run
         schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
                    entries, each with the place on its dimensions if not all of it
         refining   ``settings_of(case)``, how finely its bodies are resolved
@@ -133,11 +133,19 @@ class Kind:
         self.offers("compiling", "compile_kernels")(progress)
 
     def computed(
-        self, prepared: PreparedCase, progress: Progress, caught: list[warnings.WarningMessage]
+        self,
+        prepared: PreparedCase,
+        progress: Progress,
+        caught: list[warnings.WarningMessage],
+        *,
+        brief: bool = False,
     ) -> xarray.DataTree:
-        """Compute a case and lay out its result; warnings of laying out may be added to `caught`."""
+        """Compute a case and lay out its result, in brief without what only its report shows.
+
+        Warnings of laying out may be added to `caught`.
+        """
         computed = self.offers("compute", "compute")(prepared, progress)
-        found: xarray.DataTree = self.offers("result", "layout")(computed, caught)
+        found: xarray.DataTree = self.offers("result", "layout")(computed, caught, brief=brief)
         return found
 
     @property

@@ -265,7 +265,7 @@ class LaidReady:
 
 def table_stride(shape: Geometry) -> int:
     """Rows of the contact grid between the positions of a table: an eighth of the patch."""
-    return max(1, math.floor(shape.semi_axes[0] / 8 / shape.spacing[0]))
+    return max(1, math.floor(shape.class_axes[0] / 8 / shape.spacing[0]))
 
 
 def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | None) -> tuple[float, float]:

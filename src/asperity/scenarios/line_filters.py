@@ -56,7 +56,7 @@ def normalisations(contact: ContactCase, laws: Iterable[str]) -> tuple[Normalise
 
 def filter_stride(shape: Geometry) -> int:
     """Rows of the contact grid between the positions of a scan for a filter: a sixth of the patch."""
-    return max(1, math.floor(shape.semi_axes[0] / 6 / shape.spacing[0]))
+    return max(1, math.floor(shape.class_axes[0] / 6 / shape.spacing[0]))
 
 
 def line_filters(
@@ -115,7 +115,7 @@ def _scanned(
 
     def scan(job: ScanJob) -> ScannedForces[NDArray[np.float64]]:
         # one strip is a block or two: strips beside each other keep all processors busy
-        return scan_forces(job, cache=cache, workers=math.ceil(workers / len(jobs)))
+        return scan_forces(job, cache=cache, workers=math.ceil(workers / len(jobs)), beside=jobs)
 
     progress(0, len(jobs), message)
     scans = []

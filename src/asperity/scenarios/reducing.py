@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,7 +29,7 @@ from asperity.surfaces.strip import Strip
 STATES = 14
 """States chosen where the case names no approaches."""
 LIGHTEST_STATE = 0.02
-"""Least mean force of a state that has a filter, in working loads."""
+"""Least mean force of a state that has a filter, in loads of the class of the working load."""
 SCAN_TOLERANCE = "numerics.force_accuracy"
 """Key of a case that says how tightly contacts of scans and loading curves are solved."""
 LEAST_DATUM = 1e-12
@@ -59,9 +60,9 @@ class Reduction:
 def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
     """Height (rows,) of the plane that the nominal patch feels at each row of a path, m, peaks positive.
 
-    The mean under the patch of the geometry's working load, centred on each row.
+    The mean under the patch of the class of the geometry's working load, centred on each row.
     """
-    return -areal_texture(path, shape.spacing, [0.0], [shape.semi_axes]).heights[0]
+    return -areal_texture(path, shape.spacing, [0.0], [shape.class_axes]).heights[0]
 
 
 def reduce(
@@ -79,7 +80,7 @@ def reduce(
     `planes` (rows,), m, are from `patch_planes` for the path, where it is areal; `needed` are the
     normalisations of the filters that the laws use. The cache keeps finished scans.
     """
-    weights = punch_weights(shape.spacing, shape.semi_axes)
+    weights = punch_weights(shape.spacing, shape.class_axes)
     cells = (shape.body.shape[0], shape.body.shape[1])
     samples = patches([m.heights for m in textures.maps], cells, contact.samples, weights)
     half_space = shape.half_space(contact.hardness)
@@ -89,7 +90,7 @@ def reduce(
     if textures.path is not None and planes is not None:
         along = first_touch(textures.path, shape.body) + _centred(planes, shape)
     lowest = _lowest_touches(textures, shape, along, samples)
-    approaches = _approaches(contact, shape, lowest["path"], samples, half_space)
+    approaches = _approaches(contact, shape, lowest, samples, half_space)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
     working = float(np.mean([c.approach for c in contacts]))
@@ -103,10 +104,12 @@ def reduce(
         raise _too_rough(textures, f"contact in {np.count_nonzero(mean)} of {len(mean)} states")
     refuse_low_states(approaches, mean, shape, contacts[0].approach)
     # the curve, drawn through few states, may start a little before the first touch
-    datums = {name: -min(touch, ensemble.curve.first_touch, -LEAST_DATUM) for name, touch in lowest.items()}
+    datums = {
+        name: -min(lowest[name], ensemble.curve.first_touch, -LEAST_DATUM) for name in ("samples", "path")
+    }
     ensemble = replace(ensemble, datum=datums[contact.datum])
     filters, scans = line_filters(
-        contact, textures, shape, ensemble, LIGHTEST_STATE * shape.load, needed,
+        contact, textures, shape, ensemble, LIGHTEST_STATE * shape.class_load, needed,
         rtol=rtol_for(FILTER_SHARE * numerics.force_accuracy), cache=cache, progress=progress,
     )  # fmt: skip
     counts = total(scan.counts for scan in scans)
@@ -169,12 +172,11 @@ def _lowest_touches(
     along: NDArray[np.float64] | None,
     samples: Sequence[NDArray[np.float64]],
 ) -> dict[str, float]:
-    """Lowest approach of first touch of all samples, and of samples, strips and path, m."""
+    """Lowest approach of first touch of all samples, of samples and strips, and of these and the path, m."""
     lowest = min(float(first_touch(s, shape.body).min()) for s in samples)
-    touches = [first_touch(s.heights, shape.body).min() for s in textures.strips]
-    if along is not None:
-        touches.append(along.min())
-    return {"samples": lowest, "path": float(min([lowest, *touches]))}
+    strips = min([lowest, *(float(first_touch(s.heights, shape.body).min()) for s in textures.strips)])
+    path = strips if along is None else min(strips, float(along.min()))
+    return {"samples": lowest, "strips": strips, "path": path}
 
 
 def _centred(planes: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64]:
@@ -186,18 +188,24 @@ def _centred(planes: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64
 def _approaches(
     contact: ContactCase,
     shape: Geometry,
-    lowest_touch: float,
+    lowest: Mapping[str, float],
     samples: Sequence[NDArray[np.float64]],
     half_space: HalfSpace,
 ) -> NDArray[np.float64]:
-    """States as given, or from the first touch to a high force, denser where contact begins."""
+    """States as given, or from the first touch to a high force, denser where contact begins.
+
+    Those of the samples do not depend on the path; more lie below where it is touched earlier.
+    """
     if contact.approaches is not None:
         return np.array(contact.approaches)
-    low = max(lowest_touch, shape.lowest_approach)
+    low = max(lowest["strips"], shape.lowest_approach)
     high = max(
         half_space.solve(shape.body - s, load=shape.largest_force, rtol=1e-3).approach for s in samples
     )
-    return chosen_states(low, high)
+    states = chosen_states(low, high)
+    below, step = max(lowest["path"], shape.lowest_approach), 2.0 * (states[1] - states[0])
+    further = np.linspace(below, low, math.ceil((low - below) / step), endpoint=False)
+    return np.concatenate([further, states])
 
 
 def chosen_states(low: float, high: float) -> NDArray[np.float64]:

@@ -33,10 +33,10 @@ FEWEST_POINTS = 16
 """Points of a segment of a line's spectrum, at least."""
 
 
-def surface_group(chain: Chain[Any]) -> xarray.Dataset:
+def surface_group(chain: Chain[Any], *, brief: bool = False) -> xarray.Dataset:
     """Lay out the textures of a case: first sample, a piece of the path, its line.
 
-    And of the whole path distribution, spectrum and statistics.
+    And, if not in brief, of the whole path distribution, spectrum and statistics.
     """
     textures, dx = chain.textures, chain.shape.spacing[0]
     laid_out: dict[Entry, Any] = {}
@@ -48,7 +48,7 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
             surface.Y: np.arange(first.shape[1]) * dx,
             surface.SAMPLE_HEIGHTS: first.heights,
         }
-        statistics += _areal(first) if textures.areal else []
+        statistics += _areal(first) if textures.areal and not brief else []
     recorded = textures.recorded
     if textures.path is not None:
         piece = textures.surface.rows(recorded.start, min(recorded.stop, recorded.start + PATH_ROWS))
@@ -64,9 +64,10 @@ def surface_group(chain: Chain[Any]) -> xarray.Dataset:
     laid_out |= {surface.DISTANCE: np.arange(len(line)) * dx, surface.LINE: line}
     if textures.untouched is not None:
         laid_out[surface.LINE_UNTOUCHED] = textures.untouched.followed[recorded]
-    path = _path(chain)
-    laid_out |= _distribution(path) | _spectra(chain, path)
-    statistics += path.statistics + _of_lines(textures)
+    if not brief:
+        path = _path(chain)
+        laid_out |= _distribution(path) | _spectra(chain, path)
+        statistics += path.statistics + _of_lines(textures)
     facts = {
         surface.STATISTICS: json.dumps(statistics, ensure_ascii=False),
         surface.SOURCE: textures.origin,

@@ -158,23 +158,23 @@ def strips_of(
     return strips, "filter strips synthesised in their likeness"
 
 
-def cut_from(path: NDArray[np.float64], contact: ContactCase, duration: float) -> tuple[HeightMap, ...]:
-    """Cut strips for stiffness and filters from a path (rows, ny), m, spread evenly; one flat one if it is.
+def cut_from(path: Strip, contact: ContactCase, duration: float, *, first: int = 0) -> tuple[HeightMap, ...]:
+    """Cut strips for stiffness and filters from a path, spread evenly; one flat one if all are.
 
-    The path of a run of a duration, s.
+    The path of a run of a duration, s, from row `first` on.
     """
-    rows = strip_rows(contact)
-    if len(path) < rows:
+    rows, length = strip_rows(contact), path.shape[0] - first
+    if length < rows:
         raise InputError(
             "duration",
-            f"{duration:g} s, a path of {len(path) * contact.spacing:.4g} m with its run-in",
+            f"{duration:g} s, a path of {length * contact.spacing:.4g} m with its run-in",
             f"at least {rows * contact.spacing:.4g} m, the strips from which filters are estimated",
             "Roll longer, or lower contact.sample_length.",
         )
-    count = contact.samples if path.any() else 1
-    firsts = np.linspace(0, len(path) - rows, count + 2)[1:-1].round().astype(int)
-    spacing = (contact.spacing, contact.spacing)
-    return tuple(level(HeightMap(path[i : i + rows], spacing)) for i in firsts)
+    count, spacing = contact.samples, (contact.spacing, contact.spacing)
+    firsts = first + np.linspace(0, length - rows, count + 2)[1:-1].round().astype(int)
+    found = tuple(level(HeightMap(path.rows(int(i), int(i) + rows), spacing)) for i in firsts)
+    return found if any(strip.heights.any() for strip in found) else found[:1]
 
 
 def path_of(

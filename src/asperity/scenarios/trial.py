@@ -80,14 +80,14 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     rtol = rtol_for(case.numerics.force_accuracy)
     message, (nx, ny) = "trying contacts", shape.body.shape
     progress(0, 4, message)
-    weights = punch_weights(shape.spacing, shape.semi_axes)
+    weights = punch_weights(shape.spacing, shape.class_axes)
     samples = patches([m.heights for m in textures.maps], (nx, ny), case.contact.samples, weights)
     half_space = shape.half_space(case.contact.hardness)
     approaches, working, load = _states(prepared, half_space, samples)
     progress(1, 4, message)
     job = ScanJob(half_space, Rows(samples[0]), shape.body, approaches, rtol=rtol, device=None)
     scanned, curve = timed(partial(scan_forces, job, workers=1))
-    loaded = approaches[scanned.forces[:, 0] >= LIGHTEST_STATE * shape.load]
+    loaded = approaches[scanned.forces[:, 0] >= LIGHTEST_STATE * shape.class_load]
     progress(2, 4, message)
     filters = path = 0.0
     if any(np.ptp(strip.heights) for strip in textures.strips) and len(loaded):

@@ -93,11 +93,11 @@ def moving_kernel(
     distance = real("distance (m)", distance, "a finite number")
     made = (parameters, speed, time_step, duration, positions, ZONES, SHIFT)
     key = content_key("moving-kernel", *made, *([distance] if distance else []))
-    kept = cache.get(key) if cache is not None else None
-    if kept is None:
-        kept = {"weights": _until_it_dies(track, speed, time_step, duration, positions, distance, progress)}
-        if cache is not None:
-            cache.put(key, kept)
+
+    def make() -> dict[str, NDArray[np.float64]]:
+        return {"weights": _until_it_dies(track, speed, time_step, duration, positions, distance, progress)}
+
+    kept = make() if cache is None else cache.made(key, make)
     weights = kept["weights"]
     left = _left_over(weights)
     if duration is None and left > DIED_AWAY:

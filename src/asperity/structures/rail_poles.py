@@ -73,12 +73,12 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = 
         allowed = f"an even number from 4 to {most_poles(taps)}, a tenth of the kernel's lags"
         raise InputError("number of poles", count, allowed)
     key = content_key("rail-poles", kernel.weights, kernel.time_step, count, ITERATIONS, LINES)
-    kept = cache.get(key) if cache is not None else None
-    if kept is None:
+
+    def make() -> dict[str, NDArray[Any]]:
         poles = _poles(kernel, count)
-        kept = {"poles": poles, "residues": _residues(kernel.weights[:, 1:], poles)}
-        if cache is not None:
-            cache.put(key, kept)
+        return {"poles": poles, "residues": _residues(kernel.weights[:, 1:], poles)}
+
+    kept = make() if cache is None else cache.made(key, make)
     fit = RailPoles(kernel, kept["poles"], kept["residues"], 0.0, 0.0)
     left = fit.weights()[:, 1:] - kernel.weights[:, 1:]
     error = float(np.linalg.norm(left) / np.linalg.norm(kernel.weights[:, 1:]))

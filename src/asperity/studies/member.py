@@ -46,7 +46,7 @@ def compute_member(key: str, case: Case) -> dict[str, NDArray[Any]] | Failure:
         if found is not None:
             return found
         try:
-            found = packed(kept(run(case)))
+            found = packed(kept(run(case, brief=True)))
         except Exception as error:  # whatever it is, it is the failure of this member alone
             return Failure.of(error)
         with suppress(ComputationError):  # a full disk here loses nothing: the result goes back

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -14,7 +14,12 @@ from numpy.typing import NDArray
 from asperity.errors import InputError
 
 PIECES_KEPT = 3
-"""Generated pieces held at a time: those that threads on neighbouring positions read."""
+"""Generated pieces held at a time, at least: those that threads on neighbouring positions read."""
+BYTES_KEPT = 2**26
+"""Bytes of generated pieces, of all strips, up to which more of them are held: a path is read many times."""
+
+Piece = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Rows of a piece up to the next one, and those that give way to it, m."""
 
 
 class Strip(Protocol):
@@ -90,6 +95,58 @@ class Raised:
 
 
 @dataclass(frozen=True, eq=False)
+class Turning:
+    """A strip with the heights of a wheel added, which come again with every turn."""
+
+    strip: Strip  # what is rolled over
+    turn: NDArray[np.float64]  # (n, ny), one turn of what rolls, m
+    first: int  # its row that touches row zero of the strip
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of points (nx, ny)."""
+        return self.strip.shape
+
+    @property
+    def spacing(self) -> tuple[float, float]:
+        """Distances (dx, dy), m."""
+        return self.strip.spacing
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Lengths (nx dx, ny dy), m."""
+        return self.strip.size
+
+    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
+        """Heights of the rows first … stop − 1, m."""
+        around = (np.arange(first, stop) + self.first) % len(self.turn)
+        return self.strip.rows(first, stop) + self.turn[around]
+
+
+class _Pieces:
+    """Generated pieces of all strips, those read last, so that strips of one texture share them."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self._held: OrderedDict[Hashable, Piece] = OrderedDict()
+
+    def get(self, name: Hashable) -> Piece | None:
+        if name in self._held:
+            self._held.move_to_end(name)
+        return self._held.get(name)
+
+    def put(self, name: Hashable, piece: Piece) -> None:
+        self._held[name] = piece
+        size = sum(head.nbytes + tail.nbytes for head, tail in self._held.values())
+        while size > BYTES_KEPT and len(self._held) > PIECES_KEPT:
+            _, (head, tail) = self._held.popitem(last=False)
+            size -= head.nbytes + tail.nbytes
+
+
+_pieces = _Pieces()
+
+
+@dataclass(frozen=True, eq=False)
 class LongStrip:
     """Gaussian strip of any length, generated in pieces that blend into each other.
 
@@ -101,7 +158,10 @@ class LongStrip:
     In a blend the two pieces are weighted by cos θ and sin θ, θ rising from 0 to π/2: the sum of two
     independent Gaussian fields keeps variance, distribution and lateral correlation exactly, and the
     correlation at a lag τ along the path times cos(πτ/2 blend) at least. Any part of the strip can be had
-    alone and again, and a longer strip begins with the shorter one.
+    alone and again, and a longer strip begins with the shorter one. With rows `before` the first piece, the
+    strip has no beginning: however many there are, all rows from there on are the same.
+
+    Strips of one `name` and seed have the same pieces, and share those that are held.
     """
 
     shape: tuple[int, int]
@@ -112,10 +172,8 @@ class LongStrip:
     blend: int
     transform: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
     source: str = ""
-    _kept: OrderedDict[int, tuple[NDArray[np.float64], NDArray[np.float64]]] = field(
-        default_factory=OrderedDict, repr=False
-    )
-    _lock: threading.Lock = field(default_factory=threading.Lock, repr=False)
+    before: int = 0
+    name: Hashable = field(default_factory=object, repr=False)
 
     def __post_init__(self) -> None:
         if len(self.shape) != 2 or min(self.shape) < 2:
@@ -135,10 +193,10 @@ class LongStrip:
         if not 0 <= first <= stop <= self.shape[0]:
             raise InputError("rows of the strip", f"{first} to {stop}", f"rows from 0 to {self.shape[0]}")
         parts = []
-        at = first
-        while at < stop:
+        at, last = first - self.before, stop - self.before
+        while at < last:
             k, within = divmod(at, self.stride)
-            end = min(stop - k * self.stride, self.stride)
+            end = min(last - k * self.stride, self.stride)
             parts.append(self._blended(k)[within:end])
             at = k * self.stride + end
         found = np.concatenate(parts) if parts else np.empty((0, self.shape[1]))
@@ -146,23 +204,24 @@ class LongStrip:
 
     def _blended(self, k: int) -> NDArray[np.float64]:
         """Rows k·stride … (k + 1)·stride − 1."""
-        with self._lock:
-            if k in self._kept:
-                self._kept.move_to_end(k)
-                return self._kept[k][0]
+        begins = self.before == 0
+        kind = self.name, self.seed, self.stride, self.blend, self.shape[1], begins
+        with _pieces.lock:
+            held = _pieces.get((kind, k))
+            if held is not None:
+                return held[0]
             whole = self._field(k)
             head, tail = whole[: self.stride].copy(), whole[self.stride :].copy()
-            if k > 0:
-                before = self._kept.get(k - 1)
-                ending = self._field(k - 1)[self.stride :] if before is None else before[1]
+            del whole
+            if k != 0 or not begins:
+                known = _pieces.get((kind, k - 1))
+                ending = self._field(k - 1)[self.stride :] if known is None else known[1]
                 angle = 0.5 * np.pi * ((np.arange(self.blend) + 0.5) / self.blend)[:, None]
                 head[: self.blend] *= np.sin(angle)
                 head[: self.blend] += np.cos(angle) * ending
-            self._kept[k] = head, tail
-            if len(self._kept) > PIECES_KEPT:
-                self._kept.popitem(last=False)
+            _pieces.put((kind, k), (head, tail))
             return head
 
     def _field(self, k: int) -> NDArray[np.float64]:
-        seed = int(np.random.SeedSequence([self.seed, k]).generate_state(1)[0])
+        seed = int(np.random.SeedSequence([self.seed, k % 2**32]).generate_state(1)[0])
         return self.piece(self.stride + self.blend, seed)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from asperity.errors import InputError
@@ -14,12 +14,24 @@ from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.likeness import Likeness, likeness
 from asperity.surfaces.strip import LongStrip
 
-__all__ = ["from_bands", "from_map", "long_self_affine", "long_strip_like", "self_affine", "strip_from_bands"]
+__all__ = [
+    "from_bands",
+    "from_map",
+    "long_self_affine",
+    "long_strip_from_bands",
+    "long_strip_like",
+    "self_affine",
+    "strip_from_bands",
+]
 
 PIECE_POINTS = 2**19
 """Points of a piece of a long strip, at least: 4 MiB."""
 PIECE_REACHES = 16
 """Length of a piece of a long strip in correlation lengths, at least."""
+BAND_REACHES = 8
+"""Length of a piece of a long strip from band levels in longest wavelengths: each band has lines enough."""
+LEAST_PIECE = 5.0
+"""Length of a piece of a long strip from band levels, at least, m."""
 BLEND_REACHES = 2
 """Length of the blend of two pieces in correlation lengths."""
 LARGEST_MAP = 2**27
@@ -166,7 +178,39 @@ def long_self_affine(
 
     reach = int(np.ceil(longest * np.sqrt(anisotropy) / steps[0]))
     source = f"self-affine: rms {rms:.4g} m, Hurst {hurst:g}, {shortest:.4g} to {longest:.4g} m, seed {seed}"
-    return _long_strip(shape, steps, piece, seed, reach, None, source)
+    name = "self-affine", steps, rms, hurst, longest, shortest, anisotropy
+    return _long_strip(shape, steps, piece, seed, reach, None, source, name)
+
+
+def long_strip_from_bands(
+    shape: tuple[int, int],
+    spacing: tuple[float, float],
+    wavelengths: ArrayLike,
+    levels_db: ArrayLike,
+    *,
+    lateral: float = 1.0,
+    seed: int,
+    before: int = 0,
+) -> LongStrip:
+    """Strip of any length with given one-third-octave levels, generated where it is read.
+
+    Pieces of `strip_from_bands`, whose parameters it has, each with the levels asked for, blended over two of
+    the longest wavelengths. With rows `before`, as `LongStrip` has them.
+    """
+    given, levels = np.array(wavelengths, dtype=float), np.array(levels_db, dtype=float)
+    steps, reach = (float(spacing[0]), float(spacing[1])), int(np.ceil(given.max() / spacing[0]))
+    stride = max(BAND_REACHES * reach, int(np.ceil(LEAST_PIECE / steps[0])))
+
+    def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
+        grid = fft.next_fast_len(rows, real=True)
+        return strip_from_bands(
+            (grid, shape[1]), steps, given, levels, lateral=lateral, seed=piece_seed
+        ).heights[:rows]
+
+    source = f"one-third octaves {given.max():.4g} to {given.min():.4g} m, lateral {lateral:g}, seed {seed}"
+    name = "bands", steps, given.tobytes(), levels.tobytes(), lateral
+    blend = BLEND_REACHES * reach
+    return LongStrip(shape, steps, piece, seed, stride, blend, source=source, before=before, name=name)
 
 
 def long_strip_like(
@@ -187,7 +231,7 @@ def long_strip_like(
         return _gaussian_like(like, (rows, shape[1]), piece_seed)
 
     source = f"synthesised from {like.source}, seed {seed}"
-    return _long_strip(shape, like.spacing, piece, seed, like.reach, like.transform, source)
+    return _long_strip(shape, like.spacing, piece, seed, like.reach, like.transform, source, object())
 
 
 def _long_strip(
@@ -198,10 +242,11 @@ def _long_strip(
     reach: int,
     transform: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None,
     source: str,
+    name: Hashable,
 ) -> LongStrip:
     stride = max(PIECE_POINTS // shape[1], PIECE_REACHES * reach)
     blend = max(1, BLEND_REACHES * reach)
-    return LongStrip(shape, spacing, piece, seed, stride, blend, transform, source)
+    return LongStrip(shape, spacing, piece, seed, stride, blend, transform, source, name=name)
 
 
 def _gaussian_like(like: Likeness, shape: tuple[int, int], seed: int) -> NDArray[np.float64]:

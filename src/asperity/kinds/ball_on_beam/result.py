@@ -27,19 +27,22 @@ from asperity.schema import variables
 from asperity.spectra import band_levels, psd
 
 
-def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
+def layout(
+    computed: Computed, caught: list[warnings.WarningMessage], *, brief: bool = False
+) -> xarray.DataTree:
     """Lay out what was computed, as scenario, surface, contact, rolling and spectra.
 
     With units and provenance. `caught` are the warnings met on the way; those of laying out may still be
-    added to it.
+    added to it. In brief without what only a report shows: what the path is like, and the choice of a law.
     """
     over_frequency = _spectra(computed)
     found = findings(computed.chain)
     warn_of_findings(found)
     transfer = partial(square_transfer, Bodies(computed.ball, computed.beam))
-    choice = law_choice(computed.case, computed.chain.shape, computed.chain.textures, transfer)
+    shape, textures = computed.chain.shape, computed.chain.textures
+    choice = None if brief else law_choice(computed.case, shape, textures, transfer)
     groups = {
-        "/surface": surface_group(computed.chain),
+        "/surface": surface_group(computed.chain, brief=brief),
         "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),
         "/spectra": over_frequency,

@@ -26,14 +26,19 @@ EQUAL = 1e-6
 """Relative difference of distances that are equal."""
 
 
-def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
-    """Lay out what was computed, with units and provenance; warnings of that may be added to `caught`."""
+def layout(
+    computed: Computed, caught: list[warnings.WarningMessage], *, brief: bool = False
+) -> xarray.DataTree:
+    """Lay out what was computed, with units and provenance; warnings of that may be added to `caught`.
+
+    In brief without what only a report shows: what the path is like.
+    """
     chain = computed.chain
     spectra = xarray.Dataset(force_spectra(chain) | variables(_spectra(computed)))
     found = findings(chain)
     warn_of_findings(found)
     groups = {
-        "/surface": surface_group(chain),
+        "/surface": surface_group(chain, brief=brief),
         "/contact": contact_group(chain, found),
         "/rolling": rolling_group(chain, _rolling(computed)),
         "/spectra": spectra,

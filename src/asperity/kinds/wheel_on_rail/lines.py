@@ -21,6 +21,7 @@ from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.levels import check_levels
 from asperity.surfaces.parallel_lines import bring_into_register, common_length, lines_of, strip_from_lines
+from asperity.surfaces.strip import Rows
 
 FULL_TURN = 0.02
 """Share of the circumference that a measured line around a wheel may lack or exceed."""
@@ -43,7 +44,7 @@ def rail_lines(surface: RailSurface, grid: Grid) -> Record:
         origin += f", {surface.continuation}ed"
     how = cast(Continuation, surface.continuation)
     extended = extend(lines.T, grid.rows, how, spacing=grid.spacing, what="rail's record").T
-    return Record(_across(extended, surface, grid), origin, areal=False, lines=tuple(profiles))
+    return Record(Rows(_across(extended, surface, grid)), origin, areal=False, lines=tuple(profiles))
 
 
 def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
@@ -85,7 +86,7 @@ def wheel_lines(wheel: WheelCase, grid: Grid, *, check: bool) -> Record:
     if check:
         _check(fine, grid, "wheel's lines")
     heights = _across(close(fine.T, round(JOIN / grid.spacing)).T, wheel, grid)
-    return Record(heights, origin, areal=False, lines=tuple(profiles))
+    return Record(Rows(heights), origin, areal=False, lines=tuple(profiles))
 
 
 def _measured(section: MeasuredLines, name: str, *, degree: int) -> tuple[list[Profile], str]:

@@ -28,11 +28,13 @@ from asperity.scenarios.verdict import verdict
 from asperity.structures.rail_poles import RailPoles
 
 
-def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
+def layout(
+    computed: Computed, caught: list[warnings.WarningMessage], *, brief: bool = False
+) -> xarray.DataTree:
     """Lay out what was computed, as scenario, surface, track, contact, rolling and spectra.
 
     With units and provenance. `caught` are the warnings met on the way; those of laying out may still be
-    added to it.
+    added to it. In brief without what only a report shows: what the path is like, and the choice of a law.
     """
     spectra, losses = spectra_group(computed), error_of_losses(computed)
     found = [*findings(computed.chain), *findings_of_losses(losses)]
@@ -42,9 +44,10 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
     warn_of_silence(computed.case)
     warn_of_loss_factors(losses)
     transfer = partial(square_transfer, Bodies(computed.wheel, computed.track))
-    choice = law_choice(computed.case, computed.chain.shape, computed.chain.textures, transfer)
+    shape, textures = computed.chain.shape, computed.chain.textures
+    choice = None if brief else law_choice(computed.case, shape, textures, transfer)
     groups = {
-        "/surface": surface_group(computed.chain),
+        "/surface": surface_group(computed.chain, brief=brief),
         "/track": track_group(computed, losses),
         "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),

@@ -18,22 +18,31 @@ from asperity.kinds.wheel_on_rail.lines import rail_lines, wheel_lines
 from asperity.laws import spec_of
 from asperity.reference import cnossos
 from asperity.scenarios.chain import warn_of_start
-from asperity.scenarios.geometry import Geometry, window_cells
-from asperity.scenarios.records import Grid, Record, spectrum_levels, spectrum_strip
+from asperity.scenarios.geometry import Geometry, cells_over, window_cells
+from asperity.scenarios.records import (
+    Grid,
+    Record,
+    long_spectrum_strip,
+    spectrum_levels,
+    spectrum_strip,
+)
 from asperity.scenarios.textures import (
     Textures,
     cut_from,
     direction_words,
     measured_maps,
+    middle_line,
     path_of,
     strip_rows,
     strips_of,
     synthesised,
+    synthesised_path,
 )
 from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.strip import LongStrip, Raised, Rows, Turning
 
-LEAST_LENGTH = 5.0
-"""Synthesised strips are at least so long, m, so that they hold all bands of the spectra."""
+SAMPLED_LENGTH = 5.0
+"""Samples of a synthesised rail are cut from so much of it at least, from where the record starts, m."""
 
 
 def textures_of(case: WheelOnRail) -> Textures:
@@ -41,37 +50,36 @@ def textures_of(case: WheelOnRail) -> Textures:
 
     Heights of wheel and rail add up; the wheel's repeat with its circumference, rounded to whole cells.
     Samples and strips are cut from the path, before defects are put on it, unless [surface] names samples and
-    the wheel is smooth.
+    the wheel is smooth. A synthesised rail is the same track at every speed, and so are its samples.
     """
     contact, margin = case.contact, window_cells(case.contact)
-    before = margin + math.ceil(case.speed * case.settling / contact.spacing)
-    rows = before + math.ceil(case.speed * case.duration / contact.spacing) + 1 + margin
+    before = margin + cells_over(case.speed * case.settling, contact.spacing)
+    rows = before + cells_over(case.speed * case.duration, contact.spacing) + 1 + margin
     grid = Grid(rows, margin, contact.spacing)
     seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(contact.samples + 3)]
     maps, strips, missing, sampled = _samples(case, seeds[3:])
-    rail = _rail(case, grid, maps, seeds[0])
+    rail = _rail(case, grid, maps, seeds[0], before)
     turn = _wheel(case, grid, seeds[1])
-    around = (np.arange(rows) - before) % len(turn.heights)
-    rough = rail.heights + turn.heights[around]
-    if not maps or turn.heights.any():
-        maps = strips = cut_from(rough, case.contact, case.duration)
+    wheel = turn.heights
+    rough = Turning(rail.strip, wheel, -before)
+    if not maps or wheel.any():
+        maps = strips = _cut(case, rough, before)
         sampled = f"{len(strips)} samples cut from the path"
     on_rail = corrugated(case, rows, seeds[2])
-    path = HeightMap(rough + on_rail[:, None], (contact.spacing, contact.spacing))
     middle = margin // 2
+    parts = {
+        "rail": middle_line(rail.strip) + on_rail,
+        "wheel": wheel[(np.arange(rows) - before) % len(wheel), middle],
+    }
     start = case.start - before * contact.spacing
     at = start + contact.spacing * np.arange(rows, dtype=np.float64)
-    geometry, trajectory = defects(case, at, len(turn.heights))
+    geometry, trajectory = defects(case, at, len(wheel))
     lines = {name: body.lines for name, body in (("rail", rail), ("wheel", turn)) if body.lines}
-    parts = {
-        "rail": rail.heights[:, middle] + on_rail,
-        "wheel": turn.heights[around, middle],
-    }
     return Textures(
         maps,
         strips,
-        path,
-        np.ascontiguousarray(path.heights[:, middle]),
+        Raised(rough, on_rail) if on_rail.any() else rough,
+        parts["rail"] + parts["wheel"],
         start,
         before,
         margin,
@@ -102,24 +110,34 @@ def _samples(
     return (), (), 0.0, ""
 
 
-def _rail(case: WheelOnRail, grid: Grid, maps: tuple[HeightMap, ...], seed: int) -> Record:
+def _cut(case: WheelOnRail, rough: Turning, before: int) -> tuple[HeightMap, ...]:
+    """Cut samples from the path; of a synthesised rail from a stretch that does not depend on the speed."""
+    contact, strip = case.contact, rough.strip
+    if not isinstance(strip, LongStrip) or case.surface.spectrum is None:
+        return cut_from(rough, contact, case.duration)
+    rows = max(math.ceil(SAMPLED_LENGTH / contact.spacing), contact.samples * strip_rows(contact))
+    longer = replace(rough, strip=replace(strip, shape=(before + rows, strip.shape[1])))
+    return cut_from(longer, contact, case.duration, first=before)
+
+
+def _rail(case: WheelOnRail, grid: Grid, maps: tuple[HeightMap, ...], seed: int, before: int) -> Record:
+    """Texture of the rail; the record starts behind so many rows `before`."""
     surface, shape = case.surface, (grid.rows, grid.lines)
     if surface.spectrum is not None:
         wavelength, levels, name = spectrum_levels(surface.spectrum)
-        longer = Grid(max(grid.rows, math.ceil(LEAST_LENGTH / grid.spacing)), grid.lines, grid.spacing)
-        levels = levels + surface.level
-        strip = spectrum_strip(wavelength, levels, longer, lateral=surface.lateral, seed=seed, name=name)
-        return replace(
-            strip, heights=strip.heights[: grid.rows], origin=f"{strip.origin}, {surface.level:+g} dB"
+        levels, lateral = levels + surface.level, surface.lateral
+        made = long_spectrum_strip(
+            wavelength, levels, grid, lateral=lateral, seed=seed, name=name, before=before
         )
+        return replace(made, origin=f"{made.origin}, {surface.level:+g} dB")
     if surface.line is not None:
         return rail_lines(surface, grid)
     if surface.rms is not None:
-        return Record(synthesised(surface, grid.spacing, shape, seed).heights, "self-affine, Gaussian")
+        return Record(synthesised_path(surface, grid.spacing, shape, seed), "self-affine, Gaussian")
     if maps:
         path, origin = path_of(maps, shape, seed)
-        return Record(path.rows(0, path.shape[0]), origin)
-    return Record(np.zeros(shape), "smooth", areal=False)
+        return Record(path, origin)
+    return Record(Rows(np.zeros(shape)), "smooth", areal=False)
 
 
 def _wheel(case: WheelOnRail, grid: Grid, seed: int) -> Record:
@@ -134,7 +152,7 @@ def _wheel(case: WheelOnRail, grid: Grid, seed: int) -> Record:
         return replace(strip, origin=f"{strip.origin}, {wheel.roughness_level:+g} dB")
     if wheel.line is not None:
         return wheel_lines(wheel, turn, check=not case.surface.accept_levels)
-    return Record(np.zeros((turn.rows, turn.lines)), "smooth", areal=False)
+    return Record(Rows(np.zeros((turn.rows, turn.lines))), "smooth", areal=False)
 
 
 def _wheel_levels(roughness: str | TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:

@@ -15,8 +15,13 @@ from asperity.scenarios.validity import findings, warn_of_findings
 from asperity.scenarios.verdict import verdict
 
 
-def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.DataTree:
-    """Lay out what was computed, with units and provenance; warnings of that may be added to `caught`."""
+def layout(
+    computed: Computed, caught: list[warnings.WarningMessage], *, brief: bool = False
+) -> xarray.DataTree:
+    """Lay out what was computed, with units and provenance; warnings of that may be added to `caught`.
+
+    In brief without what only a report shows: what the path is like.
+    """
     chain, kind = computed.chain, computed.prepared.kind
     spectra = xarray.Dataset(force_spectra(chain))
     found = findings(chain)
@@ -26,7 +31,7 @@ def layout(computed: Computed, caught: list[warnings.WarningMessage]) -> xarray.
         schema.ROLLING_DISPLACEMENT: chain.stacked("rolling_displacement"),
     }
     groups = {
-        "/surface": surface_group(chain),
+        "/surface": surface_group(chain, brief=brief),
         "/contact": contact_group(chain, found),
         "/rolling": rolling_group(chain, own),
         "/spectra": spectra,

@@ -12,7 +12,7 @@ from asperity.config.case import Case
 from asperity.config.content import name_of
 from asperity.errors import InputError
 from asperity.scenarios.chain import warn_of_start
-from asperity.scenarios.geometry import Geometry, window_cells
+from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.reading import read_lines
 from asperity.scenarios.records import Grid, Record, spectrum_levels, spectrum_strip
 from asperity.scenarios.textures import (
@@ -53,8 +53,8 @@ def gather(case: Case, margin: int, ahead: float = 0.0) -> Textures:
     """
     seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(case.contact.samples + 1)]
     ny, spacing = window_cells(case.contact), case.contact.spacing
-    lead = math.ceil(case.settled_time * case.speed / spacing)
-    rows = lead + math.ceil((case.rolled_time * case.speed + ahead) / spacing) + 1 + 2 * margin
+    lead = cells_over(case.settled_time * case.speed, spacing)
+    rows = lead + cells_over(case.rolled_time * case.speed + ahead, spacing) + 1 + 2 * margin
     missing, origin, areal = 0.0, "", True
     maps: tuple[HeightMap, ...] = ()
     strips: tuple[HeightMap, ...] = ()
@@ -73,8 +73,8 @@ def gather(case: Case, margin: int, ahead: float = 0.0) -> Textures:
         origin = "samples and path synthesised: self-affine, Gaussian"
     elif case.surface.has_areal_spectrum:
         record = _strip(case, Grid(rows, ny, spacing), seeds[0])
-        path = HeightMap(record.heights[:rows], (spacing, spacing))
-        maps = strips = cut_from(path.heights, case.contact, case.rolled_time)
+        path = HeightMap(record.strip.rows(0, rows), (spacing, spacing))
+        maps = strips = cut_from(path, case.contact, case.rolled_time)
         origin = f"path of {record.origin}; {len(strips)} samples cut from it"
         areal = record.areal
     if case.surface.has_line:
