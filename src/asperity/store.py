@@ -160,7 +160,7 @@ class Store:
 
     @contextmanager
     def claim(self, key: str) -> Iterator[bool]:
-        """Try to be the only process, and thread, that makes the result called `key`; tell whether it is free.
+        """Try to be the only process, and thread, that makes the result called `key`; tell whether it is.
 
         A claim ends with the context, or with its process. Where files cannot be locked all are free.
         """

@@ -18,8 +18,8 @@ PIECES_KEPT = 3
 BYTES_KEPT = 2**26
 """Bytes of generated pieces, of all strips, up to which more of them are held: a path is read many times."""
 
-Piece = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Rows of a piece up to the next one, and those that give way to it, m."""
+Piece = tuple[NDArray[np.float64], NDArray[np.float64] | None]
+"""Rows of a piece up to the next one, m, and those that give way to it, while they are held."""
 
 
 class Strip(Protocol):
@@ -137,10 +137,11 @@ class _Pieces:
 
     def put(self, name: Hashable, piece: Piece) -> None:
         self._held[name] = piece
-        size = sum(head.nbytes + tail.nbytes for head, tail in self._held.values())
+        for older in list(self._held)[:-PIECES_KEPT]:
+            self._held[older] = self._held[older][0], None
+        size = sum(head.nbytes for head, _ in self._held.values())
         while size > BYTES_KEPT and len(self._held) > PIECES_KEPT:
-            _, (head, tail) = self._held.popitem(last=False)
-            size -= head.nbytes + tail.nbytes
+            size -= self._held.popitem(last=False)[1][0].nbytes
 
 
 _pieces = _Pieces()
@@ -215,7 +216,9 @@ class LongStrip:
             del whole
             if k != 0 or not begins:
                 known = _pieces.get((kind, k - 1))
-                ending = self._field(k - 1)[self.stride :] if known is None else known[1]
+                ending = None if known is None else known[1]
+                if ending is None:
+                    ending = self._field(k - 1)[self.stride :]
                 angle = 0.5 * np.pi * ((np.arange(self.blend) + 0.5) / self.blend)[:, None]
                 head[: self.blend] *= np.sin(angle)
                 head[: self.blend] += np.cos(angle) * ending
