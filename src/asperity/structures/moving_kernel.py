@@ -173,8 +173,8 @@ def _weights(
             outgoing, incoming = shapes[grid]
             amplitude = grid.hat * grid.waves.coefficients * grid.waves.multipliers ** abs(bay)
             behind = positions if bay < 0 else start if bay == 0 else 0  # by reciprocity
-            spectra = (amplitude * incoming[start] * outgoing).sum(axis=1)
-            spectra[:behind] = (amplitude * outgoing[start] * incoming[:behind]).sum(axis=1)
+            spectra = _over_waves(amplitude * incoming[start], outgoing)
+            spectra[:behind] = _over_waves(amplitude * outgoing[start], incoming[:behind])
             response = grid.response(spectra)
             for weight, offset in zip(cubic, range(-1, 3), strict=True):
                 node = base + offset - bay * positions
@@ -191,6 +191,14 @@ def _weights(
             if progress is not None:
                 progress(done + 1, positions, f"moving kernel of {taps * time_step:.2g} s")
     return weights
+
+
+def _over_waves(amplitude: NDArray[np.complex128], shapes: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Sum (p, f) over the waves of a track, (w, f), each of its shape (p, w, f), one after the other."""
+    total = amplitude[0] * shapes[:, 0]
+    for wave in range(1, len(amplitude)):
+        total += amplitude[wave] * shapes[:, wave]
+    return np.asarray(total)
 
 
 def lagrange_weights(share: NDArray[np.float64]) -> NDArray[np.float64]:

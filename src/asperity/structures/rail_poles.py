@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +24,8 @@ LOWEST = 2.0
 """Lowest frequency of the fit, Hz."""
 LINES = 300
 """Frequencies of the fit in each of its two grids, logarithmic and linear."""
+PIECE = 64
+"""Frequencies transformed in one go."""
 ITERATIONS = 8
 TOLERANCE = 5e-3
 """Largest error of a fitted kernel that is accepted, relative (see `RailPoles`)."""
@@ -121,7 +124,9 @@ def _poles(kernel: MovingKernel, count: int) -> NDArray[np.complex128]:
     )
     angle = 2.0 * np.pi * frequency * kernel.time_step
     lag = np.arange(1, kernel.weights.shape[1])
-    transform = kernel.weights[:, 1:] @ np.exp(-1j * lag[:, None] * angle)
+    weights = kernel.weights[:, 1:].astype(complex)
+    pieces = np.array_split(angle, math.ceil(angle.size / PIECE))  # the whole matrix is fifty megabytes
+    transform = np.hstack([weights @ np.exp(-1j * lag[:, None] * piece) for piece in pieces])
     size = np.sqrt(np.mean(np.abs(transform) ** 2, axis=0))
     start = 2.0 * np.pi * np.geomspace(2.0 * LOWEST, 0.9 * half, count // 2) * kernel.time_step
     fit = vector_fit(
