@@ -225,3 +225,35 @@ def test_many_processes_may_write_the_same_result(store):
     for found in seen:
         assert found is None or found["force"].sum() == 499500.0
     assert seen[-1] is not None
+
+
+def test_a_claim_is_held_by_one_and_leaves_nothing(store, tmp_path):
+    with store.claim("scan-1") as first, store.claim("scan-1") as second, store.claim("scan-2") as other:
+        assert (first, second, other) == (True, False, True)
+    with store.claim("scan-1") as again:
+        assert again
+    assert list(store.root.iterdir()) == []
+
+
+def test_what_another_makes_is_waited_for(store):
+    waited = []
+
+    def meanwhile():
+        waited.append(True)
+        store.put("scan-1", {"force": np.ones(2)})
+
+    with store.claim("scan-1"):
+        found = store.made("scan-1", lambda: pytest.fail("it is being made"), meanwhile)
+    np.testing.assert_array_equal(found["force"], np.ones(2))
+    assert waited == [True]
+
+
+def test_a_claim_ends_with_its_process(store):
+    code = "import os, sys; from asperity.store import Store; s = Store(sys.argv[1])\n"
+    code += "with s.claim('scan-1') as free: print(free, flush=True); os._exit(1)"
+    done = subprocess.run([sys.executable, "-c", code, store.root], capture_output=True, text=True)
+    assert done.stdout.strip() == "True"
+    with store.claim("scan-1") as free:
+        assert free
+    made = store.made("scan-1", lambda: {"force": np.ones(2)})
+    np.testing.assert_array_equal(made["force"], np.ones(2))

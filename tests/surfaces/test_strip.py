@@ -7,8 +7,15 @@ from scipy.stats import kstest
 from asperity.errors import InputError
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.strip import LongStrip, Raised, Rows
-from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
+from asperity.surfaces.strip import LongStrip, Raised, Rows, Turning
+from asperity.surfaces.synthesis import (
+    from_map,
+    long_self_affine,
+    long_strip_from_bands,
+    long_strip_like,
+    self_affine,
+    strip_from_bands,
+)
 
 DX = 10e-6
 TEXTURE = {"rms": 1e-6, "hurst": 0.8, "longest": 0.4e-3, "shortest": 40e-6}
@@ -97,3 +104,50 @@ def test_bad_strips_are_refused():
         LongStrip((10, 3), (DX, DX), nothing, 0, stride=4, blend=2).rows(5, 11)
     with pytest.raises(InputError, match="hurst"):
         long_self_affine((10, 3), (DX, DX), **TEXTURE | {"hurst": 2.0}, seed=1)
+
+
+def bands(rows, before=0, seed=3):
+    wavelengths, levels = [0.1, 0.05, 0.025], [10.0, 5.0, 0.0]
+    return long_strip_from_bands((rows, 5), (2e-3, 2e-3), wavelengths, levels, seed=seed, before=before)
+
+
+def test_a_strip_with_rows_before_has_no_beginning():
+    long = bands(9000, before=4000)
+    for before in (1, 700, 3999):
+        short = bands(before + 1000, before=before)
+        assert np.array_equal(short.rows(0, before + 1000), long.rows(4000 - before, 5000))
+    assert np.isfinite(long.rows(0, 9000)).all()
+
+
+def test_a_long_strip_from_bands_has_their_levels():
+    made = bands(60000, before=10)
+    assert made.stride < 60000 / 10
+    heights = made.rows(0, 60000)
+    wavenumber, density = psd(np.ascontiguousarray(heights.T), 2e-3, segment=4096)
+    for wavelength, level in ((0.1, 10.0), (0.05, 5.0), (0.025, 0.0)):
+        low, high = (10 ** (round(-10 * np.log10(wavelength)) / 10 + s / 20) for s in (-1, 1))
+        inside = (wavenumber > low) & (wavenumber < high)
+        energy = density.mean(axis=0)[inside].sum() * wavenumber[1]
+        assert 10 * np.log10(energy / 1e-12) == pytest.approx(level, abs=0.4)
+
+
+def test_strips_of_one_texture_share_pieces(monkeypatch):
+    made = []
+    whole = strip_from_bands
+
+    def counted(*arguments, **keywords):
+        made.append(keywords["seed"])
+        return whole(*arguments, **keywords)
+
+    monkeypatch.setattr("asperity.surfaces.synthesis.strip_from_bands", counted)
+    for before in (500, 600):
+        bands(3000, before=before, seed=77).rows(0, 3000)
+    assert len(made) == len(set(made))
+
+
+def test_a_wheel_comes_round():
+    turn = np.arange(6.0).reshape(3, 2)
+    rolled = Turning(Rows(np.zeros((8, 2)), (1.0, 2.0)), turn, -4)
+    assert rolled.shape == (8, 2)
+    assert rolled.size == (8.0, 4.0)
+    assert np.array_equal(rolled.rows(3, 8), turn[[2, 0, 1, 2, 0]])

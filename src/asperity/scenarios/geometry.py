@@ -14,7 +14,7 @@ from asperity.contact import HalfSpace, Hertz
 from asperity.contact.flaws import window_for
 from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
 
-HIGHEST_FORCE = 10.0
+HIGHEST_FORCE = 8.0
 """Largest force that the chosen states cover, in loads of the class of the working load."""
 FILLED = 0.9
 """Share of the window's width for the smooth contact of the largest chosen state; rough ones vary."""

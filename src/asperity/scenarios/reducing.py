@@ -26,8 +26,8 @@ from asperity.scenarios.textures import Textures
 from asperity.store import Cache
 from asperity.surfaces.strip import Strip
 
-STATES = 14
-"""States chosen where the case names no approaches."""
+STATES = 16
+"""States chosen where the case names no approaches, and more where the path is touched earlier."""
 LIGHTEST_STATE = 0.02
 """Least mean force of a state that has a filter, in loads of the class of the working load."""
 SCAN_TOLERANCE = "numerics.force_accuracy"
