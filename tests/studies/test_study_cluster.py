@@ -100,3 +100,19 @@ def test_a_cluster_needs_its_package(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(InputError, match=r'pip install "asperity\[cluster\]"'):
         cluster("tcp://127.0.0.1:1").__enter__()
+
+
+def test_members_on_a_cluster_have_the_digits_of_this_process(scheduler, monkeypatch):
+    """They share the scan of the path, whichever worker solves a block of it."""
+    table = BALL.replace('["hertz", "linear"]', '["table", "linear"]').replace('"0.1 s"', '"20 ms"')
+    table = table.replace('spectrum = "iso3095"', 'rms = "0.05 um"\nlongest = "0.4 mm"\nshortest = "60 um"')
+    table += '[contact]\nspacing = "20 um"\nwindow = "0.66 mm"\nsamples = 2\nsample_length = "1.4 mm"\n'
+    Path("rough.toml").write_text(f'start = "0.5 m"\n{table}[ball]\nload = "30 N"\n')
+    sweep = {"ball.load": ["25 N", "30 N", "40 N"]}
+    with cluster(scheduler) as executor:
+        there = asperity.study("rough.toml", sweep, executor=executor)
+    with ThreadPoolExecutor(1) as executor:
+        monkeypatch.setenv("ASPERITY_CACHE", str(Path("another").absolute()))
+        here = asperity.study("rough.toml", sweep, executor=executor)
+    assert int(here["completed"].sum()) == 3
+    assert there.equals(here)
