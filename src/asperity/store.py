@@ -11,7 +11,7 @@ import time
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
@@ -72,12 +72,6 @@ class Cache(Protocol):
 
     def put(self, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Keep arrays under the key."""
-
-    def claim(self, key: str) -> AbstractContextManager[bool]:
-        """Try to be the only one who makes what belongs under the key; tell whether it was free."""
-
-    def made(self, key: str, make: Make, meanwhile: Callable[[], object] = ...) -> dict[str, NDArray[Any]]:
-        """Return what is kept under the key; make it first where nobody does, or wait for who makes it."""
 
 
 @dataclass(frozen=True)
@@ -167,24 +161,6 @@ class Store:
         with taken(self.path(key)) as free:
             yield free
 
-    def made(
-        self, key: str, make: Make, meanwhile: Callable[[], object] = lambda: time.sleep(PATIENCE)
-    ) -> dict[str, NDArray[Any]]:
-        """Return what is kept under the key; make it first where nobody does, or wait for who makes it.
-
-        `meanwhile` is called as long as another makes it.
-        """
-        while True:
-            if (kept := self.get(key)) is not None:
-                return kept
-            with self.claim(key) as free:
-                if free and (kept := self.get(key)) is None:
-                    found = dict(make())
-                    self.put(key, found)
-                    return found
-            if not free:
-                meanwhile()
-
     def files(self) -> list[Path]:
         """List the files of this store, sorted by name."""
         try:
@@ -206,6 +182,31 @@ class Store:
         for path in [*files, *self.left_overs()]:
             discard(path)
         return len(files)
+
+
+def claimed(cache: Cache, key: str) -> AbstractContextManager[bool]:
+    """Claim a key as `Store.claim`; in a cache without claims all are free."""
+    claim: Callable[[str], AbstractContextManager[bool]] | None = getattr(cache, "claim", None)
+    return nullcontext(True) if claim is None else claim(key)
+
+
+def made(
+    cache: Cache, key: str, make: Make, meanwhile: Callable[[], object] = lambda: time.sleep(PATIENCE)
+) -> dict[str, NDArray[Any]]:
+    """Return what a cache keeps under a key; make it first where nobody does, or wait for who makes it.
+
+    `meanwhile` is called as long as another makes it.
+    """
+    while True:
+        if (kept := cache.get(key)) is not None:
+            return kept
+        with claimed(cache, key) as free:
+            if free and (kept := cache.get(key)) is None:
+                found = dict(make())
+                cache.put(key, found)
+                return found
+        if not free:
+            meanwhile()
 
 
 @dataclass(frozen=True)

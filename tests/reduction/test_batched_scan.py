@@ -63,7 +63,7 @@ def scan(cells, **keywords):
 def test_scan_on_a_device_agrees_and_keeps_its_own_blocks(monkeypatch):
     """Blocks of the device are longer, and not taken for those of the processor."""
     kept = {}
-    cache = SimpleNamespace(made=lambda key, make, meanwhile: kept.get(key) or kept.setdefault(key, make()))
+    cache = SimpleNamespace(get=kept.get, put=kept.__setitem__)
     alone = scan(31, rtol=1e-11, cache=cache)
     monkeypatch.setattr("asperity.contact.public_scan.find_device", lambda name: processor())
     monkeypatch.setattr("asperity.contact.scan.BATCH", 32)

@@ -94,11 +94,6 @@ class Memory(dict):
     def put(self, key, arrays):
         self[key] = arrays
 
-    def made(self, key, make, meanwhile):
-        if key not in self:
-            self.put(key, make())
-        return self[key]
-
 
 def test_interrupted_scan_goes_on_where_it_was(monkeypatch):
     monkeypatch.setattr("asperity.contact.scan.BLOCK", 8)

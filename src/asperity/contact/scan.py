@@ -20,7 +20,7 @@ from asperity.contact.flaws import Counts, total
 from asperity.errors import InputError
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress
-from asperity.store import PATIENCE, Cache, content_key
+from asperity.store import PATIENCE, Cache, claimed, content_key, made
 from asperity.surfaces.strip import Rows, Strip
 from asperity.threads import in_order, thread_count
 
@@ -195,7 +195,7 @@ def solved_blocks(
             rows, planes = other.under(start)
             key = other.key(rows, planes)
             assert cache is not None
-            with cache.claim(key) as free:
+            with claimed(cache, key) as free:
                 if free and cache.get(key) is None:
                     cache.put(key, other.solved(rows, planes))
                     return
@@ -205,7 +205,7 @@ def solved_blocks(
         rows, planes = job.under(start)
         key = "" if cache is None else job.key(rows, planes)
         solve = partial(job.solved, rows, planes)
-        kept = solve() if cache is None else cache.made(key, solve, help_along)
+        kept = solve() if cache is None else made(cache, key, solve, help_along)
         return SolvedBlock(key, kept["forces"], Counts(*kept["counts"].tolist()))
 
     done = 0

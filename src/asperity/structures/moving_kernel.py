@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from asperity.arguments import real, shown, whole
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
-from asperity.store import Cache, content_key
+from asperity.store import Cache, content_key, made
 from asperity.structures.causal_track import causal_track
 from asperity.structures.hat_response import SHIFT, ZONES, HatResponse
 from asperity.structures.track import Track
@@ -91,13 +91,13 @@ def moving_kernel(
     track = causal_track(track)
     parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
     distance = real("distance (m)", distance, "a finite number")
-    made = (parameters, speed, time_step, duration, positions, ZONES, SHIFT)
-    key = content_key("moving-kernel", *made, *([distance] if distance else []))
+    described = (parameters, speed, time_step, duration, positions, ZONES, SHIFT)
+    key = content_key("moving-kernel", *described, *([distance] if distance else []))
 
     def make() -> dict[str, NDArray[np.float64]]:
         return {"weights": _until_it_dies(track, speed, time_step, duration, positions, distance, progress)}
 
-    kept = make() if cache is None else cache.made(key, make)
+    kept = make() if cache is None else made(cache, key, make)
     weights = kept["weights"]
     left = _left_over(weights)
     if duration is None and left > DIED_AWAY:

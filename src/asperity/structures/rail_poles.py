@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
-from asperity.store import Cache, content_key
+from asperity.store import Cache, content_key, made
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rational_fit import paired, vector_fit
 
@@ -81,7 +81,7 @@ def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = 
         poles = _poles(kernel, count)
         return {"poles": poles, "residues": _residues(kernel.weights[:, 1:], poles)}
 
-    kept = make() if cache is None else cache.made(key, make)
+    kept = make() if cache is None else made(cache, key, make)
     fit = RailPoles(kernel, kept["poles"], kept["residues"], 0.0, 0.0)
     left = fit.weights()[:, 1:] - kernel.weights[:, 1:]
     error = float(np.linalg.norm(left) / np.linalg.norm(kernel.weights[:, 1:]))
