@@ -45,6 +45,11 @@ def held(folder: Path) -> Counter[str]:
     return Counter(re.sub(r"-[0-9a-f]{64}$", "", path.stem) for path in folder.glob("*.npz"))
 
 
+def lasting(case: str, duration: str) -> str:
+    """A case with a record of another duration."""
+    return re.sub(r"^#? *duration = .*$", f'duration = "{duration}"', case, flags=re.MULTILINE)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -65,11 +70,10 @@ def main() -> None:
             check=True,
         ).stdout
         if options.duration:
-            case = re.sub(
-                r"^#? *duration = .*$", f'duration = "{options.duration}"', case, flags=re.MULTILINE
-            )
+            case = lasting(case, options.duration)
         (folder / "case.toml").write_text(case)
-        asperity(folder, "warm", "check", "case.toml")  # compiles
+        (folder / "short.toml").write_text(lasting(case, "0.05 s"))
+        asperity(folder, "warm", "run", "short.toml", "-o", "short")  # compiles
         single = asperity(folder, "single", "run", "case.toml", "-o", "single")
         swept = [
             "--vary", "speed = " + ", ".join(f"{v:g} m/s" for v in speeds),
