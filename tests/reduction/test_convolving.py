@@ -1,10 +1,10 @@
-"""Convolution by pieces against scipy's."""
+"""LongConvolution by pieces against scipy's."""
 
 import numpy as np
 import pytest
 from scipy import signal
 
-from asperity.reduction.convolving import Convolution
+from asperity.reduction.convolving import LongConvolution
 
 
 @pytest.mark.parametrize(("length", "piece"), [(500, 64), (500, 500), (41, 7), (40, 16384)])
@@ -15,11 +15,11 @@ def test_pieces_are_those_of_the_whole(length, piece):
         sum(np.convolve(row, weight, mode="valid") for row, weight in zip(rows, each, strict=True))
         for each in weights
     ]
-    np.testing.assert_allclose(Convolution(weights, piece).of(rows), expected, atol=1e-12)
+    np.testing.assert_allclose(LongConvolution(weights, piece).of(rows), expected, atol=1e-12)
 
 
 def test_long_rows_agree_with_scipy():
     random = np.random.default_rng(4)
     row, weight = random.normal(size=50_000), random.normal(size=81)
     expected = signal.oaconvolve(row, weight, mode="valid")
-    np.testing.assert_allclose(Convolution(weight[None, None]).of(row[None])[0], expected, atol=1e-11)
+    np.testing.assert_allclose(LongConvolution(weight[None, None]).of(row[None])[0], expected, atol=1e-11)

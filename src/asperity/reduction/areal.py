@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
-from asperity.reduction.convolving import Convolution
+from asperity.reduction.convolving import LongConvolution
 from asperity.reduction.texture import StateTexture
 from asperity.surfaces.strip import Rows, Strip
 
@@ -75,7 +75,7 @@ def areal_texture(
     for row, half in zip(weights, halves, strict=True):
         side = reach - half.shape[0] // 2
         row[: half.shape[1], side : 2 * reach + 1 - side] = -half.T
-    averaged, result = Convolution(weights, min(PIECE, n)), np.empty((len(axes), n))
+    averaged, result = LongConvolution(weights, min(PIECE, n)), np.empty((len(axes), n))
     for first in range(0, n, PIECE):
         low, high = max(0, first - reach), min(n, first + PIECE + reach)
         rows = strip.rows(low, high)

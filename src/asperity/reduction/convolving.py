@@ -1,4 +1,4 @@
-"""Convolution of long rows with short weights, by overlapping pieces."""
+"""LongConvolution of long rows with short weights, by overlapping pieces."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from scipy.fft import irfft, next_fast_len, rfft
 PIECE = 2**14
 
 
-class Convolution:
-    """Convolution with weights (s, c, t), which are transformed once for all rows, and these for all weights.
+class LongConvolution:
+    """LongConvolution with weights (s, c, t), which are transformed once for all rows, and these for all weights.
 
     Results come in pieces of at most so many (overlap-save).
     """

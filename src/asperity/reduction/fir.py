@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 from asperity.errors import InputError
-from asperity.reduction.convolving import PIECE, Convolution
+from asperity.reduction.convolving import PIECE, LongConvolution
 from asperity.reduction.filter import ContactFilter
 from asperity.reduction.texture import StateTexture
 
@@ -166,5 +166,5 @@ def filtered_texture(
     """
     half = taps.shape[1] // 2
     padded = np.pad(-np.asarray(heights, dtype=np.float64), half, mode="reflect")
-    result = Convolution(taps[:, None], min(PIECE, len(heights))).of(padded[None])
+    result = LongConvolution(taps[:, None], min(PIECE, len(heights))).of(padded[None])
     return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing)
