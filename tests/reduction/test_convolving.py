@@ -1,4 +1,4 @@
-"""LongConvolution by pieces against scipy's."""
+"""Convolution by pieces against scipy's."""
 
 import numpy as np
 import pytest

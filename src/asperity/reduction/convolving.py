@@ -1,4 +1,4 @@
-"""LongConvolution of long rows with short weights, by overlapping pieces."""
+"""Convolution of long rows with short weights, by overlapping pieces."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ PIECE = 2**14
 
 
 class LongConvolution:
-    """LongConvolution with weights (s, c, t), which are transformed once for all rows, and these for all weights.
+    """Convolution with weights (s, c, t), which are transformed once for all rows, and these for all weights.
 
     Results come in pieces of at most so many (overlap-save).
     """
