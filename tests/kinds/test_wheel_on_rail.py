@@ -1,6 +1,7 @@
 """The whole chain of a wheel on a rail on small cases: result, textures, geometry, defects."""
 
 import json
+import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -259,6 +260,19 @@ class TestTextures:
         long = case(surface="smooth = true").with_(contact={"sample_length": "9 m"})
         with pytest.raises(InputError, match=r"duration: received 0\.04 s, a path of"):
             textures_of(long)
+
+    def test_a_long_rail_is_never_held_as_a_whole(self, monkeypatch):
+        """Less than the strip itself would take, 21 numbers a row: lines and positions along it are."""
+        monkeypatch.setattr("asperity.surfaces.strip.BYTES_KEPT", 0)
+        rows, peaks = [], []
+        for duration in (0.5, 3.0):
+            made = case().with_(duration=duration)
+            textures_of(made)
+            tracemalloc.start()
+            rows.append(textures_of(made).path.shape[0])
+            peaks.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.stop()
+        assert peaks[1] - peaks[0] < 21 * 8 * (rows[1] - rows[0])
 
 
 class TestDefects:

@@ -27,6 +27,9 @@ FEWEST_WINDOWS = 4
 HELD_POINTS = 2**22
 """Points of a synthesised path that are held in memory (32 MiB); of longer paths, pieces are."""
 
+READ_POINTS = 2**18
+"""Points of a path that are read in one go (2 MiB)."""
+
 FORM_DEGREE = {"plane": 1, "quadratic": 2}
 
 
@@ -215,7 +218,7 @@ def mirrored_words(heights: NDArray[np.float64], rows: int) -> str:
 def middle_line(strip: Strip) -> NDArray[np.float64]:
     """Take the line (rows,) in the middle of a strip, m."""
     rows, ny = strip.shape
-    piece = max(1, HELD_POINTS // ny)
+    piece = max(1, READ_POINTS // ny)
     lines = [strip.rows(i, min(i + piece, rows))[:, ny // 2].copy() for i in range(0, rows, piece)]
     return np.concatenate(lines)
 
