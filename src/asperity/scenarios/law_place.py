@@ -14,7 +14,6 @@ from asperity.scenarios.geometry import Geometry
 from asperity.spectra import psd
 from asperity.surfaces.correlation import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
-from asperity.threads import thread_count
 
 ROWS = 2**15
 """Most rows of a path, from its middle, that are looked at."""
@@ -70,14 +69,15 @@ def _without_slow(heights: NDArray[np.float64], spacing: float, lowest: float) -
     The edge is smooth, half the height at the wavenumber. They are mirrored at their ends, and what is within
     one such wave of these, up to an eighth, is cut off.
     """
-    mirrored = np.concatenate([heights, heights[::-1]])
-    spectrum = fft.rfft(mirrored, axis=0, workers=thread_count())
-    share = fft.rfftfreq(len(mirrored), spacing) / lowest
+    rows = len(heights)
+    share = fft.rfftfreq(2 * rows, spacing) / lowest
     gain = share**STEEPNESS / (1.0 + share**STEEPNESS)
-    spectrum *= gain.reshape(-1, *[1] * (heights.ndim - 1))
-    kept = fft.irfft(spectrum, len(mirrored), axis=0, overwrite_x=True, workers=thread_count())
-    cut = min(round(1.0 / (lowest * spacing)), len(heights) // 8)
-    return np.asarray(kept[cut : len(heights) - cut])
+    cut = min(round(1.0 / (lowest * spacing)), rows // 8)
+    kept = np.empty((rows - 2 * cut, *heights.shape[1:]))
+    for line, found in zip(heights.reshape(rows, -1).T, kept.reshape(len(kept), -1).T, strict=True):
+        spectrum = fft.rfft(np.concatenate([line, line[::-1]]))  # one by one: the strip is large
+        found[:] = fft.irfft(spectrum * gain, 2 * rows)[cut : rows - cut]
+    return kept
 
 
 def correlation_lengths(heights: NDArray[np.float64], spacing: tuple[float, float]) -> tuple[float, float]:
@@ -86,8 +86,11 @@ def correlation_lengths(heights: NDArray[np.float64], spacing: tuple[float, floa
     The threshold is that of ISO 25178-2 for Sal. Where it is not reached: half the length, or half the width.
     """
     rows, columns = heights.shape
-    spectrum = fft.rfft(heights, fft.next_fast_len(2 * rows, real=True), axis=0, workers=thread_count())
-    sums = fft.irfft(np.sum(np.abs(spectrum) ** 2, axis=1))[: rows // 2 + 1]
+    period = fft.next_fast_len(2 * rows, real=True)
+    power = np.zeros(period // 2 + 1)
+    for line in heights.T:
+        power += np.abs(fft.rfft(line, period)) ** 2
+    sums = fft.irfft(power)[: rows // 2 + 1]
     along = sums / (rows - np.arange(rows // 2 + 1))
     across = [np.mean(heights[:, : columns - lag] * heights[:, lag:]) for lag in range(columns // 2 + 1)]
     return _fallen(along, spacing[0]), _fallen(np.array(across), spacing[1])

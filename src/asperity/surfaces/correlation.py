@@ -46,8 +46,11 @@ def lag_sums(
 
     def sums(values: NDArray[np.float64]) -> NDArray[np.float64]:
         workers = thread_count()
-        power = np.abs(fft.rfft2(values, s=size, workers=workers)) ** 2
-        return np.asarray(fft.irfft2(power, s=size, workers=workers)[kept])
+        power = fft.rfft2(values, s=size, workers=workers)
+        np.square(power.real, out=power.real)
+        power.real += np.square(power.imag)
+        power.imag = 0.0
+        return np.asarray(fft.irfft2(power, s=size, workers=workers, overwrite_x=True)[kept])
 
     if valid.all():
         along, across = (
