@@ -1,7 +1,7 @@
 """The time a person waits: whole runs of the working tree against those of a commit, in one run.
 
-Default wheel on rail, default ball on beam, the demonstration, and a check of each, as commands: start-up,
-files and report included, kernels compiled and finished work kept by a first round. Both trees run in turn.
+Default wheel on rail, a check of it, and the demonstration, as commands: start-up, files and report included,
+kernels compiled and finished work kept by a first round. Both trees run in turn.
 Printed are least wall times, with processor times of all processes and the memory of the largest; then where
 the time of the default wheel goes, part after part in one process.
 
@@ -26,8 +26,6 @@ ROOT = Path(__file__).parents[1]
 COMMANDS = {
     "wheel, run": ["run", "wheel.toml", "-o", "wheel"],
     "wheel, check": ["check", "wheel.toml", "-o", "wheel"],
-    "ball, run": ["run", "ball.toml", "-o", "ball"],
-    "ball, check": ["check", "ball.toml", "-o", "ball"],
     "demo": ["demo", "-o", "demo"],
 }
 PARTS = """
@@ -74,21 +72,9 @@ class Tree:
             "ASPERITY_CACHE": folder / "kept",
         }
         self.environment = os.environ | {name: str(value) for name, value in own.items()}
-        for name, kind in (("wheel", "wheel-on-rail"), ("ball", "ball-on-beam")):
-            (folder / f"{name}.toml").write_bytes(self.called(["new", kind], subprocess.PIPE))
-
-    def called(self, arguments: list[str], output: int) -> bytes:
-        """Run a command of the program."""
-        command = [sys.executable, "-m", "asperity", *arguments]
-        done = subprocess.run(
-            command,
-            cwd=self.folder,
-            env=self.environment,
-            stdout=output,
-            stderr=subprocess.DEVNULL,
-            check=True,
-        )
-        return done.stdout or b""
+        command = [sys.executable, "-m", "asperity", "new", "wheel-on-rail"]
+        done = subprocess.run(command, env=self.environment, capture_output=True, check=True)
+        (folder / "wheel.toml").write_bytes(done.stdout)
 
     def took(self, arguments: list[str]) -> Took:
         """Time a command, in a process whose children are its own alone."""

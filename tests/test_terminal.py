@@ -19,7 +19,8 @@ WRITERS = {
     "progress.py",  # bars; its words go through `printable`
     "apart.py",  # answers to the process that asked
     "desk.py",
-    "jobs.py",  # read what such processes answer
+    "jobs.py",
+    "drawing.py",  # read what such processes answer
     "__main__.py",  # before anything can be imported
 }
 

@@ -594,7 +594,7 @@ def test_the_plan_counts_contact_solutions(monkeypatch):
 
     rows = rows_of(laws + CASE + contact)
     window, strip = 63, 188  # rows of 8 µm
-    path = 7502 + 2 * window  # rounded up
+    path = 7501 + 2 * window
     assert rows["contact solutions, scan for the filters"] == f"at most {2 * 2 * (strip - window + 1)}"
     assert rows["contact solutions, scan for the path"] == f"at most {2 * (path - window + 1)}"
     assert rows["contact solutions, direct"] == f"at most {7500}"

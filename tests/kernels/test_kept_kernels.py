@@ -278,14 +278,16 @@ kept_kernel.twice(2.0)
 
 
 @pytest.fixture
-def other(folder, module, tmp_path):
+def other(folder, module, tmp_path, monkeypatch):
     """Another process that compiles the first kernel of the module, and keeps it when it gets a line."""
+    monkeypatch.syspath_prepend(tmp_path)  # what is kept names its module
     command = [sys.executable, "-c", SLOW, str(tmp_path)]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
     with subprocess.Popen(command, **pipes) as process:
         assert process.stdout.readline() == "compiling\n"
         yield process
         process.kill()
+    sys.modules.pop("kept_kernel", None)
 
 
 needs_locks = pytest.mark.skipif(turns.fcntl is None, reason="nothing can be locked")

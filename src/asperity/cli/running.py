@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from asperity.config.case import Case
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable, require_space
+from asperity.files import alone_in, refuse_unwritable, remove_left_overs, require_space
 from asperity.kinds.drawing import DrawingProcess, drawing_process
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.scenarios.second_process import contact_compiled_beside
@@ -112,6 +112,7 @@ def _run_alone(
         say(f"{name}:{'':{8 - len(name)}}{path.resolve()}")
     _say_time(before)
     store = Store()
+    remove_left_overs(store.root)
     if size := store.size():
         kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"
         remark(f"Kept:    {kept} (asperity cache --clear deletes it)")

@@ -144,7 +144,9 @@ def geometry(
     n, h = window_cells(contact), contact.spacing
     gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
     shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
-    shape = replace(shape, largest_force=HIGHEST_FORCE * shape.class_load)
+    carried = math.inf if contact.hardness is None else contact.hardness * h**2 * gap.size
+    of_class = HIGHEST_FORCE * shape.class_load
+    shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)
     axes = shape.semi_axes
     _check_half_space(max(axes), smallest_radius, f"a working load of {load:.3g} N", body)
     if contact.approaches is not None:
