@@ -23,7 +23,7 @@ from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, mo
 from asperity.structures.rail_poles import POLES, RailPoles
 from asperity.threads import thread_count
 
-REPORT = 13.0
+REPORT = 4.0
 """Time of starting the program, and of drawing and writing a report, s."""
 POLE_TIME = 6e-3
 """Time of fitting a pole, s."""

@@ -11,7 +11,7 @@ from asperity.rolling.pair import roll_pair
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
 
-REPORT = 7.5
+REPORT = 2.5
 """Time of starting the program, and of drawing and writing a report, s."""
 
 
