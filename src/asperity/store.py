@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import tempfile
+import threading
 import time
 import warnings
 import zipfile
@@ -24,6 +25,7 @@ from asperity.files import amount, atomic_write, discard, is_sealed, left_overs,
 
 FORMAT = 2  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
+_HOLDING = threading.Lock()
 PATIENCE = 0.02  # how often is looked for what another process makes, s
 MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
 
@@ -132,7 +134,8 @@ class Store:
         try:
             atomic_write(path, lambda file: np.savez(file, **contents), sealed=True)  # type: ignore[arg-type]
         except ComputationError as error:
-            self._hold(key, {name: value for name, value in contents.items() if name != "__key__"}, error)
+            with _HOLDING:  # threads put at once, and one of them warns
+                self._hold(key, {name: value for name, value in contents.items() if name != "__key__"}, error)
 
     def _hold(self, key: str, arrays: dict[str, NDArray[Any]], error: ComputationError) -> None:
         """Hold in memory what the disk does not take."""
