@@ -219,6 +219,17 @@ def _taken(part: Path) -> Iterator[None]:
         yield
 
 
+def _lock(descriptor: int) -> bool:
+    """Lock a file, if nobody else has; whether it is free, as any is on a file system without locks."""
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+    return True
+
+
 @contextmanager
 def taken(path: Path) -> Iterator[bool]:
     """Hold what stands for a file that is to be made, until it is; tell whether nobody else holds it.
@@ -233,14 +244,7 @@ def taken(path: Path) -> Iterator[bool]:
             with suppress(OSError):
                 path.parent.mkdir(parents=True, exist_ok=True)
                 descriptor = os.open(stand_in, os.O_RDWR | os.O_CREAT, 0o600)
-        free = True
-        if descriptor is not None:
-            try:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                free = False
-            except OSError:  # a file system without locks
-                free = True
+        free = descriptor is None or _lock(descriptor)
         try:
             yield free
         finally:
@@ -272,8 +276,13 @@ def alone_in(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise _not_written(folder, error) from error
     try:
-        if descriptor is not None:
-            _lock(descriptor, folder)
+        if descriptor is not None and not _lock(descriptor):
+            raise InputError(
+                str(folder),
+                "a folder into which another run is writing",
+                "a folder of its own for each run",
+                "Wait for that run, or choose another folder with -o.",
+            )
         yield
     finally:
         if descriptor is not None:
@@ -281,20 +290,6 @@ def alone_in(folder: Path) -> Iterator[None]:
         if made:
             with suppress(OSError):  # it is removed only if it is empty
                 folder.rmdir()
-
-
-def _lock(descriptor: int, folder: Path) -> None:
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise InputError(
-            str(folder),
-            "a folder into which another run is writing",
-            "a folder of its own for each run",
-            "Wait for that run, or choose another folder with -o.",
-        ) from None
-    except OSError:
-        return  # a file system without locks
 
 
 def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:

@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import select
 import subprocess
 import sys
 import warnings
@@ -318,6 +319,45 @@ def test_nobody_waits_for_ever(other, module, monkeypatch):
     monkeypatch.setattr(turns, "PATIENCE", 0.0)
     assert fresh(module) == (0, 1)
     assert other.poll() is None
+
+
+CROSSING = """
+import sys
+from pathlib import Path
+from asperity.kernels.turns import take_turn
+folder, own, wanted = Path(sys.argv[1]), *sys.argv[2:]
+take_turn(folder, own, lambda: None)
+print("own", flush=True)
+input()
+take_turn(folder, wanted, lambda: None)
+print("both", flush=True)
+input()
+"""
+
+
+@needs_locks
+def test_no_two_wait_for_each_other(tmp_path):
+    """Each compiles what the other's kernel calls: one of them compiles it, too, the other waits for that."""
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    command = [sys.executable, "-c", CROSSING, str(tmp_path)]
+    with (
+        subprocess.Popen([*command, "x", "y"], **pipes) as one,
+        subprocess.Popen([*command, "y", "x"], **pipes) as two,
+    ):
+        processes = [one, two]
+        for process in processes:
+            assert process.stdout.readline() == "own\n"
+        for process in processes:
+            process.stdin.write("\n")
+            process.stdin.flush()
+        going, _, _ = select.select([process.stdout for process in processes], [], [], turns.PATIENCE / 4)
+        assert len(going) == 1
+        first, second = processes if going[0] is one.stdout else processes[::-1]
+        assert first.stdout.readline() == "both\n"
+        assert second.poll() is None
+        first.communicate("\n")
+        assert second.stdout.readline() == "both\n"
+        second.communicate("\n")
 
 
 def test_without_locks_nobody_waits(folder, module, monkeypatch):

@@ -7,7 +7,7 @@ from scipy.stats import kstest
 from asperity.errors import InputError
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.strip import LongStrip, Raised, Rows, Turning
+from asperity.surfaces.strip import LongStrip, Rows, raised, turning
 from asperity.surfaces.synthesis import (
     from_map,
     long_self_affine,
@@ -85,11 +85,11 @@ def test_likeness_has_the_measured_distribution():
 
 def test_raised_adds_the_same_all_across():
     below = Rows(np.arange(12.0).reshape(6, 2), (1.0, 2.0))
-    raised = Raised(below, np.arange(6.0))
-    assert raised.shape == (6, 2)
-    assert raised.spacing == (1.0, 2.0)
-    assert raised.size == (6.0, 4.0)
-    assert np.array_equal(raised.rows(2, 4), below.rows(2, 4) + np.array([[2.0], [3.0]]))
+    higher = raised(below, np.arange(6.0))
+    assert higher.shape == (6, 2)
+    assert higher.spacing == (1.0, 2.0)
+    assert higher.size == (6.0, 4.0)
+    assert np.array_equal(higher.rows(2, 4), below.rows(2, 4) + np.array([[2.0], [3.0]]))
 
 
 def test_bad_strips_are_refused():
@@ -147,7 +147,7 @@ def test_strips_of_one_texture_share_pieces(monkeypatch):
 
 def test_a_wheel_comes_round():
     turn = np.arange(6.0).reshape(3, 2)
-    rolled = Turning(Rows(np.zeros((8, 2)), (1.0, 2.0)), turn, -4)
+    rolled = turning(Rows(np.zeros((8, 2)), (1.0, 2.0)), turn, -4)
     assert rolled.shape == (8, 2)
     assert rolled.size == (8.0, 4.0)
     assert np.array_equal(rolled.rows(3, 8), turn[[2, 0, 1, 2, 0]])

@@ -17,29 +17,45 @@ except ImportError:  # Windows: each process compiles for itself
 
 FILE = ".turns"
 """File of a folder of kernels; each kernel has a byte of it, which the process locks that compiles it."""
+WAITING = 2**31
+"""Byte that a process locks which waits while it has a turn: one does, so that no two wait for each other."""
 PATIENCE = 60.0
 """Longest time to wait for another process, s; then the kernel is compiled here, too."""
 POLL = 0.01
 """Time between looks, s."""
 
 
-def take_turn(folder: Path, kernel: str, meanwhile: Callable[[], None]) -> None:
-    """Wait until no other process compiles a kernel, at most `PATIENCE`; not where nothing can be locked.
+_HAD: set[str] = set()
+"""Kernels whose turn this process has."""
 
-    A process that ends, however it does, gives its turns back. `meanwhile` is called again and again.
+
+def take_turn(folder: Path, kernel: str, meanwhile: Callable[[], None]) -> None:
+    """Wait until no other process compiles a kernel; where that may not be waited for, have no turn.
+
+    A process waits for `PATIENCE` at most, and not at all where nothing can be locked, or where it has the
+    turn of a kernel that calls this one, while another such process waits. A process that ends, however it
+    does, gives its turns back. `meanwhile` is called again and again.
     """
     file, begun = _opened(folder), time.monotonic()
-    while file is not None and not _locked(file, kernel) and time.monotonic() - begun < PATIENCE:
-        meanwhile()
-        time.sleep(POLL)
+    if file is None:
+        return
+    try:
+        while not _locked(file, _place(kernel)):
+            if time.monotonic() - begun > PATIENCE or (_HAD and not _locked(file, WAITING)):
+                return
+            meanwhile()
+            time.sleep(POLL)
+    finally:
+        _unlock(file, WAITING)
+    _HAD.add(kernel)
 
 
 def end_turn(folder: Path, kernel: str) -> None:
     """Let other processes have it."""
+    _HAD.discard(kernel)
     file = _opened(folder)
     if file is not None:
-        with suppress(OSError):
-            fcntl.lockf(file, fcntl.LOCK_UN, 1, _place(kernel))
+        _unlock(file, _place(kernel))
 
 
 @cache
@@ -52,14 +68,19 @@ def _opened(folder: Path) -> int | None:
     return None
 
 
-def _locked(file: int, kernel: str) -> bool:
+def _locked(file: int, place: int) -> bool:
     try:
-        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, _place(kernel))
+        fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 1, place)
     except (BlockingIOError, PermissionError):
         return False
     except OSError:  # a file system without locks
         return True
     return True
+
+
+def _unlock(file: int, place: int) -> None:
+    with suppress(OSError):
+        fcntl.lockf(file, fcntl.LOCK_UN, 1, place)
 
 
 def _place(kernel: str) -> int:

@@ -16,7 +16,7 @@ from asperity.scenarios.reading import read_maps
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.rotation import QUARTER, rotated
-from asperity.surfaces.strip import Raised, Strip
+from asperity.surfaces.strip import Strip, raised
 from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
 
 STRIP_WINDOWS = 16
@@ -82,7 +82,7 @@ class Textures:
     def surface(self) -> Strip:
         """The path with its defects, shape (rows, ny)."""
         assert self.path is not None
-        return self.path if self.defects is None else Raised(self.path, self.defects)
+        return self.path if self.defects is None else raised(self.path, self.defects)
 
 
 def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:

@@ -69,10 +69,10 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Raised:
-    """A strip with heights added that are the same all across."""
+    """A strip with heights added to it."""
 
     strip: Strip  # what lies below
-    added: NDArray[np.float64]  # (nx,), heights added to each row, m
+    added: Callable[[int, int], NDArray[np.float64]]  # for rows first … stop − 1: (stop − first, ny or 1), m
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -91,36 +91,17 @@ class Raised:
 
     def rows(self, first: int, stop: int) -> NDArray[np.float64]:
         """Heights of the rows first … stop − 1, m."""
-        return self.strip.rows(first, stop) + self.added[first:stop, None]
+        return self.strip.rows(first, stop) + self.added(first, stop)
 
 
-@dataclass(frozen=True, eq=False)
-class Turning:
-    """A strip with the heights of a wheel added, which come again with every turn."""
+def raised(strip: Strip, heights: NDArray[np.float64]) -> Raised:
+    """Add heights (nx,), m, that are the same all across."""
+    return Raised(strip, lambda first, stop: heights[first:stop, None])
 
-    strip: Strip  # what is rolled over
-    turn: NDArray[np.float64]  # (n, ny), one turn of what rolls, m
-    first: int  # its row that touches row zero of the strip
 
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Number of points (nx, ny)."""
-        return self.strip.shape
-
-    @property
-    def spacing(self) -> tuple[float, float]:
-        """Distances (dx, dy), m."""
-        return self.strip.spacing
-
-    @property
-    def size(self) -> tuple[float, float]:
-        """Lengths (nx dx, ny dy), m."""
-        return self.strip.size
-
-    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
-        """Heights of the rows first … stop − 1, m."""
-        around = (np.arange(first, stop) + self.first) % len(self.turn)
-        return self.strip.rows(first, stop) + self.turn[around]
+def turning(strip: Strip, turn: NDArray[np.float64], start: int) -> Raised:
+    """Add one turn (n, ny), m, of what rolls, again and again; its row `start` touches row zero."""
+    return Raised(strip, lambda first, stop: turn[(np.arange(first, stop) + start) % len(turn)])
 
 
 class _Pieces:

@@ -20,7 +20,7 @@ from asperity.scenarios.textures import Textures
 from asperity.scenarios.usual.textures import gather
 from asperity.structures.body import Body
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.strip import Raised
+from asperity.surfaces.strip import raised
 
 EQUAL = 1e-9
 """Relative difference of loads that are the same."""
@@ -86,7 +86,7 @@ def _of_contact(case: Bodies, contact: int, first: Textures) -> Textures:
 
 def _raised(textures: Textures, added: NDArray[np.float64]) -> Textures:
     """Add heights that are the same all across, (rows,), m, to the path and its line."""
-    path = None if textures.path is None else Raised(textures.path, added)
+    path = None if textures.path is None else raised(textures.path, added)
     return replace(textures, path=path, line=textures.line + added)
 
 

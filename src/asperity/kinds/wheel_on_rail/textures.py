@@ -39,7 +39,7 @@ from asperity.scenarios.textures import (
     synthesised_path,
 )
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.strip import LongStrip, Raised, Rows, Turning
+from asperity.surfaces.strip import LongStrip, Raised, Rows, raised, turning
 
 SAMPLED_LENGTH = 5.0
 """Samples of a synthesised rail are cut from so much of it at least, from where the record starts, m."""
@@ -61,7 +61,7 @@ def textures_of(case: WheelOnRail) -> Textures:
     rail = _rail(case, grid, maps, seeds[0], before)
     turn = _wheel(case, grid, seeds[1])
     wheel = turn.heights
-    rough = Turning(rail.strip, wheel, -before)
+    rough = turning(rail.strip, wheel, -before)
     if not maps or wheel.any():
         maps = strips = _cut(case, rough, before)
         sampled = f"{len(strips)} samples cut from the path"
@@ -78,7 +78,7 @@ def textures_of(case: WheelOnRail) -> Textures:
     return Textures(
         maps,
         strips,
-        Raised(rough, on_rail) if on_rail.any() else rough,
+        raised(rough, on_rail) if on_rail.any() else rough,
         parts["rail"] + parts["wheel"],
         start,
         before,
@@ -110,7 +110,7 @@ def _samples(
     return (), (), 0.0, ""
 
 
-def _cut(case: WheelOnRail, rough: Turning, before: int) -> tuple[HeightMap, ...]:
+def _cut(case: WheelOnRail, rough: Raised, before: int) -> tuple[HeightMap, ...]:
     """Cut samples from the path; of a synthesised rail from a stretch that does not depend on the speed."""
     contact, strip = case.contact, rough.strip
     if not isinstance(strip, LongStrip) or case.surface.spectrum is None:
