@@ -8,6 +8,7 @@ in wavelength are those in wavenumber read backwards, since both have their cent
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import rfft
 
@@ -15,6 +16,9 @@ from asperity.errors import InputError
 
 HALF_BAND = 10.0 ** (1.0 / 20.0)
 """Ratio of a one-third octave's upper edge to its centre, base 10 (IEC 61260-1)."""
+
+TOGETHER = 2**15
+"""Samples that are transformed at a time: each call takes time of its own."""
 
 LEAST_PRODUCT = 10.0
 """Bandwidth times averaging time B T below which a band level says little: its standard deviation,
@@ -44,9 +48,13 @@ def psd(
         raise InputError("overlap", overlap, "0 <= overlap < 1")
     values = values - values.mean(axis=-1, keepdims=True)
     window, advance = hann_window(length), length - int(overlap * length)
-    starts = range(0, values.shape[-1] - length + 1, advance)
-    power = sum(np.abs(rfft(values[..., start : start + length] * window)) ** 2 for start in starts)
-    density = np.asarray(power) * (2.0 * spacing / (len(starts) * (window**2).sum()))
+    segments = sliding_window_view(values, length, axis=-1)[..., ::advance, :]
+    count, together = segments.shape[-2], max(1, TOGETHER // max(1, values[..., 0].size * length))
+    power = np.zeros((*values.shape[:-1], length // 2 + 1))
+    for first in range(0, count, together):
+        spectra = rfft(segments[..., first : first + together, :] * window)
+        power += (spectra.real**2 + spectra.imag**2).sum(axis=-2)
+    density = power * (2.0 * spacing / (count * (window**2).sum()))
     density[..., 0] *= 0.5
     if length % 2 == 0:
         density[..., -1] *= 0.5  # zero and half the sampling frequency have no other side

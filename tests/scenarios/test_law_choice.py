@@ -16,7 +16,7 @@ from asperity.reference.law_accuracy import Place, law_map
 from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work
 from asperity.scenarios.law_choice import choose, expected_error, law_choice
-from asperity.scenarios.law_place import place_of
+from asperity.scenarios.law_place import correlation_lengths, place_of, without_slow
 from asperity.surfaces.heightmap import HeightMap
 
 ROOT = Path(__file__).parents[2]
@@ -88,6 +88,37 @@ def test_waves_that_excite_less_than_100_hz_have_no_place(shape):
     flat = HeightMap(np.zeros((400, shape.body.shape[1])), shape.spacing)
     assert place_of(flat, shape, 1.0, transfer_of) is None
     assert place_of(fast, shape, 1.0, lambda stiffness, frequency: None) is None
+
+
+@pytest.mark.parametrize("shape", [(101,), (90, 3), (97, 19)])
+def test_slow_waves_are_left_out_of_mirrored_lines(shape):
+    """Line by line, written out: mirror, transform, weigh, transform back, cut."""
+    heights = np.random.default_rng(1).standard_normal(shape).cumsum(axis=0)
+    spacing, lowest = 0.5e-3, 220.0  # at 9.1 points
+    found = without_slow(heights, spacing, lowest)
+    rows = len(heights)
+    spectrum = np.fft.fft(np.concatenate([heights, heights[::-1]]), axis=0)
+    share = np.abs(np.fft.fftfreq(2 * rows, spacing)) / lowest
+    gain = (1.0 - 1.0 / (1.0 + share**8)).reshape(-1, *[1] * (heights.ndim - 1))
+    expected = np.fft.ifft(spectrum * gain, axis=0).real[9 : rows - 9]
+    np.testing.assert_allclose(found, expected, atol=1e-12 * np.ptp(heights))
+
+
+def test_correlation_lengths_are_those_of_direct_sums():
+    """Lags at which mean products of all pairs fall to 0.2, joined by lines."""
+    white = np.random.default_rng(2).standard_normal((140, 40))
+    smooth = sum(white[i : 120 + i, j : 23 + j] for i in range(20) for j in range(6))
+
+    def lag(axis):
+        lines = np.moveaxis(smooth, axis, 0)
+        products = [np.mean(lines[: len(lines) - k] * lines[k:]) for k in range(len(lines) // 2 + 1)]
+        falling = np.array(products) / np.mean(smooth**2)
+        below = int(np.argmax(falling <= 0.2))
+        return np.interp(0.2, falling[[below, below - 1]], [below, below - 1])
+
+    found = correlation_lengths(smooth, (2e-3, 3e-3))
+    assert found == pytest.approx((2e-3 * lag(0), 3e-3 * lag(1)), rel=1e-12)
+    assert 2 < lag(1) < lag(0) < 20
 
 
 def test_the_linear_force_is_that_of_a_mass_on_a_spring_on_a_stiff_beam(shape):

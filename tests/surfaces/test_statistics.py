@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from scipy import fft
 
 from asperity.errors import InputError, ShortRecordWarning
+from asperity.surfaces.correlation import LagSums
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.statistics import (
     areal_statistics,
@@ -130,6 +131,28 @@ def test_autocorrelation_against_direct_sums():
     direct = np.nanmean(z[3:, 2:] * z[:-3, :-2]) / np.nanmean(z**2)
     assert_allclose(lobe[9, 6], direct, rtol=1e-12)
     assert_allclose(lobe[3, 2], direct, rtol=1e-12)
+
+
+@pytest.mark.parametrize("columns", [1, 8, 9])
+def test_products_at_lags_add_up_over_pieces(columns):
+    """Against direct sums, at lags that no two pieces share."""
+    pieces = [np.random.default_rng(rows).standard_normal((rows, columns)) for rows in (11, 10, 11)]
+    lags = LagSums(11, columns, 4)
+    for piece in pieces:
+        lags.add(piece)
+    sums, pairs = lags.sums(), lags.pairs()
+    side = columns // 2
+    assert sums.shape == pairs.shape == (9, 2 * side + 1)
+    for along in range(-4, 5):
+        for across in range(-side, side + 1):
+            products = []
+            for piece in pieces:
+                x, y = np.indices(piece.shape)
+                inside = (x + along >= 0) & (x + along < len(piece)) & (y + across >= 0)
+                inside &= y + across < columns
+                products += list(piece[inside] * piece[x[inside] + along, y[inside] + across])
+            assert_allclose(sums[4 + along, side + across], np.sum(products), atol=1e-12)
+            assert pairs[4 + along, side + across] == len(products)
 
 
 def test_both_spectra_integrate_to_the_mean_square():

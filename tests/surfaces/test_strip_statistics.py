@@ -99,6 +99,15 @@ def test_distribution_holds_all_points_and_has_their_variance(surface):
 
 
 @pytest.mark.usefixtures("small_pieces")
+def test_the_distribution_counts_each_point_once_and_in_its_bin(surface):
+    found = survey_strip(surface, 200)
+    heights = surface.heights - surface.heights.mean()
+    expected, _ = np.histogram(heights, found.edges)
+    counts = found.density * heights.size * np.diff(found.edges)
+    np.testing.assert_allclose(counts, expected, atol=1.01)  # the lowest or highest may lie beside an edge
+
+
+@pytest.mark.usefixtures("small_pieces")
 def test_spectrum_is_that_of_the_whole_strip(surface):
     found = survey_strip(surface, 200)
     wavenumber, density = psd(np.ascontiguousarray(surface.heights.T), SPACING[0], segment=200)

@@ -14,9 +14,12 @@ from asperity.scenarios.geometry import Geometry
 from asperity.spectra import psd
 from asperity.surfaces.correlation import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
+from asperity.threads import thread_count
 
 ROWS = 2**15
-"""Most rows of a path, from its middle, that are looked at."""
+"""Most rows of a path, from its middle, that are looked at: a length that is transformed fast."""
+LINES = 8
+"""Lines along a path that are transformed at a time: all of them would take much memory."""
 STEEPNESS = 8
 """Power of the wavenumber with which waves are left out below the lowest: a steeper edge rings longer."""
 RESOLUTION = 10.0
@@ -53,30 +56,34 @@ def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: Square
 
 def _heard(path: Strip, shape: Geometry, speed: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Heights (rows, ny) and the plane (rows,) that the patch feels, m, of what excites 100 Hz or more."""
-    rows = min(path.shape[0], ROWS)
+    beside = shape.body.shape[0] // 2  # at its ends the patch sees nothing
+    rows = min(path.shape[0], ROWS + 2 * beside)
     first = (path.shape[0] - rows) // 2
     heights = path.rows(first, first + rows)
     felt = -areal_texture(heights, shape.spacing, [0.0], [shape.semi_axes]).heights[0]
-    beside = shape.body.shape[0] // 2  # at its ends the patch sees nothing
     known, lowest = slice(beside, rows - beside), LOW / speed
     dx = shape.spacing[0]
-    return _without_slow(heights[known], dx, lowest), _without_slow(felt[known], dx, lowest)
+    return without_slow(heights[known], dx, lowest), without_slow(felt[known], dx, lowest)
 
 
-def _without_slow(heights: NDArray[np.float64], spacing: float, lowest: float) -> NDArray[np.float64]:
+def without_slow(heights: NDArray[np.float64], spacing: float, lowest: float) -> NDArray[np.float64]:
     """Heights (rows, ...) without waves along x below a wavenumber, cycles/m.
 
     The edge is smooth, half the height at the wavenumber. They are mirrored at their ends, and what is within
     one such wave of these, up to an eighth, is cut off.
     """
     rows = len(heights)
-    share = fft.rfftfreq(2 * rows, spacing) / lowest
-    gain = share**STEEPNESS / (1.0 + share**STEEPNESS)
+    share = np.arange(rows) / (2.0 * rows * spacing * lowest)
+    gain = (share**STEEPNESS / (1.0 + share**STEEPNESS))[:, None]
     cut = min(round(1.0 / (lowest * spacing)), rows // 8)
     kept = np.empty((rows - 2 * cut, *heights.shape[1:]))
-    for line, found in zip(heights.reshape(rows, -1).T, kept.reshape(len(kept), -1).T, strict=True):
-        spectrum = fft.rfft(np.concatenate([line, line[::-1]]))  # one by one: the strip is large
-        found[:] = fft.irfft(spectrum * gain, 2 * rows)[cut : rows - cut]
+    lines, found = heights.reshape(rows, -1), kept.reshape(len(kept), -1)
+    for first in range(0, lines.shape[1], LINES):
+        among = slice(first, first + LINES)
+        spectra = fft.dct(lines[:, among], axis=0, workers=thread_count())  # of mirrored lines
+        spectra *= gain
+        passed = fft.idct(spectra, axis=0, overwrite_x=True, workers=thread_count())
+        found[:, among] = passed[cut : rows - cut]
     return kept
 
 
@@ -86,13 +93,18 @@ def correlation_lengths(heights: NDArray[np.float64], spacing: tuple[float, floa
     The threshold is that of ISO 25178-2 for Sal. Where it is not reached: half the length, or half the width.
     """
     rows, columns = heights.shape
-    period = fft.next_fast_len(2 * rows, real=True)
+    furthest = rows // 2
+    period = fft.next_fast_len(rows + furthest, real=True)
     power = np.zeros(period // 2 + 1)
-    for line in heights.T:
-        power += np.abs(fft.rfft(line, period)) ** 2
-    sums = fft.irfft(power)[: rows // 2 + 1]
-    along = sums / (rows - np.arange(rows // 2 + 1))
-    across = [np.mean(heights[:, : columns - lag] * heights[:, lag:]) for lag in range(columns // 2 + 1)]
+    for first in range(0, columns, LINES):
+        spectra = fft.rfft(heights[:, first : first + LINES], period, axis=0, workers=thread_count())
+        power += np.einsum("fl,fl->f", spectra.real, spectra.real)
+        power += np.einsum("fl,fl->f", spectra.imag, spectra.imag)
+    along = fft.irfft(power, period)[: furthest + 1] / (columns * (rows - np.arange(furthest + 1)))
+    across = [
+        np.einsum("xy,xy->", heights[:, : columns - lag], heights[:, lag:]) / (rows * (columns - lag))
+        for lag in range(columns // 2 + 1)
+    ]
     return _fallen(along, spacing[0]), _fallen(np.array(across), spacing[1])
 
 

@@ -14,6 +14,8 @@ from asperity.threads import thread_count
 
 CORRELATION_THRESHOLD = 0.2
 """Default of ISO 25178-3 for Sal and Str."""
+TOGETHER = 512
+"""Wavenumbers whose spectra across are made at a time."""
 
 
 def autocorrelation(surface: HeightMap) -> NDArray[np.float64]:
@@ -40,24 +42,54 @@ def lag_sums(
     Heights (nx, ny) are about their mean, m, and zero where they are not valid; `reach` is the largest lag
     along x, points. Both results are (2 reach + 1, 2 (ny//2) + 1), zero lag in the middle.
     """
-    lags = (reach, heights.shape[1] // 2)
-    size = [fft.next_fast_len(n + lag + 1, real=True) for n, lag in zip(heights.shape, lags, strict=True)]
-    kept = np.ix_(*(np.arange(-lag, lag + 1) for lag in lags))
-
-    def sums(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        workers = thread_count()
-        power = fft.rfft2(values, s=size, workers=workers)
-        np.square(power.real, out=power.real)
-        power.real += np.square(power.imag)
-        power.imag = 0.0
-        return np.asarray(fft.irfft2(power, s=size, workers=workers, overwrite_x=True)[kept])
-
+    rows, columns = heights.shape
+    products = LagSums(rows, columns, reach)
+    products.add(heights)
     if valid.all():
-        along, across = (
-            n - np.abs(np.arange(-lag, lag + 1)) for n, lag in zip(valid.shape, lags, strict=True)
-        )
-        return sums(heights), np.outer(along, across).astype(np.float64)
-    return sums(heights), np.rint(sums(valid.astype(np.float64)))
+        return products.sums(), products.pairs()
+    counts = LagSums(rows, columns, reach)
+    counts.add(valid.astype(np.float64))
+    return products.sums(), np.rint(counts.sums())
+
+
+class LagSums:
+    """Sums of products of heights at lags, of a map or of pieces of a strip, added one after the other.
+
+    Pieces have at most `rows` rows, each of `columns` points; `reach` is the largest lag along x, points.
+    Products at lags are, transformed, the squares of spectra: pieces add up there, and are transformed back
+    once.
+    """
+
+    def __init__(self, rows: int, columns: int, reach: int) -> None:
+        self.reach, self.side = reach, columns // 2
+        self.length = fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags wanted
+        self.width = fft.next_fast_len(columns + self.side)
+        self.power = np.zeros((self.length // 2 + 1, self.width))
+        self.columns = columns
+        self.rows: list[int] = []
+
+    def add(self, heights: NDArray[np.float64]) -> None:
+        """Add a piece, (rows, columns) about the mean, m."""
+        self.rows.append(len(heights))
+        along = fft.rfft(heights, self.length, axis=0, workers=thread_count())
+        for first in range(0, len(along), TOGETHER):
+            some = slice(first, first + TOGETHER)
+            spectrum = fft.fft(along[some], self.width, axis=1)
+            self.power[some] += spectrum.real**2 + spectrum.imag**2
+
+    def sums(self) -> NDArray[np.float64]:
+        """Sums of products, m², (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle."""
+        across = np.conj(fft.rfft(self.power, axis=1, workers=thread_count())[:, : self.side + 1])
+        across /= self.width
+        found = fft.irfft(across, self.length, axis=0, overwrite_x=True, workers=thread_count())
+        half = np.concatenate([found[self.length - self.reach :], found[: self.reach + 1]])
+        return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
+
+    def pairs(self) -> NDArray[np.float64]:
+        """Numbers of pairs at these lags, of pieces in which no height is missing."""
+        along = sum(rows - np.abs(np.arange(-self.reach, self.reach + 1)) for rows in self.rows)
+        across = self.columns - np.abs(np.arange(-self.side, self.side + 1))
+        return np.outer(along, across).astype(np.float64)
 
 
 def autocorrelation_lengths(

@@ -175,14 +175,23 @@ def slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np
 
     Heights and spacing in m.
     """
-    z = np.moveaxis(heights, axis, 0)
-    if z.shape[0] < 7:
-        raise InputError("surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
-    n = z.shape[0] - 6
-    weights = (-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0)
-    found = np.full(z.shape, np.nan)
-    found[3:-3] = sum(w * z[k : k + n] for k, w in enumerate(weights) if w) / (60.0 * spacing)
-    if np.isnan(found).all():
+    known = inner_slope(heights, spacing, axis)
+    if np.isnan(known).all():
         received = f"no seven valid points in a row along axis {axis}"
         raise InputError("surface", received, "enough valid points for slopes", "Use fill first.")
+    found = np.full(heights.shape, np.nan)
+    np.moveaxis(found, axis, 0)[3:-3] = np.moveaxis(known, axis, 0)
+    return found
+
+
+def inner_slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np.float64]:
+    """Seven-point derivative along an axis, without the three points at either end; heights, spacing in m."""
+    z = np.moveaxis(heights, axis, 0)
+    n = z.shape[0] - 6
+    if n < 1:
+        raise InputError("surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
+    found = z[6:] - z[:n]
+    found -= 9.0 * (z[5 : n + 5] - z[1 : n + 1])
+    found += 45.0 * (z[4 : n + 4] - z[2 : n + 2])
+    found /= 60.0 * spacing
     return np.moveaxis(found, 0, axis)

@@ -11,14 +11,18 @@ from numpy.typing import NDArray
 
 from asperity.errors import InputError
 from asperity.spectra import psd
-from asperity.surfaces.correlation import lag_sums, lengths_of
-from asperity.surfaces.statistics import Statistic, areal_parameters, slope
+from asperity.surfaces.correlation import LagSums, lengths_of
+from asperity.surfaces.statistics import Statistic, areal_parameters, inner_slope
 from asperity.surfaces.strip import Strip
 
 PIECE = 2**20
 """Points of a strip that are looked at in one go."""
 FEWEST_ROWS = 1024
 """Rows of such a piece, at least: correlations are known up to half of them."""
+STRETCH = 256
+"""Rows of a piece that are looked at together: few enough to stay in the processor's cache."""
+LINES = 8
+"""Lines of a piece whose spectra are made together."""
 BINS = 80
 MARGIN = 3
 """Neighbours on either side that the slope at a point needs."""
@@ -51,9 +55,10 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
         low, high = min(low, float(heights.min())), max(high, float(heights.max()))
     points = (bounds[-1][1] - bounds[0][0]) * strip.shape[1]
     mean = total / points
-    edges = np.linspace(low, high if high > low else low + 1e-12, BINS + 1) - mean
-    reach = min(end - start for start, end in bounds) // 2
-    sums = _Sums(strip.spacing, strip.shape[1], reach, edges, segment)
+    edges = np.linspace(low - mean, (high if high > low else low + 1e-12) - mean, BINS + 1)
+    lengths = [end - start for start, end in bounds]
+    lags = LagSums(max(lengths), strip.shape[1], min(lengths) // 2)
+    sums = _Sums(strip.spacing, edges, segment, lags)
     for heights, inner in _with_margin(strip, bounds):
         sums.add(heights - mean, inner)
     density = np.asarray(sums.counts / (points * np.diff(edges)))
@@ -63,9 +68,12 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     if high > low:
         band = (2.0 * min(strip.spacing), max(points // strip.shape[1] * strip.spacing[0], strip.size[1]))
         amplitudes = sums.powers / points
-        lengths = lengths_of(sums.products / sums.pairs, strip.spacing)
+        correlation = lags.sums()
+        correlation /= lags.pairs()
         slopes = (sums.square / sums.sloped, sums.stretch / sums.sloped)
-        statistics = areal_parameters(amplitudes, high - low, slopes, lengths, band)
+        statistics = areal_parameters(
+            amplitudes, high - low, slopes, lengths_of(correlation, strip.spacing), band
+        )
     return StripSurvey(statistics, edges, density, wavenumber, spectrum)
 
 
@@ -73,40 +81,48 @@ class _Sums:
     """What is added up over the pieces of a strip."""
 
     def __init__(
-        self,
-        spacing: tuple[float, float],
-        width: int,
-        reach: int,
-        edges: NDArray[np.float64],
-        segment: int,
+        self, spacing: tuple[float, float], edges: NDArray[np.float64], segment: int, lags: LagSums
     ) -> None:
-        self.spacing, self.reach, self.edges, self.segment = spacing, reach, edges, segment
+        self.spacing, self.edges, self.segment, self.lags = spacing, edges, segment, lags
         self.powers = np.zeros(4)  # |z|, z², z³, z⁴
         self.square = self.stretch = 0.0
         self.sloped = self.segments = 0
         self.counts = np.zeros(len(edges) - 1)
-        lags = (2 * reach + 1, 2 * (width // 2) + 1)
-        self.products, self.pairs = np.zeros(lags), np.zeros(lags)
         self.spectrum = np.zeros(segment // 2 + 1)
 
     def add(self, heights: NDArray[np.float64], inner: slice) -> None:
+        for first in range(MARGIN, len(heights) - MARGIN, STRETCH):
+            stop = min(first + STRETCH, len(heights) - MARGIN)
+            self._add_slopes(heights[first - MARGIN : stop + MARGIN])
+        z = heights[inner]
+        for first in range(0, len(z), STRETCH):
+            self._add_heights(z[first : first + STRETCH])
+        self.lags.add(z)
+        self._add_spectrum(z)
+
+    def _add_slopes(self, rows: NDArray[np.float64]) -> None:
+        """Add what slopes are at all points but those within the margin."""
         dx, dy = self.spacing
-        square = slope(heights, dx, 0) ** 2 + slope(heights, dy, 1) ** 2
-        square = square[np.isfinite(square)]
+        square = inner_slope(rows[:, MARGIN:-MARGIN], dx, 0) ** 2
+        square += inner_slope(rows[MARGIN:-MARGIN], dy, 1) ** 2
         self.square += float(square.sum())
         self.stretch += float((np.sqrt(1.0 + square) - 1.0).sum())
         self.sloped += square.size
-        z = np.ascontiguousarray(heights[inner])
+
+    def _add_heights(self, z: NDArray[np.float64]) -> None:
         squared = z * z
         self.powers += [np.abs(z).sum(), squared.sum(), (squared * z).sum(), (squared * squared).sum()]
-        self.counts += np.histogram(z, self.edges)[0]
-        products, pairs = lag_sums(z, np.ones(z.shape, bool), self.reach)
-        self.products += products
-        self.pairs += pairs
-        _, density = psd(np.ascontiguousarray(z.T), dx, segment=self.segment)
+        bins = len(self.counts)
+        bin_of = (z - self.edges[0]) * (bins / (self.edges[-1] - self.edges[0]))  # faster than np.histogram
+        self.counts += np.bincount(np.minimum(bin_of.astype(np.intp), bins - 1).ravel(), minlength=bins)
+
+    def _add_spectrum(self, z: NDArray[np.float64]) -> None:
         overlap = self.segment // 2
         count = (len(z) - overlap) // (self.segment - overlap)
-        self.spectrum += count * density.mean(axis=0)
+        for first in range(0, z.shape[1], LINES):
+            lines = np.ascontiguousarray(z[:, first : first + LINES].T)
+            _, density = psd(lines, self.spacing[0], segment=self.segment)
+            self.spectrum += count / z.shape[1] * density.sum(axis=0)
         self.segments += count
 
 
