@@ -261,9 +261,8 @@ class TestTextures:
         with pytest.raises(InputError, match=r"duration: received 0\.04 s, a path of"):
             textures_of(long)
 
-    def test_a_long_rail_is_never_held_as_a_whole(self, monkeypatch):
+    def test_a_long_rail_is_never_held_as_a_whole(self):
         """Less than the strip itself would take, 21 numbers a row: lines and positions along it are."""
-        monkeypatch.setattr("asperity.surfaces.strip.BYTES_KEPT", 0)
         rows, peaks = [], []
         for duration in (0.5, 3.0):
             made = case().with_(duration=duration)

@@ -112,7 +112,6 @@ def peak(work):
 def test_memory_does_not_grow_with_the_path(tmp_path, monkeypatch):
     """Beyond a few bytes a position (names of blocks, planes); the strip alone would take 120 a row."""
     monkeypatch.setattr("asperity.contact.scan.BLOCK", 64)
-    monkeypatch.setattr("asperity.surfaces.strip.BYTES_KEPT", 0)
     store = Store(tmp_path)
     monkeypatch.setattr(ScanJob, "solve", overlaps)
     short, long = peak(lambda rows: scan_into(store, job(rows), workers=1))
@@ -128,7 +127,6 @@ def overlaps(job, rows, planes):
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
     monkeypatch.setattr("asperity.reduction.areal.PIECE", 500)
     monkeypatch.setattr("asperity.contact.scan.TOUCHED", 500)
-    monkeypatch.setattr("asperity.surfaces.strip.BYTES_KEPT", 0)
     axes = [(20e-6, 20e-6), (30e-6, 35e-6)]
 
     def work(rows):

@@ -16,6 +16,7 @@ from asperity.running import prepare_case, run
 from asperity.store import Store
 from asperity.studies.definition import study_of
 from asperity.studies.kept import kept, packed
+from asperity.surfaces.fields import Fields
 
 WHEEL = """
 kind = "wheel-on-rail"
@@ -107,7 +108,7 @@ def test_a_member_has_the_digits_that_it_has_alone(case, sweep, tmp_path, monkey
     asperity.study(case, sweep, executor=Here())
     in_study = [Store().get(member.key) for member in members]
     monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path / "another"))
-    monkeypatch.setattr("asperity.surfaces.strip._pieces", type(_pieces())())
+    monkeypatch.setattr("asperity.surfaces.strip.fields", Fields())
     alone = packed(kept(run(members[-1].case)))
     found = in_study[-1]
     assert found.keys() == alone.keys()
@@ -116,12 +117,6 @@ def test_a_member_has_the_digits_that_it_has_alone(case, sweep, tmp_path, monkey
     described = [json.loads(str(each["__description__"])) for each in (found, alone)]
     assert described[0]["variables"] == described[1]["variables"]
     assert described[0]["attrs"]["warnings"] == described[1]["attrs"]["warnings"]
-
-
-def _pieces():
-    from asperity.surfaces import strip
-
-    return strip._pieces
 
 
 def test_a_track_is_the_same_at_every_speed():

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import threading
-from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -12,14 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import InputError
-
-PIECES_KEPT = 3
-"""Generated pieces held at a time, at least: those that threads on neighbouring positions read."""
-BYTES_KEPT = 2**26
-"""Bytes of generated pieces, of all strips, up to which more of them are held: a path is read many times."""
-
-Piece = tuple[NDArray[np.float64], NDArray[np.float64] | None]
-"""Rows of a piece up to the next one, m, and those that give way to it, while they are held."""
+from asperity.surfaces.fields import fields
 
 
 class Strip(Protocol):
@@ -104,30 +95,6 @@ def turning(strip: Strip, turn: NDArray[np.float64], start: int) -> Raised:
     return Raised(strip, lambda first, stop: turn[(np.arange(first, stop) + start) % len(turn)])
 
 
-class _Pieces:
-    """Generated pieces of all strips, those read last, so that strips of one texture share them."""
-
-    def __init__(self) -> None:
-        self.lock = threading.Lock()
-        self._held: OrderedDict[Hashable, Piece] = OrderedDict()
-
-    def get(self, name: Hashable) -> Piece | None:
-        if name in self._held:
-            self._held.move_to_end(name)
-        return self._held.get(name)
-
-    def put(self, name: Hashable, piece: Piece) -> None:
-        self._held[name] = piece
-        for older in list(self._held)[:-PIECES_KEPT]:
-            self._held[older] = self._held[older][0], None
-        size = sum(head.nbytes for head, _ in self._held.values())
-        while size > BYTES_KEPT and len(self._held) > PIECES_KEPT:
-            size -= self._held.popitem(last=False)[1][0].nbytes
-
-
-_pieces = _Pieces()
-
-
 @dataclass(frozen=True, eq=False)
 class LongStrip:
     """Gaussian strip of any length, generated in pieces that blend into each other.
@@ -174,38 +141,27 @@ class LongStrip:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
         if not 0 <= first <= stop <= self.shape[0]:
             raise InputError("rows of the strip", f"{first} to {stop}", f"rows from 0 to {self.shape[0]}")
-        parts = []
+        heights = np.empty((stop - first, self.shape[1]))
         at, last = first - self.before, stop - self.before
         while at < last:
             k, within = divmod(at, self.stride)
             end = min(last - k * self.stride, self.stride)
-            parts.append(self._blended(k)[within:end])
+            self._read(k, within, heights[at + self.before - first :][: end - within])
             at = k * self.stride + end
-        found = np.concatenate(parts) if parts else np.empty((0, self.shape[1]))
-        return found if self.transform is None else self.transform(found)
+        return heights if self.transform is None else self.transform(heights)
 
-    def _blended(self, k: int) -> NDArray[np.float64]:
-        """Rows k·stride … (k + 1)·stride − 1."""
-        begins = self.before == 0
-        kind = self.name, self.seed, self.stride, self.blend, self.shape[1], begins
-        with _pieces.lock:
-            held = _pieces.get((kind, k))
-            if held is not None:
-                return held[0]
-            whole = self._field(k)
-            head, tail = whole[: self.stride].copy(), whole[self.stride :].copy()
-            del whole
-            if k != 0 or not begins:
-                known = _pieces.get((kind, k - 1))
-                ending = None if known is None else known[1]
-                if ending is None:
-                    ending = self._field(k - 1)[self.stride :]
-                angle = 0.5 * np.pi * ((np.arange(self.blend) + 0.5) / self.blend)[:, None]
-                head[: self.blend] *= np.sin(angle)
-                head[: self.blend] += np.cos(angle) * ending
-            _pieces.put((kind, k), (head, tail))
-            return head
+    def _read(self, k: int, within: int, heights: NDArray[np.float64]) -> None:
+        """Read heights (n, ny), m, of piece k from a row within it on, blended with the one before."""
+        heights[:] = self._field(k, within, within + len(heights))
+        blended = min(len(heights), self.blend - within)
+        if blended > 0 and (k != 0 or self.before > 0):
+            angle = 0.5 * np.pi * ((np.arange(within, within + blended) + 0.5) / self.blend)[:, None]
+            heights[:blended] *= np.sin(angle)
+            ending = self.stride + within
+            heights[:blended] += np.cos(angle) * self._field(k - 1, ending, ending + blended)
 
-    def _field(self, k: int) -> NDArray[np.float64]:
+    def _field(self, k: int, first: int, stop: int) -> NDArray[np.float64]:
+        """Rows first … stop − 1 of piece k, which has stride + blend of them."""
         seed = int(np.random.SeedSequence([self.seed, k % 2**32]).generate_state(1)[0])
-        return self.piece(self.stride + self.blend, seed)
+        name = self.name, seed, self.stride, self.blend, self.shape[1]
+        return fields.rows(name, lambda: self.piece(self.stride + self.blend, seed), first, stop)
