@@ -15,7 +15,7 @@ os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pyte
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
 os.environ["ASPERITY_CACHE"] = _cache.name
 
-from asperity.kinds.drawing import DrawingProcess  # noqa: E402
+from asperity.kinds.report_process import ReportProcess  # noqa: E402
 
 
 def pytest_configure():
@@ -31,9 +31,9 @@ def pytest_unconfigure():
 
 
 @pytest.fixture(autouse=True)
-def drawn_alone(monkeypatch):
+def reported_alone(monkeypatch):
     """Runs of tests are short, and processors busy: a second process takes longer to start than to draw."""
-    monkeypatch.setattr("asperity.cli.running.drawing_process", lambda: nullcontext(DrawingProcess()))
+    monkeypatch.setattr("asperity.cli.running.report_process", lambda: nullcontext(ReportProcess()))
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from asperity.config.case import Case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, remove_left_overs, require_space
-from asperity.kinds.drawing import DrawingProcess, drawing_process
+from asperity.kinds.report_process import ReportProcess, report_process
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.scenarios.second_process import contact_compiled_beside
 from asperity.schema import rolling, spectra
@@ -60,8 +60,8 @@ def run_into(
     refuse_folder(case, directory, overwrite=overwrite)
     with alone_in(directory):
         refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
-        with drawing_process() if report else nullcontext() as drawing:
-            return _run_alone(case, directory, source, drawing, converge=converge)
+        with report_process() if report else nullcontext() as reporter:
+            return _run_alone(case, directory, source, reporter, converge=converge)
 
 
 def prepared_case(case: Case, source: str) -> PreparedCase:
@@ -76,7 +76,7 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
 
 
 def _run_alone(
-    case: Case, directory: Path, source: str, drawing: DrawingProcess | None, *, converge: bool
+    case: Case, directory: Path, source: str, reporter: ReportProcess | None, *, converge: bool
 ) -> dict[str, Any]:
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.cli.planning import announce_scan
@@ -99,13 +99,13 @@ def _run_alone(
         from asperity.kinds.report import remove_report
 
         remove_report(directory)
-    written = _written(tree, directory, drawing)
+    written = _written(tree, directory, reporter)
     if converge:
         from asperity.convergence.running import with_convergence
 
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)
-        written = _written(tree, directory, drawing)
+        written = _written(tree, directory, reporter)
     if verdict := tree.attrs.get("verdict"):
         say(verdict)
     for name, path in written.items():
@@ -161,17 +161,15 @@ def band_summaries(tree: DataTree) -> dict[str, Any]:
     }
 
 
-def _written(tree: DataTree, directory: Path, drawing: DrawingProcess | None) -> dict[str, Path]:
+def _written(tree: DataTree, directory: Path, reporter: ReportProcess | None) -> dict[str, Path]:
     """Write a result, and its report if it is wanted; the paths, each with what it is."""
     from asperity.results import save
 
-    written = {"Results": save(tree, directory / "run.nc")}
-    if drawing is not None:
-        from asperity.kinds.report import parts_of, write_page
-
-        drawn = drawing.pictures(tree, written["Results"], parts_of(tree))
-        written["Report"] = write_page(tree, directory / PAGE, drawn)
-    return written
+    path = directory / "run.nc"
+    if reporter is None:
+        return {"Results": save(tree, path)}
+    page = reporter.write(tree, directory / PAGE, lambda: save(tree, path))
+    return {"Results": path, "Report": page}
 
 
 def _expected_size(case: Case) -> float:

@@ -12,11 +12,12 @@ from xarray import DataTree
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import write_bytes
+from asperity.forked import in_processes
 from asperity.kinds import KINDS
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.csv_files import write_columns
 from asperity.reporting.data import stated
-from asperity.reporting.page import Picture, drawable_parts, page, pictures, sections
+from asperity.reporting.page import Picture, drawable_parts, page, picture, sections
 from asperity.reporting.part import Part
 from asperity.schema.provenance import KIND
 
@@ -80,16 +81,25 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     return write_page(result, target)
 
 
-def write_page(result: DataTree, target: Path, drawn: Mapping[str, Picture] | None = None) -> Path:
-    """Write the page of a result and, beside it, the files of its figures, which may have been drawn."""
-    chapters = chapters_of(result)
-    found = sections(result, chapters, drawn)
-    text = page(result, chapters, found)
-    for picture in pictures(found):
-        _write(target.parent / f"{picture.name}.svg", picture.file)
-    for part in parts_of(result):
+def draw_all(result: DataTree, processes: int = 1) -> dict[str, Picture]:
+    """Draw all figures of a result, by name, in so many processes."""
+    found = in_processes(lambda part: picture(result, part).laid_out(), parts_of(result), processes)
+    return {laid_out["name"]: Picture.read(laid_out) for laid_out in found}
+
+
+def write_page(
+    result: DataTree, target: Path, drawn: Mapping[str, Picture] | None = None, processes: int = 1
+) -> Path:
+    """Write the page of a result and, beside it, the drawings and numbers of its figures."""
+    found = draw_all(result, processes) if drawn is None else drawn
+
+    def write_files(part: Part) -> None:
+        _write(target.parent / f"{part.name}.svg", found[part.name].file)
         write_columns(part.columns(result), target.parent / f"{part.name}.csv")
-    return _write(target, text)
+
+    in_processes(write_files, parts_of(result), processes)
+    chapters = chapters_of(result)
+    return _write(target, page(result, chapters, sections(result, chapters, found)))
 
 
 def _write(path: Path, text: str) -> Path:

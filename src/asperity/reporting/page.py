@@ -39,6 +39,16 @@ class Picture:
     file: str  # the wide drawing as a document of its own
     live: str = ""  # what a browser draws in its place, where it does
 
+    def laid_out(self) -> dict[str, str]:
+        """As text, for another process."""
+        return {name: str(text) for name, text in vars(self).items()}
+
+    @classmethod
+    def read(cls, laid_out: Mapping[str, str]) -> Picture:
+        """What was laid out, of this version of the program."""
+        markup: dict[str, Any] = {name: Markup(laid_out[name]) for name in ("svg", "narrow", "live")}
+        return cls(**{**laid_out, **markup})
+
 
 @dataclass(frozen=True)
 class PageSection:
@@ -85,11 +95,6 @@ def sections(
         if blocks:
             found.append(PageSection(chapter.name, chapter.title, blocks))
     return found
-
-
-def pictures(drawn: Sequence[PageSection]) -> list[Picture]:
-    """Figures of a page."""
-    return [block for section in drawn for block in section.blocks if isinstance(block, Picture)]
 
 
 _GRADES = {"out of range": ("out", "out of range"), "warning": ("", "warnings"), "note": ("note", "notes")}

@@ -1,0 +1,73 @@
+"""A report that a second process writes, with others that it forks."""
+
+import os
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from asperity.errors import ComputationError
+from asperity.kinds import report_process as module
+from asperity.kinds.report import write_page
+from asperity.kinds.report_process import ReportProcess, report_process
+
+KIND = "ball-on-beam"
+
+
+def files(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix != ".nc"}
+
+
+def test_another_process_writes_what_this_one_does(real_runs, reports, tmp_path, monkeypatch):
+    monkeypatch.setenv("ASPERITY_THREADS", "2")
+    expected, page, before = files(reports[KIND]), tmp_path / "report.html", []
+    monkeypatch.setattr("asperity.kinds.report.write_page", None)  # not here
+    with report_process() as reporter:
+        for _ in range(2):
+            written = reporter.write(real_runs[KIND], page, lambda: before.append(files(tmp_path)))
+            assert written == page
+            assert files(tmp_path) == expected
+    assert before == [{}, expected]
+    assert reporter.process.poll() is not None
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing can be forked")
+def test_several_processes_write_what_one_does(real_runs, reports, tmp_path):
+    write_page(real_runs[KIND], tmp_path / "report.html", processes=3)
+    assert files(tmp_path) == files(reports[KIND])
+
+
+@pytest.mark.parametrize("program", ["pass", "print('no', flush=True); input()", "print('0'); input()"])
+def test_what_the_other_process_leaves_is_written_here(real_runs, tmp_path, program):
+    done = []
+    command = [sys.executable, "-c", program]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        reporter = ReportProcess(process)
+        page = reporter.write(real_runs[KIND], tmp_path / "report.html", lambda: done.append(True))
+        process.kill()
+    assert page.exists()
+    assert done == [True]
+
+
+def test_what_cannot_be_written_is_told_here(real_runs, tmp_path, monkeypatch):
+    monkeypatch.setenv("ASPERITY_THREADS", "2")
+    (tmp_path / "report.html").mkdir()
+    with report_process() as reporter, pytest.raises(ComputationError, match=r"report\.html"):
+        reporter.write(real_runs[KIND], tmp_path / "report.html", lambda: None)
+
+
+def test_one_thread_writes_alone(monkeypatch):
+    monkeypatch.setenv("ASPERITY_THREADS", "1")
+    with report_process() as reporter:
+        assert reporter.process is None
+
+
+def test_where_no_process_can_be_started_all_is_written_here(monkeypatch):
+    def none(*_, **__):
+        raise OSError("no more processes")
+
+    monkeypatch.setenv("ASPERITY_THREADS", "2")
+    monkeypatch.setattr(module, "subprocess", SimpleNamespace(Popen=none, PIPE=-1, DEVNULL=-3))
+    with report_process() as reporter:
+        assert reporter.process is None
