@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from asperity.config.case import SETTLED, Case
 from asperity.contact.scan import ScannedForces
-from asperity.errors import ShortRecordWarning
+from asperity.errors import PhysicsWarning, ShortRecordWarning
 from asperity.laws import Law, Need, needs_of
 from asperity.progress import Progress
 from asperity.rolling.events import ContactLoss
@@ -65,11 +65,18 @@ class Chain(Generic[R]):
     textures: Textures
     shape: Geometry
     reduction: Reduction | None  # state functions; None without samples
-    laws: dict[str, Law]  # by name, in the order of the case
     runs: dict[str, R]  # time histories, by law
     scan: ScannedForces[Any] | None  # of the path
     running_in: RunInCase | None  # what passes before did to the textures; None where there were none
     seconds: dict[str, float]  # wall time of each part, s
+    workshop: Workshop  # to build its laws in
+
+    @property
+    def laws(self) -> dict[str, Law]:
+        """Its laws by name, in the order of the case, built again: each holds all the path in every state."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PhysicsWarning)  # of that was warned when they were rolled
+            return {name: self.workshop.build(name) for name in self.case.laws}
 
     def stacked(self, name: str) -> NDArray[np.float64]:
         """Stack one record of all runs, (laws, ...), by the name of its attribute."""
@@ -137,14 +144,13 @@ def reduce_and_roll(
     watch.lap("reduction")
     workshop = Workshop(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
     others = [_of_contact(workshop, contact) for contact in further]
-    laws: dict[str, Law] = {}
     runs: dict[str, R] = {}
     for name in case.laws:
-        laws[name] = workshop.build(name)
-        runs[name] = roll(laws[name], *(other.build(name) for other in others))
+        runs[name] = roll(workshop.build(name), *(other.build(name) for other in others))
         watch.lap(f"law {name}")
     scan = workshop.scan if Need.SCAN in needs_of(case.laws) else None
-    return Chain(case, textures, shape, reduction, laws, runs, scan, ran, watch.seconds)
+    anew = replace(workshop)  # without the textures that it has made
+    return Chain(case, textures, shape, reduction, runs, scan, ran, watch.seconds, anew)
 
 
 def _of_contact(workshop: Workshop, contact: Further) -> Workshop:

@@ -6,8 +6,8 @@ import math
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,18 +55,27 @@ class Answer:
     laws: tuple[str, ...] = ()  # of the case that it concerns
 
 
-@lru_cache(maxsize=1)  # the range of validity and the report ask the same
+_answered: WeakKeyDictionary[Chain[Any], tuple[Answer, ...]] = WeakKeyDictionary()
+"""Answers that were given: the range of validity and the report ask the same."""
+
+
 def answers(chain: Chain[Any]) -> tuple[Answer, ...]:
     """Ask all that there is data for: nothing without samples, or of smooth ones."""
+    if chain not in _answered:
+        _answered[chain] = _found(chain)
+    return _answered[chain]
+
+
+def _found(chain: Chain[Any]) -> tuple[Answer, ...]:
     reduction = chain.reduction
     if reduction is None or not any(np.ptp(sample.heights) for sample in chain.textures.maps):
         return ()
-    reduced = tuple(law for law in chain.laws if not spec_of(law).sees_heights)
+    reduced = tuple(law for law in chain.case.laws if not spec_of(law).sees_heights)
     return (
         *_stiffness(reduction, reduced),
         *_filters(reduction),
         *_maps(chain, reduction, reduced),
-        *_along_path(chain, tuple(chain.laws)),
+        *_along_path(chain, tuple(chain.case.laws)),
         *_direction(chain),
     )
 

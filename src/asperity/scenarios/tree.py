@@ -61,7 +61,7 @@ def assembled(
         provenance.KIND: case.kind,
         provenance.PARAMETERS: json.dumps(case.parameters(), ensure_ascii=False),
         provenance.NUMERICS: json.dumps(_listed(chain, every), ensure_ascii=False),
-        provenance.LAWS: json.dumps([spec_of(n).entry() for n in chain.laws], ensure_ascii=False),
+        provenance.LAWS: json.dumps([spec_of(n).entry() for n in chain.case.laws], ensure_ascii=False),
     }
     if choice is not None:
         scenario[provenance.EXPECTED_ERRORS] = json.dumps(choice.entries())

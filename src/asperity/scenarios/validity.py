@@ -81,8 +81,8 @@ def _grade(value: float, limits: tuple[float, float]) -> Grade | None:
 
 def _area(chain: Chain[Any]) -> Finding:
     ratio = chain.reduction.area_ratio  # type: ignore[union-attr]
-    averaged = tuple(law for law in chain.laws if not spec_of(law).sees_heights)
-    scanned = [law for law in chain.laws if spec_of(law).sees_heights]
+    averaged = tuple(law for law in chain.case.laws if not spec_of(law).sees_heights)
+    scanned = [law for law in chain.case.laws if spec_of(law).sees_heights]
     return Finding(
         "real contact area over that of smooth bodies",
         f"{ratio:.2f}",
@@ -113,7 +113,7 @@ def _slope(chain: Chain[Any]) -> Finding:
         f"{pressure / 1e9:.2g} GPa.",
         f"{remedy}{hard}.",
         f"rms slope {slope:.2g}",
-        tuple(chain.laws),
+        tuple(chain.case.laws),
     )
 
 
@@ -133,7 +133,7 @@ def _isolated(chain: Chain[Any]) -> Finding:
         "The grid does not resolve the asperities: forces depend on contact.spacing.",
         f"A grid that would do: {', or '.join(ways)}.",
         f"{percent(share)} of the load on single cells",
-        tuple(chain.laws),
+        tuple(chain.case.laws),
     )
 
 

@@ -1,0 +1,53 @@
+"""What is still held when a case was computed: its results, and nothing that they were made from."""
+
+import gc
+import weakref
+
+import pytest
+
+from asperity.kinds.ball_on_beam import compute as ball_on_beam
+from asperity.kinds.cases import as_case
+from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
+from asperity.running import prepare_case, run
+from asperity.scenarios.laws import Workshop
+from small_cases import BALL, WHEEL
+
+pytestmark = [
+    pytest.mark.usefixtures("cache_of_module"),
+    pytest.mark.filterwarnings("ignore::asperity.errors.PhysicsWarning"),
+]
+
+
+def quiet(done, total, message):
+    """A progress that nobody sees."""
+
+
+def recorded(monkeypatch, owner, name):
+    """References to all that a function returns."""
+    made, original = [], getattr(owner, name)
+
+    def call(*arguments, **keywords):
+        result = original(*arguments, **keywords)
+        made.append(weakref.ref(result))
+        return result
+
+    monkeypatch.setattr(owner, name, call)
+    return made
+
+
+def test_laws_are_not_held_once_they_are_rolled(monkeypatch):
+    laws = recorded(monkeypatch, Workshop, "build")
+    computed = ball_on_beam.compute(prepare_case(as_case(BALL)), quiet)
+    gc.collect()
+    assert set(computed.chain.runs) == set(BALL["laws"])
+    assert len(laws) == len(BALL["laws"])
+    assert [law() for law in laws] == [None] * len(laws)
+
+
+@pytest.mark.parametrize(("kind", "case"), [(ball_on_beam, BALL), (wheel_on_rail, WHEEL)])
+def test_textures_and_state_functions_do_not_outlive_the_computation(monkeypatch, kind, case):
+    chains = recorded(monkeypatch, kind, "reduce_and_roll")
+    result = run(case)
+    gc.collect()
+    assert "force_level" in result["spectra"]
+    assert [chain() for chain in chains] == [None]
