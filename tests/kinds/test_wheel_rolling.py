@@ -17,6 +17,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store
+from asperity.structures.hat_response import HatResponse
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
@@ -199,6 +200,27 @@ class TestPassedPoints:
         assert error < 0.1  # second against sixth order
         far = passed_points(kernel, [run], [16.2 + 300.0])[0]
         assert np.abs(far).max() < 1e-3 * np.abs(displacement).max()
+
+    @pytest.mark.parametrize(
+        ("struck", "stride", "steps"),
+        [(-1.23, 1.5e-3, 5000), (1.47, 1.5e-3, 5000), (2.999, 1.4e-3, 5000), (1.47, 1.5e-3, 90)],
+    )
+    def test_a_blow_some_bays_away_is_felt_as_the_receptance_has_it(self, struck, stride, steps):
+        """One step of force at a place that is no node: the transform of hat times receptance."""
+        step, point = stride / SPEED, 0.13
+        rail = moving_kernel(TRACK, SPEED, step, duration=0.12, positions=4)
+        history = np.zeros(steps)
+        history[10] = 1.0
+        run: Any = SimpleNamespace(
+            history=history, history_start=struck - 10 * stride, time=step * np.arange(steps)
+        )
+        displacement, _ = passed_points(rail, [run], [point])
+        taps = rail.weights.shape[1]
+        grid = HatResponse(rail.track, step, 3 * taps, 1)
+        receptance = grid.waves.receptance(point + 6.0, struck + 6.0)
+        expected = grid.response((grid.hat * receptance)[None])[0, : min(steps - 10, taps // 2)]
+        found = displacement[0, 0, 10 : 10 + len(expected)]
+        np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
 
     def test_a_steady_load_makes_no_sound_when_steps_end_on_sleepers(self):
         """A step that counted twice, or not at all, would hit the rail with 65 kN."""

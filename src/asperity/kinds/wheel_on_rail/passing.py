@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from bisect import bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebvander
@@ -17,12 +18,14 @@ from asperity.kinds.wheel_on_rail.roll import WheelRolling
 from asperity.progress import Progress
 from asperity.structures.hat_response import ZONES, HatResponse
 from asperity.structures.moving_kernel import MovingKernel, lagrange_weights
-from asperity.threads import thread_count
+from asperity.threads import one_thread_in_linear_algebra
 
 NODES = 24
 """Places of the force in a bay near the point; between them responses are interpolated by a cubic."""
-TERMS = 12
+TERMS = 16
 """Places of the force in a bay further away, where responses are smooth; one polynomial goes through them."""
+TOGETHER = 8
+"""Bays whose waves are found at a time."""
 FAINT = 3e-4
 """Bays whose responses stay below this share of the largest are left out, and all beyond them."""
 ROOM = 1.3
@@ -58,14 +61,17 @@ def passed_points(
     displacement = np.zeros((len(runs), len(places), forces.shape[1]))
     near, far = _Near(kernel), _Far(kernel, path.steps_in_bay)
     passed = [_Point(near, far, float(place)) for place in places]
-    reach = [set(point.reach(path.bays)) for point in passed]
-    for done, bay in enumerate(path.bays):
-        sent = _BayWaves(far, path, bay)
-        for i, point in enumerate(passed):
-            if bay in reach[i]:
-                point.add(displacement[:, i], path, bay, sent)
-        if progress is not None:
-            progress(done + 1, len(path.bays), "the rail at the points passed")
+    reach = [point.reach(path.bays) for point in passed]
+    with one_thread_in_linear_algebra():
+        for first in path.bays[::TOGETHER]:
+            some = range(first, min(first + TOGETHER, path.bays.stop))
+            sent = _SentWaves(far, path, some)
+            for bay in some:
+                for i, point in enumerate(passed):
+                    if bay in reach[i]:
+                        point.add(displacement[:, i], path, bay, sent)
+                if progress is not None:
+                    progress(bay + 1 - path.bays.start, len(path.bays), "the rail at the points passed")
     settled = forces.shape[1] - len(runs[0].time)
     padded = np.pad(displacement, ((0, 0), (0, 0), (3, 3)), mode="reflect", reflect_type="odd")
     velocity = np.zeros_like(displacement)
@@ -101,26 +107,48 @@ class _Path:
 
 
 class _Far:
-    """Waves at places all over a bay, at the frequencies of a transform of its forces and what follows."""
+    """Waves at places all over a bay, at the frequencies of a transform of its forces and what follows.
+
+    A force f at the place x sends out Σ f S(ω, x) exp(−iωt), where x = x_0 + v t. The transform is long, for
+    what follows rings long; but the force is there for a short time. Each frequency ω_m of a transform of the
+    bay alone has `between` of the others around it, at which S exp(−i(ω − ω_m)x/v) is as smooth over x as S:
+    one polynomial goes through its values at the nodes, and short transforms of forces times polynomials do.
+    """
 
     def __init__(self, kernel: MovingKernel, steps: int) -> None:
         self.taps = kernel.weights.shape[1]
-        grid = HatResponse(
-            kernel.track, kernel.time_step, next_fast_len(math.ceil(0.5 * ROOM * (self.taps + steps))), 1
-        )
-        self.waves, self.amplitude, self.period = (
-            grid.waves,
-            grid.hat * grid.waves.coefficients,
-            2 * grid.taps,
-        )
+        stride, wanted = kernel.speed * kernel.time_step / kernel.spacing, ROOM * (self.taps + steps)
+        self.steps = 2 * next_fast_len(math.ceil(0.5 * min(1.0 / stride, wanted)))  # of all the bay
+        self.between = math.ceil(wanted / self.steps)
+        self.period = self.steps * self.between
+        grid = HatResponse(kernel.track, kernel.time_step, self.period // 2, 1)
+        self.waves, self.amplitude = grid.waves, grid.hat * grid.waves.coefficients
         self.window = np.exp(grid.shift * grid.time_step * np.arange(self.period))
         nodes = chebpts1(TERMS)
-        self.polynomials = np.linalg.inv(
-            chebvander(nodes, TERMS - 1)
-        )  # those that are one at a node, by column
-        shapes = self.waves.symmetric_shapes(0.5 * kernel.spacing * (nodes + 1.0))
+        self.polynomials = np.linalg.inv(chebvander(nodes, TERMS - 1))  # by column, one at a node each
+        self.places = 0.5 * (nodes + 1.0)
+        shapes = self.waves.symmetric_shapes(kernel.spacing * self.places)
         self.shapes = dict(zip((1, -1), shapes, strict=True))  # (TERMS, 2, f) for either side
+        beside = np.arange(self.between) - self.between // 2  # of ω_m, in steps of the frequencies
+        self.delay = 2.0 * np.pi / (self.period * stride) * beside
+        delayed = np.exp(-1j * self.delay * self.places[:, None])[:, None, None]
+        self.sending = {  # (m, TERMS, 2 × between)
+            side: (self.around(shape) * delayed).transpose(2, 0, 1, 3).reshape(-1, TERMS, 2 * self.between)
+            for side, shape in self.shapes.items()
+        }
         self._powers = [np.ones_like(self.waves.multipliers)]
+
+    def around(self, spectra: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        """Spectra (..., f) laid out around the frequencies ω_m, (..., m, between), zero outside."""
+        before, all_in_all = self.between // 2, (self.steps // 2 + 1) * self.between
+        laid_out = np.zeros((*spectra.shape[:-1], all_in_all), complex)
+        laid_out[..., before : before + spectra.shape[-1]] = spectra
+        return laid_out.reshape(*spectra.shape[:-1], -1, self.between)
+
+    def along(self, around: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        """Spectra (..., f) from (..., m, between)."""
+        before = self.between // 2
+        return around.reshape(*around.shape[:-2], -1)[..., before : before + self.period // 2 + 1]
 
     def power(self, bays: int) -> NDArray[np.complex128]:
         """Change of the waves over some bays, (2, f)."""
@@ -132,43 +160,53 @@ class _Far:
         """Shares (TERMS, k) of the nodes in what acts at places (k,) from 0 to 1."""
         return np.asarray((chebvander(2.0 * places - 1.0, TERMS - 1) @ self.polynomials).T)
 
-    def in_time(self, spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
-        """What spectra (..., f) are in time."""
+    def in_time(self, spectra: NDArray[np.complex128], length: int) -> NDArray[np.float64]:
+        """What spectra (..., f) are in time, at the first `length` steps."""
         folded = spectra.copy()
         folded[..., -1] *= 2.0  # at half the sampling frequency two lines look alike
-        return np.asarray(irfft(folded, self.period) * self.window)
+        return np.asarray(irfft(folded, self.period)[..., :length] * self.window[:length])
 
 
-class _BayWaves:
-    """The waves that the forces in a bay send out on either side, found when first asked for."""
+class _SentWaves:
+    """The waves that the forces in some bays send out on either side, found when first asked for."""
 
-    def __init__(self, far: _Far, path: _Path, bay: int) -> None:
-        self.far, self.path, self.bay = far, path, bay
+    def __init__(self, far: _Far, path: _Path, bays: range) -> None:
+        self.far, self.path, self.bays = far, path, bays
         self._sent: dict[int, NDArray[np.complex128]] = {}
 
     @cached_property
     def spectra(self) -> NDArray[np.complex128]:
-        """Spectra of the forces' shares of the nodes of the bay, (runs, TERMS, f)."""
-        _, forces, places = self.path.within(self.bay)
-        shared = forces[:, None] * (self.far.shares(places) / self.far.window[: len(places)])
-        return np.asarray(rfft(shared, self.far.period, workers=thread_count()))
+        """Spectra of the forces' shares of the nodes of the bays, (m, bays × runs, TERMS)."""
+        runs = len(self.path.forces)
+        found = np.empty((self.far.steps // 2 + 1, len(self.bays), runs, TERMS), complex)
+        for i, bay in enumerate(self.bays):
+            _, forces, places = self.path.within(bay)
+            shared = forces[:, None] * (self.far.shares(places) / self.far.window[: len(places)])
+            found[:, i] = rfft(shared, self.far.steps).transpose(2, 0, 1)
+        return found.reshape(len(found), -1, TERMS)
 
-    def towards(self, side: int) -> NDArray[np.complex128]:
-        """Waves, (runs, 2, f), to points that have the bay on their right (side 1) or left (side −1)."""
+    def towards(self, side: int, bay: int) -> NDArray[np.complex128]:
+        """Waves, (m, runs, 2, between), to points that have a bay on their right (side 1) or left (−1)."""
         if side not in self._sent:
-            self._sent[side] = np.einsum("kwf,rkf->rwf", self.far.shapes[side], self.spectra)
-        return self._sent[side]
+            sent = self.spectra @ self.far.sending[side]
+            self._sent[side] = sent.reshape(len(sent), len(self.bays), -1, 2, self.far.between)
+        return self._sent[side][:, bay - self.bays.start]
 
 
 class _Near:
-    """Shapes of a track's waves at the nodes of a bay, with which responses to hats of force are found."""
+    """Sines of a rail's free waves at the nodes of a bay, with which responses to hats of force are found."""
 
     def __init__(self, kernel: MovingKernel) -> None:
         self.grid = HatResponse(kernel.track, kernel.time_step, kernel.weights.shape[1], ZONES)
         self.waves = self.grid.waves
         self.amplitude = self.grid.hat * self.waves.coefficients
-        nodes = np.linspace(0.0, kernel.spacing, NODES + 1)
-        self.outgoing, self.incoming = self.waves.symmetric_shapes(nodes)
+        step = self.waves.wavenumbers * (kernel.spacing / NODES)
+        self.sines = np.zeros((NODES + 1, *step.shape), complex)
+        self.sines[1] = np.sin(step)
+        twice = 2.0 * np.cos(step)
+        for node in range(2, NODES + 1):
+            np.multiply(twice, self.sines[node - 1], out=self.sines[node])
+            self.sines[node] -= self.sines[node - 2]
 
 
 class _Point:
@@ -185,18 +223,18 @@ class _Point:
         )
         self._responses = {bay: self._hats(bay) for bay in (-1, 0, 1)}
 
-    def reach(self, bays: range) -> Iterator[int]:
-        """Those of some bays whose forces are felt here."""
-        largest = 0.0
+    def reach(self, bays: range) -> range:
+        """Those of some bays whose forces are felt here: responses die away with the distance."""
         rightwards = range(max(self.bay, bays.start), bays.stop)
         leftwards = range(min(self.bay, bays.stop) - 1, bays.start - 1, -1)
-        for outwards in (rightwards, leftwards):
-            for bay in outwards:
-                size = self._size(bay - self.bay)
-                largest = max(largest, size)
-                if size < FAINT * largest:
-                    break
-                yield bay
+        nearest = {bay - self.bay for outwards in (rightwards, leftwards) for bay in outwards[:1]}
+        largest = max(self._size(distance) for distance in nearest)
+
+        def faint(bay: int) -> bool:
+            return self._size(bay - self.bay) < FAINT * largest
+
+        right, left = (bisect_left(outwards, True, key=faint) for outwards in (rightwards, leftwards))
+        return range(leftwards.start + 1 - left, rightwards.start + right)
 
     def _size(self, distance: int) -> float:
         """Largest response to a hat of force so many bays away, m/N; further away, at two places there."""
@@ -204,39 +242,46 @@ class _Point:
             return float(np.abs(self._responses[distance]).max())
         side, received = self._received(distance)
         spectra = (received * self.far.shapes[side][:: TERMS // 2]).sum(axis=1)
-        return float(np.abs(self.far.in_time(spectra)[:, : self.far.taps]).max())
+        return float(np.abs(self.far.in_time(spectra, self.far.taps)).max())
 
     def _received(self, distance: int) -> tuple[int, NDArray[np.complex128]]:
         """The side of a bay further away, and what the waves sent out there are here, m/N, (2, f)."""
         side = 1 if distance > 0 else -1
         return side, self._far[side] * self.far.power(abs(distance))
 
-    def add(self, displacement: NDArray[np.float64], path: _Path, bay: int, sent: _BayWaves) -> None:
+    def add(self, displacement: NDArray[np.float64], path: _Path, bay: int, sent: _SentWaves) -> None:
         """Add to the displacement here, m, (runs, n), what the forces in a bay do from then on."""
         begin, forces, places = path.within(bay)
         length = min(self.far.taps + len(places), displacement.shape[1] - begin)
         moved = displacement[:, begin : begin + length]
         if bay - self.bay in self._responses:
             moved += _convolved(forces, self._responses[bay - self.bay], places * NODES)[:, :length]
-        else:
-            side, received = self._received(bay - self.bay)
-            moved += self.far.in_time((received * sent.towards(side)).sum(axis=1))[:, :length]
+            return
+        side, received = self._received(bay - self.bay)
+        here = self.far.around(received) * np.exp(1j * self.far.delay * places[0])
+        waves = sent.towards(side, bay)
+        spectra = waves[:, :, 0] * here[0][:, None]
+        spectra += waves[:, :, 1] * here[1][:, None]
+        moved += self.far.in_time(self.far.along(spectra.transpose(1, 0, 2)), length)
 
     def _hats(self, bay: int) -> NDArray[np.float64]:
         """Responses, (NODES + 3, taps), to forces at nodes −1 … NODES + 1 of a bay; the point's is bay 0."""
         of = self.near
 
-        def receptance(place: int) -> NDArray[np.complex128]:
-            bays, node = divmod(place, NODES)
-            over = of.waves.multipliers ** abs(bays)
-            if place * self.spacing >= NODES * self.at:
-                (first, second) = self._near[1] * over * of.outgoing[node]
-            else:
-                (first, second) = self._near[-1] * over * of.incoming[node]
-            return first + second
+        @cache
+        def free(side: int, bays: int) -> NDArray[np.complex128]:
+            """Free waves of the rail in what is felt here of a force so many bays away, m/N, (2, f)."""
+            felt = self._near[side] * of.waves.multipliers**bays
+            return np.asarray(np.einsum("jf,ijf->if", felt, of.waves.weights))
 
         places = range(bay * NODES - 1, (bay + 1) * NODES + 2)
-        return of.grid.response(np.array([receptance(place) for place in places]))
+        spectra = np.empty((len(places), of.amplitude.shape[1]), complex)
+        for place, spectrum in zip(places, spectra, strict=True):
+            bays, node = divmod(place, NODES)
+            side = 1 if place * self.spacing >= NODES * self.at else -1
+            spectrum[:] = np.einsum("if,if->f", free(side, abs(bays)), of.sines[NODES - node])
+            spectrum += np.einsum("if,if->f", free(side, abs(bays) + side), of.sines[node])
+        return of.grid.response(spectra)
 
 
 def _convolved(
