@@ -16,8 +16,10 @@ def columns_text(columns: Columns) -> str:
 
     A missing number (NaN) is an empty field.
     """
-    values = (np.asarray(column, dtype=float).tolist() for column in columns.values())
-    return csv_text(list(columns), zip(*values, strict=True))
+    numbers = (np.asarray(column, dtype=float).tolist() for column in columns.values())
+    written = (["" if number != number else repr(number) for number in column] for column in numbers)
+    rows = map(",".join, zip(*written, strict=True))
+    return csv_text(list(columns), []) + "".join(f"{row}\n" for row in rows)
 
 
 def write_columns(columns: Columns, path: Path) -> Path:

@@ -8,14 +8,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from io import StringIO
+from typing import Any, ClassVar
 
 from matplotlib import rc_context
-from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.backends.backend_mixed import MixedModeRenderer
+from matplotlib.backends.backend_svg import FigureCanvasSVG, RendererSVG
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 
 from asperity.reporting.style import COLOURS, RC, is_narrow
 from asperity.reporting.ticks import one_tick_each
 
+IMAGE_DPI = 110
+"""Dots per inch of the images in a drawing."""
+MOST_WORDS = 10_000
+"""Words whose sizes are known, at most."""
 LONG = 1500
 """Letters of a path beyond which tenths of a point will do: it is drawn by its density."""
 _FONTS = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', Arial, sans-serif"
@@ -49,9 +56,32 @@ class Drawing:
         )
 
 
+class _Renderer(RendererSVG):
+    """Measures words once, for all drawings."""
+
+    sizes: ClassVar[dict[tuple[str, int, object], Any]] = {}
+
+    def get_text_width_height_descent(self, s: str, prop: FontProperties, ismath: Any) -> Any:
+        key = s, hash(prop), ismath
+        if key not in self.sizes:
+            if len(self.sizes) > MOST_WORDS:
+                self.sizes.clear()
+            measured: Any = super()
+            self.sizes[key] = measured.get_text_width_height_descent(s, prop, ismath)
+        return self.sizes[key]
+
+
+class _Canvas(FigureCanvasSVG):
+    """Lays figures out with what draws them."""
+
+    def get_renderer(self) -> _Renderer:
+        return _Renderer(1.0, 1.0, StringIO())  # type: ignore[no-untyped-call]
+
+
 def drawing_of(figure: Figure, name: str) -> Drawing:
     """Draw a figure; identifiers in it get the prefix `name`, which is its own in a page."""
-    canvas, text = FigureCanvasSVG(figure), StringIO()
+    figure.set_canvas(_Canvas(figure))
+    figure.dpi, text = FigureCanvasSVG.fixed_dpi, StringIO()
     coarser = {"path.simplify_threshold": 0.5} if is_narrow() else {}  # half a page needs fewer points
     with rc_context(RC | coarser), one_tick_each(figure):
         engine = figure.get_layout_engine()
@@ -60,8 +90,11 @@ def drawing_of(figure: Figure, name: str) -> Drawing:
                 warnings.filterwarnings("ignore", "constrained_layout not applied", UserWarning)
                 engine.execute(figure)
             figure.set_layout_engine("none")
-        figure.dpi = 110  # of the images in it
-        canvas.print_svg(text, metadata={"Date": None})  # type: ignore[no-untyped-call]
+        width, height = figure.get_size_inches()
+        vectors = _Renderer(72 * width, 72 * height, text, image_dpi=IMAGE_DPI)  # type: ignore[no-untyped-call]
+        renderer: Any = MixedModeRenderer(figure, width, height, IMAGE_DPI, vectors)  # type: ignore[no-untyped-call]
+        figure.draw(renderer)
+        renderer.finalize()
     head, inner = text.getvalue().partition("<svg")[2].split(">", 1)
     box = re.search(r'viewBox="([^"]*)"', head)
     inner = (
@@ -96,13 +129,21 @@ def _slim(body: str, name: str) -> str:
 
 
 def _slim_tag(tag: str, used: Mapping[str, str]) -> str:
-    tag = re.sub(r' id="([^"]*)"', lambda m: f' id="{used[m[1]]}"' if m[1] in used else "", tag)
-    tag = re.sub(r'(url\(|href=")#([^")]+)', lambda m: f"{m[1]}#{used[m[2]]}", tag)
-    tag = re.sub(r"font-family: [^;\"]*;? ?", "", tag)  # that of the page
-    digits = 1 if len(tag) > LONG else 2  # a hundredth of a point is finer than any screen
-    tag = re.sub(rf"(\d\.\d{{{digits}}})\d+", r"\1", tag)
-    tag = re.sub(r' style="([^"]*)"', lambda m: ' style="' + re.sub(r"([:;]) ", r"\1", m[1]) + '"', tag)
-    return re.sub(r' d="([^"]*)"', lambda m: f' d="{tight(m[1])}"', tag)
+    if ' id="' in tag:
+        tag = re.sub(r' id="([^"]*)"', lambda m: f' id="{used[m[1]]}"' if m[1] in used else "", tag)
+    if "#" in tag:
+        tag = re.sub(r'(url\(|href=")#([^")]+)', lambda m: f"{m[1]}#{used[m[2]]}", tag)
+    if "font-family" in tag:
+        tag = re.sub(r"font-family: [^;\"]*;? ?", "", tag)  # that of the page
+    if "." in tag:
+        tag = (_TENTHS if len(tag) > LONG else _HUNDREDTHS).sub(r"\1", tag)
+    if ' style="' in tag:
+        tag = re.sub(r' style="([^"]*)"', lambda m: ' style="' + re.sub(r"([:;]) ", r"\1", m[1]) + '"', tag)
+    return re.sub(r' d="([^"]*)"', lambda m: f' d="{tight(m[1])}"', tag) if ' d="' in tag else tag
+
+
+_TENTHS, _HUNDREDTHS = re.compile(r"(\d\.\d)\d+"), re.compile(r"(\d\.\d\d)\d+")
+"""Digits of a point; a hundredth is finer than any screen."""
 
 
 def share_styles(page: str) -> str:
