@@ -1,5 +1,6 @@
 """The result file: what is written comes back, and what is not ours is refused."""
 
+import h5netcdf
 import numpy as np
 import pytest
 import xarray as xr
@@ -35,6 +36,32 @@ def test_a_result_comes_back_as_it_was(tmp_path):
     tree = small_tree()
     path = save(tree, tmp_path / "run.nc")
     xr.testing.assert_identical(read_result(path), tree)
+
+
+def test_what_hardly_shrinks_is_not_compressed(tmp_path):
+    """Noise is left as it is; a clock and rare events are not. All come back to the bit."""
+    noise = np.random.default_rng(1).standard_normal((3, 20_000))
+    tree = small_tree()
+    tree["/rolling"] = xr.Dataset(
+        {
+            "contact_force": variable(("law", "step"), noise, "N", "Contact force"),
+            "gap": variable(("law", "step"), np.where(noise > 1.0, noise, 0.0), "m", "Gap"),
+            "time": variable("step", np.arange(20_000) * 1e-5, "s", "Time"),
+            "flags": variable("step", np.arange(20_000) // 7000, "1", "Flags"),
+            "none": variable(("no", "step"), np.empty((0, 20_000)), "1", "Nothing"),
+        }
+    )
+    path = save(tree, tmp_path / "run.nc")
+    xr.testing.assert_identical(read_result(path), tree)
+    with h5netcdf.File(path) as file:
+        kept = file["rolling"].variables
+        assert {name: kept[name].compression for name in ("contact_force", "gap", "time", "flags")} == {
+            "contact_force": None,
+            "gap": "gzip",
+            "time": "gzip",
+            "flags": "gzip",
+        }
+        assert all(item.fletcher32 for name, item in kept.items() if name != "none")
 
 
 def test_a_folder_stands_for_its_run(tmp_path):
