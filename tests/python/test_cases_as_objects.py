@@ -233,7 +233,7 @@ KNOWN = {
 
 
 @settings(
-    max_examples=100, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
 )
 @given(st.data())
 @pytest.mark.parametrize("kind", sorted(BASES))
