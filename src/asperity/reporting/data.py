@@ -25,7 +25,7 @@ def stored_variable(tree: DataTree, entry: Entry) -> DataArray | None:
     """Variable of an entry, or None if it is missing or holds no finite number."""
     if entry.group not in tree.children or entry.name not in tree[entry.group].variables:
         return None
-    values: DataArray = tree[entry.group].to_dataset()[entry.name]
+    values: DataArray = tree.children[entry.group].dataset[entry.name]
     if values.dtype.kind in "fiu" and not np.isfinite(values.values).any():
         return None
     return values

@@ -136,14 +136,16 @@ def _slim_tag(tag: str, used: Mapping[str, str]) -> str:
     if "font-family" in tag:
         tag = re.sub(r"font-family: [^;\"]*;? ?", "", tag)  # that of the page
     if "." in tag:
-        tag = (_TENTHS if len(tag) > LONG else _HUNDREDTHS).sub(r"\1", tag)
+        tag = (_BEYOND_TENTHS if len(tag) > LONG else _BEYOND_HUNDREDTHS).sub("", tag)
     if ' style="' in tag:
-        tag = re.sub(r' style="([^"]*)"', lambda m: ' style="' + re.sub(r"([:;]) ", r"\1", m[1]) + '"', tag)
+        tag = re.sub(
+            r' style="([^"]*)"', lambda m: ' style="' + m[1].replace(": ", ":").replace("; ", ";") + '"', tag
+        )
     return re.sub(r' d="([^"]*)"', lambda m: f' d="{tight(m[1])}"', tag) if ' d="' in tag else tag
 
 
-_TENTHS, _HUNDREDTHS = re.compile(r"(\d\.\d)\d+"), re.compile(r"(\d\.\d\d)\d+")
-"""Digits of a point; a hundredth is finer than any screen."""
+_BEYOND_TENTHS, _BEYOND_HUNDREDTHS = re.compile(r"(?<=\d\.\d)\d+"), re.compile(r"(?<=\d\.\d\d)\d+")
+"""Digits of a point that are left out; a hundredth is finer than any screen."""
 
 
 def share_styles(page: str) -> str:

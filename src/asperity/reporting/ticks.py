@@ -38,8 +38,8 @@ def one_tick_each(figure: Figure) -> Iterator[None]:
                 del vars(axis)[name]
 
 
-_EXTENTS: dict[tuple[Any, ...], Bbox] = {}
-"""Extents of labels about the points where they are anchored, in pixels, by what is written and how."""
+_EXTENTS: dict[tuple[Any, ...], NDArray[np.float64]] = {}
+"""Extents (x0, y0, x1, y1) of labels from where they are anchored, in pixels, by what is written and how."""
 _MOST = 10_000
 
 
@@ -50,6 +50,7 @@ class _Moved:
         self.axis = axis
         self.known: tuple[Any, ...] = ()
         self.rows: list[_Row] = []
+        self.extents: tuple[list[Bbox], list[Bbox]] | None = None  # of their labels on either side
 
     def ticks(self) -> list[Tick]:
         """One tick of each row: what stands for all of them."""
@@ -57,8 +58,12 @@ class _Moved:
 
     def boxes(self, ticks: list[Tick], renderer: Any) -> tuple[list[Bbox], list[Bbox]]:
         """Extents of the labels on either side of the axes, in pixels."""
-        first, second = ([b for row in self.current() for b in row.boxes(side, renderer)] for side in (0, 1))
-        return first, second
+        rows = self.current()
+        if self.extents is None:
+            found = ([row.box(side, renderer) for row in rows] for side in (0, 1))
+            first, second = ([box for box in boxes if box is not None] for boxes in found)
+            self.extents = first, second
+        return self.extents
 
     def current(self) -> list[_Row]:
         """Rows of ticks for the limits and the place that the axes have now."""
@@ -75,7 +80,7 @@ class _Moved:
                 if not isinstance(group.locator, NullLocator)
                 and len((row := _row(axis, group.formatter, places(), ticks)).places)
             ]
-            self.known = now
+            self.known, self.extents = now, None
         return self.rows
 
 
@@ -104,10 +109,12 @@ class _Row:
                 label.set_text(text)
                 yield text
 
-    def boxes(self, side: int, renderer: Any) -> list[Bbox]:
-        """Extents of the labels on one side, in pixels."""
-        if (label := self.label(side)) is None:
-            return []
+    def box(self, side: int, renderer: Any) -> Bbox | None:
+        """Extent of all the labels on one side, in pixels; None where there are none."""
+        label = self.label(side)
+        words = [] if label is None else [k for k, text in enumerate(self.labels) if text]
+        if not words:
+            return None
         looks = (
             label.get_figure().dpi,
             label.get_fontsize(),
@@ -117,13 +124,15 @@ class _Row:
         )
         if len(_EXTENTS) > _MOST:
             _EXTENTS.clear()
-        found = []
         for text in self.written(label):
-            anchor = label.get_transform().transform(label.get_position())
             if (text, *looks) not in _EXTENTS:
-                _EXTENTS[text, *looks] = label.get_window_extent(renderer).translated(*-anchor)
-            found.append(_EXTENTS[text, *looks].translated(*anchor))
-        return found
+                anchor = label.get_transform().transform(label.get_position())
+                extent = label.get_window_extent(renderer).extents
+                _EXTENTS[text, *looks] = extent - np.tile(anchor, 2)
+        beside = label.get_position()[1 if self.across else 0]
+        anchors = label.get_transform().transform(self.points(np.full(len(self.places), beside)))[words]
+        extents = np.tile(anchors, 2) + [_EXTENTS[self.labels[k], *looks] for k in words]
+        return Bbox([extents[:, :2].min(axis=0), extents[:, 2:].max(axis=0)])
 
     def draw(self, renderer: Any) -> None:
         """Draw the grid, the marks and the labels."""
