@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from asperity import HalfSpace, HeightMap
-from asperity.contact import Hertz, halfspace
+from asperity.contact import Hertz, halfspace, scan
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import InputError, TruncatedContactWarning, UnconvergedWarning
 from asperity.store import content_key
@@ -269,3 +269,17 @@ def test_tight_tolerances_and_short_scans_stay_in_double():
     for positions, rtol, single in [(600000, 4e-6, True), (600000, 1e-6, False), (590000, 4e-6, False)]:
         flat = np.broadcast_to(0.0, (positions + 40, 41))
         assert job(flat, [0.1e-6, 0.2e-6], rtol=rtol).single == single
+
+
+@pytest.mark.parametrize("stride", [1, 3])
+@pytest.mark.parametrize("form", ["ball", "flat", "any"])
+def test_first_touch_is_that_of_every_cell(monkeypatch, stride, form):
+    """The least gap of all cells of the window, position by position, to the bit: on a slope, with a hole."""
+    monkeypatch.setattr(scan, "TOUCHED", 50)
+    rng = np.random.default_rng(3)
+    surface = 1e-6 * rng.standard_normal((200, 15)) + 1e-6 * np.arange(200)[:, None]
+    surface[90:120] -= 50e-6
+    x, y = np.mgrid[-7:8, -7:8] * 1e-4
+    body = {"ball": (x**2 + y**2) / 0.02, "flat": 0.0 * x, "any": 1e-5 * rng.random(x.shape)}[form]
+    expected = [np.min(body - surface[first : first + 15]) for first in range(0, 186, stride)]
+    np.testing.assert_array_equal(first_touch(surface, body, stride), expected)

@@ -33,6 +33,8 @@ BLOCK = 256
 """Positions solved in one go, from a cold start: the unit of parallel work and of what is kept on disk."""
 TOUCHED = 8192
 """Positions whose first touch is sought in one go."""
+CELLS = 32
+"""Cells of a body after which it is asked whether higher ones can be the first to touch."""
 BATCH = 4096
 """Positions of a block on a device: enough to fill it, and few enough to be kept often."""
 BLOCK_BYTES = 1200
@@ -244,12 +246,27 @@ def first_touch(
     strip, nx = Rows(surface) if isinstance(surface, np.ndarray) else surface, body.shape[0]
     starts = range(0, strip.shape[0] - nx + 1, stride)
     result = np.empty(len(starts))
+    lowest_first = np.argsort(body, axis=None, kind="stable")
+    cells = list(zip(body.ravel()[lowest_first], *np.unravel_index(lowest_first, body.shape), strict=True))
     for first in range(0, len(starts), TOUCHED):
         block = starts[first : first + TOUCHED]
         lines = np.ascontiguousarray(strip.rows(block[0], block[-1] + nx).T)
+        highest = _sliding_maximum(lines.max(axis=0), nx)[::stride]
         nearest, gap = np.full(len(block), np.inf), np.empty(len(block))
-        for (offset, line), height in np.ndenumerate(body):  # a cell of the body over all positions at once
+        for done, (height, offset, line) in enumerate(cells):  # a cell over all positions at once
+            if done % CELLS == 0 and (np.subtract(height, highest, out=gap) >= nearest).all():
+                break  # this cell and all that are higher touch nothing first
             under = lines[line, offset : offset + (len(block) - 1) * stride + 1 : stride]
             np.minimum(nearest, np.subtract(height, under, out=gap), out=nearest)
         result[first : first + len(block)] = nearest
     return result
+
+
+def _sliding_maximum(values: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+    """Largest of so many values from each on, (n − length + 1,), of values (n,)."""
+    reach = 1
+    while reach < length:
+        step = min(reach, length - reach)
+        values = np.maximum(values[:-step], values[step:])
+        reach += step
+    return values
