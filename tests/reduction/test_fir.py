@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.signal import freqz
+from threadpoolctl import threadpool_limits
 
 from asperity.errors import InputError
 from asperity.reduction.filter import ContactFilter, punch_filter
@@ -63,6 +64,15 @@ def test_order_grows_no_further_than_it_must_or_may():
     assert shorter.taps.shape[1] - 1 == 2 * (order // 4)
     assert shorter.miss > ACCURACY
     assert design_fir(contact_filter, DX, least=2 * order).taps.shape[1] == 2 * order + 1
+
+
+def test_taps_have_the_same_digits_on_any_number_of_threads():
+    contact_filter = fitted(knee)
+    taps = []
+    for threads in (1, 2):
+        with threadpool_limits(limits=threads, user_api="blas"):
+            taps.append(design_fir(contact_filter, DX, least=600, most=600).taps)
+    np.testing.assert_array_equal(*taps)
 
 
 def test_lobes_of_a_uniform_texture_are_applied():

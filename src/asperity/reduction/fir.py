@@ -6,13 +6,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
+from scipy.linalg import cho_factor, cho_solve
 
 from asperity.errors import InputError
 from asperity.reduction.convolving import PIECE, LongConvolution
 from asperity.reduction.filter import ContactFilter
 from asperity.reduction.texture import StateTexture
+from asperity.threads import one_thread_in_linear_algebra
 
 ACCURACY, DOWN_TO = 0.3, -30.0
 """A chosen order meets the fitted filter within so many dB, down to a level in dB."""
@@ -95,11 +98,12 @@ def design_fir(
         return LineFilter(contact_filter, _by_window(contact_filter, spacing, order), spacing)
     most = max(2, 2 * (min(most, LARGEST_ORDER) // 2))
     order = min(max(2, least), most)
-    while True:
-        found = LineFilter(contact_filter, _least_relative_error(contact_filter, spacing, order), spacing)
-        if order == most or found.miss <= ACCURACY:
-            return found
-        order = min(2 * math.ceil(0.5 * GROWTH * order), most)
+    with one_thread_in_linear_algebra():
+        while True:
+            found = LineFilter(contact_filter, _least_relative_error(contact_filter, spacing, order), spacing)
+            if order == most or found.miss <= ACCURACY:
+                return found
+            order = min(2 * math.ceil(0.5 * GROWTH * order), most)
 
 
 def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
@@ -115,18 +119,20 @@ def _least_relative_error(contact_filter: ContactFilter, spacing: float, order: 
     """Taps with the least squared relative error of the response, octave for octave.
 
     A response Σ_j c_j cos jω has normal equations of sums and differences of lags: those of the
-    transforms of the weight and of the weighted target.
+    transforms of the weight and of the weighted target. As the weight is positive, so are they definite.
     """
     points = 2 ** math.ceil(math.log2(max(8 * order, 2048)))
     wavenumber = np.arange(points // 2 + 1) / (points * spacing)
-    lags = np.arange(order // 2 + 1)
-    apart, together = np.abs(lags[:, None] - lags), lags[:, None] + lags
+    count = order // 2 + 1
     least = 10.0 ** ((DOWN_TO - 3.0) / 20.0)
     taps = []
     for target in _target(contact_filter, wavenumber):
         weight = 1.0 / (np.maximum(target, least) ** 2 * np.maximum(wavenumber, contact_filter.wavenumber[0]))
         of_weight, of_target = np.fft.irfft(weight, points), np.fft.irfft(weight * target, points)
-        cosines = np.linalg.solve(0.5 * (of_weight[apart] + of_weight[together]), of_target[lags])
+        apart = sliding_window_view(np.concatenate([of_weight[count - 1 : 0 : -1], of_weight[:count]]), count)
+        together = sliding_window_view(of_weight[: 2 * count - 1], count)
+        normal = cho_factor(0.5 * (apart[::-1] + together), overwrite_a=True)
+        cosines = cho_solve(normal, of_target[:count])
         taps.append(np.concatenate([0.5 * cosines[:0:-1], cosines[:1], 0.5 * cosines[1:]]))
     return _summed(contact_filter, np.array(taps))
 
