@@ -31,7 +31,7 @@ class Spring:
 
     def receptance(self, frequency, x, x0):
         at = self.compliance + self.ripple * (1.0 - np.cos(2 * np.pi * x / self.sleeper_spacing))
-        return np.full(np.shape(frequency), at, dtype=complex)
+        return np.multiply.outer(at, np.ones(np.shape(frequency), dtype=complex))
 
 
 def test_rigid_contact_and_rail_carry_the_wheel_along():

@@ -359,7 +359,20 @@ def test_bad_parameters_are_refused(changes, message):
         track(**changes)
 
 
+def test_places_are_asked_one_by_one_or_all_at_once():
+    frequency, to, of = [[80.0, 300.0, 1100.0]], np.array([0.0, 0.3, 0.77]), np.array([0.0, 0.3, -1.1])
+    found = track().receptance(frequency, to, of)
+    assert found.shape == (3, 1, 3)
+    for each, x, x0 in zip(found, to, of, strict=True):
+        np.testing.assert_array_equal(each, track().receptance(frequency, x, x0))
+    assert track().receptance(80.0, 0.0, 0.0).shape == ()
+
+
 def test_bad_questions_are_refused():
+    with pytest.raises(
+        InputError, match=r"positions on the track.*as many for the response as for the force"
+    ):
+        track().receptance(100.0, [0.0, 0.3], 0.0)
     with pytest.raises(InputError, match="frequency"):
         track().receptance([100.0, 0.0], 0.0, 0.0)
     with pytest.raises(InputError, match="positions on the track"):

@@ -34,11 +34,11 @@ class PeriodicWaves:
 
     def outgoing(self, x: float) -> NDArray[np.complex128]:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= L, m: phi_lambda(x), scaled."""
-        return self._shapes(x, self.multipliers)
+        return self._shapes(x)[0]
 
     def incoming(self, x: float) -> NDArray[np.complex128]:
         """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= L: phi_{1/lambda}(x), scaled."""
-        return self._shapes(x, 1.0 / self.multipliers)
+        return self._shapes(x)[1]
 
     def symmetric_shapes(
         self, places: NDArray[np.float64]
@@ -51,9 +51,13 @@ class PeriodicWaves:
         near = np.einsum("ijf,pif->pjf", self.weights, sines)
         return near[::-1] + self.multipliers * near, near[::-1] + near / self.multipliers
 
-    def _shapes(self, x: float, multipliers: NDArray[np.complex128]) -> NDArray[np.complex128]:
-        near, far = np.sin(self.wavenumbers * x), np.sin(self.wavenumbers * (self.spacing - x))
-        return np.sum(self.weights * (far[:, None] + multipliers * near[:, None]), axis=0)
+    def _shapes(self, x: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Shapes of outgoing and incoming waves, each (2, f)."""
+        near, far = (
+            np.einsum("ijf,if->jf", self.weights, np.sin(self.wavenumbers * at))
+            for at in (x, self.spacing - x)
+        )
+        return far + self.multipliers * near, far + near / self.multipliers
 
     def receptance(self, x: float, x0: float) -> NDArray[np.complex128]:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from any support, m."""
@@ -62,7 +66,8 @@ class PeriodicWaves:
         start = first - first_bay * self.spacing
         bays = np.floor(last / self.spacing)
         along = last - bays * self.spacing
-        waves = self.coefficients * self.outgoing(along) * self.incoming(start)
+        outgoing, incoming = self._shapes(along)
+        waves = self.coefficients * outgoing * (incoming if along == start else self.incoming(start))
         return np.sum(waves * self.multipliers ** (bays - first_bay), axis=0)
 
 

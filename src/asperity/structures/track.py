@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real, real_array
+from asperity.arguments import real_array, shown
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
 from asperity.structures.free_rail import free_rail_waves, pinned_frequency
@@ -202,20 +202,20 @@ class Track:
         wavenumbers, amplitudes = self.free_waves(omega)
         return periodic_waves(wavenumbers, amplitudes, self.support_stiffness(omega), self.sleeper_spacing)
 
-    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
+    def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> NDArray[np.complex128]:
         """Displacement at `x` per harmonic force at `x0`.
 
         Parameters
         ----------
         frequency : array_like
             Hz, positive. Time factor exp(+i omega t).
-        x, x0 : float
-            Positions of the response and of the force, m from a sleeper.
+        x, x0 : array_like
+            Positions of the response and of the force, m from a sleeper; of one shape.
 
         Returns
         -------
         ndarray of complex
-            m/N, of the shape of `frequency`.
+            m/N, of the shapes of positions and `frequency`, one after the other.
 
         Raises
         ------
@@ -230,9 +230,15 @@ class Track:
         at = real_array("frequency (Hz)", frequency, allowed)
         if not (np.all(np.isfinite(at)) and np.all(at > 0.0)):
             raise InputError("frequency (Hz)", np.min(at), allowed)
-        positions = [real("positions on the track (m)", each, "a finite number") for each in (x, x0)]
-        response = self.waves(2.0 * np.pi * at.ravel()).receptance(*positions)
-        return response.reshape(at.shape)
+        what, allowed = (
+            "positions on the track (m)",
+            "finite numbers, as many for the response as for the force",
+        )
+        to, of = (real_array(what, each, allowed) for each in (x, x0))
+        if to.shape != of.shape or not (np.isfinite(to).all() and np.isfinite(of).all()):
+            raise InputError(what, f"{shown(x)} and {shown(x0)}", allowed)
+        waves, pairs = self.waves(2.0 * np.pi * at.ravel()), zip(to.flat, of.flat, strict=True)
+        return np.array([waves.receptance(*pair) for pair in pairs]).reshape((*to.shape, *at.shape))
 
     @property
     def foundation_stiffness(self) -> float:

@@ -29,8 +29,8 @@ class RailReceptance(Protocol):
     def sleeper_spacing(self) -> float:
         """Length of a bay, m."""
 
-    def receptance(self, frequency: ArrayLike, x: float, x0: float, /) -> NDArray[np.complex128]:
-        """Displacement at `x` per force at `x0`, m/N."""
+    def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike, /) -> NDArray[np.complex128]:
+        """Displacement at places `x` (n,) per force at `x0` (n,), (n, f), or the same at all, (f,), m/N."""
 
 
 def force_transfer(
@@ -50,8 +50,7 @@ def force_transfer(
     positions, moving = np.atleast_1d(np.asarray(x, dtype=float)), f > 0.0
     transfer = np.zeros((positions.size, f.size), dtype=complex)
     carried = wheel.receptance(f[moving]) + 1.0 / stiffness
-    for row, position in zip(transfer, positions, strict=True):
-        row[moving] = 1.0 / (carried + track.receptance(f[moving], position, position))
+    transfer[:, moving] = 1.0 / (carried + track.receptance(f[moving], positions, positions))
     return transfer
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import LossFactorWarning
-from asperity.kinds.wheel_on_rail.linear_reference import WheelReceptance, force_transfer
+from asperity.kinds.wheel_on_rail.linear_reference import WheelReceptance
 from asperity.spectra import nominal_frequency, third_octave_bands
 from asperity.structures.causal_track import causal_track
 from asperity.structures.track import Track
@@ -51,8 +51,8 @@ def loss_factor_error(
     places = (np.arange(POSITIONS) + 0.5) * 0.5 * track.sleeper_spacing / POSITIONS
 
     def levels(rail: Track) -> NDArray[np.float64]:
-        force = force_transfer(frequency, wheel, rail, stiffness, places)
-        moved = np.array([rail.receptance(frequency, x, x) for x in places])
+        moved = rail.receptance(frequency, places, places)
+        force = 1.0 / (wheel.receptance(frequency) + 1.0 / stiffness + moved)  # as `force_transfer`
         squares = [
             np.mean(np.abs(found) ** 2, axis=0).reshape(-1, LINES).mean(axis=1) for found in (force, moved)
         ]

@@ -31,7 +31,7 @@ def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
     track, case = computed.track, computed.case
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
     half = 0.5 * track.sleeper_spacing
-    midspan, support = track.receptance(frequency, half, half), track.receptance(frequency, 0.0, 0.0)
+    midspan, support = track.receptance(frequency, [half, 0.0], [half, 0.0])
     _, stiffness = working_point(case.contact, computed.chain.shape, computed.chain.reduction)
 
     found = {
