@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from numba.core.compiler import CompileResult
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 from asperity.files import replace
@@ -56,7 +57,7 @@ class Kept:
 
     def load_overload(self, signature: Any, context: Any) -> Any:
         """Load the machine code of a signature; None if it has to be compiled."""
-        context.refresh()
+        rtsys.initialize(context)  # what machine code calls; all that compiles takes a quarter of a second
         name = self.file_name(signature, context.codegen())
         found = _loaded(name, context)
         if found is None:

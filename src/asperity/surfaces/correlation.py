@@ -14,6 +14,8 @@ from asperity.threads import thread_count
 
 CORRELATION_THRESHOLD = 0.2
 """Default of ISO 25178-3 for Sal and Str."""
+LINES = 8
+"""Lines whose spectra along are made at a time."""
 TOGETHER = 512
 """Wavenumbers whose spectra across are made at a time."""
 
@@ -71,7 +73,10 @@ class LagSums:
     def add(self, heights: NDArray[np.float64]) -> None:
         """Add a piece, (rows, columns) about the mean, m."""
         self.rows.append(len(heights))
-        along = fft.rfft(heights, self.length, axis=0, workers=thread_count())
+        along = np.empty((self.length // 2 + 1, self.columns), dtype=np.complex128)
+        for first in range(0, self.columns, LINES):
+            lines = heights[:, first : first + LINES]
+            along[:, first : first + LINES] = fft.rfft(lines, self.length, axis=0, workers=thread_count())
         for first in range(0, len(along), TOGETHER):
             some = slice(first, first + TOGETHER)
             spectrum = fft.fft(along[some], self.width, axis=1)

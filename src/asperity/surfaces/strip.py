@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from asperity.errors import InputError
 from asperity.surfaces.fields import fields
 
+TOGETHER = 2**12
+"""Rows of a strip that heights are added to in one go."""
+
 
 class Strip(Protocol):
     """Heights along a path, asked for in pieces: a `HeightMap` is one."""
@@ -82,7 +85,13 @@ class Raised:
 
     def rows(self, first: int, stop: int) -> NDArray[np.float64]:
         """Heights of the rows first … stop − 1, m."""
-        return self.strip.rows(first, stop) + self.added(first, stop)
+        heights = np.empty((stop - first, self.shape[1]))
+        for start in range(first, stop, TOGETHER):
+            end = min(start + TOGETHER, stop)
+            np.add(
+                self.strip.rows(start, end), self.added(start, end), out=heights[start - first : end - first]
+            )
+        return heights
 
 
 def raised(strip: Strip, heights: NDArray[np.float64]) -> Raised:

@@ -59,8 +59,8 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     lengths = [end - start for start, end in bounds]
     lags = LagSums(max(lengths), strip.shape[1], min(lengths) // 2)
     sums = _Sums(strip.spacing, edges, segment, lags)
-    for heights, inner in _with_margin(strip, bounds):
-        sums.add(heights - mean, inner)
+    for heights, inner in _with_margin(strip, bounds, mean):
+        sums.add(heights, inner)
     density = np.asarray(sums.counts / (points * np.diff(edges)))
     spectrum = np.asarray(sums.spectrum / sums.segments)
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
@@ -137,9 +137,11 @@ def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int
     return list(pairwise(edges.tolist()))
 
 
-def _with_margin(strip: Strip, bounds: list[tuple[int, int]]) -> Iterator[tuple[NDArray[np.float64], slice]]:
-    """Pieces with the rows beside them that slopes need, and where the piece is in it."""
+def _with_margin(
+    strip: Strip, bounds: list[tuple[int, int]], mean: float
+) -> Iterator[tuple[NDArray[np.float64], slice]]:
+    """Pieces about a mean, m, with the rows beside them that slopes need, and where the piece is in it."""
     first, stop = bounds[0][0], bounds[-1][1]
     for start, end in bounds:
         before, beyond = max(first, start - MARGIN), min(stop, end + MARGIN)
-        yield strip.rows(before, beyond), slice(start - before, end - before)
+        yield strip.rows(before, beyond) - mean, slice(start - before, end - before)
