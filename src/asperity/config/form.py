@@ -133,6 +133,8 @@ class Section(BaseModel, metaclass=_Form):
 def _default(model: type[Section], name: str) -> Any:
     """Default of a key, as a case has it."""
     field = model.model_fields[name]
+    if field.default is None:
+        return None
     kind: Any = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
     adapter: TypeAdapter[Any] = TypeAdapter(kind)
     return adapter.validate_python(field.default)
