@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -43,11 +44,8 @@ class LineFilter:
     @property
     def miss(self) -> float:
         """Largest distance of the applied filter from the fitted one, dB, where that is above `DOWN_TO`."""
-        known = self.contact_filter.wavenumber[self.contact_filter.excited]
-        fine = np.geomspace(known[0], known[-1], _FINE * known.size)
-        fitted = 20.0 * np.log10(_target(self.contact_filter, fine))
-        applied = 20.0 * np.log10(np.maximum(np.abs(response(self.taps, self.spacing, fine)), 1e-9))
-        return float(np.max(np.abs(applied - fitted), where=fitted >= DOWN_TO, initial=0.0))
+        fine = _fine(self.contact_filter)
+        return float(_missed(self.taps, self.spacing, fine, _target(self.contact_filter, fine)).max())
 
 
 def response(taps: NDArray[np.float64], spacing: float, wavenumber: ArrayLike) -> NDArray[np.float64]:
@@ -55,8 +53,9 @@ def response(taps: NDArray[np.float64], spacing: float, wavenumber: ArrayLike) -
 
     Spacing in m, wavenumbers (k,) in cycles/m; one where a wave passes unchanged.
     """
-    lags = np.arange(taps.shape[1]) - taps.shape[1] // 2
-    return np.asarray(taps @ np.cos(2.0 * math.pi * spacing * lags[:, None] * np.asarray(wavenumber)))
+    middle = taps.shape[1] // 2
+    cosines = np.cos(2.0 * math.pi * spacing * np.arange(1, middle + 1)[:, None] * np.asarray(wavenumber))
+    return np.asarray(taps[:, middle, None] + 2.0 * taps[:, middle + 1 :] @ cosines)
 
 
 def tap_count(spacing: float, largest_semi_axis: float) -> int:
@@ -97,13 +96,41 @@ def design_fir(
             )
         return LineFilter(contact_filter, _by_window(contact_filter, spacing, order), spacing)
     most = max(2, 2 * (min(most, LARGEST_ORDER) // 2))
-    order = min(max(2, least), most)
     with one_thread_in_linear_algebra():
-        while True:
-            found = LineFilter(contact_filter, _least_relative_error(contact_filter, spacing, order), spacing)
-            if order == most or found.miss <= ACCURACY:
-                return found
-            order = min(2 * math.ceil(0.5 * GROWTH * order), most)
+        taps = _of_first_order(contact_filter, spacing, min(max(2, least), most), most)
+    return LineFilter(contact_filter, taps, spacing)
+
+
+def _of_first_order(
+    contact_filter: ContactFilter, spacing: float, order: int, most: int
+) -> NDArray[np.float64]:
+    """Taps (s, J + 1) of the first order, from one on, of which no state misses the fit, or of the largest.
+
+    The state that missed it most is asked first: the others need no taps where it misses it again.
+    """
+    fine = _fine(contact_filter)
+    fitted, worst = _target(contact_filter, fine), 0
+
+    @cache
+    def target(points: int) -> NDArray[np.float64]:
+        return _target(contact_filter, np.arange(points // 2 + 1) / (points * spacing))
+
+    at_zero = _target(contact_filter, np.zeros(1))
+    while True:
+        points = 2 ** math.ceil(math.log2(max(8 * order, 2048)))
+        for states in ([worst], range(len(fitted))):
+            designed = [
+                _least_relative_error(target(points)[k], contact_filter.wavenumber[0] * spacing, order)
+                for k in states
+            ]
+            taps = np.array(designed) * at_zero[states] / np.sum(designed, axis=1, keepdims=True)
+            missed = _missed(taps, spacing, fine, fitted[states])
+            if order < most and missed.max() > ACCURACY:
+                worst = states[int(np.argmax(missed))]
+                break
+        else:
+            return taps
+        order = min(2 * math.ceil(0.5 * GROWTH * order), most)
 
 
 def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
@@ -115,26 +142,41 @@ def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> NDA
     return _summed(contact_filter, np.hamming(order + 1) * np.hstack((even[:, :0:-1], even)))
 
 
-def _least_relative_error(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
-    """Taps with the least squared relative error of the response, octave for octave.
+def _least_relative_error(target: NDArray[np.float64], lowest: float, order: int) -> NDArray[np.float64]:
+    """Taps (J + 1,) with the least squared relative error of the response, octave for octave.
 
-    A response Σ_j c_j cos jω has normal equations of sums and differences of lags: those of the
-    transforms of the weight and of the weighted target. As the weight is positive, so are they definite.
+    The target (k,) is at equal steps from wavenumber zero to half the sampling one; below the lowest, in
+    cycles per point, all octaves count as that. A response Σ_j c_j cos jω has normal equations of sums and
+    differences of lags: those of the transforms of the weight and of the weighted target. As the weight is
+    positive, so are they definite.
     """
-    points = 2 ** math.ceil(math.log2(max(8 * order, 2048)))
-    wavenumber = np.arange(points // 2 + 1) / (points * spacing)
-    count = order // 2 + 1
-    least = 10.0 ** ((DOWN_TO - 3.0) / 20.0)
-    taps = []
-    for target in _target(contact_filter, wavenumber):
-        weight = 1.0 / (np.maximum(target, least) ** 2 * np.maximum(wavenumber, contact_filter.wavenumber[0]))
-        of_weight, of_target = np.fft.irfft(weight, points), np.fft.irfft(weight * target, points)
-        apart = sliding_window_view(np.concatenate([of_weight[count - 1 : 0 : -1], of_weight[:count]]), count)
-        together = sliding_window_view(of_weight[: 2 * count - 1], count)
-        normal = cho_factor(0.5 * (apart[::-1] + together), overwrite_a=True)
-        cosines = cho_solve(normal, of_target[:count])
-        taps.append(np.concatenate([0.5 * cosines[:0:-1], cosines[:1], 0.5 * cosines[1:]]))
-    return _summed(contact_filter, np.array(taps))
+    points, count = 2 * (len(target) - 1), order // 2 + 1
+    wavenumber, least = np.arange(len(target)) / points, 10.0 ** ((DOWN_TO - 3.0) / 20.0)
+    weight = 1.0 / (np.maximum(target, least) ** 2 * np.maximum(wavenumber, lowest))
+    of_weight, of_target = np.fft.irfft(weight, points), np.fft.irfft(weight * target, points)
+    apart = sliding_window_view(np.concatenate([of_weight[count - 1 : 0 : -1], of_weight[:count]]), count)
+    together = sliding_window_view(of_weight[: 2 * count - 1], count)
+    normal = cho_factor(0.5 * (apart[::-1] + together), overwrite_a=True)
+    cosines = cho_solve(normal, of_target[:count])
+    return np.concatenate([0.5 * cosines[:0:-1], cosines[:1], 0.5 * cosines[1:]])
+
+
+def _fine(contact_filter: ContactFilter) -> NDArray[np.float64]:
+    """Wavenumbers at which a response is held against the fit, cycles/m."""
+    known = contact_filter.wavenumber[contact_filter.excited]
+    return np.geomspace(known[0], known[-1], _FINE * known.size)
+
+
+def _missed(
+    taps: NDArray[np.float64],
+    spacing: float,
+    wavenumber: NDArray[np.float64],
+    fitted: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Largest distances (s,) of what taps (s, J + 1) do from fitted magnitudes (s, k) above `DOWN_TO`, dB."""
+    wanted = 20.0 * np.log10(fitted)
+    applied = 20.0 * np.log10(np.maximum(np.abs(response(taps, spacing, wavenumber)), 1e-9))
+    return np.asarray(np.max(np.abs(applied - wanted), axis=1, where=wanted >= DOWN_TO, initial=0.0))
 
 
 def _target(contact_filter: ContactFilter, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
