@@ -33,11 +33,13 @@ def on_curve(
     states = np.zeros(1) if texture is None else texture.approaches
     values = np.zeros((at.size, 1)) if texture is None else texture.at(at)
     planes = plane_at(plane, at)
+    if plane is not None:
+        values -= planes[:, None]
     return Prepared(
         form,
         planes,
         np.ascontiguousarray(states, dtype=float),
-        values if plane is None else np.ascontiguousarray(values - planes[:, None], dtype=float),
+        np.ascontiguousarray(values, dtype=float),
         np.zeros((0, len(states))),
         np.zeros(0),
         np.ascontiguousarray(curve.knots, dtype=float),

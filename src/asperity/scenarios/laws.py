@@ -92,9 +92,9 @@ class Workshop:
             StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self.textures.start)
         )
 
-    @cached_property
+    @property
     def areal(self) -> StateTexture:
-        """Texture averaged under the patch of each state."""
+        """Texture averaged under the patch of each state; not held, as it is as long as the path in each."""
         assert self.textures.path is not None
         loaded = self.reduced.semi_axes[:, 0] > 0.0
         return self._over_defects(

@@ -90,11 +90,22 @@ class LagSums:
         half = np.concatenate([found[self.length - self.reach :], found[: self.reach + 1]])
         return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
 
+    def means(self) -> NDArray[np.float64]:
+        """Mean products, m², of pieces in which no height is missing, as `sums`."""
+        found, (along, across) = self.sums(), self._pairs()
+        for first in range(0, len(found), TOGETHER):
+            found[first : first + TOGETHER] /= np.outer(along[first : first + TOGETHER], across)
+        return found
+
     def pairs(self) -> NDArray[np.float64]:
         """Numbers of pairs at these lags, of pieces in which no height is missing."""
-        along = sum(rows - np.abs(np.arange(-self.reach, self.reach + 1)) for rows in self.rows)
+        return np.outer(*self._pairs()).astype(np.float64)
+
+    def _pairs(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Numbers of pairs at lags along, times those at lags across."""
+        lags = np.abs(np.arange(-self.reach, self.reach + 1))
         across = self.columns - np.abs(np.arange(-self.side, self.side + 1))
-        return np.outer(along, across).astype(np.float64)
+        return sum(self.rows) - len(self.rows) * lags, across
 
 
 def autocorrelation_lengths(

@@ -48,19 +48,14 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     their piece; all else is as if the strip were one map. Warns as `autocorrelation_lengths` does.
     """
     bounds = _bounds(strip, first, strip.shape[0] if stop is None else stop, segment)
-    total, low, high = 0.0, np.inf, -np.inf
-    for start, end in bounds:
-        heights = strip.rows(start, end)
-        total += float(heights.sum())
-        low, high = min(low, float(heights.min())), max(high, float(heights.max()))
+    total, low, high = _extent(strip, bounds)
     points = (bounds[-1][1] - bounds[0][0]) * strip.shape[1]
     mean = total / points
     edges = np.linspace(low - mean, (high if high > low else low + 1e-12) - mean, BINS + 1)
     lengths = [end - start for start, end in bounds]
     lags = LagSums(max(lengths), strip.shape[1], min(lengths) // 2)
     sums = _Sums(strip.spacing, edges, segment, lags)
-    for heights, inner in _with_margin(strip, bounds, mean):
-        sums.add(heights, inner)
+    _add_all(sums, strip, bounds, mean)
     density = np.asarray(sums.counts / (points * np.diff(edges)))
     spectrum = np.asarray(sums.spectrum / sums.segments)
     wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
@@ -68,8 +63,7 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
     if high > low:
         band = (2.0 * min(strip.spacing), max(points // strip.shape[1] * strip.spacing[0], strip.size[1]))
         amplitudes = sums.powers / points
-        correlation = lags.sums()
-        correlation /= lags.pairs()
+        correlation = lags.means()
         slopes = (sums.square / sums.sloped, sums.stretch / sums.sloped)
         statistics = areal_parameters(
             amplitudes, high - low, slopes, lengths_of(correlation, strip.spacing), band
@@ -124,6 +118,22 @@ class _Sums:
             _, density = psd(lines, self.spacing[0], segment=self.segment)
             self.spectrum += count / z.shape[1] * density.sum(axis=0)
         self.segments += count
+
+
+def _extent(strip: Strip, bounds: list[tuple[int, int]]) -> tuple[float, float, float]:
+    """Sum, smallest and largest of all heights, m."""
+    total, low, high = 0.0, np.inf, -np.inf
+    for start, end in bounds:
+        heights = strip.rows(start, end)
+        total += float(heights.sum())
+        low, high = min(low, float(heights.min())), max(high, float(heights.max()))
+    return total, low, high
+
+
+def _add_all(sums: _Sums, strip: Strip, bounds: list[tuple[int, int]], mean: float) -> None:
+    """Add all pieces about a mean, m; none of them is held afterwards."""
+    for heights, inner in _with_margin(strip, bounds, mean):
+        sums.add(heights, inner)
 
 
 def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int, int]]:
