@@ -200,11 +200,12 @@ def _divergences(
     distance = receiver.shortest(source.height)
     first = passage.speed * float(time.min()) - float(passage.axles[-1])
     last = passage.speed * float(time.max())
-    grid = np.linspace(first, last, 2 * int(np.ceil((last - first) / receiver.distance * _STEPS)) + 2)
+    farthest = max(-first, last)  # the same on either side
+    grid = np.linspace(0.0, farthest, 2 * int(np.ceil(farthest / receiver.distance * _STEPS)) + 2)
     heard: dict[float, NDArray[np.float64]] = {}  # those of a wheel have one length in all bands
     for length in set(lengths):
         one = divergence(length, distance, grid)
-        places = (passage.speed * time - at for at in passage.axles)
+        places = (np.abs(passage.speed * time - at) for at in passage.axles)
         heard[length] = np.sum([np.interp(each, grid, one) for each in places], axis=0)
     return np.stack([heard[length] for length in lengths])
 
