@@ -43,6 +43,14 @@ def test_importing_is_light(statement):
     assert done.stdout.strip() == "[]"
 
 
+def test_large_parts_of_scipy_wait_until_they_are_used():
+    """`scipy.optimize`, written out, is loaded when it is first named."""
+    late = [f"scipy.{name}" for name in ("optimize", "interpolate", "ndimage", "signal", "stats", "sparse")]
+    code = f"import sys, asperity.scenarios.preparing; print([m for m in {late!r} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
 def test_public_names_resolve():
     for name in asperity.__all__:
         assert getattr(asperity, name) is not None

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from scipy.optimize import brentq
+import scipy
 from scipy.special import ellipe, ellipkm1
 
 from asperity.errors import InputError
@@ -66,9 +66,9 @@ class Hertz:
             # (E − m1 K)/m = K − d
             return m1 * d / (k - d) - ratio if m > 0.0 else 1.0 - ratio
 
-        axis_ratio = (
-            1.0 if ratio > 1.0 - 1e-12 else float(brentq(mismatch, 1e-9, 1.0, xtol=1e-15, rtol=1e-14))
-        )
+        axis_ratio = 1.0
+        if ratio <= 1.0 - 1e-12:
+            axis_ratio = float(scipy.optimize.brentq(mismatch, 1e-9, 1.0, xtol=1e-15, rtol=1e-14))
         return (axis_ratio, *integrals(axis_ratio))
 
     @cached_property

@@ -10,8 +10,8 @@ from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 from scipy.special import fdtrc
 
 from asperity.errors import Grade, ShortRecordWarning
@@ -190,7 +190,7 @@ def levels_along(line: NDArray[np.float64], patch: float) -> NDArray[np.float64]
     every piece.
     """
     points = max(1, round(patch))
-    slope = np.diff(ndimage.uniform_filter1d(line, points))
+    slope = np.diff(scipy.ndimage.uniform_filter1d(line, points))
     piece = PIECE_LENGTHS * points
     parts = min(PARTS, len(slope) // (PIECES * piece))
     if parts < FEWEST_PARTS or not slope.any():

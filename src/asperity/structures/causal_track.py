@@ -14,9 +14,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
-from scipy.optimize import nnls
 
 from asperity.spectra import third_octave_bands
 from asperity.structures.relaxation import Relaxation, Relaxations, relaxing
@@ -76,7 +76,7 @@ def _fitted(track: Track) -> Track:
 def _rail(factor: float) -> Relaxation:
     """The loss factor in all bands."""
     losses = relaxing(2.0 * np.pi * third_octave_bands(LOWEST, HIGHEST)[0], FREQUENCIES).imag[:, 1:]
-    strengths = nnls(losses, np.full(len(losses), factor))[0]
+    strengths = scipy.optimize.nnls(losses, np.full(len(losses), factor))[0]
     gained = float(relaxing(2.0 * np.pi * RAIL, FREQUENCIES).real[1:] @ strengths)
     return Relaxation(max(1.0 - gained, LEAST_STATIC), tuple(strengths.tolist()), FREQUENCIES)
 
@@ -131,7 +131,7 @@ class _Fit:
     def start(self) -> NDArray[np.float64]:
         """Unknowns that depart least from the constant loss factors."""
         aims = [self.constant(1.0 - least_static(eta), eta) for eta in self.lossy.values()]
-        return np.concatenate([np.zeros(0), *(nnls(self.coarse, aim)[0] for aim in aims)])
+        return np.concatenate([np.zeros(0), *(scipy.optimize.nnls(self.coarse, aim)[0] for aim in aims)])
 
     def linearised(self, unknowns: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Weighted errors and departures, (n,), and their slopes, (n, unknowns)."""
@@ -177,7 +177,7 @@ def _least_squares(linearised: Linearised, start: NDArray[np.float64]) -> NDArra
     for _ in range(STEPS):
         brake = np.sqrt(damping) * np.linalg.norm(slope, axis=0)
         aim = np.concatenate([slope @ unknowns - residual, brake * unknowns])
-        tried = nnls(np.vstack([slope, np.diag(brake)]), aim, maxiter=100 * aim.size)[0]
+        tried = scipy.optimize.nnls(np.vstack([slope, np.diag(brake)]), aim, maxiter=100 * aim.size)[0]
         found = linearised(tried)
         if (squares := residual @ residual) == 0.0:  # losses so small that nothing is to be gained
             return unknowns

@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from asperity.errors import ComputationError
 from asperity.structures.rational_fit import vector_fit
@@ -157,10 +157,12 @@ def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Co
     matrix = np.concatenate([columns.real, columns.imag])
     right = np.concatenate([(weights * flexible).real, (weights * flexible).imag])
     size = np.linalg.norm(matrix, axis=0)
-    shares, error = nnls(matrix / size, right)  # a share is the norm of what a mode contributes
+    shares, error = scipy.optimize.nnls(
+        matrix / size, right
+    )  # a share is the norm of what a mode contributes
     kept = np.flatnonzero(shares**2 > max(NEGLIGIBLE * error**2, 1e-12 * shares.max(initial=0.0) ** 2))
     kept = kept[np.argsort(natural[kept])]
-    shares, error = nnls(matrix[:, kept] / size[kept], right)
+    shares, error = scipy.optimize.nnls(matrix[:, kept] / size[kept], right)
     kept, shares = kept[shares > 0.0], shares[shares > 0.0]
     return (natural[kept] / (2.0 * np.pi), ratio[kept], size[kept] / shares), float(error)
 
@@ -285,5 +287,5 @@ def _solved(matrix: Array, right: Array, positive: bool = False) -> Array:
     root, vectors = np.sqrt(values[kept]), vectors[:, kept]
     turned = (vectors.T @ (right / size)) / root
     if positive:
-        return np.asarray(nnls(root[:, None] * vectors.T, turned)[0] / size)
+        return np.asarray(scipy.optimize.nnls(root[:, None] * vectors.T, turned)[0] / size)
     return np.asarray(vectors @ (turned / root) / size)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.store import Cache, content_key, made
@@ -169,5 +169,5 @@ def over_the_bay(values: NDArray[Any]) -> NDArray[Any]:
     At equal places, both ends of the bay included, by a periodic cubic spline.
     """
     closed = np.concatenate([values, values[:1]])
-    spline = CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic")
+    spline = scipy.interpolate.CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic")
     return np.asarray(spline(np.linspace(0.0, 1.0, CELLS + 1)))

@@ -8,8 +8,9 @@ They are tied by W(ν) = 4π ∫ C(2πν, qy) dqy: a factor 2 for one side and 2
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft, ndimage
+from scipy import fft
 
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -94,5 +95,5 @@ def texture_direction(surface: HeightMap) -> float:
     inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
     degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
     energy = np.bincount(degrees, density[inside], minlength=180)
-    smooth = ndimage.uniform_filter1d(energy, 9, mode="wrap")
+    smooth = scipy.ndimage.uniform_filter1d(energy, 9, mode="wrap")
     return float(np.radians(smooth.argmax()))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft, ndimage
+from scipy import fft
 
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap
@@ -135,14 +136,14 @@ def lengths_of(
     lobe = correlation / correlation[tuple(n // 2 for n in correlation.shape)]
     step = np.asarray(spacing)
     reach = np.array([n // 2 for n in lobe.shape]) * step
-    coefficients = ndimage.spline_filter(lobe, order=3, mode="mirror")
+    coefficients = scipy.ndimage.spline_filter(lobe, order=3, mode="mirror")
     lengths, open_ended = [], False
     for angle in np.radians(np.arange(0.0, 180.0)):
         direction = np.array([np.cos(angle), np.sin(angle)])
         limit = float(np.min(reach / np.maximum(np.abs(direction), 1e-12)))
         lags = np.append(np.arange(0.0, limit, step.min() / 4.0), limit)
         points = direction[:, None] * lags / step[:, None] + np.array(lobe.shape)[:, None] // 2
-        values = ndimage.map_coordinates(coefficients, points, order=3, mode="mirror", prefilter=False)
+        values = scipy.ndimage.map_coordinates(coefficients, points, order=3, mode="mirror", prefilter=False)
         below = np.flatnonzero(values <= threshold)
         if below.size:
             k = int(below[0])

@@ -10,8 +10,8 @@ import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.surfaces.heightmap import Profile
@@ -147,7 +147,7 @@ def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
     reach = min(math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing), len(heights) - 1)
     across = np.minimum(np.arange(-reach, reach + 1) * profile.spacing, radius)
     circle = np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - radius
-    rolled = ndimage.grey_dilation(heights, structure=circle, mode="constant", cval=-np.inf)
+    rolled = scipy.ndimage.grey_dilation(heights, structure=circle, mode="constant", cval=-np.inf)
     return replace(profile, heights=rolled)
 
 

@@ -8,8 +8,8 @@ from itertools import product
 from typing import Literal, TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import optimize
 
 from asperity.errors import ComputationError, InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -87,7 +87,7 @@ def _fit_sag(
         return (sag(p, x[valid], y[valid]) - z) * (scale / unit)
 
     steps = np.maximum(np.abs(start), 1e-12)
-    found = optimize.least_squares(residual, start, x_scale=steps, xtol=1e-15, ftol=1e-14, gtol=1e-15)
+    found = scipy.optimize.least_squares(residual, start, x_scale=steps, xtol=1e-15, ftol=1e-14, gtol=1e-15)
     if not found.success:
         raise ComputationError(f"fit of the form: {found.message}", "a polynomial form")
     return sag(found.x, x, y) * scale, float(found.x[1]) / scale

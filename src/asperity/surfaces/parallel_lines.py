@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import fft, interpolate
+from scipy import fft
 
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -84,7 +85,7 @@ def bring_into_register(profiles: Sequence[Profile]) -> Register:
         )
         warnings.warn(message, ShortRecordWarning, stacklevel=2)
     everywhere = np.clip(np.arange(len(profiles)), full[0], full[-1])
-    between = interpolate.make_interp_spline(full, np.array(done), k=1) if len(done) > 1 else None
+    between = scipy.interpolate.make_interp_spline(full, np.array(done), k=1) if len(done) > 1 else None
     result = np.repeat(done, len(profiles), axis=0) if between is None else between(everywhere)
     pairs = (_correlation(one, other) for one, other in pairwise(result))
     return Register(result, tuple(turned), tuple(shifts), (1.0, *pairs), replaced)
@@ -148,4 +149,4 @@ def strip_from_lines(
     if count == 1:
         return np.repeat(heights.T, shape_y, axis=1)
     degree = 1 if count < 4 else 3
-    return np.ascontiguousarray(interpolate.make_interp_spline(at, heights, k=degree)(wanted).T)
+    return np.ascontiguousarray(scipy.interpolate.make_interp_spline(at, heights, k=degree)(wanted).T)

@@ -6,8 +6,8 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import interpolate, ndimage
 
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
@@ -76,9 +76,9 @@ def _interpolated(
     missing = np.isnan(surface.heights)
     heights = fill(surface).heights if missing.any() else surface.heights
     kx, ky = (min(ORDER, n - 1) for n in surface.shape)
-    found = interpolate.RectBivariateSpline(surface.x, surface.y, heights, kx=kx, ky=ky).ev(*at)
+    found = scipy.interpolate.RectBivariateSpline(surface.x, surface.y, heights, kx=kx, ky=ky).ev(*at)
     if missing.any():
         index = np.stack([place / step for place, step in zip(at, surface.spacing, strict=True)])
-        near = ndimage.map_coordinates(missing.astype(np.float64), index, order=1, mode="nearest")
+        near = scipy.ndimage.map_coordinates(missing.astype(np.float64), index, order=1, mode="nearest")
         found[near > ROUNDING] = np.nan
     return np.asarray(found)

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from asperity.errors import InputError
 from asperity.surfaces.areal_psd import psd_1d, psd_2d, psd_radial, texture_direction
@@ -115,7 +115,7 @@ def shortest_wave_for(surface: HeightMap, slope: float) -> float:
         return float(np.sum(power * passed)) - slope**2
 
     ends = np.log2(min(surface.spacing)) - 4.0, np.log2(max(surface.size))
-    return float(2.0 ** (brentq(left, *ends, xtol=1e-3) if left(ends[1]) < 0.0 else ends[1]))
+    return float(2.0 ** (scipy.optimize.brentq(left, *ends, xtol=1e-3) if left(ends[1]) < 0.0 else ends[1]))
 
 
 def profile_statistics(profile: Profile, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:

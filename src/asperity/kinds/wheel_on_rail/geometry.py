@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
-from scipy.optimize import minimize_scalar
 
 from asperity.contact import Hertz
 from asperity.errors import InputError
@@ -51,7 +50,7 @@ class _Section:
         self.half_width, self._spline = np.inf, None
         if measured is not None:
             y = (np.arange(len(measured.heights)) - 0.5 * (len(measured.heights) - 1)) * measured.spacing
-            self._spline = make_interp_spline(y, -measured.heights, k=3)
+            self._spline = scipy.interpolate.make_interp_spline(y, -measured.heights, k=3)
             self.half_width = float(y[-1])
 
     def at(self, y: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -81,7 +80,7 @@ def _lowest_in_the_middle(tread: _Section, head: _Section, y: NDArray[np.float64
         fine = np.linspace(y[-1] - reach, reach - y[-1], _FINE * len(y))
         lowest = int(np.argmin(tread.at(fine) + head.at(fine)))
         around = (float(fine[max(lowest - 1, 0)]), float(fine[min(lowest + 1, len(fine) - 1)]))
-        found = minimize_scalar(
+        found = scipy.optimize.minimize_scalar(
             lambda at: float((tread.at(np.array([at])) + head.at(np.array([at])))[0]),
             bounds=around,
             method="bounded",
