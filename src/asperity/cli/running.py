@@ -95,7 +95,7 @@ def _run_alone(
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
         grade = warning.get("grade", "warning").capitalize()
         say(f"{grade}: {warning['message']}{times}", err=True)
-    if (directory / PAGE).exists():  # figures take half a second to import
+    if reporter is None and (directory / PAGE).exists():
         from asperity.kinds.report import remove_report
 
         remove_report(directory)

@@ -39,24 +39,36 @@ class ReportProcess:
     def write(self, tree: DataTree, page: Path, meanwhile: Callable[[], object]) -> Path:
         """Write the page of a result, and what goes beside it, but not before something else is done.
 
-        That is done here while the other process draws. If that cannot, because of an error or its end, this
-        one does, or says why not.
+        An earlier report is removed first. Then the other process draws, while that is done here. If it
+        cannot, because of an error or its end, this one does what is left, or says why not.
         """
-        drawing = self.process is not None and self._tell(lambda to: send_result(tree, to))
+        if not self._did(page.parent) and page.exists():
+            from asperity.kinds.report import remove_report
+
+            remove_report(page.parent)
+        drawing = self._told(lambda to: send_result(tree, to))
         meanwhile()
-        if (
-            drawing
-            and self._tell(lambda to: to.write(json.dumps(str(page)).encode() + b"\n"))
-            and self._done()
-        ):
+        if drawing and self._did(page):
             return page
         from asperity.kinds.report import write_page
 
         return write_page(tree, page)
 
-    def _tell(self, say: Callable[[BinaryIO], object]) -> bool:
-        """Tell the other process something; whether that is possible."""
+    def _did(self, path: Path) -> bool:
+        """Tell the other process a path, and hear whether it did what was to be done with it."""
+        if not self._told(lambda to: to.write(json.dumps(str(path)).encode() + b"\n")):
+            return False
         assert self.process is not None
+        assert self.process.stdout is not None
+        try:
+            return json.loads(self.process.stdout.readline()) is True
+        except (OSError, ValueError):
+            return False
+
+    def _told(self, say: Callable[[BinaryIO], object]) -> bool:
+        """Tell the other process something; whether that is possible."""
+        if self.process is None:
+            return False
         assert self.process.stdin is not None
         try:
             say(cast("BinaryIO", self.process.stdin))
@@ -64,15 +76,6 @@ class ReportProcess:
         except OSError:
             return False
         return True
-
-    def _done(self) -> bool:
-        """Whether the other process says that it has written all."""
-        assert self.process is not None
-        assert self.process.stdout is not None
-        try:
-            return json.loads(self.process.stdout.readline()) is True
-        except (OSError, ValueError):
-            return False
 
 
 @contextmanager
@@ -115,19 +118,29 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def draw_on_request() -> None:
     """Draw results that come by standard input, as the process that `report_process` starts, until it ends.
 
-    After each comes the path where its page is to be written, and the answer that it has been. An error ends
-    the process: the other one will meet it, too, and tell.
+    Before each comes a folder, from which an earlier report is removed, after it the path where its page is
+    to be written; the answer to both is that it was done. An error ends the process: the other one will meet
+    it, too, and tell.
     """
     import xarray  # noqa: F401  imported while there is time
 
     from asperity.kinds import KINDS
-    from asperity.kinds.report import draw_all, write_page
+    from asperity.kinds.report import draw_all, remove_report, write_page
 
     for kind in KINDS.values():
         assert kind.chapters  # read while there is time, as well
     asked, processes = sys.stdin.buffer, min(processors(), _MOST)
-    while (result := receive_result(asked)) is not None:
+    while folder := asked.readline():
+        remove_report(json.loads(folder))
+        _answer()
+        result = receive_result(asked)
+        if result is None:
+            return
         drawn = draw_all(result, processes)
         write_page(result, Path(json.loads(asked.readline())), drawn, processes)
-        sys.stdout.write("true\n")
-        sys.stdout.flush()
+        _answer()
+
+
+def _answer() -> None:
+    sys.stdout.write("true\n")
+    sys.stdout.flush()
