@@ -5,7 +5,6 @@ import time
 
 import pytest
 
-from asperity import forked
 from asperity.forked import in_processes
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="nothing can be forked")
@@ -61,5 +60,26 @@ def test_an_error_here_ends_the_others(tmp_path):
 
 
 def test_where_nothing_can_be_forked_all_is_done_here(monkeypatch):
-    monkeypatch.setattr(forked, "_CAN_FORK", False)
+    monkeypatch.delattr(os, "fork", raising=False)
     assert set(in_processes(lambda _: os.getpid(), range(4), 2)) == {os.getpid()}
+
+
+@needs_fork
+def test_where_no_more_processes_can_be_had_those_there_are_do_all(monkeypatch):
+    fork, left, before = os.fork, [None], len(os.listdir("/dev/fd"))
+
+    def scarce():
+        if not left:
+            raise BlockingIOError(11, "Resource temporarily unavailable")
+        left.pop()
+        return fork()
+
+    def slowly(k):
+        time.sleep(0.02)
+        return [k, os.getpid()]
+
+    monkeypatch.setattr(os, "fork", scarce)
+    found = in_processes(slowly, range(30), 4)
+    assert [k for k, _ in found] == list(range(30))
+    assert len({process for _, process in found}) == 2
+    assert len(os.listdir("/dev/fd")) == before  # no pipe is left open

@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from typing import IO, Any, TypeVar
 
 T = TypeVar("T")
@@ -26,7 +27,7 @@ def in_processes(task: Callable[[T], Any], items: Sequence[T], count: int) -> li
     with os.fdopen(tickets, "rb", buffering=0) as waiting:
         with os.fdopen(numbers, "wb", buffering=0) as given:
             given.write(b"".join(k.to_bytes(_TICKET) for k in range(len(items))))
-        others = [_fork(task, items, waiting) for _ in range(min(count, len(items)) - 1) if _CAN_FORK]
+        others = _forks(task, items, waiting, min(count, len(items)) - 1)
         try:
             done = dict(_done(task, items, waiting))
             for _, told in others:
@@ -39,9 +40,6 @@ def in_processes(task: Callable[[T], Any], items: Sequence[T], count: int) -> li
     return [done[k] if k in done else task(item) for k, item in enumerate(items)]
 
 
-_CAN_FORK = hasattr(os, "fork")
-
-
 def _done(task: Callable[[T], Any], items: Sequence[T], waiting: IO[bytes]) -> Iterator[tuple[int, Any]]:
     """Do one item after the other, as long as there are any."""
     while ticket := waiting.read(_TICKET):
@@ -49,11 +47,28 @@ def _done(task: Callable[[T], Any], items: Sequence[T], waiting: IO[bytes]) -> I
         yield k, task(items[k])
 
 
+def _forks(
+    task: Callable[[T], Any], items: Sequence[T], waiting: IO[bytes], count: int
+) -> list[tuple[int, IO[str]]]:
+    """Start so many processes, or as many as can be had."""
+    found: list[tuple[int, IO[str]]] = []
+    if hasattr(os, "fork"):
+        with suppress(OSError):
+            while len(found) < count:
+                found.append(_fork(task, items, waiting))
+    return found
+
+
 def _fork(task: Callable[[T], Any], items: Sequence[T], waiting: IO[bytes]) -> tuple[int, IO[str]]:
     """Start a process that does items until none is left; its number, and what it tells at its end."""
     assert sys.platform != "win32"
     heard, told = os.pipe()
-    process = os.fork()
+    try:
+        process = os.fork()
+    except OSError:
+        os.close(heard)
+        os.close(told)
+        raise
     if process:
         os.close(told)
         return process, os.fdopen(heard, encoding="utf-8")

@@ -19,6 +19,8 @@ from matplotlib.font_manager import FontProperties
 from asperity.reporting.style import COLOURS, RC, is_narrow
 from asperity.reporting.ticks import one_tick_each
 
+POINTS = FigureCanvasSVG.fixed_dpi
+"""Points per inch."""
 IMAGE_DPI = 110
 """Dots per inch of the images in a drawing."""
 MOST_WORDS = 10_000
@@ -81,7 +83,7 @@ class _Canvas(FigureCanvasSVG):
 def drawing_of(figure: Figure, name: str) -> Drawing:
     """Draw a figure; identifiers in it get the prefix `name`, which is its own in a page."""
     figure.set_canvas(_Canvas(figure))
-    figure.dpi, text = FigureCanvasSVG.fixed_dpi, StringIO()
+    figure.dpi, text = POINTS, StringIO()
     coarser = {"path.simplify_threshold": 0.5} if is_narrow() else {}  # half a page needs fewer points
     with rc_context(RC | coarser), one_tick_each(figure):
         engine = figure.get_layout_engine()
@@ -91,7 +93,7 @@ def drawing_of(figure: Figure, name: str) -> Drawing:
                 engine.execute(figure)
             figure.set_layout_engine("none")
         width, height = figure.get_size_inches()
-        vectors = _Renderer(72 * width, 72 * height, text, image_dpi=IMAGE_DPI)  # type: ignore[no-untyped-call]
+        vectors = _Renderer(POINTS * width, POINTS * height, text, image_dpi=IMAGE_DPI)  # type: ignore[no-untyped-call]
         renderer: Any = MixedModeRenderer(figure, width, height, IMAGE_DPI, vectors)  # type: ignore[no-untyped-call]
         figure.draw(renderer)
         renderer.finalize()

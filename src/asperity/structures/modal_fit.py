@@ -157,9 +157,8 @@ def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Co
     matrix = np.concatenate([columns.real, columns.imag])
     right = np.concatenate([(weights * flexible).real, (weights * flexible).imag])
     size = np.linalg.norm(matrix, axis=0)
-    shares, error = scipy.optimize.nnls(
-        matrix / size, right
-    )  # a share is the norm of what a mode contributes
+    # a share is the norm of what a mode contributes
+    shares, error = scipy.optimize.nnls(matrix / size, right)
     kept = np.flatnonzero(shares**2 > max(NEGLIGIBLE * error**2, 1e-12 * shares.max(initial=0.0) ** 2))
     kept = kept[np.argsort(natural[kept])]
     shares, error = scipy.optimize.nnls(matrix[:, kept] / size[kept], right)
