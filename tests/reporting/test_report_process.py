@@ -43,10 +43,13 @@ def test_what_the_other_process_leaves_is_written_here(real_runs, tmp_path, prog
     done = []
     (tmp_path / "report.html").write_text("an earlier one")
     command = [sys.executable, "-c", program]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "start_new_session": True}
+    process = subprocess.Popen(command, **pipes)
+    try:
         reporter = ReportProcess(process)
         page = reporter.write(real_runs[KIND], tmp_path / "report.html", lambda: done.append(files(tmp_path)))
-        process.kill()
+    finally:
+        module._end(process)
     assert "</html>" in page.read_text()
     assert done == [{}]
 
