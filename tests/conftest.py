@@ -33,7 +33,11 @@ def pytest_unconfigure():
 @pytest.fixture(autouse=True)
 def reported_alone(monkeypatch):
     """Runs of tests are short, and processors busy: a second process takes longer to start than to draw."""
-    monkeypatch.setattr("asperity.cli.running.report_process", lambda: nullcontext(ReportProcess()))
+
+    def alone(wanted=True):
+        return nullcontext(ReportProcess() if wanted else None)
+
+    monkeypatch.setattr("asperity.kinds.report_process.report_process", alone)
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import sys
 from types import SimpleNamespace
 
 import pytest
+from xarray import DataTree
 
 from asperity.errors import ComputationError
 from asperity.kinds import report_process as module
@@ -15,15 +16,22 @@ from asperity.kinds.report_process import ReportProcess, report_process
 KIND = "ball-on-beam"
 
 
+def some_of(tree, *groups):
+    return DataTree.from_dict({f"/{name}": tree[name].to_dataset() for name in groups})
+
+
 def files(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix != ".nc"}
 
 
-def test_another_process_writes_what_this_one_does(real_runs, reports, tmp_path, monkeypatch):
+@pytest.mark.parametrize("known", [[], ["contact"], ["contact", "surface"]])
+def test_another_process_writes_what_this_one_does(real_runs, reports, tmp_path, monkeypatch, known):
     monkeypatch.setenv("ASPERITY_THREADS", "2")
     expected, page, before = files(reports[KIND]), tmp_path / "report.html", []
     monkeypatch.setattr("asperity.kinds.report.write_page", None)  # not here
     with report_process() as reporter:
+        for name in known:
+            reporter.ahead(some_of(real_runs[KIND], "scenario", name))
         for _ in range(2):
             written = reporter.write(real_runs[KIND], page, lambda: before.append(files(tmp_path)))
             assert written == page
@@ -44,12 +52,12 @@ def test_what_the_other_process_leaves_is_written_here(real_runs, tmp_path, prog
     (tmp_path / "report.html").write_text("an earlier one")
     command = [sys.executable, "-c", program]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "start_new_session": True}
-    process = subprocess.Popen(command, **pipes)
+    reporter = ReportProcess(subprocess.Popen(command, **pipes))
     try:
-        reporter = ReportProcess(process)
+        reporter.ahead(some_of(real_runs[KIND], "scenario", "surface"))
         page = reporter.write(real_runs[KIND], tmp_path / "report.html", lambda: done.append(files(tmp_path)))
     finally:
-        module._end(process)
+        module._end(reporter)
     assert "</html>" in page.read_text()
     assert done == [{}]
 
@@ -65,6 +73,12 @@ def test_one_thread_writes_alone(monkeypatch):
     monkeypatch.setenv("ASPERITY_THREADS", "1")
     with report_process() as reporter:
         assert reporter.process is None
+        assert reporter.ahead is None
+
+
+def test_none_is_started_where_none_is_wanted():
+    with report_process(wanted=False) as reporter:
+        assert reporter is None
 
 
 def test_where_no_process_can_be_started_all_is_written_here(monkeypatch):

@@ -80,10 +80,13 @@ def demo(directory: Path, overwrite: bool) -> None:
 
     A steel ball rolls over a rough steel beam: texture, contact, force, vibration and six contact laws.
     """
-    from asperity.cli.running import run_into
-    from asperity.kinds.cases import demo_case
+    from asperity.kinds.report_process import report_process
 
-    run_into(demo_case(), directory, overwrite=overwrite)
+    with report_process() as reporter:
+        from asperity.cli.running import run_into
+        from asperity.kinds.cases import demo_case
+
+        run_into(demo_case(), directory, reporter, overwrite=overwrite)
 
 
 @main.command(
@@ -177,13 +180,20 @@ def run(case: Path, directory: Path | None, report: bool, converge: bool, overwr
 
     Finished pieces of work are kept: a run that was interrupted goes on where it was.
     """
-    from asperity.cli.running import run_into
-    from asperity.kinds.cases import load_case
+    from asperity.kinds.report_process import report_process
 
-    target = directory or Path("runs") / case.stem
-    return run_into(
-        load_case(case), target, source=str(case), report=report, overwrite=overwrite, converge=converge
-    )
+    with report_process(wanted=report) as reporter:
+        from asperity.cli.running import run_into
+        from asperity.kinds.cases import load_case
+
+        return run_into(
+            load_case(case),
+            directory or Path("runs") / case.stem,
+            reporter,
+            source=str(case),
+            overwrite=overwrite,
+            converge=converge,
+        )
 
 
 @main.command(

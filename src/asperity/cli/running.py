@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import time
-from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.config.case import Case
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, remove_left_overs, require_space
-from asperity.kinds.report_process import ReportProcess, report_process
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.scenarios.second_process import contact_compiled_beside
 from asperity.schema import rolling, spectra
@@ -20,6 +19,7 @@ from asperity.terminal import detail, remark, say
 if TYPE_CHECKING:
     from xarray import DataTree
 
+    from asperity.kinds.report_process import ReportProcess
     from asperity.scenarios.preparing import PreparedCase
 
 PAGE = "report.html"
@@ -29,9 +29,9 @@ READING = "reading and laying out the case"
 def run_into(
     case: Case,
     directory: Path,
+    reporter: ReportProcess | None,
     *,
     source: str = "case",
-    report: bool = True,
     overwrite: bool = False,
     converge: bool = False,
 ) -> dict[str, Any]:
@@ -43,10 +43,10 @@ def run_into(
         The case.
     directory : Path
         Where ``run.nc``, ``report.html`` and the CSVs go.
+    reporter : ReportProcess, optional
+        What writes the page and the CSVs; without it they are not written.
     source : str
         Name of the case, for messages.
-    report : bool
-        Whether to write the page and the CSVs.
     overwrite : bool
         Whether the run of another case in `directory` may be replaced.
     converge : bool
@@ -60,8 +60,7 @@ def run_into(
     refuse_folder(case, directory, overwrite=overwrite)
     with alone_in(directory):
         refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
-        with report_process() if report else nullcontext() as reporter:
-            return _run_alone(case, directory, source, reporter, converge=converge)
+        return _run_alone(case, directory, source, reporter, converge=converge)
 
 
 def prepared_case(case: Case, source: str) -> PreparedCase:
@@ -89,7 +88,8 @@ def _run_alone(
         prepared = prepared_case(case, source)
         with progress_bar() as progress:
             announce_scan(prepared, progress)
-            tree: DataTree = run(prepared, progress=progress)
+            ahead = None if reporter is None else reporter.ahead
+            tree: DataTree = run(replace(prepared, ahead=ahead), progress=progress)
     warnings = json.loads(tree.attrs.get("warnings", "[]"))
     for warning in warnings:
         times = f" ({warning['count']} times)" if warning["count"] > 1 else ""

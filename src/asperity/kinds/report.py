@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from types import MappingProxyType
 
 from xarray import DataTree
 
@@ -14,9 +15,10 @@ from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.forked import in_processes
 from asperity.kinds import KINDS
+from asperity.reporting.ahead import DrawnAhead
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.csv_files import write_columns
-from asperity.reporting.data import stated
+from asperity.reporting.data import holds, stated
 from asperity.reporting.page import Picture, drawable_parts, page, picture, sections
 from asperity.reporting.part import Part
 from asperity.schema.provenance import KIND
@@ -81,10 +83,16 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     return write_page(result, target)
 
 
-def draw_all(result: DataTree, processes: int = 1) -> dict[str, Picture]:
-    """Draw all figures of a result, by name, in so many processes."""
-    found = in_processes(lambda part: picture(result, part).laid_out(), parts_of(result), processes)
-    return {laid_out["name"]: Picture.read(laid_out) for laid_out in found}
+def draw_all(
+    result: DataTree, processes: int = 1, ahead: Mapping[str, DrawnAhead] = MappingProxyType({})
+) -> dict[str, Picture]:
+    """Draw all figures of a result, by name, in so many processes, but for those that were drawn ahead."""
+    parts = parts_of(result)
+    drawn = {part.name: ahead[part.name] for part in parts if part.name in ahead}
+    kept = {name: early.picture for name, early in drawn.items() if holds(result, early.looks)}
+    left = [part for part in parts if part.name not in kept]
+    found = in_processes(lambda part: picture(result, part).laid_out(), left, processes)
+    return kept | {laid_out["name"]: Picture.read(laid_out) for laid_out in found}
 
 
 def write_page(

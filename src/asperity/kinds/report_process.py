@@ -5,18 +5,20 @@ What draws takes as long to import as a short run takes to compute; this way it 
 
 from __future__ import annotations
 
+import gc
 import json
 import os
+import select
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from threading import Thread
 from typing import TYPE_CHECKING, BinaryIO, cast
 
 from asperity.interrupts import no_interrupt_for_children
-from asperity.streamed import receive_result, send_result
 from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
@@ -28,6 +30,8 @@ _START = (
 )
 _MOST = 4
 """Processes that draw, at most."""
+_COLLECT_AFTER = 100_000
+"""New objects until unused ones are sought: a figure makes many."""
 
 
 class ReportProcess:
@@ -35,6 +39,26 @@ class ReportProcess:
 
     def __init__(self, process: subprocess.Popen[bytes] | None = None) -> None:
         self.process = process
+        self._telling: Thread | None = None
+
+    @property
+    def ahead(self) -> Callable[[DataTree], None] | None:
+        """Takes a part of the result, for figures to be drawn from it while the rest is computed."""
+        return None if self.process is None else self._draw_ahead
+
+    def _draw_ahead(self, known: DataTree) -> None:
+        from asperity.streamed import send_result
+
+        before = self._telling
+
+        def tell() -> None:
+            if before is not None:
+                before.join()
+            if self._told(lambda to: to.write(b"null\n")) and self._told(lambda to: send_result(known, to)):
+                self._answered()
+
+        self._telling = Thread(target=tell, daemon=True)  # the other process may not listen yet
+        self._telling.start()
 
     def write(self, tree: DataTree, page: Path, meanwhile: Callable[[], object]) -> Path:
         """Write the page of a result, and what goes beside it, but not before something else is done.
@@ -42,6 +66,9 @@ class ReportProcess:
         An earlier report is removed first. Then the other process draws, while that is done here. If it
         cannot, because of an error or its end, this one does what is left, or says why not.
         """
+        from asperity.streamed import send_result
+
+        self.told()
         if not self._did(page.parent) and page.exists():
             from asperity.kinds.report import remove_report
 
@@ -54,10 +81,17 @@ class ReportProcess:
 
         return write_page(tree, page)
 
+    def told(self) -> None:
+        """Wait until what is known has been told, or cannot be."""
+        if self._telling is not None:
+            self._telling.join()
+
     def _did(self, path: Path) -> bool:
         """Tell the other process a path, and hear whether it did what was to be done with it."""
-        if not self._told(lambda to: to.write(json.dumps(str(path)).encode() + b"\n")):
-            return False
+        return self._told(lambda to: to.write(json.dumps(str(path)).encode() + b"\n")) and self._answered()
+
+    def _answered(self) -> bool:
+        """Hear whether the other process did what it was told."""
         assert self.process is not None
         assert self.process.stdout is not None
         try:
@@ -79,8 +113,11 @@ class ReportProcess:
 
 
 @contextmanager
-def report_process() -> Iterator[ReportProcess]:
-    """A process that gets ready to draw while the body of the ``with`` statement runs."""
+def report_process(wanted: bool = True) -> Iterator[ReportProcess | None]:
+    """A process that gets ready to draw while the ``with`` statement runs; None if none is wanted."""
+    if not wanted:
+        yield None
+        return
     if "1" in (os.environ.get(THREADS), str(processors())):
         yield ReportProcess()
         return
@@ -98,19 +135,23 @@ def report_process() -> Iterator[ReportProcess]:
     except OSError:  # no process to be had
         yield ReportProcess()
         return
+    reporter = ReportProcess(process)
     try:
-        yield ReportProcess(process)
+        yield reporter
     finally:
-        _end(process)
+        _end(reporter)
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process with all that it has forked."""
+def _end(reporter: ReportProcess) -> None:
+    """End the other process with all that it has forked."""
+    process = reporter.process
+    assert process is not None
     with suppress(OSError):
         if sys.platform == "win32":
             process.kill()
         else:
             os.killpg(process.pid, signal.SIGKILL)
+    reporter.told()
     with suppress(OSError):
         process.communicate()
 
@@ -119,26 +160,44 @@ def draw_on_request() -> None:
     """Draw results that come by standard input, as the process that `report_process` starts, until it ends.
 
     Before each comes a folder, from which an earlier report is removed, after it the path where its page is
-    to be written; the answer to both is that it was done. An error ends the process: the other one will meet
-    it, too, and tell.
+    to be written; the answer to both is that it was done. Before that may come a part of the result: it is
+    answered when it was read, and drawn from until something else comes. An error ends the process: the other
+    one will meet it, too, and tell.
     """
     import xarray  # noqa: F401  imported while there is time
 
     from asperity.kinds import KINDS
-    from asperity.kinds.report import draw_all, remove_report, write_page
+    from asperity.kinds.report import draw_all, parts_of, remove_report, write_page
+    from asperity.reporting.ahead import DrawnAhead, drawn_ahead
+    from asperity.streamed import receive_result
 
     for kind in KINDS.values():
         assert kind.chapters  # read while there is time, as well
+    gc.freeze()  # what was imported is used to the end
+    gc.set_threshold(_COLLECT_AFTER)
     asked, processes = sys.stdin.buffer, min(processors(), _MOST)
-    while folder := asked.readline():
-        remove_report(json.loads(folder))
-        _answer()
+    ahead: dict[str, DrawnAhead] = {}
+    while line := asked.readline():
+        folder = json.loads(line)
+        if folder is not None:
+            remove_report(folder)
+            _answer()
         result = receive_result(asked)
         if result is None:
             return
-        drawn = draw_all(result, processes)
+        if folder is None:
+            _answer()
+            parts = [part for part in parts_of(result) if part.name not in ahead]
+            ahead |= drawn_ahead(result, parts, _asked_again)
+            continue
+        drawn = draw_all(result, processes, ahead)
         write_page(result, Path(json.loads(asked.readline())), drawn, processes)
         _answer()
+
+
+def _asked_again() -> bool:
+    """Whether something waits to be read, after all that came before was read."""
+    return sys.platform == "win32" or bool(select.select([sys.stdin], [], [], 0)[0])
 
 
 def _answer() -> None:

@@ -71,7 +71,7 @@ def history(tree: DataTree) -> dict[str, Any]:
         "interval": duration / (len(time) - 1) / unit[0],
         "time": unit[1],
         "force": symbol,
-        "data": base64.b64encode(zlib.compress(b"".join(packed), 9)).decode("ascii"),
+        "data": base64.b64encode(zlib.compress(b"".join(packed), 6)).decode("ascii"),
     }
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,11 @@ from asperity.scenarios.reducing import Reduction, patch_planes, reduce
 from asperity.scenarios.running_in import RunInCase, run_in_case
 from asperity.scenarios.textures import Textures
 from asperity.store import Store
+
+if TYPE_CHECKING:
+    import xarray
+
+    from asperity.scenarios.preparing import PreparedCase
 
 
 class Run(Protocol):
@@ -70,6 +75,7 @@ class Chain(Generic[R]):
     running_in: RunInCase | None  # what passes before did to the textures; None where there were none
     seconds: dict[str, float]  # wall time of each part, s
     workshop: Workshop  # to build its laws in
+    known: Mapping[str, xarray.Dataset]  # groups of the result that were laid out before anything rolled
 
     @property
     def laws(self) -> dict[str, Law]:
@@ -117,21 +123,20 @@ def warn_of_start(case: Case, remedy: str) -> None:
 
 
 def reduce_and_roll(
-    case: Case,
-    textures: Textures,
-    shape: Geometry,
+    prepared: PreparedCase,
     roll: Callable[..., R],
     store: Store,
     progress: Progress,
     watch: Stopwatch,
     further: Sequence[Further] = (),
+    known: Callable[[Chain[Any]], Mapping[str, xarray.Dataset]] = lambda _: {},
 ) -> Chain[R]:
-    """Run the textures in where the case asks for it, reduce the samples, build its laws and roll each.
+    """Run the textures in where a case asks for it, reduce the samples, build its laws and roll each.
 
     `roll` rolls a law, and beside it the same law of each `further` contact. The store keeps finished scans;
-    the stopwatch books the wall time.
+    the stopwatch books the wall time. `known` lays out what else of the result is known before that.
     """
-    ran = None
+    case, textures, shape, ran = prepared.case, prepared.textures, prepared.shape, None
     if case.contact.running_in is not None:
         ran = run_in_case(case, textures, shape, store, progress)
         textures = ran.textures
@@ -145,12 +150,17 @@ def reduce_and_roll(
     workshop = Workshop(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
     others = [_of_contact(workshop, contact) for contact in further]
     runs: dict[str, R] = {}
+    anew = replace(workshop)  # without the textures that it will make
+    chain = Chain(case, textures, shape, reduction, runs, None, ran, watch.seconds, anew, {})
+    if prepared.ahead is not None:
+        from asperity.scenarios.known import told_ahead
+
+        chain = told_ahead(chain, prepared.ahead, known(chain))
+        watch.lap("what is known before")
     for name in case.laws:
         runs[name] = roll(workshop.build(name), *(other.build(name) for other in others))
         watch.lap(f"law {name}")
-    scan = workshop.scan if Need.SCAN in needs_of(case.laws) else None
-    anew = replace(workshop)  # without the textures that it has made
-    return Chain(case, textures, shape, reduction, runs, scan, ran, watch.seconds, anew)
+    return replace(chain, scan=workshop.scan if Need.SCAN in needs_of(case.laws) else None)
 
 
 def _of_contact(workshop: Workshop, contact: Further) -> Workshop:

@@ -28,6 +28,19 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
 
     With the findings that hold the contact to the range of its laws.
     """
+    group = chain.known.get("/contact")
+    group = contact_before(chain) if group is None else group
+    facts: dict[Attribute, Any] = {
+        contact.VALIDITY: json.dumps([_row(finding) for finding in found], ensure_ascii=False)
+    }
+    if chain.reduction is not None:
+        asked = [_asked(answer) for answer in answers(chain)]
+        facts[contact.POPULATION] = json.dumps(asked, ensure_ascii=False)
+    return group.assign_attrs(attributes(facts))
+
+
+def contact_before(chain: Chain[Any]) -> xarray.Dataset:
+    """Lay out all of it that is known before anything has rolled."""
     shape, reduction = chain.shape, chain.reduction
     facts: dict[Attribute, Any] = {
         contact.HERTZ_RADIUS: shape.semi_axes[0],
@@ -35,7 +48,6 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         contact.WORKING_LOAD: shape.load,
         contact.CONTACT_MODULUS: shape.modulus,
         contact.HERTZ_CONSTANT: shape.hertz.stiffness_constant,
-        contact.VALIDITY: json.dumps([_row(finding) for finding in found], ensure_ascii=False),
     }
     if reduction is None:
         return _hertz_only(chain, facts)
@@ -52,7 +64,6 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
         contact.ISOLATED_SHARE: reduction.isolated_share,
         contact.RMS_SLOPE: rms_slope_of(chain),
         contact.SAMPLES: len(ensemble.forces),
-        contact.POPULATION: json.dumps([_asked(answer) for answer in answers(chain)], ensure_ascii=False),
     }
     state = ensemble.states
     safe = np.where(state > 0.0, state, np.inf)

@@ -6,7 +6,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from asperity.config.case import Case
 from asperity.contact.device import find_device
@@ -20,6 +20,9 @@ from asperity.scenarios.textures import Textures
 from asperity.store import Store
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 from asperity.units import written
+
+if TYPE_CHECKING:
+    import xarray
 
 T = TypeVar("T")
 
@@ -36,6 +39,8 @@ class PreparedCase:
     caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
     seconds: float  # that it took
     processor: float  # time, s
+    # takes what is known of the result before anything rolls
+    ahead: Callable[[xarray.DataTree], None] | None = None
 
 
 def prepare_of_kind(case: Case, kind: Kind, source: str = "case") -> PreparedCase:

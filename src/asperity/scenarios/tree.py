@@ -14,6 +14,7 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity import __version__
+from asperity.config.case import Case
 from asperity.contact.device import find_device
 from asperity.errors import Grade, PhysicsWarning
 from asperity.laws import baselines, reference, spec_of
@@ -57,15 +58,10 @@ def assembled(
     """
     case = chain.case
     every = (*numerics, *(choice.rows() if choice else ()))
-    scenario = {
-        provenance.KIND: case.kind,
-        provenance.PARAMETERS: json.dumps(case.parameters(), ensure_ascii=False),
-        provenance.NUMERICS: json.dumps(_listed(chain, every), ensure_ascii=False),
-        provenance.LAWS: json.dumps([spec_of(n).entry() for n in chain.case.laws], ensure_ascii=False),
-    }
+    scenario = {provenance.NUMERICS: json.dumps(_listed(chain, every), ensure_ascii=False)}
     if choice is not None:
         scenario[provenance.EXPECTED_ERRORS] = json.dumps(choice.entries())
-    held = xarray.Dataset(attrs=attributes(scenario))
+    held = scenario_group(case).assign_attrs(attributes(scenario))
     tree = xarray.DataTree.from_dict({"/scenario": held, **groups})
     tree.attrs = attributes(
         {
@@ -81,6 +77,16 @@ def assembled(
         }
     )
     return checked(tree)
+
+
+def scenario_group(case: Case) -> xarray.Dataset:
+    """Lay out what was asked for."""
+    scenario = {
+        provenance.KIND: case.kind,
+        provenance.PARAMETERS: json.dumps(case.parameters(), ensure_ascii=False),
+        provenance.LAWS: json.dumps([spec_of(n).entry() for n in case.laws], ensure_ascii=False),
+    }
+    return xarray.Dataset(attrs=attributes(scenario))
 
 
 def _sources(chain: Chain[Any], choice: LawChoice | None) -> tuple[str, ...]:

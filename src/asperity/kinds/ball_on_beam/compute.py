@@ -77,7 +77,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             checkpoint=checkpoints.get(law.name),
         )
 
-    chain = reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
+    chain = reduce_and_roll(prepared, roll_law, store, progress, watch)
     return Computed(case, chain, ball, beam)
 
 

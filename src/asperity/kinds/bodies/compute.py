@@ -68,7 +68,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         )
         return first_of(every)
 
-    chain = reduce_and_roll(case, textures, prepared.shape, roll_laws, store, progress, watch, others)
+    chain = reduce_and_roll(prepared, roll_laws, store, progress, watch, others)
     return Computed(case, bodies, over, chain)
 
 

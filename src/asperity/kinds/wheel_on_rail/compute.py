@@ -25,6 +25,8 @@ from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
 if TYPE_CHECKING:
+    from xarray import Dataset
+
     from asperity.scenarios.preparing import PreparedCase
 
 
@@ -39,7 +41,7 @@ class Computed:
     kernel: MovingKernel  # response of the rail under the moving contact
     rail: RailPoles | MovingKernel  # how it was carried on in time
     # (laws, points, n), displacement, m, and velocity, m/s, of the passed points
-    points: tuple[NDArray[np.float64], NDArray[np.float64]]
+    points: tuple[NDArray[np.float64], ...] = ()
 
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
@@ -75,7 +77,12 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             checkpoint=checkpoints.get(law.name),
         )
 
-    chain = reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
+    def known(chain: Chain[WheelRolling]) -> dict[str, Dataset]:
+        from asperity.kinds.wheel_on_rail.track_group import track_group
+
+        return {"/track": track_group(Computed(case, chain, wheel, track, kernel, rail))}
+
+    chain = reduce_and_roll(prepared, roll_law, store, progress, watch, known=known)
     points = passed_points(kernel, list(chain.runs.values()), case.point_positions, progress)
     watch.lap("passed points")
     return Computed(case, chain, wheel, track, kernel, rail, points)

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.compute import Computed
-from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError
-from asperity.kinds.wheel_on_rail.losses import relaxed
+from asperity.kinds.wheel_on_rail.losses import error_of_losses, relaxed
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.scenarios.laws import working_point
 from asperity.schema import Attribute, Entry, attributes, variables
@@ -23,10 +22,10 @@ KERNEL_LAG = 0.25
 """Longest lag of the moving kernel that is kept in a result, s."""
 
 
-def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
+def track_group(computed: Computed) -> xarray.Dataset:
     """Lay out what the wheel rolls on: receptances, decay rates, moving kernel, loss factors and numbers.
 
-    `losses` says how far the force is off for loss factors.
+    None of it depends on what has rolled.
     """
     track, case = computed.track, computed.case
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
@@ -46,7 +45,7 @@ def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
         schema.DECAY_RATE_EN15461: decay_rate_en15461(track, frequency),
         schema.DECAY_RATE_LIMIT: iso_3095_decay_rate(frequency),
     }
-    found |= _kernel(computed) | relaxed(losses)
+    found |= _kernel(computed) | relaxed(error_of_losses(computed))
     return xarray.Dataset(variables(found), attrs=attributes(_facts(computed)))
 
 

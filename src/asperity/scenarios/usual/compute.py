@@ -45,9 +45,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             checkpoint=checkpoint_of(law, prepared, store),
         )
 
-    return Computed(
-        prepared, reduce_and_roll(case, textures, prepared.shape, roll_law, store, progress, watch)
-    )
+    return Computed(prepared, reduce_and_roll(prepared, roll_law, store, progress, watch))
 
 
 def checkpoint_of(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
