@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 import zlib
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -77,6 +77,11 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     >>> asperity.save(asperity.run(case), "runs/first/run.nc").name
     'run.nc'
     """
+    return save_after(lambda: None, tree, path)
+
+
+def save_after(before: Callable[[], object], tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
+    """Write a result as `save` does, with something done between laying the file out and writing it."""
     checked(tree)
     encoding = {
         node.path: {
@@ -88,6 +93,7 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     }
     image = io.BytesIO()  # HDF5 itself ends the process where a disk is full
     _storable(tree).to_netcdf(image, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
+    before()
     return write_bytes(path, image.getbuffer(), sealed=True)
 
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
-from scipy.fft import rfft
 
 from asperity.errors import InputError
 
@@ -39,6 +38,8 @@ def psd(
     <= overlap < 1, give a smoother estimate and a coarser frequency step, 1/(segment · spacing). P. D. Welch,
     IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
     """
+    from scipy.fft import rfft  # not where only bands are looked up
+
     values = np.asarray(signal, dtype=np.float64)
     _check_signal(values, spacing)
     length = values.shape[-1] if segment is None else int(segment)

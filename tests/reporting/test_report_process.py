@@ -20,6 +20,16 @@ def some_of(tree, *groups):
     return DataTree.from_dict({f"/{name}": tree[name].to_dataset() for name in groups})
 
 
+def noting(folder, found):
+    """Save nothing, but note what is left of an earlier report."""
+
+    def save(before):
+        before()
+        found.append(files(folder))
+
+    return save
+
+
 def files(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix != ".nc"}
 
@@ -33,7 +43,7 @@ def test_another_process_writes_what_this_one_does(real_runs, reports, tmp_path,
         for name in known:
             reporter.ahead(some_of(real_runs[KIND], "scenario", name))
         for _ in range(2):
-            written = reporter.write(real_runs[KIND], page, lambda: before.append(files(tmp_path)))
+            written = reporter.write(real_runs[KIND], page, noting(tmp_path, before))
             assert written == page
             assert files(tmp_path) == expected
     assert before == [{}, {}]  # an earlier report was removed
@@ -55,7 +65,7 @@ def test_what_the_other_process_leaves_is_written_here(real_runs, tmp_path, prog
     reporter = ReportProcess(subprocess.Popen(command, **pipes))
     try:
         reporter.ahead(some_of(real_runs[KIND], "scenario", "surface"))
-        page = reporter.write(real_runs[KIND], tmp_path / "report.html", lambda: done.append(files(tmp_path)))
+        page = reporter.write(real_runs[KIND], tmp_path / "report.html", noting(tmp_path, done))
     finally:
         module._end(reporter)
     assert "</html>" in page.read_text()
@@ -66,7 +76,7 @@ def test_what_cannot_be_written_is_told_here(real_runs, tmp_path, monkeypatch):
     monkeypatch.setenv("ASPERITY_THREADS", "2")
     (tmp_path / "report.html").mkdir()
     with report_process() as reporter, pytest.raises(ComputationError, match=r"report\.html"):
-        reporter.write(real_runs[KIND], tmp_path / "report.html", lambda: None)
+        reporter.write(real_runs[KIND], tmp_path / "report.html", lambda before: before())
 
 
 def test_one_thread_writes_alone(monkeypatch):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.interpolate import CubicSpline
 
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.store import Store
@@ -146,6 +147,14 @@ def test_a_periodic_function_is_tabulated_over_the_bay():
     places = np.arange(24) / 24
     fine = over_the_bay(np.sin(2 * np.pi * places))
     np.testing.assert_allclose(fine, np.sin(2 * np.pi * np.linspace(0, 1, len(fine))), atol=1e-4)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 24])
+def test_the_table_over_the_bay_is_a_periodic_spline(count):
+    values = np.random.default_rng(count).normal(size=(count, 3)) + 1j
+    fine = over_the_bay(values)
+    spline = CubicSpline(np.linspace(0, 1, count + 1), [*values, values[0]], bc_type="periodic")
+    np.testing.assert_allclose(fine, spline(np.linspace(0, 1, len(fine))), atol=1e-12)
 
 
 def test_progress_names_the_kernel():

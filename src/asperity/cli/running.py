@@ -84,8 +84,10 @@ def _run_alone(
     before = time.monotonic(), COMPILATION.seconds
     with contact_compiled_beside():
         from asperity.running import run
+        from asperity.unneeded import spare_pint
 
         prepared = prepared_case(case, source)
+        spare_pint()
         with progress_bar() as progress:
             announce_scan(prepared, progress)
             ahead = None if reporter is None else reporter.ahead
@@ -163,12 +165,12 @@ def band_summaries(tree: DataTree) -> dict[str, Any]:
 
 def _written(tree: DataTree, directory: Path, reporter: ReportProcess | None) -> dict[str, Path]:
     """Write a result, and its report if it is wanted; the paths, each with what it is."""
-    from asperity.results import save
+    from asperity.results import save, save_after
 
     path = directory / "run.nc"
     if reporter is None:
         return {"Results": save(tree, path)}
-    page = reporter.write(tree, directory / PAGE, lambda: save(tree, path))
+    page = reporter.write(tree, directory / PAGE, lambda before: save_after(before, tree, path))
     return {"Results": path, "Report": page}
 
 

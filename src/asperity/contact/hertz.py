@@ -6,10 +6,12 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-import scipy
 from scipy.special import ellipe, ellipkm1
 
 from asperity.errors import InputError
+
+HALVINGS = 56
+"""Of the interval that holds the logarithm of the axis ratio, until its ends are neighbours."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,11 @@ class Hertz:
 
         axis_ratio = 1.0
         if ratio <= 1.0 - 1e-12:
-            axis_ratio = float(scipy.optimize.brentq(mismatch, 1e-9, 1.0, xtol=1e-15, rtol=1e-14))
+            low, high = math.log(1e-9), 0.0
+            for _ in range(HALVINGS):
+                middle = 0.5 * (low + high)
+                low, high = (low, middle) if mismatch(math.exp(middle)) > 0.0 else (middle, high)
+            axis_ratio = math.exp(0.5 * (low + high))
         return (axis_ratio, *integrals(axis_ratio))
 
     @cached_property

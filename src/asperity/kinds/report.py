@@ -90,7 +90,8 @@ def draw_all(
     parts = parts_of(result)
     drawn = {part.name: ahead[part.name] for part in parts if part.name in ahead}
     kept = {name: early.picture for name, early in drawn.items() if holds(result, early.looks)}
-    left = [part for part in parts if part.name not in kept]
+    # motion, with panels one above the other, takes longest: it should not be what is waited for at the end
+    left = [part for part in reversed(parts) if part.name not in kept]
     found = in_processes(lambda part: picture(result, part).laid_out(), left, processes)
     return kept | {laid_out["name"]: Picture.read(laid_out) for laid_out in found}
 

@@ -60,21 +60,34 @@ class ReportProcess:
         self._telling = Thread(target=tell, daemon=True)  # the other process may not listen yet
         self._telling.start()
 
-    def write(self, tree: DataTree, page: Path, meanwhile: Callable[[], object]) -> Path:
-        """Write the page of a result, and what goes beside it, but not before something else is done.
+    def write(self, tree: DataTree, page: Path, save: Callable[[Callable[[], object]], object]) -> Path:
+        """Write the page of a result, and what goes beside it, but not before the result is saved.
 
-        An earlier report is removed first. Then the other process draws, while that is done here. If it
-        cannot, because of an error or its end, this one does what is left, or says why not.
+        `save` saves it, and calls what it is given before it writes anything: then an earlier report is
+        removed. The other process draws meanwhile. If it cannot, because of an error or its end, this one
+        does what is left, or says why not.
         """
         from asperity.streamed import send_result
 
-        self.told()
-        if not self._did(page.parent) and page.exists():
-            from asperity.kinds.report import remove_report
+        removed = drawing = False
 
-            remove_report(page.parent)
-        drawing = self._told(lambda to: send_result(tree, to))
-        meanwhile()
+        def tell() -> None:
+            nonlocal removed, drawing
+            self.told()
+            removed = self._did(page.parent)
+            drawing = self._told(lambda to: send_result(tree, to))
+
+        telling = Thread(target=tell, daemon=True)  # the other process may be in the middle of a figure
+        telling.start()
+
+        def remove_earlier() -> None:
+            telling.join()
+            if not removed and page.exists():
+                from asperity.kinds.report import remove_report
+
+                remove_report(page.parent)
+
+        save(remove_earlier)
         if drawing and self._did(page):
             return page
         from asperity.kinds.report import write_page
@@ -164,15 +177,17 @@ def draw_on_request() -> None:
     answered when it was read, and drawn from until something else comes. An error ends the process: the other
     one will meet it, too, and tell.
     """
-    import xarray  # noqa: F401  imported while there is time
-
     from asperity.kinds import KINDS
     from asperity.kinds.report import draw_all, parts_of, remove_report, write_page
-    from asperity.reporting.ahead import DrawnAhead, drawn_ahead
+    from asperity.reporting.ahead import DrawnAhead, drawn_ahead, warm_up
     from asperity.streamed import receive_result
+    from asperity.unneeded import spare_pint
 
+    spare_pint()
     for kind in KINDS.values():
         assert kind.chapters  # read while there is time, as well
+    if not _asked_again():
+        warm_up()
     gc.freeze()  # what was imported is used to the end
     gc.set_threshold(_COLLECT_AFTER)
     asked, processes = sys.stdin.buffer, min(processors(), _MOST)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-import scipy
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from asperity.errors import InputError
+from asperity.kernels.monotone import shape_preserving
 from asperity.reduction.convolving import PIECE, LongConvolution
 from asperity.reduction.filter import ContactFilter
 from asperity.reduction.texture import StateTexture
@@ -186,7 +186,7 @@ def _target(contact_filter: ContactFilter, wavenumber: NDArray[np.float64]) -> N
     """
     known, magnitude = contact_filter.wavenumber, contact_filter.magnitude
     inside = np.log(np.clip(wavenumber, known[0], known[-1]))
-    found = np.exp(scipy.interpolate.PchipInterpolator(np.log(known), np.log(magnitude), axis=1)(inside))
+    found = np.exp(shape_preserving(np.log(known), np.log(magnitude), inside))
     if contact_filter.normalise == "low-wavenumber":
         share = np.minimum(wavenumber / known[0], 1.0)
         found = share * found + (1.0 - share)

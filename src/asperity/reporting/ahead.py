@@ -6,11 +6,14 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
+from matplotlib.figure import Figure
 from xarray import DataTree
 
 from asperity.reporting.data import Looks, noted
-from asperity.reporting.page import Picture, picture
+from asperity.reporting.page import Picture, page_template, picture
 from asperity.reporting.part import Part
+from asperity.reporting.style import frequency_axis, legend_above, new_figure, styled
+from asperity.reporting.svg import drawing_of
 
 
 class DrawnAhead(NamedTuple):
@@ -29,3 +32,20 @@ def drawn_ahead(known: DataTree, parts: Sequence[Part], enough: Callable[[], boo
         with noted() as looks, suppress(Exception):  # what it failed for may not be known yet
             found[part.name] = DrawnAhead(picture(known, part), looks)
     return found
+
+
+def warm_up() -> None:
+    """Draw a figure for nobody, and read the page: what is done but once need not wait for a result."""
+    drawing_of(_any_figure(), "warm-up")
+    page_template("report.html.jinja")
+
+
+@styled()
+def _any_figure() -> Figure:
+    figure = new_figure(3.9)
+    axes, image = figure.subplots(2, 1)
+    axes.semilogy([20.0, 5000.0], [1.0, 10.0], label="line")
+    frequency_axis(axes, 20.0, 5000.0)
+    legend_above(axes)
+    figure.colorbar(image.pcolormesh([[0.0, 1.0], [1.0, 0.0]], rasterized=True), ax=image)
+    return figure

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
@@ -168,6 +167,18 @@ def over_the_bay(values: NDArray[Any]) -> NDArray[Any]:
 
     At equal places, both ends of the bay included, by a periodic cubic spline.
     """
-    closed = np.concatenate([values, values[:1]])
-    spline = scipy.interpolate.CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic")
-    return np.asarray(spline(np.linspace(0.0, 1.0, CELLS + 1)))
+    count = len(values)
+    through = _periodic_splines(np.arange(float(count)), count)
+    between = _periodic_splines(np.linspace(0.0, count, CELLS + 1), count)
+    return np.asarray(np.tensordot(between @ np.linalg.inv(through), values, axes=1))
+
+
+def _periodic_splines(places: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """Cubic B-splines (places, count) around the whole numbers below `count`, where they begin again."""
+    first = np.floor(places).astype(int)
+    t = places - first
+    weights = ((1.0 - t) ** 3, 4.0 - 6.0 * t**2 + 3.0 * t**3, 1.0 + 3.0 * (t + t**2 - t**3), t**3)
+    splines = np.zeros((len(places), count))
+    for shift, weight in zip(range(-1, 3), weights, strict=True):
+        np.add.at(splines, (np.arange(len(places)), (first + shift) % count), weight / 6.0)
+    return splines
