@@ -72,6 +72,7 @@ class Tree:
             "ASPERITY_CACHE": folder / "kept",
         }
         self.environment = os.environ | {name: str(value) for name, value in own.items()}
+        self.environment.pop("PYTHONDONTWRITEBYTECODE", None)  # what is installed is in bytecode
         command = [sys.executable, "-m", "asperity", "new", "wheel-on-rail"]
         done = subprocess.run(command, env=self.environment, capture_output=True, check=True)
         (folder / "wheel.toml").write_bytes(done.stdout)
