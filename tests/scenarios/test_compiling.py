@@ -146,3 +146,13 @@ def test_the_second_process_is_told_what_exists():
     assert subprocess.run(command, check=False).returncode == 0
     module, _, name = second_process.LAST.rpartition(".")
     assert hasattr(sys.modules[module], name)
+
+
+def test_what_python_never_calls_is_compiled_as_the_contact_calls_it():
+    code = (
+        "from asperity.kernels import kept; from asperity.scenarios import compiling as c; "
+        "solve = lambda: {name for name in kept._CALLED if '.projected_cg.solve-' in name}; "
+        "c.press_once(); called = solve(); c.iterate_never(); assert len(solve() | called) == 1, solve()"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
