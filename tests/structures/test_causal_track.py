@@ -9,6 +9,8 @@ from hypothesis import strategies as st
 
 from asperity import Track
 from asperity.spectra import third_octave_bands
+from asperity.store import Store
+from asperity.structures import causal_track as module
 from asperity.structures.causal_track import LEAST_STATIC, causal_track, least_static
 from asperity.structures.moving_kernel import moving_kernel
 
@@ -154,3 +156,27 @@ def test_the_receptance_of_a_track_keeps_its_constant_loss_factors():
     pad, ballast = NORDBORG.layer_stiffnesses(2.0 * np.pi * frequency)
     np.testing.assert_allclose(pad, 300e6 * (1.0 + 0.15j))
     np.testing.assert_allclose(ballast, 150e6 * (1.0 + 0.4j))
+
+
+@pytest.mark.parametrize("track", [NORDBORG, SOFT], ids=["rail", "pads and ballast"])
+def test_a_fit_is_kept(track, tmp_path, monkeypatch):
+    store = Store(tmp_path)
+    fits = []
+    for cache in (None, store, store, Store(tmp_path / "other")):
+        monkeypatch.setattr(module, "_fitted", {})
+        if len(fits) == 2:
+            monkeypatch.setattr(module.scipy.optimize, "nnls", None)  # nothing is fitted
+        if len(fits) == 3:
+            monkeypatch.undo()
+            monkeypatch.setattr(module, "_fitted", {})
+        fits.append(causal_track(track, cache))
+    assert fits[1:] == fits[:1] * 3
+    assert causal_track(track) is fits[3]
+    assert len(store.files()) == 1
+
+
+def test_tracks_that_differ_in_name_alone_share_a_fit(tmp_path):
+    store = Store(tmp_path)
+    other = replace(NORDBORG, name="another")
+    assert causal_track(other, store).relaxations == causal_track(NORDBORG, store).relaxations
+    assert causal_track(other, store).name == "another"

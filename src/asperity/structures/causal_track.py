@@ -9,8 +9,7 @@ the track with constant loss factors, in each one-third octave.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from asperity.spectra import third_octave_bands
+from asperity.store import Cache, content_key, made
 from asperity.structures.relaxation import Relaxation, Relaxations, relaxing
 from asperity.structures.track import Track
 
@@ -42,20 +42,52 @@ POSITIONS, LINES = 6, 8
 """Places in half a bay, and frequencies in a band."""
 STEPS, SETTLED = 40, 1e-3
 """Most steps of the fit, and the relative gain of a step that ends it."""
+CHOICES = [
+    LOWEST, HIGHEST, FREQUENCIES, LEAST_STATIC, WHEELS, CONTACT, LARGE, DEPARTURE, RAIL, POSITIONS, LINES,
+    STEPS, SETTLED,
+]  # fmt: skip
+"""All that a fit depends on beside its track."""
+MOST = 16
+"""Causal tracks that are held."""
 
 Linearised = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
 
 
-def causal_track(track: Track) -> Track:
+def causal_track(track: Track, cache: Cache | None = None) -> Track:
     """Put stiffnesses that relax in the place of loss factors; a track that is causal already stays as it is.
 
     Least squares of the level of the mean square of 1/(α_W + α_C + α_R) over half a bay and each band, for
     three rigid wheels on a linear contact, in the strengths of the Maxwell elements of pads and ballast. None
     of them is negative, so that the track is passive. The rail, whose loss factor is small, keeps it in all
     bands, and its stiffness at 300 Hz. At rest, and under a load that hardly moves, the track is softer than
-    the nominal one.
+    the nominal one. A cache keeps the fit.
     """
-    return track if track.is_causal else _fitted(track)
+    if track.is_causal:
+        return track
+    if track not in _fitted:
+        if len(_fitted) == MOST:
+            _fitted.clear()
+        _fitted[track] = replace(track, relaxations=_relaxations(track, cache))
+    return _fitted[track]
+
+
+_fitted: dict[Track, Track] = {}
+"""Causal tracks that are known, by those they stand for."""
+
+
+def _relaxations(track: Track, cache: Cache | None) -> Relaxations:
+    """Fit, or look up, what stands for the loss factors of a track."""
+
+    def make() -> dict[str, NDArray[np.float64]]:
+        fit = _Fit(track)
+        unknowns = _least_squares(fit.linearised, fit.start()) if fit.lossy else np.zeros(0)
+        found = vars(fit.track_of(unknowns).relaxations)
+        return {part: np.array([r.static, *r.strengths]) for part, r in found.items() if r is not None}
+
+    parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
+    kept = make() if cache is None else made(cache, content_key("causal-track", parameters, CHOICES), make)
+    plain = {part: values.tolist() for part, values in kept.items()}
+    return Relaxations(**{part: Relaxation(c[0], tuple(c[1:]), FREQUENCIES) for part, c in plain.items()})
 
 
 def least_static(factor: float) -> float:
@@ -65,12 +97,6 @@ def least_static(factor: float) -> float:
     `LEAST_STATIC`.
     """
     return max(1.0 / (1.0 + 2.0 * factor), LEAST_STATIC)
-
-
-@lru_cache(maxsize=16)
-def _fitted(track: Track) -> Track:
-    fit = _Fit(track)
-    return fit.track_of(_least_squares(fit.linearised, fit.start()) if fit.lossy else np.zeros(0))
 
 
 def _rail(factor: float) -> Relaxation:

@@ -88,7 +88,7 @@ def moving_kernel(
         raise InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
     if speed > 0.0:
         track.refuse_speed(speed)
-    track = causal_track(track)
+    track = causal_track(track, cache)
     parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
     distance = real("distance (m)", distance, "a finite number")
     described = (parameters, speed, time_step, duration, positions, ZONES, SHIFT)
