@@ -49,15 +49,22 @@ class ReportProcess:
     def _draw_ahead(self, known: DataTree) -> None:
         from asperity.streamed import send_result
 
-        before = self._telling
-
         def tell() -> None:
-            if before is not None:
-                before.join()
             if self._told(lambda to: to.write(b"null\n")) and self._told(lambda to: send_result(known, to)):
                 self._answered()
 
-        self._telling = Thread(target=tell, daemon=True)  # the other process may not listen yet
+        self._tell_next(tell)
+
+    def _tell_next(self, tell: Callable[[], None]) -> None:
+        """Tell the other process something on a thread, after all else: it may not listen yet."""
+        before = self._telling
+
+        def tell_after() -> None:
+            if before is not None:
+                before.join()
+            tell()
+
+        self._telling = Thread(target=tell_after, daemon=True)
         self._telling.start()
 
     def write(self, tree: DataTree, page: Path, save: Callable[[Callable[[], object]], object]) -> Path:
@@ -73,20 +80,17 @@ class ReportProcess:
 
         def tell() -> None:
             nonlocal removed, drawing
-            self.told()
             removed = self._did(page.parent)
             drawing = self._told(lambda to: send_result(tree, to))
 
-        telling = Thread(target=tell, daemon=True)  # the other process may be in the middle of a figure
-        telling.start()
-
         def remove_earlier() -> None:
-            telling.join()
+            self.told()
             if not removed and page.exists():
                 from asperity.kinds.report import remove_report
 
                 remove_report(page.parent)
 
+        self._tell_next(tell)
         save(remove_earlier)
         if drawing and self._did(page):
             return page
@@ -95,7 +99,7 @@ class ReportProcess:
         return write_page(tree, page)
 
     def told(self) -> None:
-        """Wait until what is known has been told, or cannot be."""
+        """Wait until all has been told, or cannot be."""
         if self._telling is not None:
             self._telling.join()
 

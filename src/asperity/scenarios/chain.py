@@ -156,7 +156,7 @@ def reduce_and_roll(
         from asperity.scenarios.known import told_ahead
 
         chain = told_ahead(chain, prepared.ahead, known(chain))
-        watch.lap("what is known before")
+        watch.lap("statistics")
     for name in case.laws:
         runs[name] = roll(workshop.build(name), *(other.build(name) for other in others))
         watch.lap(f"law {name}")

@@ -48,7 +48,7 @@ def layout(
     choice = None if brief else law_choice(computed.case, shape, textures, transfer)
     groups = {
         "/surface": surface_group(computed.chain, brief=brief),
-        "/track": computed.chain.known.get("/track", track_group(computed)),
+        "/track": track_group(computed),
         "/contact": contact_group(computed.chain, found),
         "/rolling": _rolling(computed),
         "/spectra": spectra,
