@@ -366,6 +366,32 @@ def test_exit_codes_of_the_program_itself():
     assert len(wrong.stderr.splitlines()) == 1
 
 
+ENDING = """
+import atexit, sys, threading, time
+class Told:
+    def __init__(self, name): self.name = name
+    def __del__(self): print(self.name)
+late = Told("taken apart")
+from asperity.__main__ import start
+def work():
+    time.sleep(0.2)
+    atexit.register(print, "put away")
+    print("awaited")
+threading.Thread(target=work).start()
+sys.stdout = open(sys.stdout.fileno(), "w", buffering=65536)
+start()
+"""
+
+
+@pytest.mark.parametrize(("words", "code"), [(["--version"], 0), (["check", "nothing.toml"], 2)])
+def test_the_program_puts_away_what_it_holds_and_ends_without_taking_python_apart(words, code):
+    done = subprocess.run([sys.executable, "-c", ENDING, *words], capture_output=True, text=True)
+    assert done.returncode == code
+    told = done.stdout.splitlines()
+    assert told[-2:] == ["awaited", "put away"]
+    assert "taken apart" not in told
+
+
 def test_a_terminal_without_greek_letters_is_enough():
     program = [
         sys.executable,

@@ -1,5 +1,6 @@
 """Scans of long paths: memory does not grow, a killed scan goes on, stored forces are those in memory."""
 
+import gc
 import os
 import signal
 import subprocess
@@ -7,6 +8,7 @@ import sys
 import time
 import tracemalloc
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 import pytest
@@ -99,22 +101,27 @@ def test_workers_change_no_digit_of_scans_and_samples(tmp_path, workers):
 
 
 def peak(work):
+    """The most memory of a short path and of a long one: least of three, as others may take some."""
     work(400)  # compiles
     peaks = []
     for rows in (4000, 24000):
-        tracemalloc.start()
-        work(rows)
-        peaks.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
+        tries = []
+        for _ in range(3):
+            gc.collect()
+            tracemalloc.start()
+            work(rows)
+            tries.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.stop()
+        peaks.append(min(tries))
     return peaks
 
 
 def test_memory_does_not_grow_with_the_path(tmp_path, monkeypatch):
     """Beyond a few bytes a position (names of blocks, planes); the strip alone would take 120 a row."""
     monkeypatch.setattr("asperity.contact.scan.BLOCK", 64)
-    store = Store(tmp_path)
+    stores = (Store(tmp_path / str(n)) for n in count())
     monkeypatch.setattr(ScanJob, "solve", overlaps)
-    short, long = peak(lambda rows: scan_into(store, job(rows), workers=1))
+    short, long = peak(lambda rows: scan_into(next(stores), job(rows), workers=1))
     assert long - short < 12 * 20000
 
 

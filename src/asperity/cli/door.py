@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import gc
 import io
 import sys
@@ -80,7 +79,6 @@ class Door(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
         gc.set_threshold(COLLECT_AFTER)
-        atexit.register(gc.freeze)  # a last search for unused objects would take a second
         with interruptible(), warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.showwarning = lines = _WarningLines()
