@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 import asperity
 from asperity.contact import HalfSpace
@@ -17,6 +18,7 @@ from asperity.store import Store
 from asperity.studies.definition import study_of
 from asperity.studies.kept import kept, packed
 from asperity.surfaces.fields import Fields
+from asperity.surfaces.strip import LongStrip
 
 WHEEL = """
 kind = "wheel-on-rail"
@@ -73,6 +75,10 @@ def own_folder(tmp_path, monkeypatch):
     Path("ball.toml").write_text(BALL)
 
 
+def toml(keys):
+    return "".join(f"{key} = {json.dumps(value)}\n" for key, value in keys.items())
+
+
 def scans():
     return {path.name for path in Store().files() if path.name.startswith("scan-")}
 
@@ -94,6 +100,14 @@ def test_loads_share_the_scan_of_a_path():
     of_one = scans()
     asperity.study("ball.toml", {"ball.load": ["30 N", "25 N", "40 N"]}, executor=Here())
     assert scans() == of_one
+
+
+def test_speeds_share_the_scan_of_a_path_but_for_its_ends():
+    asperity.run(as_case("ball.toml").with_(speed=1.3))
+    of_fastest = scans()
+    asperity.study("ball.toml", {"speed": ["0.6 m/s", "0.9 m/s"]}, executor=Here())
+    assert len(of_fastest) > 10
+    assert len(scans() - of_fastest) <= 2 * 2  # first and last block of a shorter path
 
 
 @pytest.mark.parametrize(
@@ -131,6 +145,25 @@ def test_a_track_is_the_same_at_every_speed():
     assert np.array_equal(  # the run-in too, as far as both have one
         slow.line[: slow.before], fast.line[fast.before - slow.before : fast.before]
     )
+
+
+@pytest.mark.parametrize("likeness", [False, True])
+def test_the_path_of_a_ball_is_the_same_at_every_speed(likeness):
+    case = as_case("ball.toml")
+    if likeness:
+        heights = 0.05e-6 * np.random.default_rng(1).standard_normal((100, 100))
+        np.savez("map.npz", heights=gaussian_filter(heights, 4.0, mode="wrap"))
+        measured = {"file": "map.npz", "height_unit": "m", "pixel": "20 um"}
+        Path("measured.toml").write_text(
+            BALL.replace(BALL[BALL.index("rms") : BALL.index("[contact]")], toml(measured))
+        )
+        case = as_case("measured.toml")
+    slow, fast = (prepare_case(case.with_(speed=v)).textures for v in (0.6, 1.3))
+    assert isinstance(slow.path, LongStrip)
+    after, lead = slow.path.shape[0] - slow.before, fast.before - slow.before
+    assert lead > 1000
+    assert np.array_equal(slow.line, fast.line[lead : fast.before + after])
+    assert np.array_equal(slow.path.rows(40, 2000), fast.path.rows(lead + 40, lead + 2000))
 
 
 def test_processes_share_the_work_of_a_scan(tmp_path, monkeypatch):

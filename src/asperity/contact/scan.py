@@ -49,9 +49,10 @@ class ScanJob:
     surface: Strip  # (n, ny) heights, m, peaks positive
     body: NDArray[np.float64]  # (nx, ny), shape of the smooth body, m, zero at its lowest point
     approaches: NDArray[np.float64]  # (k,), from the planes, m, increasing
-    stride: int = 1  # rows between positions: the body stands on rows from 0, stride, 2 stride, … on
+    stride: int = 1  # rows between positions: the body stands on rows from `first`, first + stride, … on
     rtol: float = 1e-6  # tolerance of each solution, as in `HalfSpace.solve`
     planes: NDArray[np.float64] | float = 0.0  # (positions,), from which approaches count, m
+    anchor: int = 0  # row from which positions and blocks count: surfaces alike from there on share them
     device: Device | None = field(default_factory=find_device)
     """Where contacts are solved in batches; None for the processor, which solves them one by one."""
 
@@ -83,7 +84,12 @@ class ScanJob:
     @property
     def positions(self) -> int:
         """Number of positions."""
-        return len(range(0, self.surface.shape[0] - self.body.shape[0] + 1, self.stride))
+        return len(range(self.first, self.surface.shape[0] - self.body.shape[0] + 1, self.stride))
+
+    @property
+    def first(self) -> int:
+        """First row that the body stands on."""
+        return self.anchor % self.stride
 
     @property
     def block(self) -> int:
@@ -91,9 +97,14 @@ class ScanJob:
         return BLOCK if self.device is None else BATCH
 
     @property
-    def starts(self) -> range:
+    def ahead(self) -> int:
+        """Positions that the first block lacks, so that one begins at the anchor."""
+        return -(self.anchor // self.stride) % self.block
+
+    @property
+    def starts(self) -> list[int]:
         """First position of each block."""
-        return range(0, self.positions, self.block)
+        return [max(i, 0) for i in range(-self.ahead, self.positions, self.block)]
 
     @property
     def single(self) -> bool:
@@ -110,9 +121,11 @@ class ScanJob:
     def under(self, start: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Heights under a block, m, shape (rows, ny), and the planes of its positions, m."""
         known = np.broadcast_to(np.asarray(self.planes, dtype=np.float64), (self.positions,))
-        planes = np.ascontiguousarray(known[start : start + self.block])
-        stop = (start + len(planes) - 1) * self.stride + self.body.shape[0]
-        return np.ascontiguousarray(self.surface.rows(start * self.stride, stop)), planes
+        beyond = self.block * ((start + self.ahead) // self.block + 1) - self.ahead
+        planes = np.ascontiguousarray(known[start:beyond])
+        row = self.first + start * self.stride
+        stop = row + (len(planes) - 1) * self.stride + self.body.shape[0]
+        return np.ascontiguousarray(self.surface.rows(row, stop)), planes
 
     def key(self, rows: NDArray[np.float64], planes: NDArray[np.float64]) -> str:
         """Name in the store of the block on these heights."""
@@ -236,29 +249,29 @@ def scan_forces(
 
 
 def first_touch(
-    surface: NDArray[np.float64] | Strip, body: NDArray[np.float64], stride: int = 1
+    surface: NDArray[np.float64] | Strip, body: NDArray[np.float64], stride: int = 1, first: int = 0
 ) -> NDArray[np.float64]:
     """Approach, m, at which the body first touches the surface at each position, shape (n_positions,).
 
-    It counts from the plane z = 0, and is usually negative: peaks touch before the planes meet. Surface, body
-    and stride as in `ScanJob`.
+    It counts from the plane z = 0, and is usually negative: peaks touch before the planes meet. Surface,
+    body, stride and first row as in `ScanJob`.
     """
     strip, nx = Rows(surface) if isinstance(surface, np.ndarray) else surface, body.shape[0]
-    starts = range(0, strip.shape[0] - nx + 1, stride)
+    starts = range(first, strip.shape[0] - nx + 1, stride)
     result = np.empty(len(starts))
     lowest_first = np.argsort(body, axis=None, kind="stable")
     cells = list(zip(body.ravel()[lowest_first], *np.unravel_index(lowest_first, body.shape), strict=True))
-    for first in range(0, len(starts), TOUCHED):
-        block = starts[first : first + TOUCHED]
+    for done in range(0, len(starts), TOUCHED):
+        block = starts[done : done + TOUCHED]
         lines = np.ascontiguousarray(strip.rows(block[0], block[-1] + nx).T)
         highest = _sliding_maximum(lines.max(axis=0), nx)[::stride]
         nearest, gap = np.full(len(block), np.inf), np.empty(len(block))
-        for done, (height, offset, line) in enumerate(cells):  # a cell over all positions at once
-            if done % CELLS == 0 and (np.subtract(height, highest, out=gap) >= nearest).all():
+        for tried, (height, offset, line) in enumerate(cells):  # a cell over all positions at once
+            if tried % CELLS == 0 and (np.subtract(height, highest, out=gap) >= nearest).all():
                 break  # this cell and all that are higher touch nothing first
             under = lines[line, offset : offset + (len(block) - 1) * stride + 1 : stride]
             np.minimum(nearest, np.subtract(height, under, out=gap), out=nearest)
-        result[first : first + len(block)] = nearest
+        result[done : done + len(block)] = nearest
     return result
 
 

@@ -20,15 +20,17 @@ class StoredForces:
 
     cache: Cache
     keys: tuple[str, ...]  # name of each block in the cache
-    block: int  # positions in a block; the last may have fewer
+    block: int  # positions in a block; the first lacks those `ahead`, the last may have fewer
     shape: tuple[int, ...]  # (states, positions)
+    ahead: int = 0
 
     def columns(self, first: int, stop: int) -> NDArray[np.float64]:
         """Forces at the positions first … stop − 1, N, shape (states, stop − first)."""
         stop = min(stop, self.shape[1])
-        blocks = range(first // self.block, (stop - 1) // self.block + 1) if stop > first else range(0)
+        whole = range((first + self.ahead) // self.block, (stop - 1 + self.ahead) // self.block + 1)
+        blocks = whole if stop > first else range(0)
         parts = [np.empty((self.shape[0], 0)), *(self._forces(i) for i in blocks)]
-        offset = blocks.start * self.block
+        offset = max(blocks.start * self.block - self.ahead, 0)
         return np.concatenate(parts, axis=1)[:, first - offset : stop - offset]
 
     def _forces(self, index: int) -> NDArray[np.float64]:
@@ -57,7 +59,8 @@ def scan_into(
     for block in solved_blocks(job, cache, workers, progress, message):
         keys.append(block.key)
         counts.append(block.counts)
-    forces = StoredForces(cache, tuple(keys), job.block, (len(job.approaches), job.positions))
+    shape = (len(job.approaches), job.positions)
+    forces = StoredForces(cache, tuple(keys), job.block, shape, job.ahead)
     return ScannedForces(forces, total(counts), job.single)
 
 

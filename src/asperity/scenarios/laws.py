@@ -114,7 +114,7 @@ class Workshop:
         job = ScanJob(
             self.shape.half_space(self.contact.hardness), self.textures.surface, self.shape.body,
             reduction.approaches, table_stride(self.shape), rtol_for(self.numerics.force_accuracy),
-            self._scanned_planes,
+            self._scanned_planes, self.textures.before,
         )  # fmt: skip
         scanned = scan_into(self.cache, job, progress=self.progress, message="scanning the path")
         widest = self.textures.widest_window
@@ -126,22 +126,30 @@ class Workshop:
 
     @property
     def _scanned_planes(self) -> NDArray[np.float64]:
-        """Planes at the positions of the scan, m, peaks positive."""
+        """Planes at the positions of the scan, m, peaks positive.
+
+        To a femtometre: what Fourier transforms leave depends on where along the path they are taken.
+        """
         half, heights = self.shape.body.shape[0] // 2, self.plane.heights[0]
-        return -heights[half : len(heights) - half : table_stride(self.shape)]
+        return -np.round(heights[half : len(heights) - half][self._scanned_rows], 15)
+
+    @property
+    def _scanned_rows(self) -> slice:
+        """Rows on which the window begins, of all on which it may, counted from the record's start."""
+        stride = table_stride(self.shape)
+        return slice(self.textures.before % stride, None, stride)
 
     @cached_property
     def table(self) -> ForceTable:
         """The scan of the path, to look forces up in."""
-        dx, half, stride = self.shape.spacing[0], self.shape.body.shape[0] // 2, table_stride(self.shape)
+        rows, dx, body = self._scanned_rows, self.shape.spacing[0], self.shape.body
         if self.textures.defects is not None:
-            touches = first_touch(self.textures.surface, self.shape.body, stride) + self._scanned_planes
+            touches = first_touch(self.textures.surface, body, rows.step, rows.start) + self._scanned_planes
         else:
             assert self.reduced.touches is not None
-            touches = self.reduced.touches[::stride]
-        return ForceTable(
-            self.scan.forces, self.reduced.approaches, self.textures.start + half * dx, stride * dx, touches
-        )
+            touches = self.reduced.touches[rows]
+        start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
+        return ForceTable(self.scan.forces, self.reduced.approaches, start, rows.step * dx, touches)
 
 
 @dataclass(frozen=True, eq=False)

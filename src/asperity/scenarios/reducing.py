@@ -194,7 +194,8 @@ def _approaches(
 ) -> NDArray[np.float64]:
     """States as given, or from the first touch to a high force, denser where contact begins.
 
-    Those of the samples do not depend on the path; more lie below where it is touched earlier.
+    Those of the samples do not depend on the path; more lie below where it is touched earlier, by whole
+    steps: paths of other lengths over the same surface have them in common.
     """
     if contact.approaches is not None:
         return np.array(contact.approaches)
@@ -204,7 +205,7 @@ def _approaches(
     )
     states = chosen_states(low, high)
     below, step = max(lowest["path"], shape.lowest_approach), 2.0 * (states[1] - states[0])
-    further = np.linspace(below, low, math.ceil((low - below) / step), endpoint=False)
+    further = low - step * np.arange(math.ceil((low - below) / step), 0, -1)
     return np.concatenate([further, states])
 
 

@@ -52,18 +52,19 @@ def scan_sizes(case: Case, shape: Geometry, textures: Textures) -> dict[str, Exp
     if strips:
         result["filters"] = _sized(case, shape, strips, filter_stride(shape), FILTER_SHARE * accuracy)
     if Need.SCAN in needs_of(case.laws) and textures.path is not None:
-        result["path"] = _sized(case, shape, [textures.path], table_stride(shape), accuracy)
+        result["path"] = _sized(case, shape, [textures.path], table_stride(shape), accuracy, textures.before)
     return result
 
 
 def _sized(
-    case: Case, shape: Geometry, strips: Sequence[Strip], stride: int, force_accuracy: float
+    case: Case, shape: Geometry, strips: Sequence[Strip], stride: int, force_accuracy: float, anchor: int = 0
 ) -> Expected:
     """Size of the scans of some strips, of as many states as the case names or the run chooses."""
     states = np.arange(float(len(case.contact.approaches or range(STATES))))
     half_space = shape.half_space(None)
     jobs = [
-        ScanJob(half_space, strip, shape.body, states, stride, rtol_for(force_accuracy)) for strip in strips
+        ScanJob(half_space, strip, shape.body, states, stride, rtol_for(force_accuracy), anchor=anchor)
+        for strip in strips
     ]
     return Expected(
         positions=sum(job.positions for job in jobs),

@@ -16,16 +16,13 @@ from asperity.scenarios.reading import read_maps
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.rotation import QUARTER, rotated
-from asperity.surfaces.strip import Strip, raised
+from asperity.surfaces.strip import LongStrip, Strip, raised
 from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
 
 STRIP_WINDOWS = 16
 """Length of a strip for the filters, in windows: few bins of its spectra span the fall of a filter else."""
 FEWEST_WINDOWS = 4
 """Least length of maps that strips are cut from, in windows, where the case does not ask for more."""
-
-HELD_POINTS = 2**22
-"""Points of a synthesised path that are held in memory (32 MiB); of longer paths, pieces are."""
 
 READ_POINTS = 2**18
 """Points of a path that are read in one go (2 MiB)."""
@@ -181,12 +178,13 @@ def cut_from(path: Strip, contact: ContactCase, duration: float, *, first: int =
 
 
 def path_of(
-    maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int, run_in: int = 0
+    maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int, run_in: int, before: int
 ) -> tuple[Strip, str]:
     """Take the path (rows, ny) from measured maps, and say how.
 
     Cut from the first map where it is large enough, but for the run-in, whose rows are mirrored where it is
-    too short; else synthesised in their likeness, in pieces where it is long.
+    too short; else synthesised in their likeness, the same at every speed from the row `before` on, where the
+    record starts.
     """
     first = maps[0]
     if first.shape[0] >= shape[0] - run_in and first.shape[1] >= shape[1]:
@@ -195,10 +193,7 @@ def path_of(
         origin = "path cut from the first" + mirrored_words(heights, shape[0])
         path = mirrored_before(heights - heights.mean(), shape[0])
         return HeightMap(path, first.spacing, first.source), origin
-    origin = "path synthesised in their likeness"
-    if shape[0] * shape[1] > HELD_POINTS:
-        return long_strip_like(maps, shape, seed), f"{origin}, in pieces"
-    return from_map(maps, shape, seed), origin
+    return long_strip_like(maps, shape, seed, before=before), "path synthesised in their likeness"
 
 
 def mirrored_before(heights: NDArray[np.float64], rows: int) -> NDArray[np.float64]:
@@ -228,11 +223,12 @@ def synthesised(surface: Surface, spacing: float, shape: tuple[int, int], seed: 
     return self_affine(shape, (spacing, spacing), **_self_affine_keys(surface), seed=seed)
 
 
-def synthesised_path(surface: Surface, spacing: float, shape: tuple[int, int], seed: int) -> Strip:
-    """Synthesise a self-affine path as `synthesised` does, in pieces where it is long."""
-    if shape[0] * shape[1] <= HELD_POINTS:
-        return synthesised(surface, spacing, shape, seed)
-    return long_self_affine(shape, (spacing, spacing), **_self_affine_keys(surface), seed=seed)
+def synthesised_path(
+    surface: Surface, spacing: float, shape: tuple[int, int], seed: int, before: int
+) -> LongStrip:
+    """Synthesise a self-affine path as `synthesised` does, the same at every speed from row `before` on."""
+    keys = _self_affine_keys(surface)
+    return long_self_affine(shape, (spacing, spacing), **keys, seed=seed, before=before)
 
 
 def _self_affine_keys(surface: Surface) -> dict[str, float]:

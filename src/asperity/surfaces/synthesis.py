@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,8 +24,8 @@ __all__ = [
     "strip_from_bands",
 ]
 
-PIECE_POINTS = 2**19
-"""Points of a piece of a long strip, at least: 4 MiB."""
+PIECE_POINTS = 2**18
+"""Points of a piece of a long strip, at least: 2 MiB."""
 PIECE_REACHES = 16
 """Length of a piece of a long strip in correlation lengths, at least."""
 BAND_REACHES = 8
@@ -161,10 +161,12 @@ def long_self_affine(
     shortest: float,
     anisotropy: float = 1.0,
     seed: int,
+    before: int = 0,
 ) -> LongStrip:
     """Self-affine strip of any length, generated where it is read.
 
-    Pieces of `self_affine` surfaces, whose parameters it has, blended over two roll-off wavelengths.
+    Pieces of `self_affine` surfaces, whose parameters it has, blended over two roll-off wavelengths. With
+    rows `before`, as `LongStrip` has them.
     """
     steps = (float(spacing[0]), float(spacing[1]))
     _check_shape(shape)
@@ -179,7 +181,8 @@ def long_self_affine(
     reach = int(np.ceil(longest * np.sqrt(anisotropy) / steps[0]))
     source = f"self-affine: rms {rms:.4g} m, Hurst {hurst:g}, {shortest:.4g} to {longest:.4g} m, seed {seed}"
     name = "self-affine", steps, rms, hurst, longest, shortest, anisotropy
-    return _long_strip(shape, steps, piece, seed, reach, None, source, name)
+    stride, blend = _pieces(shape[1], reach)
+    return LongStrip(shape, steps, piece, seed, stride, blend, source=source, before=before, name=name)
 
 
 def long_strip_from_bands(
@@ -218,11 +221,12 @@ def long_strip_like(
     shape: tuple[int, int],
     seed: int,
     spacing: float | tuple[float, float] | None = None,
+    before: int = 0,
 ) -> LongStrip:
     """Strip of any length in the likeness of measured maps, generated where it is read.
 
     Gaussian pieces of the kind that `from_map` makes, blended over two lengths of the maps, then translated
-    to the height distribution, which is exact in the blends too.
+    to the height distribution, which is exact in the blends too. With rows `before`, as `LongStrip` has them.
     """
     _check_shape(shape)
     like = likeness(maps, spacing)
@@ -231,22 +235,13 @@ def long_strip_like(
         return _gaussian_like(like, (rows, shape[1]), piece_seed)
 
     source = f"synthesised from {like.source}, seed {seed}"
-    return _long_strip(shape, like.spacing, piece, seed, like.reach, like.transform, source, object())
+    stride, blend = _pieces(shape[1], like.reach)
+    return LongStrip(shape, like.spacing, piece, seed, stride, blend, like.transform, source, before)
 
 
-def _long_strip(
-    shape: tuple[int, int],
-    spacing: tuple[float, float],
-    piece: Callable[[int, int], NDArray[np.float64]],
-    seed: int,
-    reach: int,
-    transform: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None,
-    source: str,
-    name: Hashable,
-) -> LongStrip:
-    stride = max(PIECE_POINTS // shape[1], PIECE_REACHES * reach)
-    blend = max(1, BLEND_REACHES * reach)
-    return LongStrip(shape, spacing, piece, seed, stride, blend, transform, source, name=name)
+def _pieces(columns: int, reach: int) -> tuple[int, int]:
+    """Rows between the pieces of a long strip, and those over which they blend, of a correlation length."""
+    return max(PIECE_POINTS // columns, PIECE_REACHES * reach), max(1, BLEND_REACHES * reach)
 
 
 def _gaussian_like(like: Likeness, shape: tuple[int, int], seed: int) -> NDArray[np.float64]:

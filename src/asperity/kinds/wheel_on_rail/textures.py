@@ -133,10 +133,10 @@ def _rail(case: WheelOnRail, grid: Grid, maps: tuple[HeightMap, ...], seed: int,
     if surface.line is not None:
         return rail_lines(surface, grid)
     if surface.rms is not None:
-        return Record(synthesised_path(surface, grid.spacing, shape, seed), "self-affine, Gaussian")
+        path = synthesised_path(surface, grid.spacing, shape, seed, before)
+        return Record(path, "self-affine, Gaussian")
     if maps:
-        path, origin = path_of(maps, shape, seed)
-        return Record(path, origin)
+        return Record(*path_of(maps, shape, seed, 0, before))
     return Record(Rows(np.zeros(shape)), "smooth", areal=False)
 
 

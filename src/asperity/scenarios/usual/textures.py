@@ -62,14 +62,15 @@ def gather(case: Case, margin: int, ahead: float = 0.0) -> Textures:
     if case.surface.file is not None:
         maps, missing = measured_maps(case.surface, spacing)
         strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
-        path, path_origin = path_of(maps, (rows, ny), seeds[0], run_in=lead)
+        path, path_origin = path_of(maps, (rows, ny), seeds[0], lead, margin + lead)
         measured = f"{len(maps)} measured from {name_of(case.surface.file)}"
         measured += direction_words(case.surface, maps)
         origin = f"{measured}; {strip_origin}; {path_origin}"
     elif case.surface.rms is not None:
         size = (strip_rows(case.contact), ny)
         strips = tuple(synthesised(case.surface, spacing, size, seed) for seed in seeds[1:])
-        maps, path = strips, synthesised_path(case.surface, spacing, (rows, ny), seeds[0])
+        maps = strips
+        path = synthesised_path(case.surface, spacing, (rows, ny), seeds[0], margin + lead)
         origin = "samples and path synthesised: self-affine, Gaussian"
     elif case.surface.has_areal_spectrum:
         record = _strip(case, Grid(rows, ny, spacing), seeds[0])
