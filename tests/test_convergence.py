@@ -20,6 +20,7 @@ from asperity.running import prepare_case
 from asperity.scenarios.refining import Way
 from asperity.scenarios.restricting import restricted
 from asperity.schema import contents_of, convergence
+from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import LongStrip
 from small_cases import COARSE
 
@@ -110,8 +111,8 @@ class TestOnTheSameSurface:
         large = changed_case(small, ways(small)["grid"][0]).textures
         x, y = (np.arange(n) for n in large.path.shape)
         long = np.cos(2 * np.pi * (x[:, None] / 8 + 0.1)) + 0 * y
-        rough = replace(large, path=replace(large.path, heights=long + np.cos(2 * np.pi * x[:, None] / 3)))
-        rough = replace(rough, line=rough.path.heights[:, len(y) // 2])
+        heights = long + np.cos(2 * np.pi * x[:, None] / 3)
+        rough = replace(large, path=HeightMap(heights, large.path.spacing), line=heights[:, len(y) // 2])
         found = restricted(rough, 20e-6, 2, 19)
         inside = slice(20, -20)
         np.testing.assert_allclose(found.line[inside], long[large.before % 2 :: 2, 0][inside], atol=0.02)

@@ -115,6 +115,7 @@ def test_speeds_share_the_scan_of_a_path_but_for_its_ends():
     [
         ("wheel.toml", {"speed": SPEEDS, "wheel.load": LOADS[:2]}),
         ("ball.toml", {"ball.load": ["30 N", "40 N"]}),
+        ("ball.toml", {"speed": ["0.9 m/s", "1.3 m/s", "0.6 m/s"]}),
     ],
 )
 def test_a_member_has_the_digits_that_it_has_alone(case, sweep, tmp_path, monkeypatch):
