@@ -246,9 +246,10 @@ def test_without_a_home_and_an_entry_of_the_user(tmp_path):
         "def unknown(number):\n"
         "    raise KeyError(number)\n"
         "pwd.getpwuid = unknown\n"
-        "from asperity.kernels.love import influence_table\n"
+        "import numpy as np\n"
+        "from asperity.kernels.overlap import foundation_approach\n"
         "from asperity.store import default_root\n"
-        "print(influence_table(2, 2, 1.0, 1.0).shape, default_root())"
+        "print(foundation_approach(np.zeros((2, 2)), 1.0, 1.0, 1.0, 9.0) > 0.0, default_root())"
     )
     environment = {k: v for k, v in os.environ.items() if k not in ("HOME", "ASPERITY_CACHE", kept.VARIABLE)}
     command = [sys.executable, "-c", code]
@@ -257,7 +258,7 @@ def test_without_a_home_and_an_entry_of_the_user(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     private = tmp_path / f"asperity-{os.getuid()}"
-    assert done.stdout.strip() == f"(2, 2) {private}"
+    assert done.stdout.strip() == f"True {private}"
     assert files(private / "kernels")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
@@ -13,12 +12,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import real, real_array, two, two_lengths, whole
+from asperity.contact.fixed_set import displaced, unit_indentation
 from asperity.errors import InputError, Outcome, UnconvergedWarning
-from asperity.kernels.contact import REACH, displace, indent, room
+from asperity.kernels.contact import REACH, room
 from asperity.kernels.fourier import smooth_length
 from asperity.kernels.influence import Influence, influence, prepared
 from asperity.kernels.love import influence_table
-from asperity.kernels.overlap import box_of_positive, foundation_approach
+from asperity.kernels.overlap import foundation_approach
 from asperity.kernels.preconditioner import inverse_stencil
 from asperity.kernels.scanning import Block, solve_positions
 from asperity.progress import Progress
@@ -191,11 +191,7 @@ class HalfSpace:
         ndarray, shape (nx, ny)
             Displacement, m.
         """
-        p = self._field("pressure", pressure)
-        self._prepare(*self.shape)
-        displaced = np.empty(self.shape)
-        displace(self.influence, p, room(self.influence, *self.shape), displaced)
-        return displaced
+        return displaced(self.influence.table, self._field("pressure", pressure))
 
     def tangent_stiffness(self, pressure: ArrayLike, rtol: float = 1e-9) -> float:
         """Tangent stiffness dF/dδ of a contact whose pressure is known, N/m.
@@ -216,13 +212,13 @@ class HalfSpace:
         free = (p > 0.0) & (p < self.pressure_cap)
         if not free.any():
             return 0.0
-        inside = free[_slices(box_of_positive(free.astype(np.float64)))]
-        self._prepare(*inside.shape)
-        own = room(self.influence, *inside.shape)
-        total, converged = indent(self.influence, inside.copy(), rtol, MAX_ITERATIONS, own)
+        rows, columns = (np.flatnonzero(free.any(axis=axis)) for axis in (1, 0))
+        inside = free[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        taps = tuple(self.influence.taps.tolist())
+        rise, converged = unit_indentation(self.influence.table, taps, inside, rtol, MAX_ITERATIONS)
         if not converged:
             _warn_unconverged("tangent stiffness", Outcome.ITERATION_LIMIT)
-        return float(total) * self.cell_area
+        return float(rise.sum()) * self.cell_area
 
     def solve(
         self,
@@ -558,10 +554,6 @@ def _unit_taps(ratio: float) -> NDArray[np.float64]:
 def _array(values: ArrayLike) -> NDArray[np.float64]:
     """Array of the one kind that kernels are compiled for: contiguous and writable."""
     return np.require(values, np.float64, ["C", "W"])
-
-
-def _slices(limits: Sequence[int]) -> tuple[slice, slice]:
-    return slice(limits[0], limits[1]), slice(limits[2], limits[3])
 
 
 def _warn_unconverged(what: str, outcome: Outcome) -> None:

@@ -182,12 +182,19 @@ def _precondition(
 ) -> Array:
     """Apply the stencil to the residual on the free set; zero elsewhere."""
     free = ((pressure > 0.0) | (residual < 0.0)) & ((pressure < hardness) | (residual > 0.0))
-    count, nx, ny = residual.shape
-    masked = xp.zeros((count, nx + 4, ny + 4))
-    masked[:, 2:-2, 2:-2] = residual * free
+    z = apply_stencil(residual * free, taps, xp)
+    z *= free
+    return z
+
+
+def apply_stencil(fields: Array, taps: tuple[float, ...], xp: Any) -> Array:
+    """Apply the stencil to fields (b, nx, ny), with nothing outside of them."""
+    count, nx, ny = fields.shape
+    padded = xp.zeros((count, nx + 4, ny + 4))
+    padded[:, 2:-2, 2:-2] = fields
 
     def at(i: int, j: int) -> Array:
-        return masked[:, 2 + i : 2 + i + nx, 2 + j : 2 + j + ny]
+        return padded[:, 2 + i : 2 + i + nx, 2 + j : 2 + j + ny]
 
     z = taps[0] * at(0, 0)
     z += taps[1] * (at(-1, 0) + at(1, 0))
@@ -195,7 +202,6 @@ def _precondition(
     z += taps[3] * (at(-1, -1) + at(-1, 1) + at(1, -1) + at(1, 1))
     z += taps[4] * (at(-2, 0) + at(2, 0))
     z += taps[5] * (at(0, -2) + at(0, 2))
-    z *= free
     return z
 
 

@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 
 from asperity.kernels.at_load import carry
 from asperity.kernels.box import Box, box_room, cut, empty_box, paste
-from asperity.kernels.convolution import convolve
 from asperity.kernels.influence import UNIT, Influence, convolution, is_prepared
 from asperity.kernels.lanes import VECTOR_BYTES, lanes, width
-from asperity.kernels.options import INNER, LOOP, ONCE, compiled
+from asperity.kernels.options import INNER, ONCE, compiled
 from asperity.kernels.overlap import overlap_box
-from asperity.kernels.projected_cg import Task, solve, survey, true_residual, unit_indentation
+from asperity.kernels.projected_cg import Task, solve, survey, true_residual
 
 MARGIN = 1
 """Cells left around pressure and overlap of what a solution starts from; what sticks out is solved again."""
@@ -124,38 +123,6 @@ def solve_contact(
     if not worst <= rtol * (largest + level):
         status = STALLED if not moving else ITERATION_LIMIT
     return Solution(status, iterations, worst / (largest + level), total, level, nx, ny)
-
-
-@compiled(**LOOP, nogil=True)
-def displace(known: Influence, pressure: NDArray[np.float64], room: Room, out: NDArray[np.float64]) -> None:
-    """Displacement under a pressure (nx, ny) on a box whose convolution is prepared: K p, m, into `out`."""
-    nx, ny = pressure.shape
-    b = empty_box(nx, ny, room.outer)
-    for i in range(nx):
-        for j in range(ny):
-            b.pressure[i * b.pitch + j] = pressure[i, j]
-    convolve(convolution(known, nx, ny), b.pressure, nx, ny, b.pitch, b.work, b.response)
-    for i in range(nx):
-        for j in range(ny):
-            out[i, j] = b.response[i * b.pitch + j]
-
-
-@compiled(**LOOP, nogil=True)
-def indent(
-    known: Influence, inside: NDArray[np.bool_], rtol: float, max_iterations: int, room: Room
-) -> tuple[float, bool]:
-    """Displace a fixed set of cells (nx, ny) by one, as in `projected_cg.unit_indentation`.
-
-    The convolution on the box is prepared. Returns the sum of the pressure over the cells, Pa/m, and whether
-    the residual, relative to one, fell below `rtol`.
-    """
-    nx, ny = inside.shape
-    b = empty_box(nx, ny, room.inner)
-    converged = unit_indentation(convolution(known, nx, ny), known.taps, b, inside, rtol, max_iterations)
-    total = 0.0
-    for q in range(len(b.pressure)):
-        total += b.pressure[q]
-    return total, converged
 
 
 @compiled(**INNER)

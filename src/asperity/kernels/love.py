@@ -2,35 +2,32 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import compiled
+AT_ONCE = 2**16
+"""Coefficients that are computed in one go: some ten arrays of them take memory."""
 
 
-@compiled(cache=True)
-def _edge_log(x: float, y: float, half: float) -> float:
+def _edge_log(x: NDArray[np.float64], y: NDArray[np.float64], half: float) -> NDArray[np.float64]:
     """ln[(y₊ + √(y₊² + x²)) / (y₋ + √(y₋² + x²))] for y ≥ 0, without cancellation far away."""
     upper, lower = y + half, y - half
-    r_upper, r_lower = math.hypot(upper, x), math.hypot(lower, x)
-    if lower >= 0.0:
-        denominator = lower + r_lower
-    else:
-        denominator = x * x / (r_lower - lower)
+    r_upper, r_lower = np.hypot(upper, x), np.hypot(lower, x)
+    away = np.where(lower < 0.0, r_lower - lower, 1.0)
+    denominator = np.where(lower < 0.0, x * x / away, lower + r_lower)
     step = 2.0 * half * (1.0 + 2.0 * y / (r_upper + r_lower))
-    return math.log1p(step / denominator)
+    return np.log1p(step / denominator)
 
 
-@compiled(cache=True)
-def cell_displacement(x: float, y: float, dx: float, dy: float) -> float:
+def cell_displacement(
+    x: NDArray[np.float64], y: NDArray[np.float64], dx: float, dy: float
+) -> NDArray[np.float64]:
     """Surface displacement at (x, y), times π E*, under unit pressure on the cell dx × dy at the origin.
 
     All in m; to be divided by π E*, Pa. A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377; finite
     everywhere.
     """
-    x, y = abs(x), abs(y)
+    x, y = np.abs(x), np.abs(y)
     hx, hy = 0.5 * dx, 0.5 * dy
     return (
         (x + hx) * _edge_log(x + hx, y, hy)
@@ -40,11 +37,10 @@ def cell_displacement(x: float, y: float, dx: float, dy: float) -> float:
     )
 
 
-@compiled(cache=True)
 def influence_table(nx: int, ny: int, dx: float, dy: float) -> NDArray[np.float64]:
     """Influence coefficients (nx, ny), m, times π E*: entry (i, j) for the separation (i dx, j dy), m."""
-    table = np.empty((nx, ny))
-    for i in range(nx):
-        for j in range(ny):
-            table[i, j] = cell_displacement(i * dx, j * dy, dx, dy)
+    x, y = dx * np.arange(nx, dtype=np.float64), dy * np.arange(ny, dtype=np.float64)
+    table, rows = np.empty((nx, ny)), max(1, AT_ONCE // ny)
+    for first in range(0, nx, rows):
+        table[first : first + rows] = cell_displacement(x[first : first + rows, None], y, dx, dy)
     return table

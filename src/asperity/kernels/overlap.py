@@ -46,19 +46,6 @@ def overlap_box(
     return approach - smallest, first, end, left, right
 
 
-@compiled(**LOOP)
-def box_of_positive(field: NDArray[np.float64]) -> tuple[int, int, int, int]:
-    """First and end row and column of the smallest box with all positive values; zeros if there are none."""
-    nx, ny = field.shape
-    first, end, left, right = nx, 0, ny, 0
-    for i in range(nx):
-        for j in range(ny):
-            if field[i, j] > 0.0:
-                first, end = min(first, i), i + 1
-                left, right = min(left, j), max(right, j + 1)
-    return (first, end, left, right) if end else (0, 0, 0, 0)
-
-
 @compiled(**LOOP, nogil=True)
 def foundation_approach(
     gap: NDArray[np.float64], load: float, modulus: float, cell_area: float, hardness: float

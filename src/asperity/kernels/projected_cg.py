@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from asperity.kernels.at_load import balance_load, find_level, mark_free, project_at_load, rounding
 from asperity.kernels.box import REACH, Box
 from asperity.kernels.convolution import Convolution, convolve
-from asperity.kernels.options import CALLED, INNER, ONCE, REASSOCIATE, compiled
+from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
 from asperity.kernels.preconditioner import precondition
 
 WHOLE = 0.85
@@ -247,41 +247,3 @@ def solve(c: Convolution, taps: NDArray[np.float64], b: Box, task: Task, done: i
         _advance(b, share, cap, margin)
         yielded += share * further
     return iteration, moving
-
-
-@compiled(**ONCE)
-def unit_indentation(
-    c: Convolution,
-    taps: NDArray[np.float64],
-    b: Box,
-    inside: NDArray[np.bool_],
-    rtol: float,
-    max_iterations: int,
-) -> bool:
-    """Find the pressure that displaces a set of cells (nx, ny) by one: K p = 1 on the set, p = 0 elsewhere.
-
-    The box is empty. On return its `pressure` is Pa per m of indentation; the integral is the tangent
-    stiffness. Returns whether the residual, relative to one, fell below `rtol`.
-    """
-    rho = 0.0
-    for q in range(len(b.overlap)):
-        b.overlap[q] = 0.0
-    for i in range(b.nx):
-        for j in range(b.ny):
-            b.overlap[i * b.pitch + j] = 1.0 if inside[i, j] else 0.0
-    for q in range(len(b.overlap)):
-        b.residual[q] = -b.overlap[q]
-    for _ in range(max_iterations):
-        # a positive "pressure" on the set marks it as free
-        if not _free(b.overlap, b, np.inf, 0.0, rtol):
-            return True
-        before = rho
-        rho, change, _added = precondition(b, taps, b.z)
-        _turn(b, max(0.0, change / before) if before > 0.0 else 0.0)
-        convolve(c, b.direction, b.nx, b.ny, b.pitch, b.work, b.response)
-        length = -_dot(b.residual, b.direction) / _dot(b.direction, b.response)
-        for q in range(len(b.overlap)):
-            b.previous[q] = b.residual[q]
-            b.pressure[q] += length * b.direction[q]
-            b.residual[q] += length * b.response[q] * b.overlap[q]
-    return False

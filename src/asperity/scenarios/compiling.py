@@ -13,7 +13,7 @@ import numpy as np
 
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
-from asperity.kernels import along, contact, love, overlap, pointforce, projected_cg, scanning
+from asperity.kernels import along, overlap, pointforce, projected_cg, scanning
 from asperity.kernels.box import Box
 from asperity.kernels.census import Census
 from asperity.kernels.convolution import Convolution
@@ -25,11 +25,7 @@ from asperity.scenarios.second_process import contact_compiled_beside
 
 CONTACT = (
     scanning.solve_positions,
-    contact.indent,
-    contact.displace,
-    love.influence_table,
     overlap.foundation_approach,
-    overlap.box_of_positive,
 )
 LAWS = pointforce.evaluate_all, pointforce.count_beyond, along.splines_along
 FIRST = 0.07
@@ -48,7 +44,7 @@ def call_kernels(progress: Progress, stepping: Iterable[Any], rolling: Callable[
             rolling()
             iterate_never()  # the second process needs it as the last but one
             evaluate_once()
-            displace_once()
+            estimate_once()
             press_once()
         progress(100, 100, COMPILED)
 
@@ -92,12 +88,9 @@ def iterate_never() -> None:
     projected_cg.solve.compile(tuple(map(numba.typeof, (convolved, field, box, task, 1))))
 
 
-def displace_once() -> None:
-    """Estimate an approach, find the stiffness of a contact, and what a pressure displaces."""
-    half_space = HalfSpace((9, 9), (1.0, 1.0), 1.0)
-    overlap.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, half_space.pressure_cap)
-    half_space.tangent_stiffness(np.ones((9, 9)))
-    half_space.displacement(np.ones((9, 9)))
+def estimate_once() -> None:
+    """Estimate an approach."""
+    overlap.foundation_approach(np.zeros((9, 9)), 1.0, 1.0, 1.0, np.inf)
 
 
 def evaluate_once() -> None:

@@ -18,7 +18,7 @@ from asperity.threads import processors
 
 LAST = "asperity.kernels.scanning.solve_positions"
 """What is compiled last."""
-CODE = "from asperity.scenarios.compiling import displace_once, press_once; press_once(); displace_once()"
+CODE = "from asperity.scenarios.compiling import estimate_once, press_once; press_once(); estimate_once()"
 _running = False
 
 
