@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from asperity.errors import ComputationError, InputError
-from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all, with_damping
+from asperity.kernels.pointforce import Prepared, evaluate, evaluate_all, with_damping
 from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table, names
 from asperity.laws.layout import force, on_curve
 from asperity.reduction.stiffness import ForceCurve
@@ -59,8 +59,8 @@ def test_slope_is_the_derivative_of_the_force(law):
     prepared = law.prepare(positions)
     approach = np.linspace(0.2e-6, 1.3e-6, 60) + 1.234e-9
     step = 1e-13
-    above, below = (evaluate_all(prepared, approach + s)[0] for s in (step, -step))
-    value, slope = evaluate_all(prepared, approach)
+    above, below = (evaluate_all(prepared, approach + s, 0)[0] for s in (step, -step))
+    value, slope, _ = evaluate_all(prepared, approach, 0)
     assert np.all(value != 0.0)
     assert_allclose(slope, (above - below) / (2 * step), rtol=1e-4)
 
@@ -160,9 +160,9 @@ def test_arguments_beyond_the_data_are_counted():
     texture = StateTexture.unfiltered(np.array([0.0, 0.0, 0.5e-6, 0.5e-6, 0.5e-6]), SPACING)
     prepared = Shifted(curve, texture).prepare(SPACING * np.arange(4))
     assert isinstance(prepared, Prepared)
-    assert count_beyond(prepared, np.full(4, 1.2e-6)) == 2
-    assert count_beyond(on_curve(curve, None, np.zeros(3)), np.array([0.9e-6, 1.0e-6, 1.1e-6])) == 1
-    assert count_beyond(HertzLaw(K).prepare(np.zeros(1)), np.array([1.0])) == 0
+    assert evaluate_all(prepared, np.full(4, 1.2e-6), 0)[2] == 2
+    assert evaluate_all(on_curve(curve, None, np.zeros(3)), np.array([0.9e-6, 1.0e-6, 1.1e-6]), 0)[2] == 1
+    assert evaluate_all(HertzLaw(K).prepare(np.zeros(1)), np.array([1.0]), 0)[2] == 0
 
 
 @given(st.floats(1e-3, 1e4))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import ENTERED, INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import INNER, LOOP, REASSOCIATE, compiled
 from asperity.kernels.pointforce import evaluate, with_damping
 
 FORCE_TOLERANCE = 1e-10  # of the force plus the load, at the end of each step
@@ -128,7 +128,7 @@ def backward(approach, compliance, before, time_step):  # type: ignore[no-untype
     return approach, rate, compliance, 1.5 * compliance / time_step
 
 
-@compiled(**ENTERED)
+@compiled(**INNER)
 def refine(low, high, approach, residual, slope, iteration):  # type: ignore[no-untyped-def]
     """Newton step inside a bracket that it narrows; bisection where Newton fails or dawdles.
 
@@ -179,7 +179,7 @@ def solve_step(law, step, free, load, guess):  # type: ignore[no-untyped-def]
     return (free_approach - approach) / compliance, ITERATIONS, False
 
 
-@compiled(**ENTERED, **REASSOCIATE)
+@compiled(**INNER, **REASSOCIATE)
 def observe(system, motion, record, step, shape, slope):  # type: ignore[no-untyped-def]
     """Write the records of a step and the powers of its energy ledger.
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import ENTERED, INNER, compiled
+from asperity.kernels.options import INNER, compiled
 
 SHIFTED = 0  # F = f(approach - h)
 SECANT = 1  # F = f(approach)/r (r - h), r = approach + datum: Eq. 2.1 as printed
@@ -115,7 +115,7 @@ def table_root(states, values, slopes, step, touch, approach):  # type: ignore[n
     return g, slope
 
 
-@compiled(**ENTERED)
+@compiled(**INNER)
 def evaluate(law, step, approach):  # type: ignore[no-untyped-def]
     """Elastic force of a law at a position, N, for an approach, m, and its derivative by that, N/m."""
     approach -= law.planes[step]
@@ -154,21 +154,17 @@ def with_damping(elastic, slope, rate, rate_compliance, damping, in_flight):  # 
 
 
 @compiled(cache=True)
-def evaluate_all(law, approach):  # type: ignore[no-untyped-def]
-    """Elastic force, N, and its derivative, N/m, at all n positions of the path, for one approach each, m."""
-    force, slope = np.empty(approach.size), np.empty(approach.size)
-    for i in range(approach.size):
-        force[i], slope[i] = evaluate(law, i, approach[i])
-    return force, slope
+def evaluate_all(law, approach, first):  # type: ignore[no-untyped-def]
+    """Elastic forces, N, and derivatives, N/m, from the position `first` on, for one approach each (n,), m.
 
-
-@compiled(cache=True)
-def count_beyond(law, approach):  # type: ignore[no-untyped-def]
-    """Number of positions at which a law is continued beyond its data, for one approach each, m."""
-    count = 0
+    And the number of positions at which the law is continued beyond its data.
+    """
+    force, slope, beyond = np.empty(approach.size), np.empty(approach.size), 0
     for i in range(approach.size):
-        argument = approach[i] - law.planes[i]
+        step = first + i
+        force[i], slope[i] = evaluate(law, step, approach[i])
+        argument = approach[i] - law.planes[step]
         if law.form == SHIFTED:
-            argument -= texture_at(law.states, law.values, i, argument)[0]
-        count += argument > law.upper
-    return count
+            argument -= texture_at(law.states, law.values, step, argument)[0]
+        beyond += argument > law.upper
+    return force, slope, beyond

@@ -124,5 +124,5 @@ def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray[np.flo
     delta = np.ascontiguousarray(np.broadcast_to(np.asarray(approach, dtype=float), at.shape))
     prepared = law.prepare(at)
     if isinstance(prepared, Prepared):
-        return evaluate_all(prepared, delta)[0]
+        return evaluate_all(prepared, delta, 0)[0]
     return np.array([prepared.evaluate(step, value)[0] for step, value in enumerate(delta)])

@@ -28,7 +28,7 @@ def static_approach(
         if abs(force - load) <= relative * load:
             return approach, stiffness
         scale = max(stiffness, load / LARGEST_STEP)
-        low, high, trial = refine(
+        low, high, trial = refine.py_func(  # not compiled once more, for so few calls
             low, high, approach, (force - load) / scale, max(stiffness / scale, 1.0), iteration
         )
         if np.isinf(low) or np.isinf(high):

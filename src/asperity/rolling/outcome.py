@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.errors import ExtrapolationWarning, Grade, UnconvergedWarning, percent
-from asperity.kernels.pointforce import Prepared, count_beyond, evaluate, evaluate_all
+from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.base import SteppedLaw
 
 STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itself solved to a tolerance
@@ -17,9 +17,14 @@ STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itsel
 
 def evaluation(prepared: Prepared | SteppedLaw, step: int) -> Callable[[float], tuple[float, float]]:
     """Force, N, and stiffness, N/m, of a law at a step, as a function of the approach, m."""
-    if isinstance(prepared, Prepared):
-        return lambda approach: evaluate(prepared, step, float(approach))
-    return lambda approach: prepared.evaluate(step, float(approach))
+    if not isinstance(prepared, Prepared):
+        return lambda approach: prepared.evaluate(step, float(approach))
+
+    def evaluate(approach: float) -> tuple[float, float]:
+        force, stiffness, _ = evaluate_all(prepared, np.array([approach], dtype=np.float64), step)
+        return float(force[0]), float(stiffness[0])
+
+    return evaluate
 
 
 def flying(
@@ -34,7 +39,7 @@ def flying(
     if prepared.bilateral:
         return np.zeros(force.shape, dtype=bool)
     if prepared.damped_in_flight:
-        return np.asarray(evaluate_all(prepared, approach)[0] <= 0.0)
+        return np.asarray(evaluate_all(prepared, approach, 0)[0] <= 0.0)
     return np.asarray(force <= 0.0)
 
 
@@ -49,7 +54,7 @@ def warn_after(
     if not isinstance(prepared, Prepared):
         prepared.warn_of_flaws()
         return
-    warn_if_beyond(name, count_beyond(prepared, approach), max(int(counts[0]), 1), stacklevel=5)
+    warn_if_beyond(name, int(evaluate_all(prepared, approach, 0)[2]), max(int(counts[0]), 1), stacklevel=5)
 
 
 def warn_if_unconverged(name: str, counts: NDArray[np.int64], *, stacklevel: int) -> None:

@@ -55,7 +55,7 @@ def largest_stiffness(prepared: Prepared | SteppedLaw, at_rest: tuple[float, flo
     if not np.isfinite(prepared.upper):
         return at_rest[1], 0.0
     height = prepared.values.max(axis=1) if not len(prepared.slopes) else 0.0
-    force, stiffness = evaluate_all(prepared, prepared.planes + height + prepared.upper)
+    force, stiffness, _ = evaluate_all(prepared, prepared.planes + height + prepared.upper, 0)
     return max(at_rest[1], float(stiffness.max())), float(force.max())
 
 

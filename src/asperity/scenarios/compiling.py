@@ -27,7 +27,7 @@ CONTACT = (
     scanning.solve_positions,
     overlap.foundation_approach,
 )
-LAWS = pointforce.evaluate_all, pointforce.count_beyond, along.splines_along
+LAWS = pointforce.evaluate_all, along.splines_along
 FIRST = 0.07
 """Share of the time that passes before the first kernel is there: the compiler gets ready."""
 INTERVAL = 0.1  # s between looks at what is compiled
@@ -96,5 +96,4 @@ def estimate_once() -> None:
 def evaluate_once() -> None:
     """Evaluate a law."""
     law = HertzLaw(1e10, StateTexture.unfiltered(np.zeros(8), 0.2)).prepare(np.zeros(2))
-    pointforce.evaluate_all(law, np.zeros(2))
-    pointforce.count_beyond(law, np.zeros(2))
+    pointforce.evaluate_all(law, np.zeros(2), 0)

@@ -140,7 +140,7 @@ def _at_rest(system: System, beam: Beam, path: Path, approach: float) -> tuple[B
         np.zeros(samples),
         np.zeros((len(system.sensors), samples)),
     )
-    observe(system, motion, record, 0, shape, slope)
+    observe.py_func(system, motion, record, 0, shape, slope)  # not compiled once more, for one call
     return motion, record
 
 

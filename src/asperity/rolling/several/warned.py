@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.pointforce import Prepared, count_beyond
+from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.rolling.outcome import warn_if_beyond, warn_if_unconverged
 from asperity.rolling.several.stepper import ContactsStepper
 
@@ -21,7 +21,7 @@ def warn_after_contacts(stepper: ContactsStepper, approach: NDArray[np.float64])
     beyond = dict.fromkeys(names, 0)
     for name, law, seen in zip(names, stepper.prepared, approach, strict=True):
         if isinstance(law, Prepared):
-            beyond[name] += int(count_beyond(law, seen))
+            beyond[name] += int(evaluate_all(law, seen, 0)[2])
         else:
             law.warn_of_flaws()
     for name, count in beyond.items():
