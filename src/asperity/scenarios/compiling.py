@@ -41,8 +41,8 @@ def call_kernels(progress: Progress, stepping: Iterable[Any], rolling: Callable[
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)
         with COMPILATION.heard_by(Telling(progress, stepping)), contact_compiled_beside():
-            rolling()
             iterate_never()  # the second process needs it as the last but one
+            rolling()
             evaluate_once()
             estimate_once()
             press_once()
@@ -68,6 +68,13 @@ class Telling:
         percent = 100.0 * (FIRST + (1.0 - FIRST) * share) if share > 0.0 else 0.0
         self.progress(int(percent), 100, COMPILED)
         self.told = time.monotonic()
+
+
+def compile_beside() -> None:
+    """What the second process compiles; where it comes to the iteration, the first one has done that."""
+    evaluate_once()
+    press_once()
+    estimate_once()
 
 
 def press_once() -> None:

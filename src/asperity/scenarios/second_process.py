@@ -18,7 +18,7 @@ from asperity.threads import processors
 
 LAST = "asperity.kernels.scanning.solve_positions"
 """What is compiled last."""
-CODE = "from asperity.scenarios.compiling import estimate_once, press_once; press_once(); estimate_once()"
+CODE = "from asperity.scenarios.compiling import compile_beside; compile_beside()"
 _running = False
 
 
