@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from scipy.special import ellipe, ellipkm1
-
 from asperity.errors import InputError
 
 HALVINGS = 56
@@ -57,6 +55,9 @@ class Hertz:
             m = 1.0 - m1
             if m < 1e-7:  # series: K and E cancel
                 return 0.5 * math.pi * (1.0 + 0.25 * m), 0.25 * math.pi * (1.0 + 0.375 * m)
+            # not where contacts are only compiled
+            from scipy.special import ellipe, ellipkm1
+
             k = float(ellipkm1(m1))
             return k, (k - float(ellipe(m))) / m
 

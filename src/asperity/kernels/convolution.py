@@ -12,7 +12,6 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 
 from asperity.kernels.fourier import roots, transform
@@ -60,7 +59,7 @@ def quarter_spectrum(table: NDArray[np.float64], axis: int) -> NDArray[np.float6
     """
     turn = quarter_turn(table.shape[axis]).view(np.complex128)
     turned = table * (turn if axis else turn[:, None])
-    return 2.0 * scipy.fft.fft(turned, axis=axis).real - table.take([0], axis)
+    return 2.0 * np.fft.fft(turned, axis=axis).real - table.take([0], axis)
 
 
 @compiled(**INNER)

@@ -8,16 +8,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
+
+from asperity.kernels.fourier import smooth_length
 
 Array = Any
 """An array of the module `xp`."""
 
 
 def padded_length(n: int) -> int:
-    """Length ≥ 2n − 1 without prime factors above 5: a circular convolution of n cells does not wrap."""
-    return int(scipy.fft.next_fast_len(2 * n - 1, real=True))
+    """Length ≥ 2n − 1 that transforms fast: a circular convolution of n cells does not wrap."""
+    return smooth_length(2 * n - 1)
 
 
 def padded_spectrum(table: NDArray[np.float64], nx: int, ny: int) -> NDArray[np.float64]:
@@ -30,7 +31,7 @@ def padded_spectrum(table: NDArray[np.float64], nx: int, ny: int) -> NDArray[np.
     circulant[:nx, :ny] = table[:nx, :ny]
     circulant[mx - nx + 1 :, :ny] = table[nx - 1 : 0 : -1, :ny]
     circulant[:, my - ny + 1 :] = circulant[:, ny - 1 : 0 : -1]
-    return np.ascontiguousarray(scipy.fft.rfft2(circulant).real)
+    return np.ascontiguousarray(np.fft.rfft2(circulant).real)
 
 
 def convolve_padded(field: Array, spectrum: Array, my: int, xp: Any) -> Array:
