@@ -215,3 +215,15 @@ def test_memory_holds_only_so_much(tmp_path, monkeypatch):
     store = Store(tmp_path / "file")
     with pytest.raises(ComputationError, match="memory already holds 100 bytes that are kept nowhere"):
         store.put("scan-1", {"forces": np.zeros(100)})
+
+
+def test_results_are_on_the_disk_at_once_and_no_cache_waits_for_it(tmp_path, monkeypatch):
+    synced = []
+    monkeypatch.setattr("asperity.files.os.fsync", synced.append)
+    write_bytes(tmp_path / "run.nc", b"numbers", sealed=True)
+    assert len(synced) == 1
+    store = Store(tmp_path / "cache")
+    key = content_key("scan", np.zeros(3))
+    store.put(key, {"forces": np.zeros(3)})
+    assert store.get(key) is not None
+    assert len(synced) == 1

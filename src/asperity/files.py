@@ -31,22 +31,28 @@ _swept: set[Path] = set()
 
 
 def atomic_write(
-    path: str | os.PathLike[str], write: Callable[[BinaryIO], object], *, sealed: bool = False
+    path: str | os.PathLike[str],
+    write: Callable[[BinaryIO], object],
+    *,
+    sealed: bool = False,
+    lasting: bool = True,
 ) -> Path:
     """Write a file completely or not at all; its folder is made if it is missing.
 
     `write` receives a binary file open for reading and writing, and fills it. An existing file is replaced in
-    one step. A sealed file ends with a digest of all before it: see `is_sealed`. What cannot be written is a
-    `ComputationError`.
+    one step. A sealed file ends with a digest of all before it: see `is_sealed`. A lasting one is on the disk
+    when this returns, and outlives a power cut. What cannot be written is a `ComputationError`.
     """
     path = Path(path)
     try:
-        return replace(path, write, sealed=sealed)
+        return replace(path, write, sealed=sealed, lasting=lasting)
     except OSError as error:
         raise _not_written(path, error) from error
 
 
-def replace(path: Path, write: Callable[[BinaryIO], object], *, sealed: bool = False) -> Path:
+def replace(
+    path: Path, write: Callable[[BinaryIO], object], *, sealed: bool = False, lasting: bool = True
+) -> Path:
     """Write a file as `atomic_write` does, for those who go on without it: failures are OSErrors."""
     path.parent.mkdir(parents=True, exist_ok=True)
     _sweep_once(path.parent)
@@ -58,7 +64,8 @@ def replace(path: Path, write: Callable[[BinaryIO], object], *, sealed: bool = F
             if sealed:
                 file.write(_seal_of(file, file.seek(0, os.SEEK_END)))
             file.flush()
-            os.fsync(file.fileno())
+            if lasting:
+                os.fsync(file.fileno())
             if fcntl is not None:  # while it is locked nobody takes it for a left-over
                 os.replace(temporary, path)
         if fcntl is None:

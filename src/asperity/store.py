@@ -14,6 +14,7 @@ import zipfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -132,7 +133,8 @@ class Store:
             raise TypeError("arrays of objects cannot be stored")
         path = self.path(key)
         try:
-            atomic_write(path, lambda file: np.savez(file, **contents), sealed=True)  # type: ignore[arg-type]
+            save = partial(np.savez, **contents)  # type: ignore[arg-type]
+            atomic_write(path, save, sealed=True, lasting=False)  # what is damaged counts as missing
         except ComputationError as error:
             with _HOLDING:  # threads put at once, and one of them warns
                 self._hold(key, {name: value for name, value in contents.items() if name != "__key__"}, error)

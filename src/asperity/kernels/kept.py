@@ -82,7 +82,8 @@ class Kept:
             return
         named = {function.name for function in result.library._final_module.functions}
         called = [(kernel, symbol) for kernel, (symbol, _) in _CALLED.items() if symbol in named]
-        payload = dumps((called, result._reduce()))
+        bare = result._replace(type_annotation="")  # types beside each line of the source, for people
+        payload = dumps((called, bare._reduce()))
         _COMPILED.add(self.name)
         if not self.inlined:
             _CALLED[name] = result.fndesc.llvm_func_name, result.library
@@ -191,7 +192,7 @@ def _written(root: Path, name: str, payload: bytes) -> bool:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         if not is_private(folder):
             return False
-        replace(folder / name, lambda file: file.write(_digest(name, payload) + payload))
+        replace(folder / name, lambda file: file.write(_digest(name, payload) + payload), lasting=False)
     except OSError:
         return False
     return True
