@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity.contact import HalfSpace, Hertz
+from asperity.contact.fixed_set import unit_indentation
 from asperity.errors import InputError, Outcome, UnconvergedWarning
 
 
@@ -146,6 +147,10 @@ class TestConservation:
         plus, minus = (half_space.solve(gap, approach=1e-6 + s, rtol=1e-13) for s in (step, -step))
         assert np.array_equal(plus.pressure > 0, minus.pressure > 0)
         assert contact.stiffness == pytest.approx((plus.force - minus.force) / (2 * step), rel=1e-6)
+
+    def test_an_indentation_that_is_not_a_number_did_not_converge(self):
+        taps, inside = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.ones((4, 4), dtype=bool)
+        assert not unit_indentation(np.full((4, 4), np.nan), taps, inside, 1e-9, 5)[1]
 
     @settings(max_examples=15, deadline=None)
     @given(st.integers(0, 10_000), st.floats(0.2, 2.0), st.floats(1e-3, 0.5))

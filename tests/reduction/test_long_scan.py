@@ -62,6 +62,22 @@ def test_stored_forces_are_those_in_memory(tmp_path):
 
 
 @pytest.mark.usefixtures("short_blocks")
+@pytest.mark.parametrize("anchor", [0, 1, 47, 48, 100, 290])
+def test_positions_and_blocks_count_from_the_anchor(anchor, tmp_path):
+    """Against a tight scan of every row from the first on: each position is a row, in any blocks."""
+    every = scan_forces(job(300, rtol=1e-10, device=None)).forces
+    path = job(300, stride=3, anchor=anchor, rtol=1e-10, device=None)
+    stored = scan_into(Store(tmp_path), path).forces
+    expected = every[:, anchor % 3 :: 3]
+    assert anchor // 3 in path.starts or anchor // 3 >= path.positions
+    assert stored.shape == expected.shape
+    scale = every.max()
+    for first, stop in [(0, 95), (0, 1), (10, 40), (15, 17), (80, 200), (7, 7)]:
+        found = stored.columns(first, stop)
+        np.testing.assert_allclose(found, expected[:, first:stop], rtol=1e-7, atol=1e-9 * scale)
+
+
+@pytest.mark.usefixtures("short_blocks")
 def test_a_table_of_stored_forces_is_that_of_held_ones(tmp_path, monkeypatch):
     path = job(300)
     held = ForceTable(scan_forces(path).forces, APPROACHES, 0.0, DX)

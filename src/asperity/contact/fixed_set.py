@@ -37,7 +37,7 @@ def unit_indentation(
     pressure, direction, rho = np.zeros((nx, ny)), np.zeros((nx, ny)), 1.0
     residual = -inside.astype(np.float64)
     for _ in range(max_iterations):
-        if not np.abs(residual).max() > rtol:
+        if np.abs(residual).max() <= rtol:  # never of NaN
             return pressure, True
         z = apply_stencil(residual[None], taps, np)[0] * inside
         before, rho = rho, float(np.vdot(residual, z))

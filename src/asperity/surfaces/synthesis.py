@@ -240,7 +240,7 @@ def long_strip_like(
 
 
 def _pieces(columns: int, reach: int) -> tuple[int, int]:
-    """Rows between the pieces of a long strip, and those over which they blend, of a correlation length."""
+    """Rows from piece to piece of a long strip, and rows of a blend; a correlation length is `reach` rows."""
     return max(PIECE_POINTS // columns, PIECE_REACHES * reach), max(1, BLEND_REACHES * reach)
 
 
