@@ -25,67 +25,91 @@ import argparse
 import json
 import math
 import sys
+import time
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from law_pages import publish
-from law_points import BALL, WHEEL, Point, compute_point, place_on_map
+from law_points import BALL, WHEEL, Point, compute_point, place_on_map, solved
 
 from asperity.progress import progress_bar
 
 QUICK = 4
 """Points of the small part."""
-RANDOM = {"aside": ((1, 16, 4), (2026, 20, 2)), "fresh": ((2027, 20, 0),)}
-"""Sets of random cases, those that widen the band and those that test it: seed, number, and how many of four
-roll `table`. The second set was drawn to test a band from the first alone."""
+RANDOM = {
+    "aside": (
+        (3141, 48, (20.0, 28.0, 41.0, 66.0, 90.0)),
+        (1618, 64, (25.0, 37.0, 53.0, 75.0)),
+        (2718, 64, (22.0, 33.0, 48.0, 80.0)),
+    ),
+    "fresh": ((5772, 64, (24.0, 35.0, 50.0, 72.0)),),
+}
+"""Sets of random cases, those that fill the map and set the bands and those that test these: seed, number,
+and speeds of the wheels, m/s, few of them: each has a track to lay out."""
+SPEEDS = {BALL: (0.3, 3.0), WHEEL: (20.0, 90.0)}
+"""Least and greatest speed of the map, m/s."""
 
 
 def grid() -> list[Point]:
-    """Points of the map, so ordered that any beginning of it covers all of it coarsely."""
+    """Points of the map, so ordered that any beginning of it covers one speed of each kind coarsely."""
+    ball, wheel = partial(Point, BALL), partial(Point, WHEEL)
     isotropic = [
-        Point(BALL, roughness, length, 1.0, 30.0, scanned=roughness < 10)
+        ball(roughness, length, 1.0, 30.0, 1.0, scanned=roughness < 10)
         for roughness in (0.1, 1.0, 0.3, 0.03, 3.0, 10.0)
         for length in (1.0, 0.3, 3.0, 0.1, 10.0)
     ]
-    wheel = [
-        Point(WHEEL, r, length, 1.0, 65e3) for r in (0.1, 1.0, 0.3, 0.03, 3.0) for length in (1.0, 0.3, 3.0)
+    wheels = [
+        wheel(r, length, 1.0, 65e3, 56.0) for r in (0.1, 1.0, 0.3, 0.03, 3.0) for length in (1.0, 0.3, 3.0)
     ]
-    wheel += [Point(WHEEL, r, length, 1.0, 65e3) for r in (0.1, 1.0) for length in (0.1, 10.0)]
+    wheels += [wheel(r, length, 1.0, 65e3, 56.0) for r in (0.1, 1.0) for length in (0.1, 10.0)]
     lay = [
-        Point(BALL, r, length, ratio, 30.0, scanned=length == 1.0)
+        ball(r, length, ratio, 30.0, 1.0, scanned=length == 1.0)
         for r in (0.1, 1.0)
         for length in (1.0, 0.3, 3.0)
         for ratio in (6.0, 1 / 6)
     ]
-    lay += [Point(WHEEL, r, 1.0, ratio, 65e3) for r in (0.1, 1.0) for ratio in (6.0, 1 / 6)]
-    loads = [
-        Point(BALL, r, length, 1.0, p) for p in (5.0, 150.0) for r in (0.1, 1.0) for length in (0.3, 3.0)
+    lay += [wheel(r, 1.0, ratio, 65e3, 56.0) for r in (0.1, 1.0) for ratio in (6.0, 1 / 6)]
+    loads = [ball(r, length, 1.0, p, 1.0) for p in (5.0, 150.0) for r in (0.1, 1.0) for length in (0.3, 3.0)]
+    loads += [wheel(0.3, length, 1.0, p, 56.0) for p in (25e3, 125e3) for length in (0.3, 3.0)]
+    speeds = [
+        Point(kind, r, length, 1.0, load, speed)
+        for r, length in ((0.1, 1.0), (1.0, 0.3), (0.1, 0.3), (1.0, 3.0), (0.1, 3.0), (0.03, 1.0), (3.0, 1.0))
+        for kind, load in ((BALL, 30.0), (WHEEL, 65e3))
+        for speed in SPEEDS[kind]
     ]
-    loads += [Point(WHEEL, 0.3, length, 1.0, p) for p in (25e3, 125e3) for length in (0.3, 3.0)]
     found: list[Point] = []
-    while isotropic or wheel or lay or loads:
-        for part, count in ((isotropic, 2), (wheel, 1), (lay, 1), (loads, 1)):
+    while isotropic or wheels or lay or loads:
+        for part, count in ((isotropic, 2), (wheels, 1), (lay, 1), (loads, 1)):
             found += part[:count]
             del part[:count]
-    return found
+    return found + speeds
 
 
-def drawn(seed: int, count: int, scanned: int) -> list[Point]:
-    """Cases drawn at random, balls and wheels in turn, inside the map; so many of four are scanned."""
+def drawn(seed: int, count: int, speeds: Sequence[float]) -> list[Point]:
+    """Cases drawn at random, balls and wheels in turn, inside the map; half of them are scanned."""
     random, found = np.random.default_rng(seed), []
+
+    def between(low: float, high: float) -> float:
+        return math.exp(random.uniform(math.log(low), math.log(high)))
+
     for number in range(count):
         kind = BALL if number % 2 == 0 else WHEEL
-        roughness = math.exp(random.uniform(math.log(0.03), math.log(3.0)))
-        length = math.exp(random.uniform(math.log(0.15), math.log(8.0)))
-        ratio = math.exp(random.uniform(-math.log(4.0), math.log(4.0))) if random.random() < 0.5 else 1.0
-        load = (
-            math.exp(random.uniform(math.log(5.0), math.log(150.0)))
-            if kind == BALL
-            else random.uniform(25e3, 125e3)
+        found.append(
+            Point(
+                kind,
+                roughness=between(0.03, 3.0),
+                correlation=between(0.15, 8.0),
+                anisotropy=between(0.25, 4.0) if random.random() < 0.5 else 1.0,
+                load=between(5.0, 150.0) if kind == BALL else random.uniform(25e3, 125e3),
+                speed=between(*SPEEDS[kind]) if kind == BALL else float(random.choice(speeds)),
+                hurst=random.uniform(0.5, 1.0),
+                finest=between(0.4, 1.5),
+                scanned=number % 4 < 2,
+            )
         )
-        hurst = random.uniform(0.6, 1.0)
-        found.append(Point(kind, roughness, length, ratio, load, hurst, scanned=number % 4 < scanned))
     return found
 
 
@@ -95,26 +119,29 @@ def points_of(part: str) -> list[tuple[int, Point]]:
         return [(1 + 100 * number, point) for number, point in enumerate(grid())]
     return [
         (1 + 100 * number + 100000 * seed, point)
-        for seed, count, scanned in RANDOM[part]
-        for number, point in enumerate(drawn(seed, count, scanned))
+        for seed, count, speeds in RANDOM[part]
+        for number, point in enumerate(drawn(seed, count, speeds))
     ]
 
 
-def compute(part: str, folder: Path, *, quick: bool, share: str) -> None:
-    """Compute the points of a part that the folder does not hold yet."""
-    number, shares = map(int, share.split("/"))
-    points = points_of(part)[: QUICK if quick else None][number::shares]
+def compute(options: argparse.Namespace) -> None:
+    """Compute the points of a part that the folder does not hold yet, or what `direct` gives of them."""
+    number, shares = map(int, options.share.split("/"))
+    points = points_of(options.part)[: QUICK if options.quick else None][number::shares]
+    folder, direct = options.folder / options.part, options.folder / "direct"
     folder.mkdir(parents=True, exist_ok=True)
     for done, (seed, point) in enumerate(points, 1):
-        file = folder / f"{point.name}.json"
+        began, file = time.process_time(), folder / f"{point.name}.json"
         if file.exists():
             continue
         with progress_bar() as progress:
-            found = compute_point(point, seed, progress)
-        file.write_text(json.dumps(found))
-        print(
-            f"{done} of {len(points)}: {point.name}, {found['processor']:.0f} s", file=sys.stderr, flush=True
-        )
+            if options.direct:
+                for path in range(point.seeds):
+                    solved(point, seed + path, direct, progress)
+            else:
+                file.write_text(json.dumps(compute_point(point, seed, direct, progress)))
+        words = f"{done} of {len(points)}: {point.name}, {time.process_time() - began:.0f} s"
+        print(words, file=sys.stderr, flush=True)
 
 
 def read(part: str, folder: Path) -> list[dict[str, Any]]:
@@ -144,9 +171,10 @@ def main() -> None:
     parser.add_argument(
         "--share", default="0/1", metavar="i/n", help="every n-th point from the i-th, from 0"
     )
+    parser.add_argument("--direct", action="store_true", help="`direct` alone; its forces are kept")
     options = parser.parse_args()
     if options.part != "publish":
-        compute(options.part, options.folder / options.part, quick=options.quick, share=options.share)
+        compute(options)
         return
     publish({part: read(part, options.folder / part) for part in ("map", "aside", "fresh")})
 

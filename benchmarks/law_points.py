@@ -7,9 +7,10 @@ import math
 import time
 import warnings
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,22 +27,24 @@ from asperity.laws.layout import force
 from asperity.progress import Progress
 from asperity.reference.law_accuracy import HIGH, LOW
 from asperity.running import prepare_case
+from asperity.scenarios.chain import Chain
 from asperity.scenarios.law_place import place_of
 from asperity.spectra import band_levels, psd
 from asperity.surfaces.correlation import CORRELATION_THRESHOLD
 
 BALL, WHEEL = "ball-on-beam", "wheel-on-rail"
-SPEED = {BALL: 1.0, WHEEL: 56.0}  # m/s
 SECTION = {BALL: "ball", WHEEL: "wheel"}
 DIAMETER = {BALL: None, WHEEL: 0.92}  # of a wheel, m
-LAWS = (
-    "direct", "areal", "shifted", "printed", "hertz-filtered", "hertz", "linear-filtered", "linear",
-)  # fmt: skip
+LAWS = ("areal", "shifted", "printed", "hertz-filtered", "hertz", "linear-filtered", "linear")
 SCANNED = "table"
 """Rolled over the first path of a point alone: its scan takes as long as `direct` over two."""
 RECORD, SETTLING, SEGMENT = 0.125, 0.03, 0.1  # s: record and run-in of a path, segments of its spectra
 CELLS, CELLS_PER_WAVE = 6, 4
-"""Least cells in a semi-axis of the smooth contact; cells of the shortest wave."""
+"""Least cells in a semi-axis of the smooth contact; least cells of the shortest wave."""
+FINEST = 2.0 / 3.0
+"""Shortest wave over the semi-axis; `EXCITED` and short correlation lengths ask for shorter ones."""
+EXCITED = 1.13 * HIGH
+"""Frequency up to which waves excite the bodies, Hz: the edge of the highest band."""
 LEAST_LENGTH = 0.5
 """Least correlation length, in shortest waves."""
 LONGEST_STEP = 28e-6  # s
@@ -57,7 +60,9 @@ class Point:
     correlation: float  # correlation length in the rolling direction over the length of the contact
     anisotropy: float  # correlation length along over that across
     load: float  # N
+    speed: float  # m/s
     hurst: float = 0.8
+    finest: float = FINEST  # shortest wave over the semi-axis, at most
     seeds: int = 2
     scanned: bool = True  # whether `table` is rolled
 
@@ -99,10 +104,11 @@ def longest_wave(length: float, shortest: float, hurst: float) -> float:
 def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
     """One path of a point."""
     approach, semi_axis = smooth_contact(point.kind, point.load)
-    speed, section = SPEED[point.kind], SECTION[point.kind]
-    in_time = math.ceil(semi_axis / (LONGEST_STEP * speed))
-    spacing = semi_axis / max(CELLS, math.ceil(1.0 / point.correlation), in_time)
-    shortest = CELLS_PER_WAVE * spacing
+    section = SECTION[point.kind]
+    relative = min(point.finest, CELLS_PER_WAVE * point.correlation)
+    shortest = min(relative * semi_axis, point.speed / EXCITED)
+    spacing = min(semi_axis / CELLS, shortest / CELLS_PER_WAVE)
+    passed = spacing / point.speed  # s
     length = 2.0 * semi_axis * point.correlation / math.sqrt(point.anisotropy)
     longest = longest_wave(max(length, LEAST_LENGTH * shortest), shortest, point.hurst)
     # rms of waves no longer than the window, by which the contact spreads
@@ -112,7 +118,7 @@ def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
     return parse_case(
         f"""
         kind = "{point.kind}"
-        speed = "{speed} m/s"
+        speed = "{point.speed} m/s"
         laws = [{", ".join(f'"{law}"' for law in laws)}]
         seed = {seed}
         duration = "{RECORD} s"
@@ -132,28 +138,59 @@ def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
         samples = 3
         sample_length = "{6 * window} m"
         [numerics]
-        time_step = "{spacing / speed} s"
+        time_step = "{passed / math.ceil(passed / LONGEST_STEP)} s"
         """
     )
 
 
-def rolled(case: Case, progress: Progress) -> dict[str, Any]:
-    """Roll one path with all laws of a case, and keep what the map needs of it."""
+def chain_of(case: Case, progress: Progress) -> Chain[Any]:
+    """Roll all laws of a case."""
     compute = importlib.import_module(f"asperity.kinds.{case.kind.replace('-', '_')}.compute").compute
-    prepared = prepare_case(case)
-    chain = compute(prepared, progress).chain
-    direct, step, kept = chain.runs["direct"], case.time_step, {}
-    reference = direct.contact_force
+    return compute(prepare_case(case), progress).chain  # type: ignore[no-any-return]
+
+
+def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[str, NDArray[Any]]:
+    """Roll `direct` over a path, unless the folder holds it for the very same case."""
+    case, file = case_of(point, seed, ["direct"]), folder / f"{point.name}_{seed}.npz"
+    if file.exists():
+        with np.load(file, allow_pickle=False) as kept:
+            if str(kept["case"]) == case.text:
+                return dict(kept)
+    chain = chain_of(case, progress)
+    run = chain.runs["direct"]
+    found = {
+        "case": np.array(case.text),
+        "force": run.contact_force,
+        "position": run.position,
+        "displacement": run.relative_displacement,
+        "loss": np.array(run.contact_loss_share),
+        "seconds": np.array(chain.seconds["law direct"]),
+        "unconverged": np.array(run.unconverged_steps),
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    np.savez_compressed(file, **found)
+    return found
+
+
+def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -> dict[str, Any]:
+    """Roll one path with all laws of a case, and keep what the map needs of it."""
+    chain, step, kept = chain_of(case, progress), case.time_step, {}
+    reference, built = direct["force"], chain.laws
+
+    def energies(contact_force: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+        return list(band_levels(*psd(contact_force, step, segment=round(SEGMENT / step)), low=LOW, high=HIGH))
+
+    centres, levels = energies(reference)
+    kept["direct"] = {"mean": float(reference.mean())} | {
+        name: float(direct[name]) for name in ("loss", "seconds", "unconverged")
+    }
+    kept["direct"]["energy"] = (10.0 ** (levels / 10.0)).tolist()
     for name, run in chain.runs.items():
-        levels = band_levels(*psd(run.contact_force, step, segment=round(SEGMENT / step)), low=LOW, high=HIGH)
-        course = reference
-        if name != "direct":
-            course = force(chain.laws[name], direct.position, direct.relative_displacement)
+        course = force(built[name], direct["position"], direct["displacement"])
         kept[name] = {
-            "energy": (10.0 ** (levels[1] / 10.0)).tolist(),
+            "energy": (10.0 ** (energies(run.contact_force)[1] / 10.0)).tolist(),
             "mean": float(run.contact_force.mean()),
             "loss": run.contact_loss_share,
-            "correlation": float(np.corrcoef(run.contact_force, reference)[0, 1]),
             "course": float(np.sqrt(np.mean((course - reference) ** 2)) / reference.std()),
             "seconds": chain.seconds[f"law {name}"],
             "unconverged": run.unconverged_steps,
@@ -161,10 +198,9 @@ def rolled(case: Case, progress: Progress) -> dict[str, Any]:
     return {
         "laws": kept,
         "steps": reference.size,
-        "centres": levels[0].tolist(),
+        "centres": centres.tolist(),
         "dynamic": float(reference.std()),
         "area_ratio": chain.reduction.area_ratio,
-        "reduction_seconds": chain.seconds["reduction"],
     }
 
 
@@ -177,8 +213,8 @@ def place_on_map(point: Point, seed: int) -> dict[str, float]:
     return asdict(place)
 
 
-def compute_point(point: Point, first_seed: int, progress: Progress) -> dict[str, Any]:
-    """Roll all paths of a point with every law, `table` over the first alone."""
+def compute_point(point: Point, first_seed: int, folder: Path, progress: Progress) -> dict[str, Any]:
+    """Roll all paths of a point with every law, `table` over the first alone; a folder keeps `direct`."""
     paths, caught, began = [], Counter[str](), time.process_time()
     for number in range(point.seeds):
         names = (*LAWS, SCANNED) if number == 0 and point.scanned else LAWS
@@ -186,8 +222,9 @@ def compute_point(point: Point, first_seed: int, progress: Progress) -> dict[str
         bare = case_of(point, seed, LAWS)
         with warnings.catch_warnings(record=True) as messages:
             warnings.simplefilter("always", PhysicsWarning)
+            direct = solved(point, seed, folder, progress)
             with practice(kind_of(bare).geometry_of(bare), DIAMETER[point.kind]) as filters:
-                paths.append(rolled(case_of(point, seed, (*names, *filters)), progress))
+                paths.append(rolled(case_of(point, seed, (*names, *filters)), direct, progress))
         caught.update(message.category.__name__ for message in messages)
     return {
         "point": asdict(point), "seed": first_seed, "paths": paths, "warnings": caught,

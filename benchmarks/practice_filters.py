@@ -4,12 +4,11 @@ Each filters the line texture once, at the working load, and hands it to the lin
 bodies. They differ in the filter alone:
 
 - ``linear-remington``: |H(k)|² = 1/(1 + π/4 (k a)³), k the angular wavenumber and a the semi-axis in the
-  rolling direction: the approximation of P. J. Remington, J. Sound Vib. 46 (1976) 359, as D. J. Thompson,
-  Railway Noise and Vibration (2009), gives it.
+  rolling direction: the approximation of P. J. Remington, J. Sound Vib. 46 (1976) 359 (not seen).
 - ``linear-dprs``: discrete point-reacting springs under the static load, on all lines of the texture, after
-  P. J. Remington and J. Webb, J. Sound Vib. 193 (1996) 83. The springs do not feel each other. Here the force
-  of each grows as the root of its deflection, on bodies of half the radii, so that smooth bodies have Hertz's
-  patch, pressure and load.
+  Remington and Webb, named by R. A. J. Ford and D. J. Thompson, J. Sound Vib. 293 (2006) 807. The springs do
+  not feel each other. Here the force of each grows as the root of its deflection, on bodies of half the
+  radii, so that smooth bodies have Hertz's patch, pressure and load.
 - ``linear-cnossos``: table A3 of CNOSSOS-EU for the nearest load and wheel diameter; of wheels alone.
 """
 

@@ -6,7 +6,7 @@ A wheel of 600 kg rolls at 108 km/h on a rail with the roughness of ISO 3095, ov
 loss factor stays, their stiffness goes from soft to stiff. Stiff pads hold the rail to its sleepers. Its
 waves then decay within fewer metres, so that less of the rail is heard, but more gets into the sleepers; the
 quietest pad lies between. On the command line the same is one table,
-`asperity study case.toml --vary "track.pad_stiffness = 60 MN/m, 400 MN/m, 2 GN/m"`.
+`asperity study case.toml --vary "track.pad_stiffness = 60..2000 MN/m, 3 ratios"`.
 """
 
 from concurrent.futures import ThreadPoolExecutor

@@ -1,5 +1,6 @@
 """What all tests share: a cache of their own, kernels that are compiled once, signals that reach children."""
 
+import io
 import os
 import signal
 import tempfile
@@ -15,6 +16,7 @@ os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pyte
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
 os.environ["ASPERITY_CACHE"] = _cache.name
 
+from asperity import results  # noqa: E402
 from asperity.kinds.report_process import ReportProcess  # noqa: E402
 
 
@@ -38,6 +40,18 @@ def reported_alone(monkeypatch):
         return nullcontext(ReportProcess() if wanted else None)
 
     monkeypatch.setattr("asperity.kinds.report_process.report_process", alone)
+
+
+@pytest.fixture(autouse=True)
+def results_opened_here(monkeypatch):
+    """Results of tests are their own: `test_results.py` and `faults` open them in other processes."""
+
+    def opened(function, arguments, *_):
+        assert function == "asperity.results:serve_result"
+        results.serve_result(*arguments, answers := io.BytesIO())
+        return answers.getvalue()
+
+    monkeypatch.setattr("asperity.results.apart", opened)
 
 
 @pytest.fixture

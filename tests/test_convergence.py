@@ -224,9 +224,11 @@ class TestLimits:
         assert rows[1][1].text == "not changed: nothing is reduced from samples here"
         assert float(result["convergence/stiffness_change"].sel(setting="grid")) == 0.0
 
-    def test_poles_are_doubled_halved_or_there_are_none(self):
+    def test_poles_are_held_to_the_kernel_that_they_stand_for(self):
         names = {setting.name: setting for setting in settings_for(case_of(WHEEL), np.zeros(2))}
-        assert [way.changes["numerics.poles"] for way in names["poles"].ways] == [120, 30]
+        (way,) = names["poles"].ways
+        assert way.words == "up to 60 → the kernel that they are fitted to"
+        assert case_of(WHEEL).case.with_(**way.changes).numerics.kernel == "scatter"
         scattered = case_of(WHEEL | {"numerics": {"highest_frequency": "1 kHz", "kernel": "scatter"}})
         assert "without poles" in {s.name: s for s in settings_for(scattered, np.zeros(2))}["poles"].limit
 
@@ -295,3 +297,5 @@ def test_the_command_line_expects_it_and_does_it(tmp_path, monkeypatch):
     result = asperity.open_result("out")
     assert json.loads(result["scenario"].attrs["laws"])[0]["name"] == "hertz"
     assert "convergence" in result.children
+    again = CliRunner().invoke(main, ["run", "case.toml", "--converge", "-o", "out", "--no-report"])
+    assert "Nothing to do" in again.stderr

@@ -1,7 +1,12 @@
 """What errors say, and what the command line returns for them."""
 
+import ast
+import re
+from pathlib import Path
+
 import pytest
 
+import asperity
 from asperity import errors
 from asperity.errors import CaseError, ComputationError, InputError, Outcome, PhysicsWarning
 
@@ -46,3 +51,34 @@ def test_every_physics_warning_has_a_class_with_a_meaning():
 def test_outcomes_that_failed_give_advice(outcome):
     assert outcome.ok is (outcome in (Outcome.CONVERGED, Outcome.NO_CONTACT))
     assert outcome.ok or "; try" in outcome.value
+
+
+def read_by_people(text):
+    """Texts in a module that are no docstrings, and no names that stand alone."""
+    silent = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Expr):
+            silent.add(id(node.value))
+        words = node.value if isinstance(node, ast.Constant) and id(node) not in silent else None
+        if isinstance(words, str) and not words.isidentifier():
+            yield node.lineno, words
+
+
+def test_nothing_that_people_read_has_class_names_or_backticks():
+    """Texts of the whole program: messages, warnings, help, keys, reports. Full names of Python may stand."""
+    root = Path(asperity.__file__).parent
+    modules = {path: path.read_text(encoding="utf-8") for path in root.rglob("*.py")}
+    classes = {name for text in modules.values() for name in re.findall(r"^class (\w+)", text, re.M)}
+    compound = "|".join(sorted(name for name in classes if re.match("[A-Z][a-z]+[A-Z]", name)))
+    named = re.compile(rf"`|(?<![\w.])({compound})\b")
+    assert named.search("Take `table`.")
+    assert named.search("a MissingSourceWarning")
+    found = [
+        f"{path.relative_to(root)}:{line}: {words}"
+        for path, text in modules.items()
+        for line, words in read_by_people(text)
+        if named.search(words)
+    ]
+    assert found == []
+    templates = [path.read_text(encoding="utf-8") for path in root.rglob("*.jinja")]
+    assert not [text for text in templates if re.search(r"\.category\b", text)]

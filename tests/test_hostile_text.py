@@ -325,6 +325,33 @@ def test_no_more_of_a_table_is_read_than_it_may_have(tmp_path):
     tracemalloc.stop()
 
 
+@pytest.mark.parametrize("text", ["1.5\n" * 40_000, "2;" * 80_000], ids=["a column", "a row"])
+def test_heights_as_text_take_a_few_times_their_file(tmp_path, text):
+    (tmp_path / "line.txt").write_text(text)
+    tracemalloc.start()
+    read_surface(tmp_path / "line.txt", height_unit="um", pixel="1 mm")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2**20 + 16 * len(text)  # a number of eight bytes for each two, and its copy
+
+
+def test_text_that_is_too_large_or_no_numbers_is_refused_with_a_number(tmp_path):
+    with open(tmp_path / "large.txt", "wb") as sparse:
+        sparse.truncate(2**31)
+    with pytest.raises(InputError, match="received 2 GiB; allowed: at most 1 GiB of text"):
+        read_surface(tmp_path / "large.txt", height_unit="um", pixel="1 mm")
+    (tmp_path / "tale.txt").write_text("once upon a time\n" * 70_000)
+    with pytest.raises(InputError, match="more than 1 MiB of text that is no number; allowed: heights as"):
+        read_surface(tmp_path / "tale.txt", height_unit="um", pixel="1 mm")
+
+
+def test_a_link_that_leads_nowhere_is_no_folder(tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    for folder in (tmp_path / "link", tmp_path / "link" / "run"):
+        with pytest.raises(InputError, match=r"link is a link that leads nowhere\); allowed: a folder that"):
+            refuse_unwritable(folder, "folder of the results", "Choose another one with -o.")
+
+
 def test_names_that_are_too_long_cannot_be_written(tmp_path):
     with pytest.raises(InputError, match=r"folder of the results: received .*File name too long.*with -o"):
         refuse_unwritable(tmp_path / LONG_NAME, "folder of the results", "Choose another one with -o.")

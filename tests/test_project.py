@@ -10,8 +10,10 @@ import yaml
 
 import asperity
 from asperity.kernels import options
+from asperity.scenarios.tree import METHOD
 
 ROOT = Path(__file__).parents[1]
+READ = (".py", ".md", ".bib", ".rst", ".toml")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
@@ -103,3 +105,33 @@ def test_no_two_files_of_tests_have_one_name():
     """They are modules without packages: of two, one would be left out."""
     names = [path.name for path in Path(__file__).parent.rglob("test_*.py")]
     assert len(set(names)) == len(names)
+
+
+def test_what_pages_and_examples_import_is_in_the_reference():
+    path = Path(__file__).parents[1] / "docs" / "extensions" / "written_pages.py"
+    spec = importlib.util.spec_from_file_location("written_pages", path)
+    pages = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(pages)
+    listed = {line.strip().rpartition(".")[2] for line in pages.api().splitlines()}
+    wanted = {"self_affine", "areal_statistics", "homogeneity", "psd_1d", "decay_rate", "RailSection"}
+    assert wanted <= listed
+    assert {name.rpartition(".")[2] for name in pages.imported()} - {"laws"} <= listed
+
+
+def test_the_thesis_is_cited_without_a_title_and_its_papers_by_theirs():
+    papers = (
+        "A nonlinear state-dependent model for vibrations excited by roughness in rolling contacts",
+        "Estimation of nonlinearities in the wheel-rail rolling noise generation process",
+    )
+    assert METHOD[0] == "O. Lundberg, licentiate thesis, KTH Stockholm (2014)."
+    told = [" ".join(METHOD), text("CITATION.cff"), text("paper/paper.bib")]
+    assert all(paper in words for paper in papers for words in told)
+    folders = ("src", "docs", "paper", "examples", "benchmarks")
+    files = [file for name in folders for file in (ROOT / name).rglob("*.*") if file.suffix in READ]
+    chapter = "state-dependent nonlinear " + "contact modelling"  # the title of its second chapter
+    assert not [file for file in files if chapter in file.read_text(encoding="utf-8").lower()]
+    assert chapter not in text("CITATION.cff").lower()
+
+
+def test_what_is_marked_as_not_seen_is_explained():
+    assert 'marked "(not seen)"' in text("docs/conventions.md")

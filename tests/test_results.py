@@ -1,13 +1,16 @@
 """The result file: what is written comes back, and what is not ours is refused."""
 
+import os
+
 import h5netcdf
 import numpy as np
 import pytest
 import xarray as xr
 
 import asperity
+from asperity.apart import apart
 from asperity.errors import InputError
-from asperity.reporting.notebook import Result
+from asperity.kinds.notebook import Result
 from asperity.results import GROUPS, case_text, checked, read_result, save, variable
 from asperity.schema import VERSION
 
@@ -32,10 +35,23 @@ def small_tree():
     return xr.DataTree.from_dict(groups)
 
 
-def test_a_result_comes_back_as_it_was(tmp_path):
+def test_a_result_comes_back_as_it_was(tmp_path, monkeypatch):
+    """Through the process that opens it; its arrays can be written to."""
+    monkeypatch.setattr("asperity.results.apart", apart)
     tree = small_tree()
-    path = save(tree, tmp_path / "run.nc")
-    xr.testing.assert_identical(read_result(path), tree)
+    found = read_result(save(tree, tmp_path / "run.nc"))
+    xr.testing.assert_identical(found, tree)
+    found["rolling/contact_force"].values[:] = 0.0
+
+
+def test_a_small_file_of_many_numbers_is_refused(tmp_path):
+    """Chunks that no one wrote take no space in a file, and all of it in memory."""
+    path = save(small_tree(), tmp_path / "run.nc")
+    with h5netcdf.File(path, "a") as file:
+        file.dimensions["many"] = 2**40
+        file.create_variable("/rolling/zeros", ("many",), "f8", chunks=(2**20,))
+    with pytest.raises(InputError, match="more than 100 times its size in numbers"):
+        read_result(path)
 
 
 def test_what_hardly_shrinks_is_not_compressed(tmp_path):
@@ -150,11 +166,19 @@ def test_the_case_is_read_alone(tmp_path):
     assert case_text(path) == "kind = 'ball-on-beam'  # µm"
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no such pipes")
+def test_a_pipe_is_no_result(tmp_path):
+    os.mkfifo(tmp_path / "run.nc")
+    for read in (case_text, read_result):
+        with pytest.raises(InputError, match="a pipe or a device, which may never end"):
+            read(tmp_path / "run.nc")
+
+
 @pytest.mark.parametrize("content", [b"time, force", b"\x89HDF\r\n\x1a\n and no more"])
 def test_a_file_without_a_case_is_refused(tmp_path, content):
     (tmp_path / "run.nc").write_bytes(content)
-    with pytest.raises(InputError, match="without a readable case"):
+    with pytest.raises(InputError, match=r"not netCDF-4|a damaged file"):
         case_text(tmp_path / "run.nc")
     xr.Dataset({"force": ("time", [1.0])}).to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
-    with pytest.raises(InputError, match="without a readable case"):
+    with pytest.raises(InputError, match="without a case"):
         case_text(tmp_path / "other.nc")

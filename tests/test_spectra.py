@@ -152,7 +152,7 @@ def test_a_weighting_at_zero_and_below():
 
 @pytest.mark.parametrize(("segment", "share"), [(4000, 18 / 35), (2000, None), (500, None)])
 def test_averaging_time_is_that_of_the_scatter_of_a_band(segment, share):
-    """The variance of a band's mean square is 1/(B T): Bendat and Piersol, Random Data, ch. 8.
+    """The variance of a band's mean square is 1/(B T): Bendat and Piersol, Random Data (2010).
 
     One Hann window over the whole record leaves (3/8)²/(35/128) = 18/35 of it.
     """

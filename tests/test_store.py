@@ -1,6 +1,7 @@
 """The cache: names by content, atomic writing, and files that cannot be trusted."""
 
 import io
+import os
 import pickle
 import struct
 import subprocess
@@ -154,6 +155,14 @@ def test_a_file_that_cannot_be_trusted_counts_as_missing(store, kind, tmp_path, 
     store.path("k").write_bytes(hostile_files("k")[kind])
     assert store.get("k") is None
     assert not Path("pickled").exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no such pipes")
+def test_a_pipe_in_place_of_a_result_counts_as_missing(store):
+    """To open it would wait for whoever writes into it."""
+    store.root.mkdir()
+    os.mkfifo(store.path("k"))
+    assert store.get("k") is None
 
 
 def test_a_zip_bomb_counts_as_missing(store):

@@ -104,6 +104,16 @@ def test_standard_output_on_a_full_disk_is_a_failure(tmp_path):
     assert run("asperity check absent.toml 2> /dev/full", tmp_path).returncode == 2
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("words", ["cache", "check absent.toml", "check"])
+def test_a_document_on_a_full_disk_is_a_failure(tmp_path, words):
+    """Whether the command has done its work, failed, or was called wrongly."""
+    done = run(f"asperity {words} --json > /dev/full", tmp_path)
+    assert done.returncode == 3
+    assert "Error: standard output could not be written (" in done.stderr.decode()
+    assert "Traceback" not in done.stderr.decode()
+
+
 @posix
 def test_names_of_files_and_commands_are_spelled_out(tmp_path):
     escape = b"\x1b"

@@ -1,10 +1,14 @@
 """How many threads a computation takes."""
 
+import time
+
+import numpy as np
 import pytest
 from threadpoolctl import threadpool_info
 
+from asperity.contact import HalfSpace
 from asperity.errors import InputError
-from asperity.threads import one_thread_in_linear_algebra, processors, thread_count
+from asperity.threads import in_order, one_thread_in_linear_algebra, processors, refuse_to_go_on, thread_count
 
 
 def test_one_per_processor_unless_the_environment_says_otherwise(monkeypatch):
@@ -32,3 +36,32 @@ def test_linear_algebra_has_one_thread_inside_and_its_own_again_outside():
         pass
     assert set(inside) == {1}
     assert threads() == before
+
+
+def test_long_tasks_stop_when_nobody_waits_for_them_any_more():
+    """As after Ctrl-C: within a piece of the work, not at the end of all."""
+    begun = []
+
+    def task(item):
+        begun.append(item)
+        until = time.monotonic() + (20 if item else 0)
+        while time.monotonic() < until:
+            refuse_to_go_on()
+            time.sleep(0.01)
+
+    results = in_order(task, range(9), workers=2)
+    next(results)
+    begin = time.monotonic()
+    results.close()
+    assert time.monotonic() - begin < 5
+    assert len(begun) <= 4
+
+
+def test_contacts_of_a_scan_are_such_pieces(monkeypatch):
+    """A block of 64 positions looks up every 16."""
+    looks = []
+    monkeypatch.setattr("asperity.contact.halfspace.refuse_to_go_on", lambda: looks.append(1))
+    x = 1e-5 * np.arange(-8, 9)
+    body = (x[:, None] ** 2 + x**2) / (2 * 0.025)
+    HalfSpace((17, 17), 1e-5, 115e9).scan(np.zeros((80, 17)), body, [1e-7])
+    assert len(looks) >= 4

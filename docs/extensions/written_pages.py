@@ -44,6 +44,7 @@ NEEDS = {
     Need.SURFACE: "texture beside the line",
 }
 LINK = re.compile(r"\]\((?![a-z]+:|#)([^)#\s]+)(#[^)]*)?\)")
+IMPORT = re.compile(r"^ *from (asperity[\w.]*) import ([\w, ]+)$", re.MULTILINE)
 KEY = re.compile(r"^(?P<unset># )?(?P<key>\w+) = (?P<value>.*?) +# (?P<note>.*)$")
 
 
@@ -132,6 +133,18 @@ MODULES = {
 """Modules whose public names are told of, and their headings."""
 
 
+def imported() -> list[str]:
+    """Names below the package that README, pages and examples import: whoever copies them relies on these."""
+    pages = [ROOT / "README.md", *DOCS.glob("*.md"), *DOCS.glob("*/*.md"), *(ROOT / "examples").glob("*.py")]
+    found = {
+        f"{module}.{name.split()[0]}"
+        for page in pages if page.parent != WRITTEN
+        for module, names in IMPORT.findall(page.read_text(encoding="utf-8"))
+        for name in names.split(",")
+    }  # fmt: skip
+    return sorted(found)
+
+
 def api() -> str:
     """Tables of all public names, each with a page."""
     parts = ["Names in Python", "===============", ""]
@@ -145,6 +158,10 @@ def api() -> str:
         shown = [each for each in offered if callable(getattr(module, each))]
         parts += [heading, "-" * len(heading), "", ".. autosummary::", "   :toctree: api", ""]
         parts += [*(f"   {name}.{each}" for each in shown), ""]
+    further = [name for name in imported() if name.rpartition(".")[0] not in MODULES]
+    heading = "What pages and examples use beside these"
+    parts += [heading, "-" * len(heading), "", ".. autosummary::", "   :toctree: api", ""]
+    parts += [*(f"   {name}" for name in further), ""]
     return "\n".join(parts)
 
 

@@ -8,6 +8,8 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import suppress
+from threading import Thread
 from typing import Any, BinaryIO
 
 from asperity.errors import InputError
@@ -20,7 +22,7 @@ BYTES_PER_SECOND = 20e6
 PATIENCE = 5.0
 """How many times as long that may take where other work is done beside it."""
 MEMORY = 8 * 2**30
-"""Bytes of address space that opening a file may need."""
+"""Bytes of address space that opening a file may need, or four times its size if that is more."""
 _REFUSED = 2
 _FAILED = 3
 _OUT_OF_TIME = -getattr(signal, "SIGXCPU", 0) or None
@@ -41,30 +43,28 @@ def apart(function: str, arguments: list[Any], source: str, size: int, kind: str
     """
     seconds = SECONDS + size / BYTES_PER_SECOND
     command = [sys.executable, "-c", _START, json.dumps(sys.path)]
-    request = json.dumps([function, arguments, MEMORY, int(seconds) + 1]).encode()
+    request = json.dumps([function, arguments, max(MEMORY, 4 * size), int(seconds) + 1]).encode()
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
     allowed = f"an intact {kind} file"
-    try:
-        done = subprocess.run(
-            command,
-            input=request,
-            capture_output=True,
-            timeout=PATIENCE * seconds,
-            env=environment,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise InputError(source, _too_long(PATIENCE * seconds), allowed, _DAMAGED) from None
-    if done.returncode == 0:
-        return done.stdout
-    if done.returncode == _OUT_OF_TIME:
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, env=environment) as process:
+        try:
+            answers, told = process.communicate(request, timeout=PATIENCE * seconds)
+        except subprocess.TimeoutExpired:
+            raise InputError(source, _too_long(seconds), allowed, _DAMAGED) from None
+        finally:  # an interrupt, too, leaves nothing behind
+            process.kill()
+            process.wait()
+    if process.returncode == 0:
+        return answers
+    if process.returncode == _OUT_OF_TIME:
         raise InputError(source, _too_long(seconds), allowed, _DAMAGED)
-    words = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
-    if done.returncode == _REFUSED:
+    words = told.decode(errors="replace").strip().rpartition("\n")[2]
+    if process.returncode == _REFUSED:
         raise InputError(*json.loads(words))
-    if done.returncode == _FAILED:
+    if process.returncode == _FAILED:
         raise InputError(source, f"{json.loads(words)} while it was opened", allowed, _DAMAGED)
-    received = f"a file that ends the program that opens it (code {done.returncode})"
+    received = f"a file that ends the program that opens it (code {process.returncode})"
     raise InputError(source, received, allowed, _DAMAGED)
 
 
@@ -124,6 +124,18 @@ def _limit_resource(name: str, value: int) -> None:
     _, hard = resource.getrlimit(kind)
     if hard in (resource.RLIM_INFINITY,) or hard >= value:
         resource.setrlimit(kind, (value, hard))
+
+
+def end_with_parent() -> None:
+    """End this process when the one that started it ends, however it does: standard input ends then."""
+
+    def listen() -> None:
+        with suppress(OSError, ValueError):
+            while os.read(0, 4096):
+                pass
+        os._exit(1)
+
+    Thread(target=listen, daemon=True).start()
 
 
 def send(answers: BinaryIO, description: object, arrays: list[Any]) -> None:

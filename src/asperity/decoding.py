@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import io
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,11 +14,13 @@ from asperity.files import amount
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
-def read_text(path: Path, source: str, allowed: str, *, largest: int, remedy: str = "") -> str:
+def read_text(
+    path: Path, source: str, allowed: str, *, largest: int, remedy: str = "", shorten: str = ""
+) -> str:
     """Read a text file that a person has written, without a mark of its encoding.
 
     Of at most `largest` bytes. `source` is its name and `allowed` what may stand there, for messages;
-    `remedy` is what to do if there is no such file.
+    `remedy` is what to do if there is no such file, `shorten` if it is too large.
     """
     if received := no_file(path):
         raise InputError(source, received, allowed, remedy)
@@ -27,7 +30,8 @@ def read_text(path: Path, source: str, allowed: str, *, largest: int, remedy: st
     except OSError as error:
         raise InputError(source, f"a file that cannot be read ({error.strerror})", allowed) from None
     if len(content) > largest:
-        raise InputError(source, f"more than {amount(largest)}", f"{allowed} of at most {amount(largest)}")
+        allowed = f"{allowed} of at most {amount(largest)}"
+        raise InputError(source, f"more than {amount(largest)}", allowed, shorten)
     return decoded(content, source, allowed)
 
 
@@ -54,12 +58,17 @@ def decoded(content: bytes, source: str, allowed: str) -> str:
         raise InputError(source, received, allowed, remedy) from None
 
 
+def lines_in(content: str) -> Iterator[str]:
+    """Lines of a text, one at a time: a list of them takes many times the memory of short lines."""
+    return iter(io.StringIO(content, newline=None))
+
+
 def lines_of_cells(content: str) -> Iterator[tuple[int, list[str]]]:
     """Cells of each line of a table that holds any, with its number.
 
     They are apart by comma, semicolon (with decimal commas) or white space; text from '#' on is left out.
     """
-    for number, line in enumerate(content.splitlines(), start=1):
+    for number, line in enumerate(lines_in(content), start=1):
         text = line.partition("#")[0].strip()
         separator = next((mark for mark in (";", ",") if mark in text), None)
         if separator == ";":

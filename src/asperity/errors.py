@@ -8,6 +8,10 @@ from asperity.printable import printable
 
 LONGEST = 1000
 """Characters of a name or value that a message repeats: more than the paths that people use."""
+TOO_MUCH_MEMORY = (
+    "the case takes more memory than there is. Are all its lengths, times and files in the units that they "
+    "are meant in? If so, try a smaller contact.window, a shorter duration or a coarser contact.spacing."
+)
 MOST_ERRORS = 10
 """Errors of a case that are listed: who has more corrects these first."""
 
@@ -177,8 +181,8 @@ class Outcome(Enum):
     """How an iterative computation ended, with advice."""
 
     CONVERGED = "converged"
-    ITERATION_LIMIT = "the iteration limit was reached; try a larger `rtol`, and check the gap for spikes"
-    STALLED = "rounding allows no better solution; try a larger `rtol`, and check the gap for spikes"
+    ITERATION_LIMIT = "the iteration limit was reached; try a larger rtol, and check the gap for spikes"
+    STALLED = "rounding allows no better solution; try a larger rtol, and check the gap for spikes"
     NO_CONTACT = "the bodies do not touch at this approach"
     STEPS_UNCONVERGED = (
         "the contact force missed its tolerance in some steps; try a smaller numerics.time_step"

@@ -97,12 +97,18 @@ def free_space(path: Path) -> int:
 
 
 def _existing(path: Path) -> Path:
-    """First of a path and the folders above it that exists."""
+    """First of a path and the folders above it that exists, if only as a link."""
     path = path.absolute()
-    return next(place for place in (path, *path.parents) if place.exists())
+    return next(place for place in (path, *path.parents) if place.exists() or place.is_symlink())
+
+
+def lasting(path: Path) -> Path:
+    """Where a file of a new folder ends up, see `together`."""
+    return Path(*(part for part in path.parts if not _PART.fullmatch(part)))
 
 
 def _not_written(path: Path, error: OSError) -> AsperityError:
+    path = lasting(path)
     if error.errno == errno.ENAMETOOLONG:
         return InputError(str(path), "a name that is too long", "names that the disk can hold")
     if error.errno in _FULL:
@@ -124,7 +130,7 @@ def _too_large(path: Path, size: float, free: int) -> ComputationError:
         f"{amount(size)} are needed, {amount(free)} are free" if size > free else f"{amount(free)} are free"
     )
     return ComputationError(
-        f"{path} could not be written: the disk is full ({needed})",
+        f"{lasting(path)} could not be written: the disk is full ({needed})",
         "another folder, or free space on this disk",
     )
 
@@ -200,9 +206,40 @@ def remove_left_overs(folder: Path) -> int:
 def discard(path: Path) -> bool:
     """Remove a file, if it can be; a part only where nobody writes it. Return whether it went."""
     with suppress(OSError), _taken(path) if is_part(path) else nullcontext():
-        path.unlink()
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
         return True
     return False
+
+
+@contextmanager
+def together(folder: Path, last: str) -> Iterator[Path]:
+    """Make a new folder whose files come to a folder together, at the end of the ``with`` statement.
+
+    Until then, and if that fails, what is there stays as it is. The file called `last` comes last, and so
+    says that all the others are there. Space is needed for both, the earlier files and the new ones.
+    """
+    remove_left_overs(folder)
+    new = folder / f".new.{secrets.token_hex(4)}.part"
+    descriptor = None
+    try:
+        new.mkdir(parents=True)
+        if fcntl is not None:  # while it is locked nobody takes it for a left-over
+            descriptor = os.open(new, os.O_RDONLY)
+            _lock(descriptor)
+        yield new
+        for file in sorted(filter(Path.is_file, new.rglob("*")), key=lambda file: file.name == last):
+            target = folder / file.relative_to(new)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(file, target)
+    except OSError as error:
+        raise _not_written(folder, error) from error
+    finally:
+        if descriptor is not None:
+            os.close(descriptor)
+        shutil.rmtree(new, ignore_errors=True)
 
 
 def _parts(folder: Path) -> list[Path]:
@@ -221,9 +258,12 @@ def _taken(part: Path) -> Iterator[None]:
     if fcntl is None:  # an open file cannot be removed then
         yield
         return
-    with open(part, "rb") as file:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    descriptor = os.open(part, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield
+    finally:
+        os.close(descriptor)
 
 
 def _lock(descriptor: int) -> bool:
@@ -315,5 +355,9 @@ def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:
     except OSError as error:
         if error.errno in _FULL:
             raise _too_large(folder, 0, 0) from error
-        reason = f"{existing} is a file" if existing.is_file() else f"{existing}: {error.strerror or error}"
+        reason = f"{existing}: {error.strerror or error}"
+        if existing.is_file():
+            reason = f"{existing} is a file"
+        elif not existing.exists():
+            reason = f"{existing} is a link that leads nowhere"
     raise InputError(what, f"{folder} ({reason})", _WRITABLE, remedy) from None

@@ -16,13 +16,8 @@ def printable(text: str, *, lines: bool = False) -> str:
     """
     if text.isprintable():
         return text
-    kept = "\n\t" if lines else ""
-    return "".join(
-        _spelled(character)
-        if unicodedata.category(character) in _UNSEEN and character not in kept
-        else character
-        for character in text
-    )
+    acting = {c for c in set(text) - set("\n\t" if lines else "") if unicodedata.category(c) in _UNSEEN}
+    return text.translate({ord(character): _spelled(character) for character in acting})
 
 
 def _spelled(character: str) -> str:

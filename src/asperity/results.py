@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import io
+import math
 import os
 import zlib
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -25,6 +26,10 @@ GROUPS = ("scenario", "surface", "contact", "rolling", "spectra")
 TRIED = 4096  # numbers of a part on which compression is tried
 WORTHWHILE = 0.75  # largest size, relative to that as they are, of numbers that are worth compressing
 LARGEST_FILE = 16 * 2**30  # bytes
+MOST_UNPACKED = 100  # times its size that the numbers of a file may take, in memory
+SMALL = 2**26  # bytes that any file may take
+_ALLOWED = "a result file that a run has written (run.nc)"
+_AGAIN = "Run its case again."
 
 
 def variable(
@@ -77,11 +82,6 @@ def save(tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
     >>> asperity.save(asperity.run(case), "runs/first/run.nc").name
     'run.nc'
     """
-    return save_after(lambda: None, tree, path)
-
-
-def save_after(before: Callable[[], object], tree: xarray.DataTree, path: str | os.PathLike[str]) -> Path:
-    """Write a result as `save` does, with something done between laying the file out and writing it."""
     checked(tree)
     encoding = {
         node.path: {
@@ -93,7 +93,6 @@ def save_after(before: Callable[[], object], tree: xarray.DataTree, path: str | 
     }
     image = io.BytesIO()  # HDF5 itself ends the process where a disk is full
     _storable(tree).to_netcdf(image, engine="h5netcdf", encoding=encoding, write_inherited_coords=False)
-    before()
     return write_bytes(path, image.getbuffer(), sealed=True)
 
 
@@ -128,25 +127,44 @@ def read_result(path: str | os.PathLike[str]) -> xarray.DataTree:
     path = file_path("result", path, "the path of a run.nc, or of the folder that holds one")
     if no_file(path) == "a folder":
         path = path / "run.nc"
-    allowed = "a result file that a run has written (run.nc)"
+    tree = _decoded(path, _opened_apart(path))
+    if ASPERITY_VERSION.name not in tree.attrs or not set(GROUPS) <= set(tree.children):
+        raise InputError(str(path), "a netCDF-4 file of another kind", _ALLOWED)
+    _check_version(path, tree)
+    return tree
+
+
+def _opened_apart(path: Path, *, whole: bool = True) -> xarray.DataTree:
+    """Open a result in a process of its own: HDF5 may hang in a file, or end, whatever its digest says."""
+    from asperity.streamed import receive_result
+
     if received := no_file(path):
-        raise InputError(str(path), received, allowed, "Check the path.")
-    if path.stat().st_size > LARGEST_FILE:
-        raise InputError(str(path), f"{path.stat().st_size / 2**30:.0f} GiB", f"{allowed} of at most 16 GiB")
+        raise InputError(str(path), received, _ALLOWED, "Check the path.")
+    size = path.stat().st_size
+    if size > LARGEST_FILE:
+        raise InputError(str(path), f"{size / 2**30:.0f} GiB", f"{_ALLOWED} of at most 16 GiB")
     with open(path, "rb") as file:
         signature, intact = file.read(8), is_sealed(file)
     if signature != b"\x89HDF\r\n\x1a\n":
-        raise InputError(str(path), "a file that is not netCDF-4", allowed)
-    if intact is None:  # of another program, which HDF5 may hang in
-        apart(f"{__name__}:open_apart", [str(path.absolute())], str(path), path.stat().st_size, "netCDF-4")
-    elif not intact:
+        raise InputError(str(path), "a file that is not netCDF-4", _ALLOWED)
+    if intact is False:
         received = "a damaged file: its digest does not fit its contents"
-        raise InputError(str(path), received, allowed, "Run its case again.")
-    tree = _opened(path)
-    if ASPERITY_VERSION.name not in tree.attrs or not set(GROUPS) <= set(tree.children):
-        raise InputError(str(path), "a netCDF-4 file of another kind", allowed)
-    _check_version(path, tree)
-    return tree
+        raise InputError(str(path), received, _ALLOWED, _AGAIN)
+    words = [str(path.absolute()), whole]
+    found = receive_result(io.BytesIO(apart(f"{__name__}:serve_result", words, str(path), size, "netCDF-4")))
+    assert found is not None
+    return found
+
+
+def _decoded(path: Path, tree: xarray.DataTree) -> xarray.DataTree:
+    """The groups of a file as they were before they were laid out for netCDF."""
+    import xarray
+
+    try:
+        found = {node.path: xarray.decode_cf(node.to_dataset(inherit=False)) for node in tree.subtree}
+        return xarray.DataTree.from_dict(found).load()
+    except Exception as error:  # xarray raises errors of many kinds on what does not fit together
+        raise InputError(str(path), f"a damaged file ({reason(error)})", _ALLOWED, _AGAIN) from error
 
 
 def _check_version(path: Path, tree: xarray.DataTree) -> None:
@@ -161,33 +179,43 @@ def _check_version(path: Path, tree: xarray.DataTree) -> None:
     raise InputError(str(path), received, f"schema version {VERSION}", remedy)
 
 
-def _opened(path: Path) -> xarray.DataTree:
-    import xarray
+def serve_result(path: str, whole: bool, answers: BinaryIO) -> None:
+    """Send all that is in a file, or its attributes alone, to the binary file `answers`."""
+    import h5netcdf
+
+    from asperity.streamed import Group, send_groups
+
+    def groups(found: Any) -> Iterator[Group]:
+        variables = found.variables if whole else {}
+        held = {name: (each.dimensions, _values(each), dict(each.attrs)) for name, each in variables.items()}
+        yield found.name, dict(found.attrs), held, []
+        for group in found.groups.values() if whole else ():
+            yield from groups(group)
+
+    left = max(SMALL, MOST_UNPACKED * os.path.getsize(path))
+
+    def _values(variable: Any) -> NDArray[Any]:
+        nonlocal left
+        left -= math.prod(variable.shape) * 8
+        if left < 0:
+            raise ValueError(f"more than {MOST_UNPACKED} times its size in numbers")
+        return variable[...]
 
     try:
-        with xarray.open_datatree(path, engine="h5netcdf") as opened:
-            return opened.load()
-    except Exception as error:  # h5py and xarray raise errors of many kinds on damaged files
-        received = f"a damaged file ({reason(error)})"
-        allowed = "a result file that a run has written (run.nc)"
-        raise InputError(str(path), received, allowed, "Run its case again.") from error
+        with h5netcdf.File(path, "r", decode_vlen_strings=True) as file:
+            send_groups(groups(file), answers)
+    except Exception as error:  # h5py raises errors of many kinds on damaged files
+        raise InputError(path, f"a damaged file ({reason(error)})", _ALLOWED, _AGAIN) from error
 
 
-def open_apart(path: str, answers: BinaryIO) -> None:
-    """Open a result whose origin is not known, to see that it can be; nothing is answered."""
-    _opened(Path(path))
+def attributes_of(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read what a result or a study says of all of itself: its case, for instance."""
+    return {str(name): value for name, value in _opened_apart(Path(path), whole=False).attrs.items()}
 
 
 def case_text(path: str | os.PathLike[str]) -> str:
     """Read the case, in TOML, that a ``run.nc`` belongs to, and nothing else of it."""
-    import h5netcdf
-
-    try:
-        with open(path, "rb") as sealed:
-            if not is_sealed(sealed):
-                raise ValueError("its digest is missing, or does not fit")
-        with h5netcdf.File(path, "r") as file:
-            return str(file.attrs[CASE.name])
-    except Exception as error:  # h5py raises errors of many kinds on damaged files
-        received = f"a file without a readable case ({reason(error)})"
-        raise InputError(str(path), received, "a result file that a run has written (run.nc)") from error
+    found = attributes_of(path)
+    if CASE.name not in found:
+        raise InputError(str(path), "a file without a case", _ALLOWED)
+    return str(found[CASE.name])

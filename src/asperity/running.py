@@ -12,8 +12,8 @@ from asperity.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from asperity.config.case import Case
+    from asperity.kinds.notebook import Result
     from asperity.progress import Progress
-    from asperity.reporting.notebook import Result
     from asperity.scenarios.preparing import PreparedCase
 
 
@@ -64,8 +64,8 @@ def run(
     """
     from asperity.errors import PhysicsWarning
     from asperity.kinds.cases import as_case
+    from asperity.kinds.notebook import Result
     from asperity.progress import shown_progress
-    from asperity.reporting.notebook import Result
     from asperity.scenarios.preparing import PreparedCase
     from asperity.threads import one_thread_in_linear_algebra
 
@@ -124,7 +124,7 @@ def open_result(path: str | os.PathLike[str]) -> Result:
     >>> asperity.open_result(path).identical(result)
     True
     """
-    from asperity.reporting.notebook import Result
+    from asperity.kinds.notebook import Result
     from asperity.results import read_result
 
     return Result.of(read_result(path))

@@ -7,6 +7,8 @@ in wavelength are those in wavenumber read backwards, since both have their cent
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +24,8 @@ TOGETHER = 2**15
 LEAST_PRODUCT = 10.0
 """Bandwidth times averaging time B T below which a band level says little: its standard deviation,
 4.34/sqrt(B T) dB, is then above 1.4 dB (the relative error of an rms value is 1/(2 sqrt(B T)))."""
+MOST_START = 0.2
+"""Share of the mean square of a band that may not be built up yet in a record: its level is then 1 dB low."""
 
 
 def psd(
@@ -74,7 +78,7 @@ def averaging_time(
 
     (Σu)²/Σu² steps, where u is the sum of the squared windows of all segments. With it the standard deviation
     of the mean square of noise in a band is 1/sqrt(B T), as long as the band is some lines wide: J. S. Bendat
-    and A. G. Piersol, Random Data, 4th ed. (2010), ch. 8 (errors of mean squares).
+    and A. G. Piersol, Random Data, 4th ed. (2010).
     """
     length = samples if segment is None else int(segment)
     shared = int(overlap * length)
@@ -91,6 +95,21 @@ def band_product(centres: ArrayLike, time: float) -> NDArray[np.float64]:
     Levels of bands below `LEAST_PRODUCT` say little.
     """
     return np.asarray(centres, dtype=np.float64) * (HALF_BAND - 1.0 / HALF_BAND) * time
+
+
+def say_little(product: Any, start: Any) -> Any:
+    """Which bands have levels that say little, by B T and by the share that is not built up yet: arrays."""
+    return (product < LEAST_PRODUCT) | (start > MOST_START)
+
+
+def level_deviation(values: ArrayLike) -> NDArray[np.float64]:
+    """Standard deviation, dB, of the level of a mean square of as many independent complex values, from 1.
+
+    4.34 √ψ′(n) of a gamma distribution, ψ′ the trigamma function: 4.34/√n for many, 5.57 dB for one.
+    """
+    from scipy.special import polygamma
+
+    return np.asarray(10.0 / np.log(10.0) * np.sqrt(polygamma(1, np.maximum(values, 1.0))), dtype=np.float64)
 
 
 def _check_signal(values: NDArray[np.float64], spacing: float) -> None:

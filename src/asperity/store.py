@@ -21,6 +21,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import no_file
 from asperity.errors import ComputationError, InputError
 from asperity.files import amount, atomic_write, discard, is_sealed, left_overs, taken
 
@@ -106,6 +107,8 @@ class Store:
         path = self.path(key)
         if key in self._held:
             return dict(self._held[key])
+        if no_file(path):  # a pipe might never end
+            return None
         try:
             with open(path, "rb") as file:
                 if not is_sealed(file):

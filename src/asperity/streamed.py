@@ -3,43 +3,60 @@
 from __future__ import annotations
 
 import json
-import math
-from typing import TYPE_CHECKING, Any, BinaryIO
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    import io
+
     import xarray
 
 
+Group = tuple[str, Mapping[Any, Any], Mapping[str, tuple[Any, NDArray[Any], Mapping[Any, Any]]], list[str]]
+"""Path and attributes of a group, its variables by name, each with dimensions, values and attributes, and
+names of those that are coordinates."""
+
+
 def send_result(tree: xarray.DataTree, to: BinaryIO) -> None:
-    """Send a result: a line that says what is in it, then the bytes of its variables."""
-    groups: list[dict[str, Any]] = []
+    """Send a result."""
+    send_groups((_group_of(node) for node in tree.subtree), to)
+
+
+def _group_of(node: xarray.DataTree) -> Group:
+    found = node.to_dataset(inherit=False)
+    variables = {str(name): (each.dims, each.values, each.attrs) for name, each in found.variables.items()}
+    return node.path, node.attrs, variables, [str(name) for name in found.coords]
+
+
+def send_groups(groups: Iterable[Group], to: BinaryIO) -> None:
+    """Send groups of variables: a line that says what is in them, then the bytes of the variables."""
+    told: list[dict[str, Any]] = []
     values: list[NDArray[Any]] = []
-    for node in tree.subtree:
-        found = node.to_dataset(inherit=False)
-        held = {name: _plain(variable.values) for name, variable in found.variables.items()}
+    for path, attributes, variables, coordinates in groups:
+        held = {name: _plain(array) for name, (_, array, _) in variables.items()}
         values += held.values()
-        groups.append(
+        told.append(
             {
-                "path": node.path,
-                "attributes": node.attrs,
+                "path": path,
+                "attributes": attributes,
                 "variables": [
-                    [name, found[name].dims, array.dtype.str, array.shape, found[name].attrs]
+                    [name, variables[name][0], array.dtype.str, array.shape, variables[name][2]]
                     for name, array in held.items()
                 ],
-                "coordinates": list(found.coords),
+                "coordinates": coordinates,
             }
         )
-    to.write(json.dumps(groups, default=lambda value: value.tolist()).encode() + b"\n")
+    to.write(json.dumps(told, default=lambda value: value.tolist()).encode() + b"\n")
     for array in values:
         to.write(array.reshape(-1).view(np.uint8).data)
     to.flush()
 
 
 def receive_result(source: BinaryIO) -> xarray.DataTree | None:
-    """Receive what `send_result` sent; None at the end of all."""
+    """Receive what `send_result` or `send_groups` sent; None at the end of all."""
     import xarray
 
     line, found = source.readline(), {}
@@ -61,4 +78,8 @@ def _plain(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _array(source: BinaryIO, kind: np.dtype[Any], shape: list[int]) -> NDArray[Any]:
-    return np.frombuffer(source.read(math.prod(shape) * kind.itemsize), kind).reshape(shape)
+    array = np.empty(shape, kind)
+    memory = array.reshape(-1).view(np.uint8).data
+    if cast("io.BufferedIOBase", source).readinto(memory) < memory.nbytes:
+        raise ValueError("the stream breaks off")
+    return array

@@ -6,6 +6,7 @@ import errno
 import json
 import math
 import os
+import shutil
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -102,6 +103,11 @@ def write(stream: TextIO | None, text: str, *, lines: bool = False) -> None:
         stream.flush()
 
 
+def line_width(otherwise: int) -> int:
+    """Characters of a line of the terminal; `otherwise` where standard output is none."""
+    return shutil.get_terminal_size().columns if sys.stdout.isatty() else otherwise
+
+
 def say_table(
     title: str,
     headings: Sequence[str],
@@ -109,10 +115,12 @@ def say_table(
     *,
     width: int,
     bold: Collection[int] = (),
+    widths: Sequence[int] = (),
 ) -> None:
     """Print a table of rows of text, with headings or without, some rows (by number, from 0) in bold.
 
-    `width` is the characters of a line where standard output is no terminal.
+    `width` is the characters of a line where standard output is no terminal; `widths` are those
+    of the columns, by default what their cells need and the line allows.
     """
     if manner().document:
         return
@@ -123,10 +131,11 @@ def say_table(
     if not console.is_terminal:
         console.width = width
     table = Table(title=printable(title), title_justify="left", show_header=bool(headings))
-    for heading in headings:
-        table.add_column(printable(heading))
-    for number, row in enumerate(rows):
-        table.add_row(*map(printable, row), style="bold" if number in bold else None)
+    cells = [[printable(cell) for cell in row] for row in rows]
+    for number, heading in enumerate(headings):
+        table.add_column(printable(heading), width=widths[number] if widths else None)
+    for number, row in enumerate(cells):
+        table.add_row(*row, style="bold" if number in bold else None)
     console.print(table)
 
 

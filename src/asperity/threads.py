@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -18,6 +19,7 @@ R = TypeVar("R")
 THREADS = "ASPERITY_THREADS"
 AHEAD = 2
 """Tasks begun for each worker before the first result is taken: no worker waits, and no results pile up."""
+_here = threading.local()  # in a thread of `in_order`: whether its task is to stop
 
 
 def processors() -> int:
@@ -37,6 +39,13 @@ def thread_count() -> int:
     return int(chosen)
 
 
+def refuse_to_go_on() -> None:
+    """Interrupt a long task of `in_order` between two pieces of its work, if nobody waits for it any more."""
+    stopped: threading.Event | None = getattr(_here, "stopped", None)
+    if stopped is not None and stopped.is_set():
+        raise KeyboardInterrupt
+
+
 @contextmanager
 def one_thread_in_linear_algebra() -> Iterator[None]:
     """Keep BLAS and LAPACK to one thread, because the number of their threads changes the last digits."""
@@ -52,15 +61,16 @@ def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = N
 
     The task is independent of the other items; compiled kernels in it release the interpreter. Items are
     taken one by one. There are `thread_count` threads by default; one worker is the caller's own thread.
-    However many items there are, few results are held. If the consumer stops, tasks that run are finished and
-    the others are not begun.
+    However many items there are, few results are held. If the consumer stops, as by an interrupt, the tasks
+    that run are asked to stop, see `refuse_to_go_on`, and the others are not begun.
     """
     count = workers or thread_count()
     if count == 1:
         yield from map(task, items)
         return
     waiting, pending = iter(items), deque[Future[R]]()
-    executor = ThreadPoolExecutor(count)
+    stopped = threading.Event()
+    executor = ThreadPoolExecutor(count, initializer=setattr, initargs=(_here, "stopped", stopped))
     try:
         pending.extend(executor.submit(task, item) for item in islice(waiting, AHEAD * count))
         while pending:
@@ -69,4 +79,5 @@ def in_order(task: Callable[[T], R], items: Iterable[T], workers: int | None = N
             yield result
             del result
     finally:
+        stopped.set()
         executor.shutdown(wait=True, cancel_futures=True)

@@ -34,6 +34,24 @@ _OTHERS = {
 }
 
 
+_WRITTEN = (
+    "km/h",
+    "mm/s",
+    "N/mm",
+    "kN/mm",
+    "kg/m",
+    "kg/m^3",
+    "mm^2",
+    "N s/mm",
+    "kN s/m",
+    "deg",
+    "rad",
+    "kg",
+    "t",
+)
+"""Units that people write beside SI units and their prefixes."""
+
+
 @lru_cache(maxsize=1)
 def _registry() -> Any:
     import pint  # 0.2 s to import: only where a unit string is met
@@ -59,21 +77,42 @@ def factor(unit: str, dimension: str) -> float:
     allowed = f"a unit that converts to {dimension}" if dimension else "no unit"
     if "dB" in (unit, dimension):  # a level is not a multiple of a physical unit
         raise InputError("unit", repr(unit), allowed, f"Write the quantity as in '1 {dimension}'.")
-    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
+    misread = unit.lower().endswith(("mph", "kph")) and len(unit) > 3  # "kmph" is no thousand miles per hour
+    if len(unit) > _LONGEST or misread or not _UNIT.fullmatch(unit):
         raise InputError(
-            "unit", repr(unit[:_LONGEST]), allowed, "Write names, '/', '*' and powers, as in 'kg/m^3'."
+            "unit",
+            repr(unit[:_LONGEST]),
+            allowed,
+            _meant(unit, dimension) or "Write names, '/', '*' and powers, as in 'kg/m^3'.",
         )
     try:
         return float(_registry().Quantity(1.0, unit.replace("·", "*")).to(dimension).magnitude)
     except pint.DimensionalityError:
-        remedy = (
+        remedy = _meant(unit, dimension) or (
             f"Write the quantity with such a unit, as in '1 {dimension}'."
             if dimension
             else "Leave the unit away."
         )
         raise InputError("unit", repr(unit), allowed, remedy) from None
     except Exception:  # pint raises errors of many kinds on malformed text
-        raise InputError("unit", repr(unit), allowed, "Check its spelling.") from None
+        remedy = _meant(unit, dimension) or "Check its spelling."
+        raise InputError("unit", repr(unit), allowed, remedy) from None
+
+
+def _meant(unit: str, dimension: str) -> str:
+    """Sentence that names units of a dimension with these letters, ``"km/h"`` for ``"kmh"``; or nothing."""
+    prefixes = (*_PREFIXES, "") if dimension in _PREFIXED else ("",)
+    letters = _letters(unit)
+    alike = [each for each in (*_WRITTEN, *(p + dimension for p in prefixes)) if _letters(each) == letters]
+    one = _registry().Quantity
+    found = [f'"{each}"' for each in dict.fromkeys(alike) if one(1.0, each).is_compatible_with(dimension)]
+    return f"Did you mean {' or '.join(found)}?" if found else ""
+
+
+def _letters(unit: str) -> str:
+    """Its letters, small; ``per`` and its ``p`` between letters stand for a stroke."""
+    text = unit[:_LONGEST].replace("µ", "u").replace("μ", "u").lower()
+    return re.sub(r"[^a-z0-9]", "", re.sub(r"(?<=[a-z])(per|p)(?=[a-z]$|hr?$)", "", text)).replace("hr", "h")
 
 
 def quantity(text: str, dimension: str) -> float:

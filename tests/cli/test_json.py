@@ -47,10 +47,18 @@ def document(*arguments, code=0):
     return found, outcome.stderr
 
 
+def chapter(heading):
+    """A chapter of docs/json.md."""
+    return DOCUMENT.read_text(encoding="utf-8").split(f"\n## {heading}\n")[1].split("\n## ")[0]
+
+
 def documented(heading):
     """Names that docs/json.md lists in a chapter."""
-    chapter = DOCUMENT.read_text(encoding="utf-8").split(f"\n## {heading}\n")[1].split("\n## ")[0]
-    return {name for row in re.findall(r"^\|(.*?)\|", chapter, re.M) for name in re.findall(r"`(\w+)`", row)}
+    return {
+        name
+        for row in re.findall(r"^\|(.*?)\|", chapter(heading), re.M)
+        for name in re.findall(r"`(\w+)`", row)
+    }
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +72,9 @@ COMMANDS = {
     "surface": ("surface", "map.npy", "--height-unit", "um", "--pixel", "2 um", "--psd"),
     "study": ("study", "small.toml", "--vary", "seed=1, 2", "-o", "st", "--workers", "1"),
     "compare": ("compare", "a", "a"),
+    "listen": ("listen", "a"),
+    "cite": ("cite", "a"),
+    "cache": ("cache",),
 }
 
 
@@ -71,7 +82,7 @@ COMMANDS = {
 def test_every_name_is_documented_and_every_documented_name_is_there(command, ran):
     found, _ = document(*COMMANDS[command])
     common = documented("In every document") - {"message", "kind", "what", "received", "allowed", "remedy"}
-    always = common - {"errors", "error"} - ({"files"} if command == "check" else set())
+    always = common - {"errors", "error"} - (set() if "`files`: " in chapter(command) else {"files"})
     assert set(found) == documented(command) | always
     assert found["command"] == command
     assert all(Path(path).is_file() for path in found.get("files", {}).values())
@@ -118,7 +129,8 @@ def test_statistics_of_a_surface_are_in_si():
         (("compare", "a"), {"kind": "InputError", "what": "runs to compare", "received": "1"}),
         (("run", "small.toml", "--outptu", "x"), {"kind": "UsageError"}),
         (("rn", "small.toml"), {"kind": "UsageError"}),
-        (("cite", "a"), {"kind": "UsageError"}),  # it has no such form
+        (("cite", "absent"), {"kind": "InputError"}),
+        (("new", "study"), {"kind": "UsageError"}),  # it has no such form
     ],
 )
 def test_errors_are_documents_too(arguments, parts, ran):
@@ -163,7 +175,7 @@ def test_quiet_leaves_warnings_and_documents(ran):
 
 
 def test_verbose_says_what_each_piece_took(ran):
-    outcome = CliRunner().invoke(main, ["run", "small.toml", "-o", "a", "-v"])
+    outcome = CliRunner().invoke(main, ["run", "small.toml", "-o", "a", "-v", "--again"])
     assert re.search(r"^rolling: (\d+) of \1 in \d+ s", outcome.stderr, re.M)
     assert re.search(r"^Time:    \d+ s", outcome.stderr, re.M)
 

@@ -48,12 +48,12 @@ def test_a_minimal_case_has_the_documented_defaults():
     assert case.laws == ("areal", "shifted", "printed", "table", "linear-filtered", "linear")
     assert case.seed == 1
     assert (case.surface.rms, case.surface.hurst) == (pytest.approx(5e-7), 0.8)
-    assert case.surface.band == pytest.approx((4e-4, 16e-6))
+    assert (case.surface.longest, case.surface.shortest) == pytest.approx((1.6e-3, 40e-6))
     assert case.ball.radius == pytest.approx(0.025)
     assert case.ball.mass is case.ball.load is None
     assert (case.beam.length, case.beam.width, case.beam.height) == pytest.approx((1.0, 0.05, 0.01))
     assert case.beam.sensor_positions == pytest.approx((0.2, 0.35, 0.5, 0.65, 0.8))
-    assert case.contact.spacing == pytest.approx(8e-6)
+    assert (case.contact.spacing, case.contact.window) == pytest.approx((10e-6, 0.5e-3))
     assert (case.contact.damping, case.contact.hardness, case.contact.approaches) == (0.0, None, None)
     assert (case.numerics.highest_frequency, case.numerics.rtol) == (5000.0, 1e-6)
     assert parse_case(case.text) == case
@@ -169,9 +169,9 @@ def test_a_run_in_that_begins_before_the_beam_is_refused():
 
 def test_the_template_is_a_case_with_the_defaults():
     case = parse_case(template("ball-on-beam"))
-    plain = parse_case(MINIMAL)
-    assert case == plain
-    assert [item["key"] for item in case.parameters() if not item["is_default"]] == ["surface.rms"]
+    keys = {"duration": 0.12, "settling": 0.05, "surface.rms": 1e-7, "ball.load": 50.0}
+    assert case == parse_case(MINIMAL).with_(**keys)
+    assert [item["key"] for item in case.parameters() if not item["is_default"]] == list(keys)
 
 
 def test_the_template_explains_every_key_on_one_line():
@@ -215,7 +215,7 @@ def test_every_commented_key_of_the_template_works(map_file):
     )
     case = parse_case(text, map_file)
     changed = {item["key"].split(".")[-1] for item in case.parameters() if not item["is_default"]}
-    assert changed == {*wanted, "rms"}
+    assert changed == {*wanted, "rms", "settling"}
 
 
 def test_there_is_no_template_of_another_kind():
@@ -309,9 +309,9 @@ def test_all_errors_are_reported_at_once():
         (
             "contact",
             'window = "20 um"',
-            "contact.window: received 20 um, 2 cells of 8 um; allowed: 8 to 2048 cells",
+            "contact.window: received 20 um, 2 cells of 10 um; allowed: 8 to 2048 cells",
         ),
-        ("contact", 'window = "20 mm"', "2500 cells"),
+        ("contact", 'window = "25 mm"', "2500 cells"),
         ("contact", 'approaches = ["1 um"]', "at least 2"),
         (
             "contact",
@@ -361,7 +361,7 @@ def test_messages_of_sections(section, key, message):
         ('[balls]\nradius = "1 mm"', "balls: received an unknown key; allowed: keys at the top of a case"),
         ('[balls]\nradius = "1 mm"', 'Did you mean "ball"?'),
         (
-            '[ball]\nradius = "0.2 mm"',
+            '[ball]\nradius = "0.2 mm"\n[contact]\nwindow = "0.5 mm"',
             "contact.window: received 0.5 mm; allowed: at most the ball's diameter, 0.4 mm",
         ),
     ],
@@ -399,8 +399,14 @@ def test_messages_of_the_top(top, message):
             "surface.direction: received 1.5707963267948966; allowed: only",
         ),
         ('rms = "1 um"\nhurst = 1.5', "a number greater than 0 and at most 1"),
-        ('rms = "1 um"\nlongest = "10 um"', "surface.longest: received 10 um with shortest 16 um"),
-        ('rms = "1 um"\nshortest = "10 um"', "surface.shortest: received 10 um on a spacing of 8 um"),
+        (
+            'rms = "1 um"\nlongest = "10 um"\nshortest = "16 um"',
+            "surface.longest: received 10 um with shortest 16 um",
+        ),
+        (
+            'rms = "1 um"\nshortest = "10 um"\n[contact]\nspacing = "8 um"',
+            "surface.shortest: received 10 um on a spacing of 8 um",
+        ),
         ('rms = "1 um"\nanisotropy = 0', "a number greater than 0"),
     ],
 )

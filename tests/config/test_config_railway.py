@@ -6,12 +6,11 @@ import tomllib
 import numpy as np
 import pytest
 
-from asperity.config.tables import read_levels, read_table
+from asperity.config.tables import read_levels
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import load_case, parse_case, template
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.tables import (
-    MODES,
     read_mode_shapes,
     read_modes,
     read_ratios,
@@ -55,8 +54,11 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "levels.csv").write_text(LEVELS)
     (tmp_path / "ratios.csv").write_text("frequency (kHz), ratio\n0.1, 0.01\n1, 0.8\n")
-    (tmp_path / "modes.csv").write_text("frequency, ratio, mass\n2000, 1e-4, 300\n3100, 1e-4, 250\n")
-    rows = "".join(f"{100 * n}, {-1e-9 / n:.3g}, -1e-11\n" for n in range(1, 30))
+    (tmp_path / "modes.csv").write_text(
+        "frequency (Hz), ratio, mass (kg)\n2000, 1e-4, 300\n3100, 1e-4, 250\n"
+    )
+    rows = "frequency (Hz), real (m/N), imaginary (m/N)\n"
+    rows += "".join(f"{100 * n}, {-1e-9 / n:.3g}, -1e-11\n" for n in range(1, 30))
     (tmp_path / "receptance.csv").write_text(rows)
     for name in ("lines.npz", "map.npy", "tread.csv", "rail.csv"):
         (tmp_path / name).write_bytes(b"heights")
@@ -244,7 +246,8 @@ def test_every_commented_quantity_of_the_template_works():
     prefixes = tuple(f"# {key} =" for key in wanted)
     text = "\n".join(line.removeprefix("# ") if line.startswith(prefixes) else line for line in lines)
     found = {item["key"].split(".")[-1] for item in parse_case(text).parameters() if not item["is_default"]}
-    assert found == {*wanted, "spectrum", "roughness"}
+    # the laws that the template writes down are not those over a flat
+    assert found == {*wanted, "spectrum", "roughness", "laws"}
 
 
 def test_a_flat_is_given_by_depth_length_or_both():
@@ -393,7 +396,10 @@ def test_a_path_shorter_than_the_filters_is_refused():
         ("spectrum = 3", "surface.spectrum: received 3"),
         ('spectrum = "iso3095"\nlateral = 0', 'a number greater than 0, or "inf"'),
         ('rms = "1 um"\nlateral = 2', "only together with spectrum"),
-        ('rms = "1 um"\nshortest = "0.5 mm"', "surface.shortest: received 500 um on a spacing of 500 um"),
+        (
+            'rms = "1 um"\nshortest = "0.5 mm"\n[contact]\nspacing = "0.5 mm"',
+            "surface.shortest: received 500 um on a spacing of 500 um",
+        ),
         ('line = "lines.npz"\ncontinuation = "refused"', '"refuse", "mirror", "repeat"'),
         ('line = "lines.npz"\nline_unit = "kg"', 'a unit of length, as "um"'),
         ('corrugation = "25 um"', "surface.corrugation: received no corrugation_wavelength"),
@@ -420,6 +426,10 @@ def test_messages_of_the_surface(surface, message, folder):
 # --- tables
 
 
+HEADING = "wavelength (m), level (dB)\n"
+ASKED = "a heading with the units in brackets. Add the line 'wavelength (m), level (dB)' above the numbers"
+
+
 def test_levels_are_read_with_their_units(folder):
     wavelengths, levels = read_levels(folder / "levels.csv")
     assert wavelengths == pytest.approx([0.1, 0.08, 0.063, 0.05])
@@ -429,9 +439,9 @@ def test_levels_are_read_with_their_units(folder):
 @pytest.mark.parametrize(
     "text",
     [
-        "0.08 2\n0.1 3\n",
-        "0.1,3\n0.08,2\n",
-        "# wavelength and level\n0,1; 3\n0,08; 2  # the shorter one\n",
+        "wavelength (m), level (dB)\n0.08 2\n0.1 3\n",
+        "measured [mm],of [dB re 1 um]\n100,3\n80,2\n",
+        "# lathe 3\n# wavelength (m); level (dB)\n0,1; 3\n0,08; 2  # the shorter one\n",
         "\ufeffwavelength [cm];level [dB]\r\n10;3\r\n8;2\r\n",
     ],
 )
@@ -445,14 +455,22 @@ def test_levels_are_read_in_the_ways_they_are_written(text, tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("0.1, 3\n0.063, 1\n", "a gap in the bands between 100 mm and 63 mm"),
-        ("0.1, 3\n0.09, 1\n", "bands closer than one-third octaves between 100 mm and 90 mm"),
-        ("0.1, 3\n0.1, 1\n", "bands closer than one-third octaves"),
-        ("0.1, 3\n0, 1\n", "a wavelength of 0 m"),
-        ("0.1, 3\n0.08\n", "'0.08' in line 2; allowed: a table with the columns wavelength (m), level (dB)"),
-        ("0.1, 3\n0.08, nan\n", "'0.08, nan' in line 2"),
-        ("0.1, 3\n0.08, inf\n", "'0.08, inf' in line 2"),
+        (HEADING + "0.1, 3\n0.063, 1\n", "a gap in the bands between 100 mm and 63 mm"),
+        (HEADING + "0.1, 3\n0.09, 1\n", "bands closer than one-third octaves between 100 mm and 90 mm"),
+        (HEADING + "0.1, 3\n0.1, 1\n", "bands closer than one-third octaves"),
+        (HEADING + "0.1, 3\n0, 1\n", "a wavelength of 0 m"),
+        (
+            HEADING + "0.1, 3\n0.08\n",
+            "'0.08' in line 3; allowed: a table with the columns wavelength (m), level (dB)",
+        ),
+        (HEADING + "0.1, 3\n0.08, nan\n", "'0.08, nan' in line 3"),
+        (HEADING + "0.1, 3\n0.08, inf\n", "'0.08, inf' in line 3"),
         ("wavelength (kg), level (dB)\n0.1, 3\n", "the heading 'wavelength (kg)'; allowed: wavelength in m"),
+        ("100, 3\n80, 2\n", f"no heading; allowed: {ASKED}"),
+        ("# from the lab (PDF)\n100, 3\n80, 2\n", f"no heading; allowed: {ASKED}"),
+        ("wavelength, level (dB)\n100, 3\n", f"the heading 'wavelength, level (dB)'; allowed: {ASKED}"),
+        ("wavelength_mm, level_dB\n100, 3\n", f"the heading 'wavelength_mm, level_dB'; allowed: {ASKED}"),
+        ("level [dB], wavelength [mm]\n3, 100\n", "'level [dB]' for the wavelength; allowed: columns in the"),
         ("wavelength (m), level (dB re 1 nm)\n0.1, 3\n", "the heading 'level (dB re 1 nm)'"),
         ("# nothing\n", "no line of numbers"),
         ("100 mm, 3\n80 mm, 2\n", "'100 mm, 3' in line 1"),
@@ -483,13 +501,16 @@ def test_a_table_that_is_no_text_or_too_large(tmp_path):
 
 
 def test_levels_in_another_unit_ask_for_it(folder):
-    (folder / "levels.csv").write_text("0.1, -95\n0.08, -96\n")
+    (folder / "levels.csv").write_text(HEADING + "0.1, -95\n0.08, -96\n")
     text = case_with("", 'spectrum = "levels.csv"', wheel='roughness = "levels.csv"')
     errors = errors_of(text, folder / "case.toml")
     assert [error.partition(":")[0] for error in errors] == ["surface.spectrum", "wheel.roughness"]
     assert "Is the unit right? If these levels are meant, set surface.accept_levels = true." in errors[0]
     accepted = text.replace("[surface]", "[surface]\naccept_levels = true")
     assert parse_case(accepted, folder / "case.toml").surface.accept_levels
+
+
+MODAL = "frequency (Hz), damping ratio, modal mass (kg)"
 
 
 def test_modes_are_read(folder):
@@ -504,11 +525,11 @@ def test_modes_are_read(folder):
         ("2000, 0, 300", "a damping ratio of 0; allowed: greater than 0 and less than 1"),
         ("2000, 1, 300", "a damping ratio of 1"),
         ("2000, 0.1, -3", "a modal mass of -3; allowed: greater than 0 kg"),
-        ("2000, 0.1", "'2000, 0.1' in line 1"),
+        ("2000, 0.1", "'2000, 0.1' in line 2"),
     ],
 )
 def test_modes_that_are_wrong(row, message, folder):
-    (folder / "modes.csv").write_text(row + "\n")
+    (folder / "modes.csv").write_text(f"{MODAL}{', -, -, -' * (row.count(',') > 2)}\n{row}\n")
     errors = errors_of(case_with(wheel='modes = "modes.csv"'), folder / "case.toml")
     assert errors[0].startswith("wheel.modes: received ")
     assert message.partition(";")[0] in errors[0]
@@ -522,7 +543,7 @@ def test_modes_say_how_they_move_the_wheel(folder):
     (folder / "modes.csv").write_text(text)
     assert read_mode_shapes(folder / "modes.csv").tolist() == [[2.0, 4.0, 0.5]]
     assert [list(each) for each in read_modes(folder / "modes.csv")] == [[2000.0], [1e-4], [300.0]]
-    (folder / "modes.csv").write_text("2000, 1e-4, 300\n")
+    (folder / "modes.csv").write_text(MODAL + "\n2000, 1e-4, 300\n")
     assert read_mode_shapes(folder / "modes.csv") is None
     assert read_mode_shapes(np.array([[2000.0, 1e-4, 300.0, 2.0, 4.0, 0.5]])).tolist() == [[2.0, 4.0, 0.5]]
 
@@ -537,11 +558,11 @@ def test_modes_say_how_they_move_the_wheel(folder):
         ("2000, 0.1, 300, -1, 4, 0.5", "a number of nodal diameters of -1"),
         ("2000, 0.1, 300, 2, -4, 0.5", "an rms velocity of -4; allowed: zero or more, per radial velocity"),
         ("2000, 0.1, 300, 2, 4", "or with these and nodal diameters (1), axial velocity over the disc (1)"),
-        ("2000, 0.1, 300, 2, 4, 1\n2100, 0.1, 300", "'2100, 0.1, 300' in line 2"),
+        ("2000, 0.1, 300, 2, 4, 1\n2100, 0.1, 300", "'2100, 0.1, 300' in line 3"),
     ],
 )
 def test_shapes_of_modes_that_are_wrong(row, message, folder):
-    (folder / "modes.csv").write_text(row + "\n")
+    (folder / "modes.csv").write_text(f"{MODAL}{', -, -, -' * (row.count(',') > 2)}\n{row}\n")
     errors = errors_of(case_with(wheel='modes = "modes.csv"'), folder / "case.toml")
     assert len(errors) == 1
     assert errors[0].startswith("wheel.modes: received ")
@@ -570,7 +591,7 @@ def test_radiation_ratios_are_read(folder):
     ],
 )
 def test_radiation_ratios_that_are_wrong(rows, message, folder):
-    (folder / "ratios.csv").write_text(rows)
+    (folder / "ratios.csv").write_text("frequency (Hz), ratio\n" + rows)
     errors = errors_of(case_with(noise='rail_radiation = "ratios.csv"'), folder / "case.toml")
     assert errors[0].startswith("noise.rail_radiation: received ")
     with pytest.raises(InputError) as caught:
@@ -596,7 +617,7 @@ def test_a_receptance_is_read(folder):
     ],
 )
 def test_receptances_that_are_wrong(rows, message, folder):
-    (folder / "receptance.csv").write_text("\n".join(rows))
+    (folder / "receptance.csv").write_text("\n".join(["f (Hz), real (m/N), imaginary (m/N)", *rows]))
     errors = errors_of(case_with(wheel='receptance = "receptance.csv"'), folder / "case.toml")
     assert errors[0].startswith("wheel.receptance: received ")
     with pytest.raises(InputError) as caught:
@@ -604,9 +625,11 @@ def test_receptances_that_are_wrong(rows, message, folder):
     assert message in str(caught.value)
 
 
-def test_a_table_in_si_needs_no_heading(tmp_path):
-    (tmp_path / "modes.txt").write_text("2 1 3\n")
-    assert read_table(tmp_path / "modes.txt", MODES).tolist() == [[2.0, 1.0, 3.0]]
+def test_columns_of_one_unit_in_another_order_are_refused(folder):
+    rows = "\n".join(f"{n}, 1, 1" for n in range(1, 12))
+    (folder / "receptance.csv").write_text(f"frequency (Hz), imaginary (m/N), real (m/N)\n{rows}")
+    with pytest.raises(InputError, match=r"the heading 'imaginary \(m/N\)' for the real part; .* Exchange"):
+        read_receptance(folder / "receptance.csv")
 
 
 def test_a_case_is_read_from_its_file(folder):
@@ -623,3 +646,10 @@ def test_the_parameters_show_the_values_of_the_named_track():
     assert "track.pad_loss_factor" not in listed  # x2000 has viscous pads
     own = parse_case(case_with(track='pad_stiffness = "123 MN/m"'))
     assert {item["key"]: item["value"] for item in own.parameters()}["track.pad_stiffness"] == "123 MN/m"
+
+
+def test_a_load_below_the_weight_of_the_wheel_is_refused():
+    """600 kg × 9.80665 m/s²."""
+    message = "wheel.load: received 5 kN; allowed: at least 5.88399 kN, the weight of 600 kg on the contact"
+    assert any(message in error for error in errors_of(case_with(wheel='load = "5 kN"')))
+    assert parse_case(case_with(wheel='load = "5 kN"\nmass = "400 kg"')).wheel.mass == 400.0

@@ -15,7 +15,7 @@ from asperity.units import quantity
 
 SOURCE = Path(asperity.__file__).parent
 MODULES = sorted(SOURCE.rglob("*.py"))
-FILES = (".png", ".x3p", ".csv", ".nc")
+FILES = (".png", ".x3p", ".csv", ".nc", ".toml")
 
 
 @cache

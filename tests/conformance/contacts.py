@@ -308,7 +308,7 @@ def full_plasticity():
     depth = a**2 / (2 * radius) - (2 - 4 / np.pi) * cap * a / STEEL
     what = f"{body}: its depth, a²/2R − (2 − 4/π) H a/E*"
     obtained = contact.plastic_indentation[n // 2, n // 2]
-    yield Check(what, "Johnson 1985, Eqs. 3.29", depth * 1e6, obtained * 1e6, 5e-3, "µm")
+    yield Check(what, "uniform pressure on a circle, closed form", depth * 1e6, obtained * 1e6, 5e-3, "µm")
     elastic = HalfSpace((n, n), (spacing, spacing), STEEL)
     lowered = gap + contact.plastic_indentation
     again = elastic.solve(lowered, load=contact.force, rtol=1e-9).pressure.max() / 1e6
@@ -389,29 +389,49 @@ def cold_start():
 
 
 def bearings():
-    """A printed bearing, and the printed table of contacts over the difference of curvatures."""
-    book = "Harris, Rolling Bearing Analysis"
-    for ring, raceway, total, difference in (
-        ("inner", 26.15e-3, 0.202, 0.9399),
-        ("outer", -38.85e-3, 0.138, 0.9120),
-    ):
-        contact = in_groove(STEEL, 6.35e-3, 0.52 * 12.7e-3, raceway)
+    """Curvatures of a bearing from its dimensions, and contacts over the difference of their curvatures."""
+    ball, conformity, pitch = 12.7e-3, 0.52, 65e-3
+    gamma = ball / pitch
+    for ring, sign in (("inner", 1.0), ("outer", -1.0)):
+        rolling = (2.0 + 2.0 * sign * gamma / (1.0 - sign * gamma)) / ball  # ball and raceway, by Jones
+        groove = (2.0 - 1.0 / conformity) / ball
+        contact = in_groove(STEEL, ball / 2, conformity * ball, sign * (pitch - sign * ball) / 2)
         along, across = 1.0 / contact.radius_x, 1.0 / contact.radius_y
-        body = f"ball bearing 209, {ring} ring"
-        source = f"{book}, example; tolerance: digits printed"
-        yield Check(f"{body}: curvature sum", source, total, (along + across) / 1e3, 3e-3, "1/mm")
-        found = (along - across) / (along + across)
-        yield Check(f"{body}: curvature difference", source, difference, found, 2e-4)
-    for difference, major, minor, approach in (
-        (0.83495, 2.494, 0.5186, 0.7602), (0.93657, 3.738, 0.4166, 0.6112), (0.97290, 5.267, 0.3490, 0.4960),
-    ):  # fmt: skip
+        body, source = f"ball of 12.7 mm in a bearing of pitch 65 mm, {ring} ring", "sum over its radii"
+        total, found = rolling + groove, along + across
+        yield Check(f"{body}: curvature sum", source, total / 1e3, found / 1e3, 1e-12, "1/mm")
+        expected = (rolling - groove) / total
+        yield Check(f"{body}: difference over sum", source, expected, (along - across) / found, 1e-12)
+    source = "Hertz, elliptic integrals by mpmath"
+    for difference in (0.83495, 0.93657, 0.97290):
         contact, load = Hertz(1.0, 2.0 / (1.0 + difference), 2.0 / (1.0 - difference)), 1e-9
         unit, depth = (1.5 * load) ** (1.0 / 3.0), contact.approach(load)
         b, a = contact.semi_axes(depth)
-        body, source = f"elliptic contact, F(ρ) = {difference}", f"{book}, table; tolerance: digits printed"
-        yield Check(f"{body}: a*", source, major, a / unit, 3e-4)
-        yield Check(f"{body}: b*", source, minor, b / unit, 3e-4)
-        yield Check(f"{body}: δ*", source, approach, 2.0 * depth / unit**2, 3e-4)
+        body = f"elliptic contact, difference over sum of curvatures {difference}"
+        for name, expected, found in zip(
+            ("a*", "b*", "δ*"),
+            dimensionless(difference),
+            (a / unit, b / unit, 2.0 * depth / unit**2),
+            strict=True,
+        ):
+            yield Check(f"{body}: {name}", source, expected, found, 1e-9)
+
+
+def dimensionless(difference):
+    """Semi-axes over (3F/2E*Σρ)^(1/3), and the approach over half of Σρ times its square."""
+
+    def integrals(ratio):  # of the semi-axes, above 1
+        m = 1 - 1 / ratio**2
+        return mp.ellipk(m), mp.ellipe(m)
+
+    def miss(ratio):
+        k, e = integrals(ratio)
+        return ((ratio**2 + 1) * e - 2 * k) / ((ratio**2 - 1) * e) - difference
+
+    ratio = mp.findroot(miss, (1.5, 40), solver="anderson")
+    k, e = integrals(ratio)
+    a = mp.cbrt(2 * ratio**2 * e / mp.pi)
+    return float(a), float(a / ratio), float(2 * k / (mp.pi * a))
 
 
 def slender_ellipse_on_the_grid():

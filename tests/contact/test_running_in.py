@@ -64,7 +64,7 @@ class TestStandingContact:
         """A ball far beyond yield: uniform pressure H on a circle, whose displacement has a closed form.
 
         F = H π a²; at the rim the surfaces just meet, so that the depth of the mark in the middle is
-        a²/2R − (2 − 4/π) H a/E* (Johnson, Contact Mechanics, 1985, Eqs. 3.29).
+        a²/2R − (2 − 4/π) H a/E* (Johnson, Contact Mechanics, 1985).
         """
         radius, hardness, spacing, n = 1.0, 1e6, 1e-3, 81
         half_space = HalfSpace((n, n), spacing, STEEL, hardness)

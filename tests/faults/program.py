@@ -68,8 +68,8 @@ def promised(code, told):
 
 
 def left(folder):
-    """Files in a folder and below that no finished write makes."""
-    return [path for path in Path(folder).rglob(".*") if path.is_file()]
+    """What no finished write leaves in a folder and below."""
+    return [path for path in Path(folder).rglob(".*") if path.is_file() or path.suffix == ".part"]
 
 
 def numbers(folder):

@@ -3,8 +3,10 @@
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
+from threading import Timer
 
 import numpy as np
 import pytest
@@ -12,7 +14,10 @@ from corpus import ABSURD, CIRCLES, CORPUS
 from program import LONG, ended, left, program, promised
 
 import asperity
+from asperity.apart import apart
 from asperity.errors import InputError
+from asperity.files import atomic_write
+from asperity.interrupts import interruptible
 
 SECONDS = 30
 """Of processor time that no failure takes."""
@@ -83,11 +88,27 @@ def test_what_once_failed(name, tmp_path, replay):
     assert left(tmp_path) == []
 
 
-def test_a_library_that_turns_in_circles(tmp_path, monkeypatch):
-    monkeypatch.setattr("asperity.apart.SECONDS", 3.0)
-    (tmp_path / "a.nc").write_bytes(CIRCLES)
-    with pytest.raises(InputError, match="a file that takes more than 3 s to open"):
-        asperity.read_surface(tmp_path / "a.nc", height_unit="um", pixel="1 um")
+@pytest.fixture
+def circles(tmp_path, monkeypatch):
+    """A file in which HDF5 turns in circles, with a seal that fits; opened as the program does."""
+    monkeypatch.setattr("asperity.results.apart", apart)
+    return atomic_write(tmp_path / "run.nc", lambda file: file.write(CIRCLES), sealed=True)
+
+
+@pytest.mark.parametrize("read", [asperity.open_result, asperity.read_surface])
+def test_a_library_that_turns_in_circles(circles, monkeypatch, read):
+    """The process ends by itself, or beside other work by the patience of this one: both say the same."""
+    monkeypatch.setattr("asperity.apart.SECONDS", 0.9)
+    with pytest.raises(InputError, match=r"a file that takes more than 1 s to open"):
+        read(circles)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
+def test_a_right_seal_around_a_hostile_file_leaves_the_program_free_to_end(circles):
+    with interruptible():
+        Timer(1.0, os.kill, (os.getpid(), signal.SIGTERM)).start()
+        with pytest.raises(KeyboardInterrupt):
+            asperity.open_result(circles)
 
 
 @pytest.mark.parametrize("name", ABSURD)

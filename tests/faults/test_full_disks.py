@@ -1,9 +1,11 @@
 """A disk that is full, or files that may not grow: one message, exit code 3, nothing half-written."""
 
 import os
+import shutil
 import subprocess
 import sys
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 from program import LONG, RUN, ended, left, prepared, program, promised, same
@@ -42,15 +44,22 @@ def test_files_that_may_not_grow(earlier, tmp_path, size):
     same(earlier / "out", folder / "out")
 
 
+def contents(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir()}
+
+
 @pytest.mark.parametrize("size", SIZES[:2])
-def test_an_earlier_run_stays_as_it_was(earlier, size):
-    before = (earlier / "out" / "run.nc").read_bytes()
-    words = RUN
-    code, told = ended(program(earlier, *words, preexec_fn=limited(size)))
+def test_an_earlier_run_stays_as_it_was(earlier, tmp_path, size):
+    """With its report: nothing of it goes before all is there that replaces it."""
+    folder = Path(shutil.copytree(earlier, tmp_path / "run"))
+    for name in ("report.html", "force_history.csv", "force_history.svg"):
+        (folder / "out" / name).write_text("earlier")
+    before = contents(folder / "out")
+    code, told = ended(program(folder, *RUN, "--again", preexec_fn=limited(size)))
     promised(code, told)
     assert code == 3
-    assert (earlier / "out" / "run.nc").read_bytes() == before
-    assert left(earlier) == []
+    assert f"{Path('out', 'run.nc')} could not be written" in told
+    assert contents(folder / "out") == before
 
 
 @pytest.fixture

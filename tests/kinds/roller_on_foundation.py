@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import BeforeValidator
 
 from asperity.config.case import Case, Law
+from asperity.config.chosen import NominalPatch
 from asperity.config.form import Section, key
 from asperity.config.keys import Choice, Force, Length, Mass, OwnOrNamed, Stiffness
 from asperity.config.sections import ContactCase, Numerics
@@ -51,6 +52,13 @@ class RollerOnFoundation(Case):
     foundation: Foundation = key({}, "the foundation")
     contact: ContactCase = key({}, "how the rough contact is solved and reduced")
     numerics: Numerics = key({}, "how finely time is resolved")
+
+    @property
+    def nominal_patch(self):
+        """Contact from which grid and window are chosen."""
+        roller = self.roller
+        modulus = contact_modulus(roller.material, self.foundation.material)
+        return NominalPatch.of(modulus, roller.radius, roller.radius, roller.load)
 
 
 CASE = RollerOnFoundation

@@ -48,6 +48,7 @@ def test_modes_of_a_file_are_the_beam(on_beam, tmp_path):
     table = np.column_stack([x, beam.shapes(x)[0]])[:, :41]
     head = [("frequency (Hz)", natural[:40]), ("damping ratio", np.full(40, beam.damping_ratio))]
     lines = [f"{name}, " + ", ".join(repr(float(v)) for v in row) for name, row in head]
+    lines += ["position (m)"]
     lines += [", ".join(repr(float(v)) for v in row) for row in table]
     (tmp_path / "modes.csv").write_text("\n".join(lines))
     modes = {"over": "structure", "structure": {"file": str(tmp_path / "modes.csv")}}

@@ -1,12 +1,14 @@
 """The linear reference in the frequency domain."""
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
+from asperity.kinds.wheel_on_rail import spectra
 from asperity.kinds.wheel_on_rail.linear_reference import (
     force_transfer,
     linear_force_psd,
@@ -100,6 +102,21 @@ def test_psd_holds_the_mean_square_of_the_moving_texture():
         assert np.trapezoid(psd, f) == pytest.approx(
             STIFFNESS**2 * np.trapezoid(texture, wavenumber), rel=1e-6
         )
+
+
+def test_between_cells_the_reference_passes_the_texture_that_the_laws_follow(monkeypatch):
+    """Waves of six cells, in steps of three quarters of a cell: 5 kHz at 30 m/s."""
+    cells, steps, speed = 1e-3 * np.arange(3000), np.arange(3000), 30.0
+    line = 1e-6 * np.sin(2 * np.pi * cells / 6e-3)
+    case = SimpleNamespace(time_step=25e-6, speed=speed, contact=SimpleNamespace(spacing=1e-3))
+    run = SimpleNamespace(position=0.1 + 0.75e-3 * steps)
+    textures = SimpleNamespace(start=0.0, line=line, followed=line)
+    chain = SimpleNamespace(runs={"linear": run}, textures=textures, shape=None, reduction=None)
+    monkeypatch.setattr(spectra, "working_point", lambda *_: (0.0, STIFFNESS))
+    computed = SimpleNamespace(case=case, chain=chain, wheel=WHEEL, track=Spring(), kernel=None)
+    frequency = np.fft.rfftfreq(1024, 25e-6)
+    _, texture = spectra.linear_reference(computed, frequency, 1024)
+    assert 10 * np.log10(texture.sum() * frequency[1] / 0.5e-12) == pytest.approx(0.0, abs=0.1)
 
 
 def test_wheel_resonance_is_seen_in_the_force():

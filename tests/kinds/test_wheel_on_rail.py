@@ -10,14 +10,14 @@ import xarray
 
 import asperity
 from asperity.contact import Hertz
-from asperity.errors import InputError
+from asperity.errors import InputError, OutOfRangeWarning
 from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail.geometry import geometry_of
 from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses, relaxed
 from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.reference.cnossos import rail_roughness
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
-from asperity.running import run
+from asperity.running import prepare_case, run
 from asperity.studies.running import study
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levels import band_levels_of
@@ -37,6 +37,7 @@ settling = "20 ms"
 {track}
 [contact]
 spacing = "{spacing}"
+window = "20 mm"
 samples = 2
 sample_length = "60 mm"
 [numerics]
@@ -312,6 +313,33 @@ class TestDefects:
         assert np.all(force.max("time") > 1.5 * 65e3)
         hit = struck["rolling/position"][int(force.sel(law="areal").argmax("time"))]
         assert float(hit) == pytest.approx(1.0, abs=0.15)
+
+    @pytest.mark.parametrize(
+        "defect", [{"wheel": {"flat_depth": "0.3 mm"}}, {"surface": {"joint_depth": "1 mm"}}]
+    )
+    def test_defects_are_rolled_over_by_a_law_that_sees_them_unless_another_is_named(self, defect):
+        given = {"kind": "wheel-on-rail", "surface": {"smooth": True}}
+        assert asperity.WheelOnRail(surface={"smooth": True}).laws[0] == "areal"
+        struck = asperity.WheelOnRail(**(given | defect))
+        assert struck.laws[0] == struck.default_of("laws")[0] == "direct"
+        assert asperity.WheelOnRail(**(given | defect | {"laws": ["areal"]})).laws == ("areal",)
+
+    @pytest.mark.parametrize("duration", ["40 ms", "1 s"])
+    def test_first_impact_of_a_flat_lies_in_the_record(self, duration):
+        struck = asperity.WheelOnRail(
+            duration=duration, surface={"smooth": True}, wheel={"flat_depth": "0.3 mm"}, laws=["linear"]
+        )
+        found = textures_of(struck)
+        touched = np.flatnonzero(found.defects[found.recorded])
+        assert touched[0] * struck.contact.spacing > 0.5
+        assert (found.recorded.stop - found.recorded.start - touched[-1]) * struck.contact.spacing > 0.1
+
+    def test_a_law_that_does_not_see_a_flat_says_so(self):
+        struck = case(surface="smooth = true", wheel='flat_depth = "0.1 mm"', laws=["linear", "hertz"])
+        told = [str(w.message) for w in prepare_case(struck).caught if w.category is OutOfRangeWarning]
+        assert [message.partition(" over")[0] for message in told] == [
+            "linear follows the path of the wheel's centre"
+        ]
 
     def test_table_in_a_window_shorter_than_the_flat_warns(self):
         wheel = 'flat_depth = "0.3 mm"'

@@ -12,6 +12,8 @@ from asperity.reduction.areal import areal_texture
 from asperity.reduction.fir import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
+from asperity.rolling.equilibrium import static_approach
+from asperity.rolling.outcome import STEPPED_EQUILIBRIUM
 from asperity.surfaces.strip import Rows
 
 DX, N, RADIUS, MODULUS, LOAD = 5e-6, 31, 10e-3, 115e9, 2.0
@@ -42,6 +44,14 @@ class TestDirect:
             assert found == pytest.approx(alone.force, rel=1e-8)
             assert slope == pytest.approx(alone.stiffness, rel=1e-6)
             law.accept(step)
+
+    def test_at_rest_it_carries_the_load_at_any_tolerance(self):
+        """The contact from which rolling starts, against one that is solved under the load."""
+        heights = rough(60)
+        law = direct(heights, rtol=0.01).prepare([20 * DX, 21 * DX])
+        approach, _ = static_approach(lambda at: law.evaluate(0, at), LOAD, STEPPED_EQUILIBRIUM)
+        alone = HalfSpace((N, N), (DX, DX), MODULUS).solve(body() - heights[5:36], load=LOAD, rtol=1e-9)
+        assert approach == pytest.approx(alone.approach, rel=1e-4)
 
     def test_between_rows_the_texture_is_interpolated(self):
         x = np.arange(80) * DX

@@ -71,7 +71,9 @@ class OnPath:
 
 def build_twin(materials):
     """The same force as `shifted`, by another name."""
-    return laws.Shifted(materials.curve, materials.line, materials.damping, materials.name)
+    return laws.Shifted(
+        materials.curve, materials.line, materials.damping, materials.name, materials.line_at_load
+    )
 
 
 def build_spring(materials):
@@ -163,7 +165,7 @@ def test_what_a_law_needs_decides_where_it_may_stand(registered):
             "name of a law: received 'linear-filtered'; allowed: a name that no other",
         ),
         ({"name": "shifted", "variants": ()}, "a name that no other law has"),
-        ({"role": Role.REFERENCE}, 'role of law `twin`: received "reference", which `direct` has'),
+        ({"role": Role.REFERENCE}, 'role of law twin: received "reference", which the law direct has'),
     ],
 )
 def test_what_is_taken_is_refused(changes, message):
@@ -186,23 +188,23 @@ def test_a_variant_may_not_take_a_name_either(registered):
         ({"name": "My law"}, "name of a law: received 'My law'; allowed: small letters and digits"),
         ({"name": 3}, "name of a law: received 3"),
         ({"name": "twin\n"}, "name of a law: received"),
-        ({"meaning": "no sentence"}, "meaning of law `twin`: received 'no sentence'; allowed: one line that"),
-        ({"meaning": "Two\nlines."}, "meaning of law `twin`"),
+        ({"meaning": "no sentence"}, "meaning of law twin: received 'no sentence'; allowed: one line that"),
+        ({"meaning": "Two\nlines."}, "meaning of law twin"),
         (
             {"build": "Shifted"},
-            "build of law `twin`: received 'Shifted'; allowed: a function of the materials",
+            "build of law twin: received 'Shifted'; allowed: a function of the materials",
         ),
         (
             {"needs": {"patience"}},
-            "needs of law `twin`: received {'patience'}; allowed: a set of \"samples\"",
+            "needs of law twin: received {'patience'}; allowed: a set of \"samples\"",
         ),
-        ({"needs": None}, "needs of law `twin`: received None"),
-        ({"normalise": "none"}, "normalise of law `twin`: received 'none'; allowed: \"tangent\" or"),
-        ({"look": "blue"}, "look of law `twin`: received 'blue'"),
-        ({"role": "king"}, "role of law `twin`: received 'king'; allowed: None"),
-        ({"variants": (3,)}, "variants of law `twin`"),
+        ({"needs": None}, "needs of law twin: received None"),
+        ({"normalise": "none"}, "normalise of law twin: received 'none'; allowed: \"tangent\" or"),
+        ({"look": "blue"}, "look of law twin: received 'blue'"),
+        ({"role": "king"}, "role of law twin: received 'king'; allowed: None"),
+        ({"variants": (3,)}, "variants of law twin"),
         ({"variants": (Variant("Not So", "So.", frozenset()),)}, "name of a law: received 'twin-Not So'"),
-        ({"variants": (Variant("so", "So.", {"rest"}),)}, "needs of law `twin-so`"),
+        ({"variants": (Variant("so", "So.", {"rest"}),)}, "needs of law twin-so"),
     ],
 )
 def test_a_bad_law_is_refused(changes, message):
@@ -252,14 +254,14 @@ def spoilt(build):
 @pytest.mark.parametrize(
     ("build", "message"),
     [
-        (lambda m: m.curve, "materials of law `spring`: received curve; allowed: materials that it needs"),
+        (lambda m: m.curve, "materials of law spring: received curve; allowed: materials that it needs"),
         (lambda m: m.datum, "received datum"),
         (lambda m: m.areal, "received areal"),
         (lambda m: m.table, "received table"),
         (lambda m: m.heights, "received heights"),
         (lambda m: m.plane, "received plane"),
-        (lambda m: 3.0, "law `spring`: received 3.0; allowed: an object with name, damping and prepare"),
-        (lambda m: laws.HertzLaw(m.hertz_constant), "law `spring`: received one built as 'hertz'"),
+        (lambda m: 3.0, "law spring: received 3.0; allowed: an object with name, damping and prepare"),
+        (lambda m: laws.HertzLaw(m.hertz_constant), "law spring: received one built as 'hertz'"),
     ],
 )
 def test_a_law_that_is_not_built_as_it_says_is_told(build, message, registered):

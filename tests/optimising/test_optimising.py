@@ -1,6 +1,13 @@
 """From a case to a texture that was rolled over: quieter within its limits, by another law too."""
 
 import csv
+import errno
+import json
+import os
+import re
+import shutil
+from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -8,9 +15,10 @@ from click.testing import CliRunner
 from scipy.fft import rfft, rfftfreq
 
 import asperity
-from asperity.cli import main
+from asperity.cli import main, optimising
 from asperity.kinds.cases import load_case
 from asperity.optimising.allocation import rms_of
+from asperity.optimising.running import optimise
 from small_cases import COARSE, WHEEL
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
@@ -29,10 +37,17 @@ def folder(tmp_path_factory, cache_of_module):
     (place / "case.toml").write_text(asperity.BallOnBeam(**CASE).to_toml())
     aim = 'case = "case.toml"\nrms_at_least = "0.05 um"\nhighest = ["-30 dB"]\nlongest = "20 mm"\n'
     (place / "aim.toml").write_text(aim)
-    words = ["optimise", str(place / "aim.toml"), "-o", str(place / "out"), "--no-report"]
-    done = CliRunner().invoke(main, words)
+    with pytest.MonkeyPatch.context() as patch:
+        found = []
+        patch.setattr(optimising, "optimise", lambda *words: found.append(optimise(*words)) or found[0])
+        done = optimised(place, "--json")
     assert done.exit_code == 0, done.output
-    return place / "out", done.output
+    return place / "out", json.loads(done.stdout), found[0]
+
+
+def optimised(place, *words):
+    aim, out = str(place / "aim.toml"), str(place / "out")
+    return CliRunner().invoke(main, ["optimise", aim, "-o", out, "--no-report", *words])
 
 
 def columns(file):
@@ -42,29 +57,85 @@ def columns(file):
 
 
 def test_it_beats_the_start_by_table_with_its_limit_active(folder):
-    out, said = folder
+    out, said, _ = folder
     bands = columns(out / "bands.csv")
     levels = bands["level after [dB re 1 um]"]
     assert rms_of(levels) == pytest.approx(0.05e-6, rel=1e-3)
     assert (levels <= -30.0 + 1e-9).all()
-    assert "On its limits: rms_at_least" in said
+    assert "On its limits: rms_at_least" in said["summary"]
     runs = [asperity.open_result(out / name) for name in ("before", "after")]
     for law in ("table", "areal"):
         rms = [run["rolling/acceleration"].sel(law=law).values.std() for run in runs]
         assert rms[1] < 0.5 * rms[0]
 
 
+def test_the_document_is_what_json_md_says(folder):
+    out, told, _ = folder
+    page = (Path(__file__).parents[2] / "docs" / "json.md").read_text(encoding="utf-8")
+    listed = re.findall(
+        r"`(\w+)`",
+        " ".join(re.findall(r"^\|(.*?)\|", page.split("\n## optimise\n")[1].split("\n## ")[0], re.M)),
+    )
+    assert listed
+    assert set(listed) <= set(told)
+    assert set(told["changes"]) == {"table", "areal"}
+    assert len(told["rows"]) == len(columns(out / "bands.csv")["level after [dB re 1 um]"])
+    assert {path for path in told["files"].values() if not Path(path).is_file()} == set()
+
+
 def test_its_case_runs_as_what_was_found(folder):
-    out, _ = folder
+    out, _, _ = folder
     case = load_case(out / "case.toml")
     again = asperity.run(case.with_(laws=("areal",)))
     found = asperity.open_result(out / "after")["rolling/contact_force"].sel(law="areal")
     np.testing.assert_allclose(again["rolling/contact_force"].sel(law="areal"), found, rtol=1e-6, atol=1e-3)
 
 
-def test_it_replaces_no_other_texture(folder):
-    out, _ = folder
-    done = CliRunner().invoke(main, ["optimise", str(out.parent / "aim.toml"), "-o", str(out)])
+@pytest.fixture
+def again(folder, tmp_path, monkeypatch):
+    """The same without the search, which is done."""
+    shutil.copytree(folder[0].parent, tmp_path, dirs_exist_ok=True)
+    monkeypatch.setattr(optimising, "optimise", lambda *_: folder[2])
+    return lambda *words: optimised(tmp_path, *words)
+
+
+def contents(place):
+    return {path.relative_to(place): path.read_bytes() for path in place.rglob("*.*") if path.is_file()}
+
+
+@pytest.mark.parametrize("written", ["texture.csv", "case.toml"])
+def test_interrupted_at_its_end_the_same_command_goes_on(again, tmp_path, monkeypatch, written):
+    """Whether what it has found lies in the folder by then, or only a part of it."""
+    replace = os.replace
+
+    def interrupted(part, path):
+        replace(part, path)
+        if Path(path) == tmp_path / "out" / written:
+            raise KeyboardInterrupt
+
+    shutil.rmtree(tmp_path / "out")
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", interrupted)
+        assert again().exit_code == 130
+    assert again().exit_code == 0
+    assert not list(tmp_path.rglob("*.part"))
+
+
+def test_what_was_found_earlier_stays_whole_until_all_is_there_that_replaces_it(again, tmp_path, monkeypatch):
+    before = contents(tmp_path / "out")
+    full = OSError(errno.ENOSPC, "full")
+    with monkeypatch.context() as patch:
+        patch.setattr(optimising, "write_csv", Mock(side_effect=[None, full]))
+        assert again("--overwrite").exit_code == 3
+    assert contents(tmp_path / "out") == before
+
+
+@pytest.mark.parametrize("file", ["aim.toml", "out/case.toml"])
+def test_it_replaces_no_other_texture(again, tmp_path, file):
+    """Neither what was found otherwise, nor a case that was changed since."""
+    with (tmp_path / file).open("a") as text:
+        text.write("\nlateral = [0.5, 2.0]\n" if file == "aim.toml" else "# changed\n")
+    done = again()
     assert done.exit_code == 2
     assert "--overwrite" in done.output
 

@@ -176,7 +176,7 @@ class TestInMemory:
 
     def test_lines_and_tables_of_a_wheel(self, tmp_path):
         bands = np.array([[0.1, 3.0], [0.08, 2.0], [0.063, 1.0]])
-        np.savetxt(tmp_path / "levels.csv", bands, delimiter=",")
+        np.savetxt(tmp_path / "levels.csv", bands, delimiter=",", header="wavelength (m), level (dB)")
         modes = np.array([[1000.0, 1e-3, 300.0]])
         case = WheelOnRail(surface={"spectrum": bands}, wheel={"modes": modes})
         on_disk = WheelOnRail(surface={"spectrum": tmp_path / "levels.csv"})
@@ -281,7 +281,12 @@ class TestStudies:
     def test_of_an_object_with_numbers(self, tmp_path, monkeypatch):
         from asperity.studies.definition import study_of
 
-        case = BallOnBeam(speed="2 m/s", laws=["hertz"], duration=5e-3, surface={"spectrum": "iso3095"})
+        case = BallOnBeam(
+            speed="2 m/s",
+            laws=["hertz"],
+            duration=5e-3,
+            surface={"spectrum": "iso3095", "level": -40},
+        )
         plan = study_of(case, {"ball.load": [5, np.float64(6.0)], "seed": np.arange(1, 3)})
         assert plan.sweep == {"ball.load": ["5 N", "6 N"], "seed": [1, 2]}
         first = plan.members()[0]

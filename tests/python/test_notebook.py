@@ -6,12 +6,14 @@ import re
 import sys
 import types
 
+import numpy as np
 import pytest
 import xarray as xr
 
 import asperity
+from asperity.errors import InputError
+from asperity.kinds.notebook import Result
 from asperity.progress import shown_progress
-from asperity.reporting.notebook import Result
 
 CASE = asperity.BallOnBeam(laws=["hertz", "linear"], duration=5e-3, surface={"spectrum": "iso3095"})
 
@@ -34,6 +36,22 @@ def test_a_result_is_a_tree_that_shows_verdict_numbers_and_force(result):
     assert base64.b64decode(picture)[:4] == b"\x89PNG"
     assert "<summary>All data</summary>" in page
     assert page.count("<div") == page.count("</div>")
+
+
+def test_a_result_draws_its_figures_by_name(result):
+    """The main one, which a notebook shows without being told, and those of the report."""
+    overview = result.plot()
+    assert overview._repr_png_()[:4] == b"\x89PNG"
+    force = result["rolling/contact_force"].sel(law="hertz").values
+    drawn = overview.axes[0].dataLim
+    np.testing.assert_allclose([drawn.y0, drawn.y1], [force.min(), force.max()])
+    bands = result.plot("force_bands")
+    assert bands._repr_png_()[:4] == b"\x89PNG"
+    assert "one-third octave" in bands.axes[-1].get_xlabel()
+    with pytest.raises(InputError, match=r"received 'force_band'; allowed: .*force_bands.* Did you mean"):
+        result.plot("force_band")
+    with pytest.raises(InputError, match="it has none"):
+        Result().plot()
 
 
 def test_what_it_shows_cannot_run_scripts(result):

@@ -45,6 +45,22 @@ def test_rough_stiffness_is_below_hertz_deep_in_and_starts_before_it():
     assert ensemble.curve.force(APPROACHES[deep]) == pytest.approx(ensemble.mean_force[deep], rel=1e-12)
 
 
+def test_stiffness_of_a_light_state_does_not_depend_on_the_grid_of_states():
+    """Central differences of the force of the same samples, with 3, 7 and 17 states from there on."""
+    waves = 0.1e-6 * np.sin(2 * np.pi * np.arange(N) / 9.0)
+    samples = [np.add.outer(np.roll(waves, i), waves) for i in range(3)]
+    half_space, light, step = HalfSpace((N, N), DX, MODULUS), -0.1e-6, 1e-10
+    by_step = [
+        np.mean([half_space.solve(body() - s, approach=light + d, rtol=1e-9).force for s in samples])
+        for d in (-step, step)
+    ]
+    exact = (by_step[1] - by_step[0]) / (2 * step)
+    for count in (3, 7, 17):
+        states = np.linspace(light, 0.4e-6, count)
+        curve = stiffness_ensemble(samples, half_space, body(), states, 0.0).curve
+        assert curve.stiffness(light) == pytest.approx(exact, rel=0.01)
+
+
 def test_patches_have_their_patch_mean_removed_and_cover_the_maps():
     x = np.arange(120.0)
     maps = [np.add.outer(x, 0.1 * x) + 7.0, np.add.outer(x, 0.1 * x)]

@@ -183,10 +183,10 @@ def test_contact_at_the_edge_warns():
 
 def test_unconverged_solutions_warn(monkeypatch):
     monkeypatch.setattr("asperity.contact.halfspace.MAX_ITERATIONS", 1)
-    with pytest.warns(UnconvergedWarning, match="4 of 4 contact solutions of the scan.* larger `rtol`"):
+    with pytest.warns(UnconvergedWarning, match="4 of 4 contact solutions of the scan.* larger rtol"):
         forces = half_space().scan(rough(44, 41), ball(41), [0.2e-6])
     assert forces.attrs["unconverged"] == 4
-    with pytest.warns(UnconvergedWarning, match="Try a larger `force_accuracy`"):
+    with pytest.warns(UnconvergedWarning, match="Try a larger force_accuracy"):
         half_space().scan(rough(44, 41), ball(41), [0.2e-6], force_accuracy=1e-5)
 
 

@@ -305,6 +305,7 @@ def spectra(rng, laws, duration):
             "force_psd": variable(("law", "frequency"), force, "N2/Hz", "contact force PSD"),
             "force_level": variable(("law", "band"), level, "dB re 1 N", "contact force level"),
             "band_time_product": variable("band", 0.23 * band * duration, "1", "B T"),
+            "level_deviation": variable("band", 4.34 / np.sqrt(0.23 * band * duration), "dB", "chance"),
             "force_level_difference_to_linear_filtered": variable(
                 ("law", "band"), difference("linear-filtered"), "dB", "difference to linear-filtered"
             ),

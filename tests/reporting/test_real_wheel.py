@@ -10,6 +10,7 @@ import pytest
 from matplotlib.text import Text
 from report_reading import HOSTILE, Reader, read_csv
 
+from asperity.cli.studying import _show
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import chapters_of, page_of, parts_of
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
@@ -18,8 +19,10 @@ from asperity.kinds.wheel_on_rail.figures.motion import point_labels
 from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
 from asperity.laws import spec_of
 from asperity.reporting.chapter import UNCERTAINTY
+from asperity.reporting.study_figures import key_figure
 from asperity.studies.columns import columns_of
-from asperity.studies.kept import kept
+from asperity.studies.kept import kept, names_kept
+from asperity.studies.shown import chosen, usual, usual_in_figures
 
 PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
 
@@ -294,7 +297,7 @@ def test_bands_that_say_little_are_shaded_and_in_the_csv_file(tree, name, variab
     assert len(part.draw(tree).axes[0].patches) == 1
     assert "Shaded" in part.caption(tree)
     columns = part.columns(tree)
-    assert columns["B T of 10 or more [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
+    assert columns["level says something [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
 
 
 def test_motion_is_compared_with_practice(tree):
@@ -321,10 +324,53 @@ def test_axles_are_marked_where_they_pass(tree, folder):
     assert not any("wheel" in head for head in table)  # it is rigid
 
 
-def test_a_study_keeps_noise_by_source_and_the_pass_by(tree):
-    table = kept(tree).expand_dims("speed").assign_attrs(sweep='{"speed": [56]}')
-    table["speed"] = ("speed", [56.0], {"units": "m/s"})
-    heading, rows = columns_of(table, bands=True)
+@pytest.fixture
+def study(tree):
+    """Table of a study of two speeds, which gave the same."""
+    table = kept(tree).expand_dims(speed=2).assign_attrs(sweep='{"speed": [56, 60]}')
+    table["speed"] = ("speed", [56.0, 60.0], {"units": "m/s", "long_name": "speed"})
+    return table.isel(speed=[0]), table
+
+
+def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(study, capsys):
+    """In the terminal; what is missing throughout, as the sound of a rigid wheel, only if it is asked for."""
+    _show(study[0], usual("wheel-on-rail"), asked=False)
+    said = " ".join(capsys.readouterr().out.replace("┃", " ").replace("│", " ").split())
+    for words in ("rail", "sleepers", "total", "pass by", "maximum level"):
+        assert words in said
+    assert "wheel" not in said
+    _show(study[0], ("radiated_power_level_a",), asked=True)
+    assert "wheel" in capsys.readouterr().out
+
+
+def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(study):
+    table = study[1]
+    assert not table["contact_loss_share"].values.any()
+    figure = key_figure(table, None, "speed", {}, usual_in_figures("wheel-on-rail"))
+    labels = {axes.get_ylabel().replace("\n", " ") for axes in figure.axes}
+    assert "sound power level from the vibration itself / dB(A) re 1 pW" in labels
+    assert "L_pAFmax / dB(A) re 20 µPa" in labels
+    assert not any("without contact" in label for label in labels)
+    (sound,) = [axes for axes in figure.axes if "sound power" in axes.get_ylabel()]
+    power = table["radiated_power_level_a"].isel(law=0)
+    for line in sound.lines:
+        np.testing.assert_array_equal(line.get_ydata(), power.sel(radiator=line.get_label()))
+    assert [line.get_label() for line in sound.lines] == ["rail", "sleepers", "total"]  # the wheel is rigid
+
+
+def test_what_a_study_of_wheels_may_be_asked_to_show_is_what_it_keeps(tree):
+    found = {str(name) for name in kept(tree).data_vars}
+    known = names_kept("wheel-on-rail")
+    assert found - {"point_position", "force_level_difference_to_reference_a"} <= set(known)
+    assert set(usual("wheel-on-rail")) <= set(known)
+    assert chosen(["peak_force, pass by maximum level"], "wheel-on-rail") == (
+        "peak_force",
+        "pass_by_maximum_level",
+    )
+
+
+def test_a_study_keeps_noise_by_source_and_the_pass_by(tree, study):
+    heading, rows = columns_of(study[0], bands=False)
     for name in ("rail", "sleepers", "wheel", "total"):
         assert f"radiated_power_level_a {name} [dB(A) re 1 pW]" in heading
     column = heading.index("pass_by_maximum_level [dB(A) re 20 uPa]")

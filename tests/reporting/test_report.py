@@ -16,6 +16,7 @@ from matplotlib.text import Text
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import DATUM, LAWS, LOAD, report_tree
 
+from asperity.convergence.group import sentence
 from asperity.errors import ComputationError
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import page_of, parts_of, report
@@ -145,6 +146,17 @@ def test_hostile_text_stays_text():
     assert not reader.all("onerror")
     assert_own_scripts_alone(reader)
     assert "".join(reader.text).count(HOSTILE) > 20
+
+
+def test_characters_that_act_are_seen(tmp_path):
+    """A name controls neither the terminal that a page is printed in nor the direction of what follows."""
+    tree, acting, seen = small(), "a\x1b[31m\x07\u202eb", r"a\x1b[31m\x07\u202eb"
+    tree.attrs.update(title=acting, case=acting)
+    tree["surface"].attrs.update(source=acting)
+    tree.attrs["warnings"] = json.dumps([{"category": "", "message": acting, "count": 1}])
+    files = [file.read_text(encoding="utf-8") for file in report(tree, tmp_path).parent.iterdir()]
+    assert sum(text.count(seen) for text in files) >= 3
+    assert not any(set(text) & set(acting) - set("a[31mb") for text in files)
 
 
 @pytest.mark.parametrize("attrs", [{}, {"warnings": "not JSON", "citations": "{}"}])
@@ -498,11 +510,24 @@ def test_bands_that_say_little_are_shaded():
         for axes in figure.axes:
             shaded = [patch.get_x() + patch.get_width() for patch in axes.patches]
             assert shaded == pytest.approx([edge], rel=1e-6), name
-        assert any(text.get_text() == "B T < 10" for text in figure.findobj(Text))
+        assert any(text.get_text() == "says little" for text in figure.findobj(Text))
         assert "B T is below 10" in part.caption(tree)
     enough, _ = uncertain(0.0)
     assert not part.draw(enough).axes[0].patches
     assert "B T" not in part.caption(enough)
+
+
+def test_bands_that_hold_the_start_are_shaded():
+    tree, little = uncertain(0.4)
+    held = np.where(np.arange(little.size) == np.flatnonzero(little)[-1] + 3, 0.3, 0.1)
+    tree["spectra"]["start_share"] = xr.Variable("band", held)
+    for name in ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws"):
+        part = next(part for part in PARTS if part.name == name)
+        first, second = part.draw(tree).axes[0].patches
+        centre = tree["spectra/band"].values[held > 0.2]
+        assert second.get_x() < centre < second.get_x() + second.get_width()
+        assert first.get_x() + first.get_width() < second.get_x()
+        assert "low by more than 1 dB" in part.caption(tree)
 
 
 def test_bands_that_say_little_are_marked_in_the_table_and_not_summed_up():
@@ -516,7 +541,7 @@ def test_bands_that_say_little_are_marked_in_the_table_and_not_summed_up():
     mean, largest = (float(row[column].text.replace("−", "-")) for row in table.rows[-2:])
     assert mean == pytest.approx(difference[~little].mean(), abs=0.051)
     assert largest == pytest.approx(np.abs(difference[~little]).max(), abs=0.051)
-    assert "below 10; they say little" in table.note
+    assert "below 10, or that hold the start; they say little" in table.note
     nothing = reference_table(uncertain(1.0)[0])
     assert [row[column].text for row in nothing.rows[-2:]] == ["–", "–"]
 
@@ -525,7 +550,7 @@ def test_bands_that_say_little_are_marked_in_the_csv_file(tmp_path):
     tree, little = uncertain(0.4)
     part = next(part for part in PARTS if part.name == "force_bands")
     table = read_csv(write_columns(part.columns(tree), tmp_path / "force_bands.csv"))
-    assert np.array_equal(table["B T of 10 or more [1]"] == 0.0, little)
+    assert np.array_equal(table["level says something [1]"] == 0.0, little)
     assert np.array_equal(table["B T [1]"], tree["spectra/band_time_product"].values)
 
 
@@ -573,13 +598,14 @@ def graded():
 def test_warnings_are_shown_by_their_grade():
     text = page_of(graded())
     assert "1 out of range, 2 warnings, 1 note on the physics" in "".join(Reader(text).text)
-    rows = re.findall(r'<li class="(\w*)"><strong>(.*?): (\w+)</strong>', text)
+    rows = re.findall(r'<li class="(\w*)"><strong>(.*?)</strong>: (.*?)</li>', text)
     assert rows == [
-        ("out", "Out of range", "OutOfRangeWarning"),
-        ("", "Warning", "PhysicsWarning"),
-        ("", "Warning", "PhysicsWarning"),
-        ("note", "Note", "PhysicsWarning"),
+        ("out", "Out of range", "a third"),
+        ("", "Warning", "two of them"),
+        ("", "Warning", "one more"),
+        ("note", "Note", "hardly any"),
     ]
+    assert "OutOfRangeWarning" not in text  # names of classes say nothing to people
 
 
 def test_each_check_has_its_light_with_number_and_limit():
@@ -626,13 +652,18 @@ def test_the_expected_error_of_the_law_has_a_light(band, off_map, state):
 
 def test_what_is_known_of_the_uncertainty_is_listed():
     tree = with_expected(0.5, 0.3, 0.8)
-    bands, product = tree["spectra/band"].values, tree["spectra/band_time_product"].values
+    spectra = (tree[f"spectra/{name}"].values for name in ("band", "band_time_product", "level_deviation"))
+    bands, product, deviation = spectra
+    product *= 10.0
+    held = np.zeros(bands.size)
+    held[np.flatnonzero(product >= 10.0)[1]] = 0.499  # half of the mean square
+    tree["spectra"]["start_share"] = xr.Variable("band", held)
     rows = {row[0].text: row[1].text for row in uncertainty_table(tree).rows}
     assert rows["the law areal, against direct"] == "0.5 dB (0.3 to 0.8)"
-    last = np.flatnonzero((bands < 5500) & (product >= 10.0))[-1]
-    assert rows["chance: one record of this length"].endswith(
-        f"{4.34 / np.sqrt(product[last]):.1f} dB at {nominal_band(bands[last])} Hz"
-    )
+    told = np.flatnonzero((bands < 5500) & (product >= 10.0))
+    ends = [f"{deviation[i]:.1f} dB at {nominal_band(bands[i])} Hz" for i in (told[-1], told[0])]
+    assert rows["chance: one record of this length"] == " to ".join(ends)
+    assert rows["start of the record"] == f"up to 3.0 dB low, at {nominal_band(bands[told[1]])} Hz"
     mean = 20 * np.log10(1 + 0.05 / np.sqrt(8))  # eight samples that vary by 5 %
     assert rows["contact stiffness, from the samples"] == f"{mean:.1f} dB"
     assert rows["settings: grid, window, samples, time step, …"] == "not known"
@@ -674,6 +705,26 @@ def test_page_and_command_line_cite_the_same(tree, text):
         assert source in shown
     assert literature(tree)[0].startswith("asperity 0.1.0: ")
     assert len(literature(tree)) == 3
+
+
+@pytest.mark.parametrize(
+    ("chance", "state"), [(1.0, "out of range"), (30.0, "warning"), (np.nan, "out of range")]
+)
+def test_a_setting_that_changes_levels_by_many_decibels_is_out_of_range(chance, state):
+    """But for a path that is chaos: half of it is then as far from all of it."""
+    tree = contact_only()
+    names = ["poles", "grid", "path length"]
+    words = dict.fromkeys(("setting", "change"), ("setting", names)) | {"limit": ("setting", [""] * 3)}
+    numbers = {
+        "largest_change": [31.94, 0.1, chance],
+        "largest_band": [1e3] * 3,
+        "stiffness_change": [0.0] * 3,
+    }
+    group = xr.Dataset(words | {name: ("setting", values) for name, values in numbers.items()})
+    tree["convergence"] = group
+    found = {light.quantity.rpartition(" ")[2]: light.state for light in lights(tree)}
+    assert (found["poles"], found["grid"]) == (state, "in range")
+    assert sentence(group, "areal").startswith("Not converged: poles is too coarse") == (state != "warning")
 
 
 @pytest.mark.parametrize("converged", [False, True])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from report_tree import report_tree
 
-from asperity.reporting.notebook import Result
+from asperity.kinds.notebook import Result
 from asperity.results import save
 from asperity.schema.rolling import POSITION
 from asperity.serving.answering import _answered

@@ -120,7 +120,8 @@ def test_the_forces_are_those_of_the_iteration(name, monkeypatch):
     )
     assert found.unconverged_steps == 0
     assert found.evaluations <= (1.3 if apart else 1.0) * STEPS
-    assert apart or expected.evaluations > 1.9 * STEPS
+    # on a smooth beam nothing rings, and the force expected is the force
+    assert apart or name == "smooth" or expected.evaluations > 1.9 * STEPS
     if law.damping == 0.0:
         start = 0.0 if roll is wheel_on_rail else START
         check_steps(law, start + law.spacing[0] * np.arange(STEPS + 1), found)

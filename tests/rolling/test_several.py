@@ -142,7 +142,7 @@ def test_contacts_feel_each_other_through_the_beam():
 
 
 def test_two_moving_forces_superpose():
-    """Frýba, Vibration of Solids and Structures under Moving Loads, ch. 1: each mode in closed form."""
+    """Frýba, Vibration of Solids and Structures under Moving Loads: each mode in closed form."""
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=2e3, loss_factor=0.0)
     load, speed, apart = 50.0, 8.0, 0.23
     # a contact so soft, and a mass so large, that the force stays the load
@@ -157,10 +157,10 @@ def test_two_moving_forces_superpose():
         scale, q = np.sqrt(2.0 / beam.mass), 0.0
         for first in (0.1, 0.1 + apart):
             phase, factor = n * np.pi * first, scale * load / (omega**2 - turn**2)
-            # at rest under the forces where they start
-            rest = scale * load * np.sin(phase) / omega**2 - factor * np.sin(phase)
-            q = q + factor * np.sin(phase + turn * t) + rest * np.cos(omega * t)
-            q = q - factor * turn * np.cos(phase) * np.sin(omega * t) / omega
+            # from the static displacement under the forces where they start, as it moves with them
+            rest = scale * load / omega**2 - factor
+            q = q + factor * np.sin(phase + turn * t) + rest * np.sin(phase) * np.cos(omega * t)
+            q = q + rest * turn * np.cos(phase) * np.sin(omega * t) / omega
         expected += scale * np.sin(n * np.pi * found.positions) * q
     same(found.over_displacement, expected, 1e-6)
 

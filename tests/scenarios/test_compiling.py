@@ -2,6 +2,9 @@
 
 import subprocess
 import sys
+import time
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -97,7 +100,7 @@ def started(monkeypatch):
     found = []
 
     def popen(command, **options):
-        found.append(subprocess_popen([command[0], "-c", "input()"], stdin=subprocess.PIPE, **options))
+        found.append(subprocess_popen([command[0], "-c", "input()"], **options))
         return found[-1]
 
     subprocess_popen = subprocess.Popen
@@ -156,3 +159,25 @@ def test_what_python_never_calls_is_compiled_as_the_contact_calls_it():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+STARTED = """
+import time
+from asperity.scenarios import second_process
+second_process.CODE = second_process.CODE.partition("from asperity.scen")[0] + "import time; time.sleep(600)"
+print(second_process._started().pid, flush=True)
+time.sleep(600)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="there is nowhere to look")
+def test_no_process_compiles_on_after_the_first_was_killed():
+    with subprocess.Popen([sys.executable, "-c", STARTED], stdout=subprocess.PIPE, text=True) as first:
+        other = Path("/proc", first.stdout.readline().strip(), "stat")
+        assert other.exists()
+        first.kill()
+    begun = time.monotonic()
+    with suppress(OSError):  # it is gone
+        while " Z " not in other.read_text():  # nor that, where nobody waits for it
+            assert time.monotonic() < begun + 60.0
+            time.sleep(0.01)

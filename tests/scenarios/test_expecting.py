@@ -6,14 +6,16 @@ import pytest
 from asperity.errors import CaseError, InputError
 from asperity.kinds.ball_on_beam import plan as ball_plan
 from asperity.kinds.ball_on_beam.compute import compute
+from asperity.kinds.bodies import plan as bodies_plan
 from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail import plan as rail_plan
-from asperity.kinds.wheel_on_rail.plan import TrackTrial, step_seconds, try_track
+from asperity.kinds.wheel_on_rail.plan import step_seconds
 from asperity.running import prepare_case
 from asperity.scenarios import expecting
 from asperity.scenarios.expecting import expect, expected_path_scan
 from asperity.scenarios.scan_sizes import scan_sizes
 from asperity.scenarios.trial import ContactTrial, try_contacts
+from asperity.scenarios.trial_track import TrackTrial, try_track
 from asperity.store import Store
 from asperity.structures.moving_kernel import moving_kernel
 
@@ -26,6 +28,7 @@ settling = "0 s"
 laws = ["table"]
 [surface]
 rms = "0.05 um"
+longest = "0.4 mm"
 shortest = "40 um"
 [contact]
 spacing = "{spacing}"
@@ -89,7 +92,8 @@ def tried(monkeypatch):
         monkeypatch.setattr(plan, "step_seconds", lambda prepared: 1e-6)
     contacts = ContactTrial(np.linspace(0, 1e-6, 14), 12, 3.0, 5.0, 0.01, 0.02, 0.03, 7e-4, 1e-5, 1e-6)
     monkeypatch.setattr(expecting, "try_contacts", lambda prepared, progress: contacts)
-    monkeypatch.setattr(rail_plan, "try_track", lambda prepared, progress: TrackTrial(0.12, 11.0))
+    for plan in (rail_plan, bodies_plan):
+        monkeypatch.setattr(plan, "try_track", lambda *_: TrackTrial(0.12, 11.0, 7.0))
 
 
 @pytest.mark.usefixtures("tried")
@@ -123,6 +127,32 @@ def test_kernel_and_passed_points_are_part_of_the_work():
 
 
 @pytest.mark.usefixtures("tried")
+def test_rails_between_contacts_are_part_of_the_work():
+    """Four contacts at 0, 2.5, 18 and 20.5 m are 2.5, 15.5, 18 and 20.5 m apart, ahead and behind."""
+    text = """
+    kind = "bodies"
+    over = "track"
+    speed = "30 m/s"
+    laws = ["linear"]
+    duration = "50 ms"
+    [surface]
+    spectrum = "iso3095"
+    [body]
+    type = "bogie"
+    positions = ["0 m", "18 m"]
+    radius = "0.46 m"
+    mass = "600 kg"
+    masses = ["3 t"]
+    springs = ["1.2 MN/m"]
+    distance = "2.5 m"
+    """
+    seconds = expect(prepare_case(parse_case(text)), quiet).seconds
+    poles = seconds["moving kernel"] - 11.0
+    assert poles > 0.0
+    assert seconds["rail between contacts"] == pytest.approx(2 * 4 * (7.0 + poles))
+
+
+@pytest.mark.usefixtures("tried")
 def test_threads_share_scans_and_kernel(monkeypatch):
     text = CASE.format(spacing="10 um").replace("8 ms", "80 ms").replace("samples = 2", "samples = 4")
     one = expect(prepare_case(parse_case(text)), quiet).seconds
@@ -145,7 +175,8 @@ rail_loss_factor = 0.001
 def test_the_length_of_a_kernel_is_found_before_it_is_computed(track):
     """Kernels grow from 0.12 s until they have died away: the less they are damped, the longer."""
     prepared = prepare_case(parse_case(RAIL.replace("[contact]", track).format(duration="40 ms")))
-    tried = try_track(prepared, quiet)
+    case = prepared.case
+    tried = try_track(case.track_model(), case.speed, case.time_step, quiet)
     kernel = moving_kernel(prepared.case.track_model(), prepared.case.speed, prepared.case.time_step)
     assert tried.length == pytest.approx(kernel.lag[-1], rel=0.02)
     assert (tried.length > 0.15) == (track == SOFT)

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -12,11 +13,13 @@ import pytest
 from asperity.cli.planning import plan
 from asperity.kinds.ball_on_beam.bodies import bodies_of, square_transfer
 from asperity.kinds.cases import kind_of, parse_case
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.reference.law_accuracy import Place, law_map
 from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work
-from asperity.scenarios.law_choice import choose, expected_error, law_choice
+from asperity.scenarios.law_choice import ExpectedError, choose, expected_error, law_choice, law_to_take
 from asperity.scenarios.law_place import correlation_lengths, place_of, without_slow
+from asperity.scenarios.validity import doubted_by_area
 from asperity.surfaces.heightmap import HeightMap
 
 ROOT = Path(__file__).parents[2]
@@ -73,6 +76,8 @@ def test_a_wave_has_the_place_of_the_closed_form(shape, waves_per_patch):
     assert place.within == pytest.approx(rms * (1.0 - felt) / approach, rel=0.04)
     assert place.dynamic == pytest.approx(rms * felt * 1e7 / load, rel=0.04)
     # the lag at which a cosine falls to 0.2; grid points are joined by lines
+    # at 1 m/s the highest band, 5 kHz, has waves of 0.2 mm
+    assert place.highest_wavenumber == pytest.approx(2.0 * np.pi * a / 0.2e-3)
     assert place.correlation == pytest.approx(math.acos(0.2) / (2.0 * np.pi) / waves_per_patch, rel=0.03)
     # the same all across: as far as the window shows
     assert place.across == pytest.approx(shape.body.shape[1] // 2 * shape.spacing[1] / (2.0 * a))
@@ -158,8 +163,26 @@ def test_the_band_holds_what_was_found_at_its_points_as_often_as_it_claims(law):
     assert 0.9 < np.exp(np.mean(np.log(ratios))) < 1.1
 
 
+def test_the_band_holds_on_fresh_cases_as_often_as_it_claims():
+    """Cases by seeds, textures, loads, speeds and lays of their own, which are no points of the map."""
+    mapped = law_map()
+    assert len(mapped.fresh) >= 60
+    for kind, slow, fast in (("ball-on-beam", 0.4, 2.5), ("wheel-on-rail", 25.0, 70.0)):
+        speeds = [case.speed for case in mapped.fresh if case.kind == kind]
+        assert min(speeds) < slow < fast < max(speeds)
+    held = {law: [] for law in mapped.spread}
+    for case in mapped.fresh:
+        for law, error in case.errors.items():
+            band = expected_error(mapped, case.kind, case.place, law)
+            held[law].append(band.low <= error <= band.high)
+    assert {law: np.mean(found) >= 0.7 for law, found in held.items()} == dict.fromkeys(mapped.spread, True)
+    assert 0.73 <= np.mean(np.concatenate(list(held.values()))) <= 0.87
+
+
 def test_off_the_map_it_says_so():
-    far = Place(roughness=300.0, correlation=1.0, across=1.0, within=100.0, dynamic=500.0)
+    far = Place(
+        roughness=300.0, correlation=1.0, across=1.0, within=100.0, dynamic=500.0, highest_wavenumber=3.5
+    )
     choice = choose(law_map(), "wheel-on-rail", far, ["areal"])
     assert choice.off_map
     on_map = choose(law_map(), "wheel-on-rail", law_map().points[0].place, ["areal"])
@@ -171,10 +194,26 @@ def test_off_the_map_it_says_so():
     assert choice.sentence("own-law") is None
 
 
+def test_a_speed_that_was_not_mapped_is_off_the_map():
+    """Ten times slower, or faster, than any point of these bodies, and else the same as one."""
+    mapped = law_map()
+    for kind in ("ball-on-beam", "wheel-on-rail"):
+        mine = sorted((p.place.highest_wavenumber, n) for n, p in enumerate(mapped.points) if p.kind == kind)
+        for (wavenumber, number), ratio in ((mine[-1], 10.0), (mine[0], 0.1)):
+            place = mapped.points[number].place
+            assert not choose(mapped, kind, place, ["areal"]).off_map
+            other = choose(mapped, kind, replace(place, highest_wavenumber=ratio * wavenumber), ["areal"])
+            assert other.off_map
+            assert other.taken == "table"
+            rows = dict(other.rows())
+            assert "not known here" in rows["law to take"]
+            assert f"k a of 5 kHz {ratio * wavenumber:.2g}, mapped from" in rows["place on the map"]
+
+
 def test_areal_is_taken_where_it_is_in_its_range_and_table_where_it_leaves_it():
     smooth, rough = (
         choose(law_map(), "wheel-on-rail", place, ["areal"])
-        for place in (Place(0.1, 1.0, 1.0, 0.03, 0.1), Place(1.0, 0.3, 0.3, 0.9, 2.0))
+        for place in (Place(0.1, 1.0, 1.0, 0.03, 0.1, 3.5), Place(1.0, 0.3, 0.3, 0.9, 2.0, 3.5))
     )
     assert smooth.taken == "areal"
     assert "expected within 1 dB of direct" in dict(smooth.rows())["law to take"]
@@ -195,6 +234,31 @@ def test_check_and_verdict_say_what_the_map_says():
     entries = json.loads(result["scenario"].attrs["numerics"])
     numerics = {entry["name"]: entry["value"] for entry in entries}
     assert numerics["law to take"] == rows["law to take"]
+
+
+@pytest.mark.parametrize(("high", "doubted"), [(0.9, ()), (1.4, ("areal", "linear"))])
+def test_real_contact_and_the_map_advise_the_same(high, doubted):
+    """A small real contact makes no law doubtful that the map trusts; what to take is what the map takes."""
+    mapped = law_map()
+    point = mapped.points[0]
+    low = 0.4
+    expected = tuple(ExpectedError(law, 0.6, low, high) for law in ("areal", "table"))
+    choice = replace(choose(mapped, point.kind, point.place, ["areal"]), expected=expected)
+    for ratio in (0.6, 0.85):
+        assert doubted_by_area(("areal", "linear"), ratio, choice) == doubted
+        assert doubted_by_area(("linear", "areal"), ratio, choice) == ("linear", *doubted[:1])
+        assert doubted_by_area(("areal", "table"), ratio, None) == ("areal",)
+    assert doubted_by_area(("areal", "linear"), 0.95, None) == ()
+    assert law_to_take(choice) == choice.taken == ("table" if doubted else "areal")
+
+
+@pytest.mark.parametrize(
+    "defect", [{"wheel": {"flat_depth": "0.3 mm"}}, {"surface": {"joint_depth": "1 mm"}}]
+)
+def test_over_a_defect_the_law_to_take_is_the_default(defect):
+    """The map knows nothing there: messages advise the law that such a case rolls where it names none."""
+    struck = WheelOnRail(**({"surface": {"smooth": True}} | defect))
+    assert law_to_take(None) == struck.laws[0] == "direct"
 
 
 @pytest.mark.parametrize("surface", ['line = "line.csv"', "smooth = true"])
@@ -221,4 +285,6 @@ def test_the_map_is_whole():
     assert all(0.0 < factor < 4.0 for factor in mapped.spread.values())
     for point in mapped.points:
         assert set(point.errors) <= set(mapped.spread)
-        assert all(len(found["levels"]) == 18 for found in point.details["laws"].values())
+        levels = [found["levels"] for found in point.details["laws"].values() if "levels" in found]
+        assert all(len(level) == 18 for level in levels)
+    assert sum("levels" in point.details["laws"]["areal"] for point in mapped.points) == 77

@@ -13,6 +13,8 @@ from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
 from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
 from asperity.store import Store
+from asperity.studies.kept import kept
+from asperity.studies.shown import usual
 from asperity.surfaces.synthesis import self_affine
 
 BALL = {
@@ -115,6 +117,18 @@ class TestBallOnBeam:
         assert not HEIGHTS.drawable(untouched)
         assert condition_table(untouched) is None
         assert passes_table(untouched) is None
+
+    def test_a_study_keeps_what_running_in_changed(self, untouched, run_in):
+        """Sq of the track and k_c, before and after, what yielded and how deep; unasked they are shown."""
+        table, contact = kept(run_in), run_in["contact"]
+        for name in ("track_rms", "track_stiffness"):
+            np.testing.assert_array_equal(table[name], contact[name])
+        assert table["running_in_lowering"] == contact["running_in_lowering"].values.max() > 0.0
+        assert table["yielded_share"] == contact.attrs["yielded_share"] > 0.0
+        assert table["working_stiffness"] == contact.attrs["working_stiffness"]
+        shown = {"track_rms", "track_stiffness", "running_in_lowering", "yielded_share"}
+        assert shown <= set(usual("ball-on-beam"))
+        assert not shown & set(kept(untouched))
 
     def test_another_pass_is_elastic(self):
         """The surface that a case was run in to, run in again, is lowered by no more than the tolerance."""

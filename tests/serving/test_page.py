@@ -123,7 +123,7 @@ def press(tab, share):
 
 
 def test_pressure_and_stiffness_follow_the_slider(tab):
-    assert number(tab, "force F") == "5.04 N"  # the weight of a steel ball of 25 mm
+    assert number(tab, "force F") == "50.0 N"  # that of the template
     seen = []
     for share in (0.2, 0.9):
         press(tab, share)
@@ -131,7 +131,7 @@ def test_pressure_and_stiffness_follow_the_slider(tab):
         seen.append((number(tab, "k_c = F/r"), number(tab, "force F"), pixels))
     assert len({*seen[0], *seen[1]}) == 6
     tab.click("#to-load")
-    tab.wait_for_function("() => document.querySelector('#contact-numbers').textContent.includes('5.04 N')")
+    tab.wait_for_function("() => document.querySelector('#contact-numbers').textContent.includes('50.0 N')")
 
 
 def test_a_wrong_value_is_said_beside_its_field(tab):
@@ -153,11 +153,11 @@ def test_a_bad_upload_is_refused_and_a_good_one_is_pressed(tab, served, tmp_path
     tab.wait_for_selector("#upload-state.alert")
     assert "broken.x3p: received a zip archive without its directory" in tab.inner_text("#upload-state")
     assert list((served.folder / "surfaces").iterdir()) == []
-    heights = 1e-1 * np.random.default_rng(1).normal(size=(80, 80)).cumsum(axis=0)
+    heights = 1e-1 * np.random.default_rng(1).normal(size=(120, 120)).cumsum(axis=0)
     good = tmp_path / "good.txt"
     good.write_text("# pixel: 8 um\n# z (um)\n" + "\n".join(" ".join(map(str, row)) for row in heights))
     tab.set_input_files("#surface-file", good)
-    tab.wait_for_selector("#upload-state:not(.alert):has-text('map of 80 × 80 points')")
+    tab.wait_for_selector("#upload-state:not(.alert):has-text('map of 120 × 120 points')")
     tab.wait_for_function(
         "() => document.getElementById('contact-note').textContent.includes('measured from good.txt')"
     )
@@ -200,7 +200,7 @@ def test_two_tabs_reload_cancel_and_go_on(tab, served, tmp_path):
     other = tab.context.new_page()
     other.goto(served.address)
     other.wait_for_selector("body[data-first-picture]")
-    assert other.input_value("input[name='ball.load']") == ""  # each tab has a case of its own
+    assert other.input_value("input[name='ball.load']") == "50 N"  # each tab has a case of its own
     roll(tab, "first")
     becomes(other, "first", "running")
     tab.reload()

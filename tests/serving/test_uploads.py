@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
+from asperity.serving import uploads
 from asperity.serving.kept_runs import (
     file_of_run,
     folder_of,
@@ -69,6 +70,30 @@ def test_what_turns_out_too_large_is_left_off_there(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_all_surfaces_together_have_a_limit(tmp_path, monkeypatch):
+    monkeypatch.setattr(uploads, "LARGEST_TOTAL", 100)
+    received(tmp_path, "a.npy", b"x" * 60)
+    for announced in (50, None):
+        with pytest.raises(TooLarge, match=r"allowed: 100 bytes of them\. Delete those that no run uses"):
+            received(tmp_path, "b.npy", b"x" * 30, b"x" * 20, announced=announced)
+    assert len(uploaded(tmp_path)) == 1
+
+
+@pytest.mark.parametrize("apart", [60.0, 0.005], ids=["stalled", "slow"])
+def test_an_upload_that_stalls_is_not_waited_for(tmp_path, monkeypatch, apart):
+    """Neither one that sends nothing more, nor one that sends next to nothing for ever."""
+    monkeypatch.setattr(uploads, "STALLED", 0.05)
+
+    async def slowly():
+        while True:
+            yield b"x"
+            await asyncio.sleep(apart)
+
+    with pytest.raises(InputError, match=r"nothing more for 0 s, or less than 20 KiB in a second"):
+        asyncio.run(receive(tmp_path, "x", None, slowly(), 100_000))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_an_empty_file_is_refused(tmp_path):
     with pytest.raises(InputError, match="an empty file"):
         received(tmp_path, "beam.npy")
@@ -96,6 +121,11 @@ def test_a_connection_that_breaks_leaves_nothing(tmp_path):
         ("a\0b\n‮.csv", "a_b__.csv"),
         ("x" * 300 + ".csv", "x" * 96 + ".csv"),
         ("<img src=x>.txt", "_img_src_x_.txt"),
+        ("CON.csv", "_CON.csv"),
+        ("lpt1.x3p", "_lpt1.x3p"),
+        ("nul", "_nul"),
+        ("a.csv. .", "a.csv._"),
+        ("console.csv", "console.csv"),
     ],
 )
 def test_names_lead_nowhere_else(name, safe):

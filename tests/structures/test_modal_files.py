@@ -74,7 +74,7 @@ def test_the_table_of_the_documentation_is_one(tmp_path):
     assert found.mode_shapes[4].tolist() == [0.714, 0.0]
 
 
-def write_netcdf(path, *, transposed=False, without=(), units="mm"):
+def write_netcdf(path, *, transposed=False, without=(), bare=(), units="mm"):
     with h5netcdf.File(path, "w") as file:
         file.dimensions = {"position": 41, "mode": MODES}
         values = {
@@ -89,8 +89,13 @@ def write_netcdf(path, *, transposed=False, without=(), units="mm"):
         for name, (dimensions, value) in values.items():
             if name not in without:
                 file.create_variable(name, dimensions, data=value)
-        if "positions" not in without:
-            file.variables["positions"].attrs["units"] = units
+        for name, unit in {
+            "positions": units,
+            "natural_frequencies": "Hz",
+            "residual_flexibility": "m/N",
+        }.items():
+            if name not in (*without, *bare):
+                file.variables[name].attrs["units"] = unit
 
 
 @pytest.mark.parametrize("transposed", [False, True])
@@ -101,18 +106,42 @@ def test_netcdf(tmp_path, transposed):
     the_same(dataclasses.replace(found, residual_flexibility=None), 1e-12)
 
 
+MODE = b"frequency (Hz), 1\ndamping ratio, 0.1\n"
+SHAPE = MODE + b"position (m), shape\n"
+
+
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
         ("none.csv", None, "no such file"),
         ("empty.csv", b"", "an empty file"),
         ("words.csv", b"once upon a time", r"'once, upon, a, time' in line 1; allowed: a table of modes"),
-        ("short.csv", b"frequency, 1\n0, 1\n1, 2\n", "no line of damping ratio"),
-        ("long.csv", b"frequency, 1\ndamping ratio, 0.1\n", "no line of numbers"),
-        ("row.csv", b"frequency, 1\ndamping ratio, 0.1\n0, 1\n1\n", "'1' in line 4"),
-        ("nan.csv", b"frequency, 1\ndamping ratio, 0.1\n0, nan\n", "'0, nan' in line 3"),
-        ("wide.csv", b"frequency, 1\ndamping ratio, 0.1\n0, 1, 2\n1, 2, 3", r"in wide.csv: received shape"),
+        ("short.csv", b"frequency (Hz), 1\n0, 1\n1, 2\n", "no line of damping ratio"),
+        ("long.csv", MODE, "no line of numbers"),
+        ("row.csv", SHAPE + b"0, 1\n1\n", "'1' in line 5"),
+        ("nan.csv", SHAPE + b"0, nan\n", "'0, nan' in line 4"),
+        (
+            "wide.csv",
+            SHAPE + b"0, 1, 2\n1, 2, 3",
+            "lines of 3 numbers; allowed: 2: a position, a shape of each of 1 modes",
+        ),
+        (
+            "narrow.csv",
+            MODE + b"position (m) residual flexibility (m/N)\n0\n1\n",
+            "lines of 1 numbers; allowed: 3: a position, .* and the residual flexibility",
+        ),
         ("unit.csv", b"frequency (kg), 1\n", "unit: received 'kg'"),
+        ("si.csv", b"frequency, 1\n", r"no unit of the frequency; .* Write 'frequency \(Hz\)' with the unit"),
+        (
+            "mm.csv",
+            MODE + b"0, 0\n500, 1\n1000, 0\n",
+            r"no unit of the position; allowed: a unit in brackets. Write 'position \(m\)' with the unit",
+        ),
+        (
+            "flexible.csv",
+            MODE + b"position (m), 1, residual flexibility\n0, 0, 0\n",
+            "no unit of the residual flexibility",
+        ),
         ("sixteen.csv", b"\xff\xfe\x00", "no UTF-16"),
         ("garbage.nc", b"\x89HDF\r\n\x1a\n" + bytes(300), "while it was opened.*intact netCDF-4"),
         ("text.nc", b"frequency, 1", "while it was opened.*intact netCDF-4"),
@@ -132,6 +161,9 @@ def test_netcdf_that_lacks_a_variable_or_has_another_unit(tmp_path):
     write_netcdf(tmp_path / "unit.nc", units="Hz")
     with pytest.raises(InputError, match=r"unit: received 'Hz'; allowed: a unit that converts to m"):
         read_modal_structure(tmp_path / "unit.nc")
+    write_netcdf(tmp_path / "bare.nc", bare=("positions",))
+    with pytest.raises(InputError, match=r"positions without a unit; .* Set its attribute units = 'm', or"):
+        read_modal_structure(tmp_path / "bare.nc")
     with h5netcdf.File(tmp_path / "words.nc", "w") as file:
         file.dimensions = {"n": 2}
         for variable in ("natural_frequencies", "damping_ratios", "mode_shapes"):

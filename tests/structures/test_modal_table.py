@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.laws import HertzLaw
+from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.several import roll_bodies
 from asperity.structures.beam import SUPPORTS, Beam
@@ -24,10 +25,12 @@ def tabled(beam, positions, **options):
 
 
 def rolled(structure):
-    """Two balls one behind the other."""
+    """Two balls one behind the other, over a wave of 10 mm."""
     balls = [Body.rigid(0.5, 30.0)] * 2
+    heights = 3e-7 * np.sin(2 * np.pi * np.arange(0.0, 0.25, 1e-4) / 0.01)
+    law = HertzLaw(2.4e10, StateTexture.unfiltered(heights, 1e-4, 0.2))
     options = {"speed": 2.0, "start": 0.2, "duration": 0.04, "time_step": 5e-6, "positions": [0.0, 0.15]}
-    return roll_bodies(structure, balls, [HertzLaw(2.4e10)] * 2, **options)
+    return roll_bodies(structure, balls, [law] * 2, **options)
 
 
 def test_forty_modes_from_a_table_roll_as_the_beam_does():

@@ -1,14 +1,17 @@
 """The moving kernel and its poles against closed forms of beams on elastic foundation and of short times."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 
-from asperity.errors import CoarseSamplingWarning, InputError
+from asperity.errors import CoarseSamplingWarning, InputError, UnconvergedWarning
+from asperity.reference.tracks import TRACKS
 from asperity.store import Store
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
-from asperity.structures.rail_poles import over_the_bay, rail_poles
+from asperity.structures.rail_poles import over_the_bay, poles_or_kernel, rail_poles
 from asperity.structures.track import Track
 
 STEP = 50e-6
@@ -128,6 +131,47 @@ def test_more_poles_fit_better_and_few_are_not_accepted(kernel):
     errors = [rail_poles(kernel, count).fit_error for count in (8, 24, 60)]
     assert errors[0] > 4 * errors[1] > 16 * errors[2] / 2
     assert not rail_poles(kernel, 8).accepted
+
+
+@pytest.mark.parametrize("name", TRACKS)
+def test_poles_end_as_the_kernel_does_however_many(name):
+    """Beyond the window that was fitted, held to a kernel 2.5 times as long; passive on a denser grid."""
+    track, step = Track.named(name), 6e-5
+    kernel = moving_kernel(track, 56.0, step, positions=2)
+    taps = kernel.weights.shape[1]
+    longer = moving_kernel(track, 56.0, step, positions=2, duration=2.5 * taps * step).weights
+    for count in (60, 200):
+        fit = rail_poles(kernel, count)
+        assert fit.accepted
+        found = fit.weights(longer.shape[1])
+        assert np.linalg.norm(found - longer) < 2e-3 * np.linalg.norm(longer)
+        assert np.abs(found - longer)[:, taps:].max() < 1e-3 * longer.max()
+        lasting = np.abs(fit.weights(8 * taps)[:, 7 * taps :]).max()
+        assert lasting < 1e-9 * longer.max()
+        mean = np.fft.rfft(fit.weights(8 * taps).mean(axis=0))
+        frequency = np.fft.rfftfreq(8 * taps, step)
+        assert (mean.imag[(frequency > 0.0) & (frequency < 1600.0)] < 0.0).all()
+
+
+def test_only_poles_that_say_something_are_taken(kernel):
+    taken = {count: poles_or_kernel(kernel, count).count for count in (60, 1000)}
+    assert taken[60] <= 62
+    assert taken[1000] <= 102
+
+
+def test_what_gives_off_energy_is_not_taken_for_a_rail(kernel, monkeypatch):
+    fit = rail_poles(kernel, 60)
+    one_more = np.exp(np.array([1j * 2 * np.pi * 300.37 - 2.0]) * STEP)  # narrower than what is looked at
+    active = replace(
+        fit,
+        poles=np.append(fit.poles, one_more),
+        residues=np.append(fit.residues, np.full((24, 1), 1e-2j * np.abs(fit.residues).max()), axis=1),
+    )
+    assert fit.is_passive
+    assert not active.is_passive
+    monkeypatch.setattr("asperity.structures.rail_poles.rail_poles", lambda *_, **__: active)
+    with pytest.warns(UnconvergedWarning, match="60 poles give off energy: the track is scattered"):
+        assert poles_or_kernel(kernel, 60) is kernel
 
 
 def test_kernels_and_fits_are_kept_by_their_content(tmp_path):

@@ -1,13 +1,14 @@
 """Structures and bodies by receptances: a beam found again in the force on a ball; noise, energy."""
 
 import re
+import tracemalloc
 import warnings
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from asperity.errors import EnergyWarning, InputError, UnconvergedWarning
+from asperity.errors import CoarseSamplingWarning, EnergyWarning, Grade, InputError, UnconvergedWarning
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
@@ -15,9 +16,12 @@ from asperity.rolling.several import roll_bodies
 from asperity.spectra import psd
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body
+from asperity.structures.modal_fit import warn_of_wide_lines
 from asperity.structures.receptance_fit import fit_body, fit_structure, receptances_in
 from asperity.structures.suspended import carriage
 from asperity.structures.wheel import Wheel
+
+pytestmark = pytest.mark.filterwarnings("ignore:.* modes are narrower")  # of tables without noise
 
 STEEL = material("steel")
 BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=37.6e3, loss_factor=0.03)
@@ -34,7 +38,7 @@ def measured(noise=0.0, beam=BEAM, f=F, forces=FORCES):
 
 
 def force_levels(structure):
-    """Levels of the contact force of a ball on a rough path, one-third octaves from 100 Hz to 5 kHz."""
+    """Levels of the contact force of a ball on a rough path, one-third octaves from 125 Hz to 5 kHz."""
     steps = np.random.default_rng(2).standard_normal(26_000)
     heights = np.convolve(steps, np.hanning(25), mode="same")
     texture = StateTexture.unfiltered(0.03e-6 * heights / heights.std(), 2e-5, 0.0)
@@ -43,7 +47,7 @@ def force_levels(structure):
     force = roll_bodies(structure, [Body.rigid(0.514, 30.0)], [law], **options).contact_force[0]
     assert force.min() > 0.0
     lines, density = psd(force, 5e-6)
-    centres = 1000.0 * 10.0 ** (np.arange(-10, 8) / 10.0)
+    centres = 1000.0 * 10.0 ** (np.arange(-9, 8) / 10.0)  # below, where little is, the start of a mode shows
     inside = [(lines >= f * 10**-0.05) & (lines < f * 10**0.05) for f in centres]
     return np.array([10.0 * np.log10(density[band].sum()) for band in inside])
 
@@ -143,7 +147,7 @@ def test_energy_that_is_made_is_warned_of_with_its_frequency(short):
     assert len(said) == 1
     assert re.search(r"creates energy at 5.1 % of its frequencies, most at 1\d\d Hz", said[0])
     with warnings.catch_warnings():
-        warnings.simplefilter("error")
+        warnings.simplefilter("error", EnergyWarning)
         fit_structure(X, FORCES, SHORT, short)
 
 
@@ -201,3 +205,56 @@ def test_receptances_are_gathered_from_lines(short):
         InputError, match=r"table.csv: received 2915 lines; allowed: 2916: one for each of 12"
     ):
         receptances_in(rows[1:], "table.csv")
+    with pytest.raises(InputError, match=r"lines; allowed: .*one for each of"):  # one twice, and one missing
+        receptances_in(np.concatenate([rows[1:], rows[-1:]]), "table.csv")
+
+
+def test_a_disordered_table_takes_no_more_memory_than_its_lines():
+    """Each line another frequency, place and force: all combinations of them would take 2 GB."""
+    rows = np.arange(500.0)[:, None] + np.arange(5.0)
+    tracemalloc.start()
+    with pytest.raises(InputError, match="received 500 lines; allowed: 125000000: one for each of 500 freq"):
+        receptances_in(rows, "table.csv")
+    assert tracemalloc.get_traced_memory()[1] < 10 * rows.nbytes
+    tracemalloc.stop()
+
+
+SLOW = np.arange(20.0, 60.0, 2.0)
+ONE = 1.0 / (80.0**2 - SLOW**2 + 0.8j * SLOW)
+
+
+@pytest.mark.parametrize(
+    ("frequency", "values", "message"),
+    [
+        (SLOW, 1e300 * ONE, "e.29[67] m/N at 20 to 58 Hz; allowed: 1e-20 to 1e.20 m/N"),
+        (
+            SLOW,
+            1e-312 * ONE,
+            "m/N at 20 to 58 Hz; allowed: 1e-20 to 1e.20 m/N.* Check the units, and the mass",
+        ),
+        (1e-300 * SLOW, ONE, "at 2e-299 to 5.8e-299 Hz; allowed: .* from 1e-06 to 1e.20 Hz"),
+        (SLOW, np.full(SLOW.size, -1j), "values that 1 modes meet to .* dB only"),
+    ],
+)
+def test_what_no_modes_can_meet_is_said(frequency, values, message):
+    with pytest.raises(InputError, match=message):
+        fit_structure([0.0, 0.3, 1.0], [0.3], frequency, np.repeat(values[:, None], 3, axis=1))
+
+
+def test_a_body_that_no_mode_fits_is_refused():
+    """Without a mode left, scipy's non-negative least squares ended the process."""
+    with pytest.raises(InputError, match=r"modes on a mass of 1e\+09 kg meet to .* dB only"):
+        fit_body(1e9, 10.0, SLOW, np.full(SLOW.size, -1e-3 * np.exp(1e-3j)))
+
+
+def test_lines_too_wide_for_a_mode_are_said_with_those_that_hold_it():
+    """A mode of 40 Hz with a loss factor of 0.01 is 0.4 Hz wide: lines 2 Hz apart do not hold it."""
+    with pytest.warns(
+        CoarseSamplingWarning, match=r"1 of 1 modes .* 40 Hz is 0.4 Hz wide, of lines 2 Hz"
+    ) as told:
+        warn_of_wide_lines(SLOW, np.array([40.0]), np.array([0.005]))
+    assert "at most 0.4 Hz apart there" in str(told[0].message)
+    assert told[0].message.grade is Grade.NOTE
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_of_wide_lines(np.arange(20.0, 60.0, 0.2), np.array([40.0]), np.array([0.005]))

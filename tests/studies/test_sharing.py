@@ -31,6 +31,7 @@ spectrum = "iso3095"
 roughness = "disc"
 [contact]
 spacing = "1 mm"
+window = "20 mm"
 samples = 2
 sample_length = "60 mm"
 [numerics]

@@ -32,7 +32,7 @@ def scheduler(tmp_path_factory):
     distributed = pytest.importorskip("distributed", reason='needs pip install "asperity[cluster]"')
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("workers")))
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as workers:
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as workers:
             yield workers.scheduler_address
 
 

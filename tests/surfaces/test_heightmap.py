@@ -1,5 +1,6 @@
 """HeightMap and Profile: what they accept, refuse and give back."""
 
+import base64
 import dataclasses
 
 import numpy as np
@@ -139,3 +140,18 @@ def test_operations_delegate_to_levelling():
     holed[20] = np.nan
     assert Profile(holed, 1.0).filled().heights[20] == pytest.approx(40.0)
     assert slope.band_limited(shortest=3.0).shape == slope.shape
+
+
+@pytest.mark.parametrize("shape", [(40, 30), (2000, 20), (500,)])
+def test_surfaces_show_themselves_in_a_notebook(shape):
+    heights = 1e-6 * np.random.default_rng(0).normal(size=shape)
+    heights.flat[3] = np.nan
+    made = HeightMap(heights, (2e-6, 3e-6), "<b>\x1b") if len(shape) == 2 else Profile(heights, 1e-3, "<b>")
+    shown = made._repr_html_()
+    what = "Height map" if len(shape) == 2 else "Profile"
+    assert f"<strong>{what}.</strong> {' × '.join(map(str, shape))} points, " in shown
+    assert "&lt;b&gt;" in shown
+    assert "\x1b" not in shown
+    assert f"rms height {1e6 * np.nanstd(heights):.4g} µm" in shown
+    assert f"{1 / heights.size:.2%} without a height" in shown
+    assert base64.b64decode(shown.partition("base64,")[2].partition('"')[0]).startswith(b"\x89PNG")

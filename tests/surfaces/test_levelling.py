@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
+from asperity import BallOnBeam
+from asperity.errors import CaseError, InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, fill, fit_form, level, remove_form, resample
 
@@ -20,6 +21,18 @@ def with_holes(surface, seed=0, share=0.1):
     heights = np.array(surface.heights)
     heights[np.random.default_rng(seed).random(heights.shape) < share] = np.nan
     return type(surface)(heights, surface.spacing)
+
+
+@pytest.mark.parametrize(("word", "degree"), [("plane", 1), ("quadratic", 2)])
+def test_a_form_has_one_word_in_cases_and_in_python_and_its_degree_is_understood(word, degree):
+    """A case writes the word, whichever it was given."""
+    rough = HeightMap(np.random.default_rng(2).standard_normal((30, 20)) * UM, (UM, UM))
+    assert np.array_equal(rough.levelled(word).heights, rough.levelled(degree).heights)
+    cases = [BallOnBeam(surface={"file": rough, "form": form}) for form in (word, degree)]
+    assert [case.surface.form for case in cases] == [word, word]
+    for form in (True, 0, 3, "sphere", 2.0, None):
+        with pytest.raises(CaseError, match=r'surface\.form: .*allowed: "plane", "quadratic"'):
+            BallOnBeam(surface={"file": rough, "form": form})
 
 
 @pytest.mark.parametrize("degree", [0, 1, 2])
@@ -169,6 +182,25 @@ def test_fill_a_profile_with_straight_lines_and_level_ends():
     with pytest.warns(MissingPointsWarning, match=r"50.0% of the points"):
         filled = fill(Profile([np.nan, 1.0, np.nan, np.nan, 4.0, 5.0, 6.0, np.nan], 1.0))
     assert_allclose(filled.heights, [1.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 6.0])
+
+
+@pytest.mark.filterwarnings("ignore::asperity.errors.MissingPointsWarning")
+def test_lines_side_by_side_are_filled_along_themselves_or_not_at_all():
+    """Three lines out of register, each with a flat of its own: none gets that of a neighbour."""
+    lines = np.zeros((3, 120))
+    lines[0, 20:30], lines[1, 100:110], lines[2, 20:30] = -1.0, -1.0, -1.0
+    lines[:] += 0.01 * np.arange(120)
+    holed = lines.copy()
+    holed[1, 15:35] = np.nan  # beside the flats of both neighbours
+    holed[1, 60:] = np.nan  # a short line: its own flat was not reached
+    for surface in (HeightMap(holed, (5e-3, 1e-3)), HeightMap(holed.T, (1e-3, 5e-3))):
+        filled = surface.filled()
+        heights = filled.heights if surface.shape[0] == 3 else filled.heights.T
+        assert_allclose(heights[1, :60], 0.01 * np.arange(60), atol=1e-12)
+        assert np.isnan(heights[1, 60:]).all()
+        assert filled.source == "5.56% of the points filled"
+    taken_for_a_map = HeightMap(holed, (5e-3, 1e-3)).filled(lines=False)
+    assert taken_for_a_map.heights[1, 25] < -0.4  # a second flat
 
 
 def test_fill_leaves_a_complete_surface_alone():

@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from scipy import fft
 
 from asperity.errors import InputError, ShortRecordWarning
+from asperity.surfaces.areal_psd import texture_direction
 from asperity.surfaces.correlation import LagSums
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.statistics import (
@@ -86,7 +87,10 @@ def test_profile_statistics_of_a_sine_wave_with_own_bandwidth():
     found = by_symbol(
         profile_statistics(Profile(3 * UM * np.sin(2 * np.pi * x / (50 * UM)), UM), (8 * UM, UM))
     )
-    assert list(found) == ["Rq", "Ra", "Rsk", "Rku", "Rz", "Rdq"]
+    assert list(found) == [
+        *("Rq", "Ra", "Rsk", "Rku", "Rt", "Rz", "Rp", "Rv", "Rdq"),
+        *("Rk", "Rpk", "Rvk", "Rmr1", "Rmr2"),
+    ]
     assert_allclose(found["Rq"].value, 3 * UM / np.sqrt(2.0), rtol=1e-12)
     assert_allclose(found["Rdq"].value, 2 * np.pi * 3 / (50 * np.sqrt(2.0)), rtol=3e-3)
     assert found["Rq"].bandwidth == (8 * UM, UM)
@@ -220,6 +224,28 @@ def test_statistics_say_what_is_wrong():
         psd_1d(flat, 2)
 
 
+def turned_texture(degrees, ratio, rng, points=128):
+    """Self-affine heights of a Hurst exponent of 0.8, whose ridges lie across a direction."""
+    qx, qy = np.fft.fftfreq(points)[:, None], np.fft.fftfreq(points)
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    stretched = np.sqrt((qx * cos + qy * sin) ** 2 / ratio + (qy * cos - qx * sin) ** 2 * ratio)
+    power = np.where(np.hypot(qx, qy) < 0.25, np.maximum(stretched, 1 / 32) ** -3.6, 0.0)
+    return np.fft.ifft2(np.fft.fft2(rng.normal(size=(points, points))) * np.sqrt(power)).real
+
+
+def test_the_direction_of_a_rough_texture_is_not_decided_by_its_longest_waves():
+    """Ridges of known direction, and two of equal height that cross at 60 degrees: one of both is named."""
+    rng = np.random.default_rng(11)
+    directions, errors = rng.uniform(0.0, 180.0, 12), []
+    for degrees in directions:
+        found = np.degrees(texture_direction(HeightMap(turned_texture(degrees, 2.0, rng), (1.0, 1.0))))
+        errors.append((found - degrees + 90) % 180 - 90)
+    assert np.sqrt(np.mean(np.square(errors))) < 6.0  # 16 by the power of heights
+    crossed = turned_texture(20.0, 10.0, rng) + turned_texture(80.0, 10.0, rng)
+    found = np.degrees(texture_direction(HeightMap(crossed, (1.0, 1.0))))
+    assert min(abs(found - 20.0), abs(found - 80.0)) < 4.0
+
+
 @pytest.mark.parametrize("degrees", [0, 30, 90, 150])
 def test_direction_is_among_the_areal_statistics(degrees):
     """Std: ridges that run across the direction in which the heights vary."""
@@ -233,7 +259,10 @@ def test_direction_is_among_the_areal_statistics(degrees):
         found = by_symbol(areal_statistics(HeightMap(heights, (1.0, 1.0))))
     assert found["Std"].unit == "rad"
     assert abs((np.degrees(found["Std"].value) - degrees + 90) % 180 - 90) <= 2.0
-    heights[3, 4] = np.nan
+    heights[3:6, 4:40:9] = np.nan  # a few points are filled for it, more than 5 % are not
+    few = HeightMap(heights, (1.0, 1.0))
+    heights[:8] = np.nan
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ShortRecordWarning)
+        assert by_symbol(areal_statistics(few))["Std"].value == pytest.approx(found["Std"].value, abs=0.01)
         assert np.isnan(by_symbol(areal_statistics(HeightMap(heights, (1.0, 1.0))))["Std"].value)

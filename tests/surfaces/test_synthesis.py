@@ -12,7 +12,7 @@ from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.readers import read_surfaces
 from asperity.surfaces.statistics import psd_1d, psd_2d
-from asperity.surfaces.synthesis import from_bands, from_map, self_affine
+from asperity.surfaces.synthesis import from_bands, from_map, long_self_affine, self_affine
 from asperity.surfaces.translation import gaussian_correlation, height_transform
 
 UM = 1e-6
@@ -79,7 +79,7 @@ def test_seeds_reproduce_and_differ():
         ({"rms": np.nan}, "rms: received nan"),
         ({"hurst": 1.2}, "hurst: received 1.2"),
         ({"shortest": 1.5 * UM}, "at least two samples, 2e-06 m"),
-        ({"longest": 3 * UM}, "longer than `shortest`"),
+        ({"longest": 3 * UM}, "longer than the shortest"),
         ({"anisotropy": 0.0}, "anisotropy: received 0.0"),
     ],
 )
@@ -327,3 +327,19 @@ def test_correlation_of_a_lognormal_translation_has_its_closed_form():
     assert_allclose(
         transform(np.array([-1.0, 0.0, 2.0])), np.exp(LOGNORMAL * np.array([-1, 0, 2])), rtol=1e-4
     )
+
+
+@pytest.mark.parametrize("lay", [-25.0, 30.0, 90.0, 160.0])
+@pytest.mark.parametrize("strip", [self_affine, long_self_affine])
+def test_a_drawn_out_texture_lies_at_any_angle(strip, lay):
+    """Ridges lie where the mean square of the slope, a tensor, is least."""
+    made = strip(
+        (1600, 200), (1e-5, 1e-5), rms=1e-7, hurst=0.8, longest=2e-4, shortest=4e-5, anisotropy=4.0,
+        lay=np.deg2rad(lay), seed=3,
+    )  # fmt: skip
+    heights = made.rows(0, 1600)
+    assert np.std(heights) == pytest.approx(1e-7, rel=0.1)
+    gx, gy = np.gradient(heights)
+    steepest = 0.5 * np.arctan2(2 * np.mean(gx * gy), np.mean(gx**2) - np.mean(gy**2))
+    off = (np.rad2deg(steepest) + 90 - lay + 90) % 180 - 90
+    assert abs(off) < 3.0

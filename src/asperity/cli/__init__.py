@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from asperity import __version__
 from asperity.cli.door import Door
 from asperity.cli.options import (
     PATH,
+    again,
     complete_laws,
     complete_sweep,
     complete_templates,
@@ -74,14 +76,21 @@ def main(debug: bool) -> None:
     metavar="FOLDER",
     help="Folder of the results.",
 )
+@again
 @overwrite
-def demo(directory: Path, overwrite: bool) -> None:
+def demo(directory: Path, again: bool, overwrite: bool) -> None:
     """Run a small example that needs no input, and say where its report lies.
 
     A steel ball rolls over a rough steel beam: texture, contact, force, vibration and six contact laws.
     """
     from asperity.kinds.report_process import report_process
 
+    if not again and os.path.lexists(directory / "run.nc"):
+        from asperity.cli.running import told_of_earlier
+        from asperity.kinds.cases import demo_case
+
+        if told_of_earlier(demo_case(), directory, report=True):
+            return
     with report_process() as reporter:
         from asperity.cli.running import run_into
         from asperity.kinds.cases import demo_case
@@ -174,26 +183,31 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
 @report
 @converge
 @device
+@again
 @overwrite
-def run(case: Path, directory: Path | None, report: bool, converge: bool, overwrite: bool) -> dict[str, Any]:
+def run(
+    case: Path, directory: Path | None, report: bool, converge: bool, again: bool, overwrite: bool
+) -> dict[str, Any]:
     """Compute a CASE: writes run.nc, report.html and the CSV of every figure.
 
-    Finished pieces of work are kept: a run that was interrupted goes on where it was.
+    Finished pieces of work are kept: a run that was interrupted goes on where it was. One that is finished
+    says so, as long as case, files and program are the same.
     """
     from asperity.kinds.report_process import report_process
 
+    target = directory or Path("runs") / case.stem
+    words: dict[str, Any] = {"source": str(case), "converge": converge}
+    if not again and os.path.lexists(target / "run.nc"):
+        from asperity.cli.running import told_of_earlier
+        from asperity.kinds.cases import load_case
+
+        if found := told_of_earlier(load_case(case), target, report=report, **words):
+            return found
     with report_process(wanted=report) as reporter:
         from asperity.cli.running import run_into
         from asperity.kinds.cases import load_case
 
-        return run_into(
-            load_case(case),
-            directory or Path("runs") / case.stem,
-            reporter,
-            source=str(case),
-            overwrite=overwrite,
-            converge=converge,
-        )
+        return run_into(load_case(case), target, reporter, overwrite=overwrite, **words)
 
 
 @main.command(
@@ -206,6 +220,14 @@ def run(case: Path, directory: Path | None, report: bool, converge: bool, overwr
             'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "speed = 20 m/s, 56 m/s"',
             "mean and scatter over four textures, at two speeds",
         ),
+        (
+            'asperity study case.toml --vary "speed = 80..300 km/h, 6 steps"',
+            "six speeds, both ends among them",
+        ),
+        (
+            'asperity study case.toml --vary "contact.spacing = 5..20 um, 3 ratios" --show working_stiffness',
+            "equal ratios; one quantity as a column and a figure",
+        ),
         ("asperity study study.toml -o runs/grid --workers 4", "a study file, on four processes"),
     ],
 )
@@ -215,7 +237,15 @@ def run(case: Path, directory: Path | None, report: bool, converge: bool, overwr
     multiple=True,
     metavar="KEY=VALUES",
     shell_complete=complete_sweep,
-    help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h'. May be repeated.",
+    help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
+    "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
+)
+@click.option(
+    "--show",
+    multiple=True,
+    metavar="NAMES",
+    help="Columns of the table and quantities of the figures, as in the headings of study.csv, with commas. "
+    "May be repeated. [default: the usual ones]",
 )
 @run_folder()
 @click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]")
@@ -225,6 +255,7 @@ def run(case: Path, directory: Path | None, report: bool, converge: bool, overwr
 def study(
     study: Path,
     vary: tuple[str, ...],
+    show: tuple[str, ...],
     directory: Path | None,
     workers: int | None,
     scheduler: str | None,
@@ -232,8 +263,9 @@ def study(
 ) -> dict[str, Any]:
     """Compute a case for every combination of the values of some keys, into one table.
 
-    Writes study.csv and study.nc: band levels, dB(A), peak force and lost contact of every law, swept keys in
-    the units you typed; a figure for each swept key; and with several seeds their mean and scatter.
+    Writes study.csv and study.nc: band levels, dB(A), peak force and lost contact of every law, the sound of
+    a wheel, what running-in changed, swept keys in the units you typed; a figure for each swept key; and with
+    several seeds their mean and scatter.
 
     'asperity new study' writes a commented study; with --vary, a case needs none. Members that are finished
     are kept: the same command goes on where it was, and tries members again that failed.
@@ -247,6 +279,7 @@ def study(
         workers=workers,
         scheduler=scheduler,
         overwrite=overwrite,
+        show=show,
     )
 
 
@@ -261,11 +294,19 @@ _surface_options: tuple[Callable[..., Any], ...] = (
     click.option("--decimal", metavar="MARK", help="Decimal mark of a text, '.' or ',', where in doubt."),
     click.option("--transpose", is_flag=True, help="Exchange x and y: roll along the other direction."),
     click.option(
+        "--direction",
         "--rotate",
+        "direction",
         metavar="ANGLE",
         help="Roll in this direction, from x towards y, as '30 deg'; a bare number is in degrees.",
     ),
     click.option("--fill", is_flag=True, help="Fill points without a height."),
+    click.option("--crop", metavar="LENGTHS", help="Keep a piece: '0 mm, 0 mm, 1 mm, 0.5 mm' (x, y, sides)."),
+    click.option("--form", metavar="FORM", help="Remove plane, quadratic, sphere or cylinder."),
+    click.option("--longest", metavar="LENGTH", help="Nesting index of the L-filter (ISO 16610-21, -61)."),
+    click.option("--shortest", metavar="LENGTH", help="Nesting index of the S-filter, likewise Gaussian."),
+    click.option("--recipe", type=PATH, help="Do what a stored recipe says; options are stronger."),
+    click.option("--store", type=PATH, help="Store all that was done as a recipe that a case can name."),
     click.option("--spikes", is_flag=True, help="Take spikes for points without a height."),
     click.option(
         "--lines/--map",
@@ -290,6 +331,7 @@ def _with_surface_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 @main.command(
+    document=True,
     long_work=True,
     short_help="Find the texture that rolls quietest within bounds.",
     examples=[
@@ -301,7 +343,7 @@ def _with_surface_options(command: Callable[..., Any]) -> Callable[..., Any]:
 @report
 @click.option("--overwrite", is_flag=True, help="Replace another texture in the folder.")
 @device
-def optimise(optimisation: Path, directory: Path | None, report: bool, overwrite: bool) -> None:
+def optimise(optimisation: Path, directory: Path | None, report: bool, overwrite: bool) -> dict[str, Any]:
     """Find the texture that rolls quietest within bounds, or the roughest that keeps a level.
 
     Searches with a cheap law and verifies with another, before and after. Textures that were rolled over are
@@ -309,7 +351,7 @@ def optimise(optimisation: Path, directory: Path | None, report: bool, overwrite
     """
     from asperity.cli.optimising import optimise_into
 
-    optimise_into(
+    return optimise_into(
         optimisation, directory or Path("runs") / optimisation.stem, report=report, overwrite=overwrite
     )
 
@@ -320,8 +362,9 @@ def optimise(optimisation: Path, directory: Path | None, report: bool, overwrite
     examples=[
         ("asperity surface beam.x3p", "size, missing points, statistics, direction; a picture with spectrum"),
         ("asperity surface maps.npz --array polished --index 2 --height-unit um --pixel '1.5 um'", "one map"),
-        ("asperity surface beam.x3p --rotate '30 deg' --psd", "turned to the lay; the spectra as CSV"),
+        ("asperity surface beam.x3p --direction '30 deg' --psd", "turned to the lay; the spectra as CSV"),
         ("asperity surface track.csv --decimal , --height-unit um --pixel '1 mm'", "decimal commas"),
+        ("asperity surface beam.x3p --form sphere --shortest '8 um' --store recipe.toml", "filtered, kept"),
     ],
 )
 @click.argument("file", type=PATH)
@@ -376,6 +419,7 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> d
 
 
 @main.command(
+    document=True,
     short_help="Write what a run sounds like, as WAV files.",
     examples=[
         ("asperity listen runs/case", "into runs/case/sounds, all on one scale"),
@@ -400,23 +444,24 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> d
     metavar="FOLDER",
     help="Folder of the sounds. [default: sounds, beside the run]",
 )
-def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> None:
+def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> dict[str, Any]:
     """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz."""
     from asperity.cli.listening import listen_into
 
-    listen_into(run, directory, what, matched=matched)
+    return listen_into(run, directory, what, matched=matched)
 
 
 @main.command(
+    document=True,
     short_help="Say what to cite for a run.",
     examples=[("asperity cite runs/case", "the program in its version, and the sources of the run")],
 )
 @click.argument("run", type=PATH)
-def cite(run: Path) -> None:
+def cite(run: Path) -> dict[str, Any]:
     """Say what to cite for a RUN (run.nc, or its folder): the program and its sources."""
     from asperity.cli.citing import show_citations
 
-    show_citations(run)
+    return show_citations(run)
 
 
 @main.command(
@@ -451,6 +496,7 @@ def serve(port: int, directory: Path) -> None:
 
 
 @main.command(
+    document=True,
     short_help="Show or delete what is kept between runs.",
     examples=[
         ("asperity cache", "what is kept, where, and how much it is"),
@@ -458,14 +504,14 @@ def serve(port: int, directory: Path) -> None:
     ],
 )
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
-def cache(clear: bool) -> None:
+def cache(clear: bool) -> dict[str, Any]:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left.
 
     Work is kept in $ASPERITY_CACHE, by default in the cache folder of the system.
     """
-    from asperity.cli.keeping import clear_kept, show_kept
+    from asperity.cli.keeping import show_kept
 
-    clear_kept() if clear else show_kept()
+    return show_kept(clear=clear)
 
 
 @main.command(

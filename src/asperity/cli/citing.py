@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from asperity.reporting.literature import literature
 from asperity.results import read_result
 from asperity.terminal import say
 
 
-def show_citations(run: Path) -> None:
+def show_citations(run: Path) -> dict[str, Any]:
     """Print the program in the version of a run, and the sources of what it computed, a line each."""
-    for source in literature(read_result(run)):
+    sources = literature(read_result(run))
+    for source in sources:
         say(source)
+    return {"run": str(run.resolve()), "sources": sources, "warnings": []}

@@ -16,7 +16,7 @@ import click
 from asperity.cli import plain_text
 from asperity.cli.documents import say_failure, say_outcome
 from asperity.cli.teaching import Examples, Taught, write_examples, write_sections
-from asperity.errors import AsperityError
+from asperity.errors import TOO_MUCH_MEMORY, AsperityError, ComputationError
 from asperity.interrupts import interruptible, was_interrupted
 from asperity.printable import printable
 from asperity.terminal import Manner, manner, say, speaking, standard_streams
@@ -84,6 +84,10 @@ class Door(click.Group):
             warnings.showwarning = lines = _WarningLines()
             try:
                 content = super().invoke(ctx)
+                if manner().document:
+                    met = [{"grade": "warning", "message": message} for message in lines.shown]
+                    told = content | {"warnings": content["warnings"] + met}
+                    say_outcome(str(ctx.invoked_subcommand), told)
             except (click.ClickException, click.exceptions.Exit):
                 raise
             except (KeyboardInterrupt, click.Abort) as error:
@@ -98,9 +102,6 @@ class Door(click.Group):
                     say(traceback.format_exc(), err=True, lines=True)
                 say(f"Error: {message}", err=True, lines=True)
                 ctx.exit(_failed(ctx.invoked_subcommand, code, message, error))
-            if manner().document:
-                met = [{"grade": "warning", "message": message} for message in lines.shown]
-                say_outcome(str(ctx.invoked_subcommand), {**content, "warnings": content["warnings"] + met})
             return None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -119,8 +120,12 @@ def _name_of(args: Sequence[str]) -> str:
 
 def _failed(command: str | None, code: int, message: str, error: BaseException | None = None) -> int:
     """Say so in a document, if one is wanted; return the exit code."""
-    if manner().document:
-        say_failure(command or "", code, message, error)
+    try:
+        if manner().document:
+            say_failure(command or "", code, message, error)
+    except ComputationError as unheard:
+        say(f"Error: {unheard}", err=True, lines=True)
+        return FAILED
     return code
 
 
@@ -129,8 +134,7 @@ def _outcome(error: Exception) -> tuple[str, int]:
     if isinstance(error, AsperityError):
         return str(error), error.exit_code
     if isinstance(error, MemoryError):
-        remedy = "a smaller contact.window, a shorter duration or a coarser contact.spacing"
-        return f"the memory of this machine is too small. Try: {remedy}.", FAILED
+        return TOO_MUCH_MEMORY, FAILED
     what = printable(f"the program failed with {type(error).__name__}: {error}")
     return f"{what}. Try: asperity --debug …, which shows where.", FAILED
 

@@ -17,32 +17,40 @@ from asperity.terminal import say
 from asperity.units import quantity
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from asperity.cli.surface_spectra import Spectra
+    from asperity.config.recipe import Recipe
     from asperity.surfaces.heightmap import HeightMap, Profile
     from asperity.surfaces.statistics import Statistic
+    from asperity.surfaces.third_octaves import ThirdOctaves
 
 
 def inspect(
     file: Path,
     picture: Path | None,
     *,
-    array: str | None = None,
-    index: int | None = None,
-    lines: bool | None = None,
-    rotate: str | None = None,
     psd: bool = False,
-    **hints: Any,
+    recipe: Path | None = None,
+    store: Path | None = None,
+    **options: Any,
 ) -> dict[str, Any]:
     """Print what is in a measured file, and draw it; return what a program wants to know.
 
     The ending of `picture` names its format; by default its name is made of those of file, array and map, in
-    the working folder. `index` says which map of an ensemble, `lines` whether an array of two dimensions
-    holds lines measured side by side; by default its shape tells. `rotate` is the direction to roll in, with
-    its unit or in degrees; `psd` says whether the spectra go to a CSV file beside the picture. Hints are as
-    `read_surface` takes them.
+    the working folder. `psd` says whether the spectra go to a CSV file beside the picture. Options are the
+    keys of a recipe as they are typed, lengths with their units, angles with theirs or in degrees; `recipe`
+    is a file with others, `store` the one to write them all to.
     """
+    from asperity.config.parsing import Origin, validated
+    from asperity.config.recipe import Recipe, read_measured, recipe_text
+    from asperity.surfaces.steps import stepped
+
+    typed = _typed(recipe, options)
+    steps = validated(Recipe, typed, Origin("options"))
+    array, index, lines = steps.array, steps.index, steps.lines
     chosen = [str(part) for part in (array, index) if part is not None]
     if picture is None:
         picture = Path(
@@ -53,40 +61,63 @@ def inspect(
         raise InputError("picture", f"'{picture}'", f"a name that ends in {', '.join(formats)}")
     if picture.resolve() == file.resolve():
         raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
-    direction = None if rotate is None else _angle(rotate)
     with spelled(on_command_line):
-        surfaces = read_measured(file, index, array=array, **hints)
-    if direction is not None:
-        surfaces = [_turned(surface, direction) for surface in surfaces]
+        surfaces = read_measured(file, **steps.hints)
+        side_by_side = tuple(stepped(line, **steps.steps) for line in _as_lines(surfaces, lines))
+        if not side_by_side:
+            surfaces = [stepped(surface, **steps.steps) for surface in surfaces]
+    if store is not None:
+        atomic_write(store, lambda stream: stream.write(recipe_text(typed).encode()))
+        say(f"Recipe: {store.resolve()}")
     title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
     told = {"file": str(file.resolve()), "array": array, "index": index, **_sizes(surfaces), "warnings": []}
-    if side_by_side := _as_lines(surfaces, lines):
-        return told | _inspect_lines(side_by_side, title, picture, told=lines is not None, psd=psd)
-    return told | _inspect_first(surfaces, title, picture, psd=psd)
+    if side_by_side:
+        return told | _inspect_lines(side_by_side, title, picture, steps, psd=psd)
+    return told | _inspect_first(surfaces, title, picture, steps, psd=psd)
+
+
+def _typed(recipe: Path | None, options: dict[str, Any]) -> dict[str, Any]:
+    """Keys of a recipe from a file with the options that are given beside it, or these alone."""
+    from asperity.config.recipe import read_recipe, typed_recipe
+
+    given = {name: value for name, value in options.items() if value is not None and value is not False}
+    if (lines := options.get("lines")) is not None:
+        given["lines"] = lines
+    if "direction" in given:
+        given["direction"] = _angle(given["direction"])
+    if "crop" in given:
+        given["crop"] = [part.strip() for part in given["crop"].split(",")]
+    if recipe is None:
+        return given
+    read_recipe(recipe)
+    return typed_recipe(recipe) | given
 
 
 def _inspect_first(
-    surfaces: list[HeightMap | Profile], title: str, picture: Path, *, psd: bool
+    surfaces: list[HeightMap | Profile], title: str, picture: Path, steps: Recipe, *, psd: bool
 ) -> dict[str, Any]:
     """Print what is in the first of maps, or in a line, and draw it."""
     from asperity.cli.surface_spectra import spectra_of
+    from asperity.surfaces.heightmap import Profile
 
     say(f"{title}: {described(surfaces)}")
     first = surfaces[0].levelled()
     if len(surfaces) > 1:
         say(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
         title += f", the first of {len(surfaces)} maps"
-    found = statistics_of(first)
+    found = statistics_of(first, steps)
     for line in statistics_lines(found):
         say(line)
     homogeneous, line = homogeneity_of(first)
-    if line:
-        say(line)
+    for part in line.splitlines():
+        say(part)
     spectra = spectra_of(first)
-    drawn = draw(first, title, picture, spectra)
+    octaves, told = _against_limit([first] if isinstance(first, Profile) else [])
+    drawn = draw(first, title, picture, spectra, octaves)
     say(f"Picture: {drawn.resolve()}")
-    return {
+    return told | {
         "statistics": [_documented(item) for item in found],
+        "material_ratio": _material_ratio(first.heights),
         "homogeneity": homogeneous,
         "files": {"picture": str(drawn.resolve())} | _written_spectra(spectra, first, picture, wanted=psd),
     }
@@ -101,36 +132,24 @@ def _written_spectra(
     if not wanted:
         return {}
     if not spectra:
-        raise InputError("--psd", "points without a height", "complete heights", "Fill them with --fill.")
+        received = "more than 5 % of points without a height"
+        raise InputError("--psd", received, "nearly complete heights", "Fill them with --fill.")
     name = f"{picture.stem.removesuffix('-surface')}-psd.csv"
     path = write_spectra(spectra, surface, picture.with_name(name))
     say(f"Spectra: {path.resolve()}")
     return {"psd": str(path.resolve())}
 
 
-def _angle(text: str) -> float:
-    """An angle with its unit, or in degrees, in rad."""
+def _angle(text: str) -> str:
+    """An angle with its unit; a bare number is in degrees."""
     allowed = "an angle, as 30 (degrees) or '0.5 rad'"
-    try:
-        angle = math.radians(float(text))
-    except ValueError:
+    for angle in (text, f"{text} deg"):
         try:
-            angle = quantity(text, "rad")
+            if math.isfinite(quantity(angle, "rad")):
+                return angle
         except InputError:
-            raise InputError("--rotate", shown(text), allowed) from None
-    if not math.isfinite(angle):
-        raise InputError("--rotate", shown(text), allowed)
-    return angle
-
-
-def _turned(surface: HeightMap | Profile, direction: float) -> HeightMap | Profile:
-    """A map as it lies when it is rolled over in a direction."""
-    from asperity.surfaces.heightmap import HeightMap
-    from asperity.surfaces.rotation import rotated
-
-    if not isinstance(surface, HeightMap):
-        raise InputError("--rotate", "a line", "a height map", "Leave it out.")
-    return rotated(surface, direction)
+            continue
+    raise InputError("--direction", shown(text), allowed)
 
 
 def _sizes(surfaces: list[HeightMap | Profile]) -> dict[str, Any]:
@@ -157,6 +176,14 @@ def _documented(item: Statistic) -> dict[str, Any]:
     }
 
 
+def _material_ratio(heights: NDArray[np.float64]) -> dict[str, Any]:
+    """The material ratio curve: shares of the points, and the heights, m, that they reach."""
+    from asperity.surfaces.material_ratio import material_ratio_curve
+
+    ratio, height = material_ratio_curve(heights)
+    return {"ratio": ratio, "height": height}
+
+
 def _as_lines(surfaces: list[HeightMap | Profile], told: bool | None) -> tuple[Profile, ...]:
     """Lines side by side, where the user or the shape of an array says so; else none."""
     from asperity.surfaces.heightmap import HeightMap
@@ -169,45 +196,56 @@ def _as_lines(surfaces: list[HeightMap | Profile], told: bool | None) -> tuple[P
 
 
 def _inspect_lines(
-    lines: tuple[Profile, ...], title: str, picture: Path, *, told: bool, psd: bool
+    lines: tuple[Profile, ...], title: str, picture: Path, steps: Recipe, *, psd: bool
 ) -> dict[str, Any]:
     """Print what is in lines side by side, and draw them."""
+    import numpy as np
+
     from asperity.cli.surface_spectra import spectra_of_lines
     from asperity.reporting.texture import lines_picture
     from asperity.surfaces.statistics import line_statistics
 
     say(f"{title}: {described_lines(lines)}")
-    if not told:
+    if steps.lines is None:
         say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
     levelled = [line.levelled() for line in lines]
-    found = line_statistics(levelled)
+    found = line_statistics(levelled, *_filtered(levelled[0], steps))
     say(f"Each line levelled; wavelengths {_band(found[0][0])}; mean (lowest to highest of a line):")
     for item, low, high in found:
         spread = " to ".join(_scaled(replace(item, value=value)) for value in (low, high))
         say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning} ({spread})")
     spectra = spectra_of_lines(levelled)
-    figure = lines_picture([line.heights for line in levelled], lines[0].spacing, title, spectra)
+    octaves, roughness = _against_limit(levelled)
+    figure = lines_picture([line.heights for line in levelled], lines[0].spacing, title, spectra, octaves)
     drawn = _saved(figure, picture)
     say(f"Picture: {drawn.resolve()}")
-    return {
+    return roughness | {
         "statistics": [_documented(item) | {"lowest": low, "highest": high} for item, low, high in found],
+        "material_ratio": _material_ratio(np.concatenate([line.heights for line in levelled])),
         "homogeneity": None,
         "files": {"picture": str(drawn.resolve())} | _written_spectra(spectra, None, picture, wanted=psd),
     }
 
 
-def read_measured(file: Path, index: int | None = None, **hints: Any) -> list[HeightMap | Profile]:
-    """Read the map, the line, or all maps of an ensemble; hints are as `read_surface` takes them."""
-    from asperity.surfaces.readers import read_surface, read_surfaces
+def _against_limit(lines: list[Profile]) -> tuple[ThirdOctaves | None, dict[str, Any]]:
+    """One-third-octave levels of a rail's or wheel's lines and the limit, printed band by band."""
+    from asperity.spectra import nominal
+    from asperity.surfaces.third_octaves import third_octaves
 
-    if index is not None:
-        return [read_surface(file, index=index, **hints)]
-    try:
-        return [read_surface(file, **hints)]
-    except InputError as error:
-        if error.allowed != "one sample":
-            raise
-    return list(read_surfaces(file, **hints))
+    found = third_octaves(lines) if lines else None
+    if found is None:
+        return None, {"third_octaves": None}
+    say("One-third octaves, dB re 1 µm, and the limit of EN ISO 3095:2013 for rails; by EN 15610: without")
+    say("spikes, rolled over with a circle (what was processed before counts as measured):")
+    say(f"  {'wavelength':>10} {'limit':>7} {'as measured':>17} {'by EN 15610':>17}")
+    for row in range(len(found.wavelength)):
+        limit, values = found.limit[row], (found.measured[row], found.processed[row])
+        if math.isfinite(limit):
+            judged = (f"{value:10.1f} {'pass' if value <= limit else 'FAIL':>6}" for value in values)
+            length = f"{nominal(1e3 * found.wavelength[row]):g} mm"
+            say(f"  {length:>10} {limit:7.1f} {' '.join(judged)}")
+    names = ("wavelength", "limit", "measured", "processed")
+    return found, {"third_octaves": {name: getattr(found, name)[found.limited] for name in names}}
 
 
 def described(surfaces: list[HeightMap | Profile]) -> str:
@@ -241,12 +279,25 @@ def _lengths(metres: Iterable[float]) -> str:
     return " × ".join(f"{each * scale:.4g}" for each in found) + f" {unit}"
 
 
-def statistics_of(surface: HeightMap | Profile) -> list[Statistic]:
-    """Roughness parameters of a levelled surface."""
+def statistics_of(surface: HeightMap | Profile, steps: Recipe) -> list[Statistic]:
+    """Roughness parameters of a levelled surface, on which these steps were taken."""
     from asperity.surfaces.heightmap import HeightMap
     from asperity.surfaces.statistics import areal_statistics, profile_statistics
 
-    return areal_statistics(surface) if isinstance(surface, HeightMap) else profile_statistics(surface)
+    band, section = _filtered(surface, steps)
+    if isinstance(surface, HeightMap):
+        return areal_statistics(surface, band)
+    return profile_statistics(surface, band, section)
+
+
+def _filtered(surface: HeightMap | Profile, steps: Recipe) -> tuple[tuple[float, float] | None, float | None]:
+    """Shortest and longest wavelength that filters left, m, and the section length of a line."""
+    import numpy as np
+
+    if steps.longest is None and steps.shortest is None:
+        return None, None
+    shortest = steps.shortest or 2.0 * float(np.min(surface.spacing))
+    return (shortest, steps.longest or float(np.max(surface.size))), steps.longest
 
 
 def statistics_lines(found: list[Statistic]) -> list[str]:
@@ -273,12 +324,18 @@ def homogeneity_of(surface: HeightMap | Profile) -> tuple[dict[str, Any] | None,
 
     from asperity.surfaces.heightmap import HeightMap
     from asperity.surfaces.homogeneity import TILES, homogeneity
+    from asperity.surfaces.levelling import FILLED_SHARE_WARNED, level, nearly_complete
+    from asperity.surfaces.likeness import FLAT
 
     if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(TILES):
         return None, ""
-    if not np.isfinite(surface.heights).all():
-        return None, "Homogeneity, Std and spectra are those of a complete map: --fill fills missing points."
-    found = homogeneity(surface)
+    whole, what = nearly_complete(surface), "Homogeneity, Std and spectra are those of"
+    if whole is None:
+        least = f"a map with at least {1.0 - FILLED_SHARE_WARNED:.0%} of its points"
+        return None, f"{what} {least}: --fill fills missing points."
+    if np.ptp(level(whole).heights) <= FLAT:
+        return None, "Homogeneity: a plane has no texture to be tested"
+    found = homogeneity(whole)
     tiles = " × ".join(map(str, found.tile_rms.shape))
     verdict = "the same everywhere, as far as chance tells"
     if not found.homogeneous:
@@ -287,6 +344,8 @@ def homogeneity_of(surface: HeightMap | Profile) -> tuple[dict[str, Any] | None,
         f"Homogeneity: mean squares of {tiles} tiles vary by {100 * found.variation:.0f} %, of stationary "
         f"textures like it by {100 * found.expected:.0f} % (p = {found.p_value:.2g}): {verdict}"
     )
+    if surface.missing_share:
+        line += f"\n{what} the map with its missing points, {surface.missing_share:.2g} of all, interpolated."
     numbers = {
         "variation": found.variation,
         "expected": found.expected,
@@ -296,13 +355,19 @@ def homogeneity_of(surface: HeightMap | Profile) -> tuple[dict[str, Any] | None,
     return numbers, line
 
 
-def draw(surface: HeightMap | Profile, title: str, picture: Path, spectra: Spectra) -> Path:
+def draw(
+    surface: HeightMap | Profile,
+    title: str,
+    picture: Path,
+    spectra: Spectra,
+    octaves: ThirdOctaves | None = None,
+) -> Path:
     """Draw a levelled surface and its spectra to a PNG, PDF or SVG file."""
     from asperity.reporting.texture import surface_picture
     from asperity.surfaces.heightmap import HeightMap
 
     spacing = surface.spacing if isinstance(surface, HeightMap) else (surface.spacing, surface.spacing)
-    return _saved(surface_picture(surface.heights, spacing, title, spectra), picture)
+    return _saved(surface_picture(surface.heights, spacing, title, spectra, octaves), picture)
 
 
 def _saved(figure: Figure, picture: Path) -> Path:

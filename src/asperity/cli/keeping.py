@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from asperity.files import amount, discard
 from asperity.kernels.folders import folders, kept_files
@@ -12,19 +13,17 @@ from asperity.store import Store
 from asperity.terminal import say
 
 
-def show_kept() -> None:
-    """Print what is kept, how much it is and where."""
-    for what, where, files in _kept():
-        say(f"{where}: {len(files)} {what}, {amount(_size(files))}")
-
-
-def clear_kept() -> None:
-    """Delete all that is kept; what another run is writing stays."""
+def show_kept(*, clear: bool = False) -> dict[str, Any]:
+    """Print what is kept, how much it is and where; delete it if asked, but for what another run writes."""
+    told = []
     for what, where, files in _kept():
         size = _size(files)
-        for file in files:
-            discard(file)
-        say(f"{where}: {len(files)} {what} deleted, {amount(size)}")
+        if clear:
+            for file in files:
+                discard(file)
+        say(f"{where}: {len(files)} {what}{' deleted' if clear else ''}, {amount(size)}")
+        told.append({"what": what, "folder": str(where), "count": len(files), "bytes": size})
+    return {"kept": told, "deleted": clear, "warnings": []}
 
 
 def _kept() -> Iterator[tuple[str, Path, list[Path]]]:

@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 import io
+import json
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from asperity.comma_separated import write_csv
+from asperity.config.content import content, file_digest
 from asperity.config.describing import in_toml
+from asperity.config.parsing import read_definition
 from asperity.config.writing import toml_text
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable, write_bytes
+from asperity.files import alone_in, refuse_unwritable, together, write_bytes
 from asperity.kinds import report as reports
 from asperity.laws import spec_of
-from asperity.optimising.definition import load_assignment
+from asperity.optimising.definition import Assignment, load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
 from asperity.reporting.optimised import TextureBands, optimised_figure
 from asperity.results import save
+from asperity.store import content_key
 from asperity.terminal import say
 
 TEXTURE, CASE, TABLE, FIGURE, TRIALS = (
@@ -26,33 +32,80 @@ TEXTURE, CASE, TABLE, FIGURE, TRIALS = (
 )  # fmt: skip
 
 
-def optimise_into(path: Path, directory: Path, *, report: bool = True, overwrite: bool = False) -> None:
+def optimise_into(
+    path: Path, directory: Path, *, report: bool = True, overwrite: bool = False
+) -> dict[str, Any]:
     """Find a texture and write it to a folder, with the runs before and after it.
 
     `overwrite` says whether a texture in the folder may be replaced, and `report` whether the runs get pages.
     """
     assignment = load_assignment(path)
     refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
-    if (directory / CASE).exists() and not overwrite:
-        remedy = "Choose another folder with -o, or replace it with --overwrite."
-        raise InputError(str(directory), f"a folder that holds a {CASE}", "a new folder", remedy)
+    asked = _asked(assignment)
+    if not overwrite:
+        _refuse_another(asked, directory / CASE)
     with alone_in(directory), progress_bar() as progress:
         found = optimise(assignment, progress)
-        bands = texture_bands(found)
-        rows = zip(found.after.wavelength.tolist(), found.after.levels.tolist(), strict=True)
-        write_csv(directory / TEXTURE, ["wavelength (m)", "level (dB re 1 um)"], [list(row) for row in rows])
-        write_bytes(directory / CASE, _case_text(found).encode())
-        write_csv(directory / TABLE, *_table(bands, found.measure.units))
-        write_csv(directory / TRIALS, *_trials(found))
-        _draw(found, bands, directory / FIGURE)
-        for name, tree in (("before", found.result_before), ("after", found.result_after)):
-            save(tree, directory / name / "run.nc")
-            if report:
-                reports.report(tree, directory / name)
+        with together(directory, last=CASE) as new:
+            _write(found, new, report=report)
+            text = _case_text(found)
+            write_bytes(new / CASE, f"{_mark(asked, text)}{text}".encode())
     say(found.sentence)
     say(f"Case:    {(directory / CASE).resolve()}")
     say(f"Figure:  {(directory / FIGURE).resolve()}, and as numbers {TABLE}")
     say(f"Runs:    {(directory / 'before').resolve()}, {(directory / 'after').resolve()}")
+    titles, columns = _table(texture_bands(found), found.measure.units)
+    written = {"case": CASE, "texture": TEXTURE, "table": TABLE, "figure": FIGURE, "trials": TRIALS}
+    written |= {name: f"{name}/run.nc" for name in ("before", "after")}
+    return {
+        "summary": found.sentence,
+        "quantity": found.measure.meaning,
+        "units": found.measure.units,
+        "settled": found.settled,
+        "changes": found.changes,
+        "limits": found.active,
+        "columns": titles,
+        "rows": columns,
+        "warnings": [],
+        "files": {name: str((directory / file).resolve()) for name, file in written.items()},
+    }
+
+
+def _asked(assignment: Assignment) -> str:
+    """What was asked for, whatever the files are called that say it."""
+    return json.dumps([content(each, file_digest) for each in (assignment.case, assignment.aim)])
+
+
+def _mark(asked: str, text: str) -> str:
+    """First line of a case that was found: it tells what it answers, and whether it was changed since."""
+    return f"# {content_key('texture', asked, text)}\n"
+
+
+def _refuse_another(asked: str, case: Path) -> None:
+    """Let an optimisation replace what it has found itself; any other case in the folder stays."""
+    if not case.exists():
+        return
+    mark, text = "", ""
+    with suppress(InputError):
+        mark, _, text = read_definition(case, "case", "").partition("\n")
+    if f"{mark}\n" != _mark(asked, text):
+        remedy = "Choose another folder with -o, or replace it with --overwrite."
+        allowed = "a new folder, or that of the same optimisation"
+        raise InputError(str(case.parent), f"a folder that holds another {CASE}", allowed, remedy)
+
+
+def _write(found: Optimised, directory: Path, *, report: bool) -> None:
+    """Write the texture found as tables and a figure, and the runs before and after it."""
+    bands = texture_bands(found)
+    rows = zip(found.after.wavelength.tolist(), found.after.levels.tolist(), strict=True)
+    write_csv(directory / TEXTURE, ["wavelength (m)", "level (dB re 1 um)"], [list(row) for row in rows])
+    write_csv(directory / TABLE, *_table(bands, found.measure.units))
+    write_csv(directory / TRIALS, *_trials(found))
+    _draw(found, bands, directory / FIGURE)
+    for name, tree in (("before", found.result_before), ("after", found.result_after)):
+        save(tree, directory / name / "run.nc")
+        if report:
+            reports.write_page(tree, directory / name / "report.html")
 
 
 def texture_bands(found: Optimised) -> TextureBands:

@@ -20,6 +20,9 @@ def run_folder(what: str = "Folder of the results.") -> Callable[..., Callable[.
 
 
 overwrite = click.option("--overwrite", is_flag=True, help="Replace the run of another case in the folder.")
+again = click.option(
+    "--again", is_flag=True, help="Compute even what this program has computed already from the same files."
+)
 report = click.option(
     "--report/--no-report", default=True, show_default=True, help="Write the HTML page and CSVs."
 )

@@ -15,6 +15,7 @@ from asperity.terminal import say
 
 if TYPE_CHECKING:
     from asperity.scenarios.expecting import Work
+    from asperity.scenarios.law_choice import LawChoice
     from asperity.scenarios.preparing import PreparedCase
     from asperity.scenarios.scan_sizes import Expected
 
@@ -26,17 +27,23 @@ SMALL_PART = 0.05  # of the work: shorter parts are not named
 def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]:
     """What will be computed from a case, with convergence if it is asked for: rows, seconds and warnings."""
     from asperity.scenarios.expecting import expect
+    from asperity.scenarios.validity import foreseen
 
     with progress_bar() as progress:
         expected = expect(prepared, progress)
+        rows = plan(prepared, expected)
+        tried = expected.tried
+        given = prepared.case, prepared.shape, prepared.textures
+        faults = [] if tried is None else foreseen(*given, tried, _law_choice(prepared))
         more = [("convergence", _described_convergence(prepared, expected, progress))] if converge else []
     return {
-        "plan": [{"name": name, "value": value} for name, value in [*plan(prepared, expected), *more]],
+        "plan": [{"name": name, "value": value} for name, value in [*rows, *more]],
         "work": {"seconds": expected.total, "parts": expected.seconds},
         "warnings": [
             {"grade": getattr(each.message, "grade", Grade.WARNING).value, "message": str(each.message)}
             for each in prepared.caught
-        ],
+        ]
+        + [{"grade": each.grade.value, "message": each.message} for each in faults if each.grade],
     }
 
 
@@ -58,6 +65,7 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
     from asperity.scenarios.expecting import steps_of
     from asperity.scenarios.reducing import STATES
 
+    choice = _law_choice(prepared)
     case, (nx, ny) = prepared.case, prepared.shape.body.shape
     contact, settling = case.contact, case.settled_time
     states = STATES if contact.approaches is None else len(contact.approaches)
@@ -78,12 +86,20 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
         *_running_in(prepared),
-        *_real_contact(prepared),
-        *_law_choice(prepared),
+        *_real_contact(expected),
+        *(choice.rows() if choice is not None else ()),
         *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items()),
         *([("scan of the path", described_scan(scanned))] if scanned else []),
         ("work", _described_work(expected)),
     ]
+
+
+def _law_choice(prepared: PreparedCase) -> LawChoice | None:
+    """Which law to take, and how far the laws are expected from `direct`."""
+    from asperity.scenarios.law_choice import law_choice
+
+    transfer = partial(prepared.kind.square_transfer, prepared.bodies)
+    return law_choice(prepared.case, prepared.shape, prepared.textures, transfer)
 
 
 def _running_in(prepared: PreparedCase) -> list[tuple[str, str]]:
@@ -102,28 +118,11 @@ def _running_in(prepared: PreparedCase) -> list[tuple[str, str]]:
     return [("running in", f"{text}; if interrupted, it goes on after its last pass")]
 
 
-def _real_contact(prepared: PreparedCase) -> list[tuple[str, str]]:
-    """Expected real contact, and which laws it takes out of their range."""
-    from asperity.scenarios.expecting import expect_area_ratio
-    from asperity.scenarios.validity import AREA
-
-    ratio = expect_area_ratio(prepared)
-    if ratio is None:
+def _real_contact(expected: Work) -> list[tuple[str, str]]:
+    """Real contact of the sample that was tried."""
+    if expected.tried is None:
         return []
-    text = f"about {100 * ratio:.0f} % of the area of smooth bodies"
-    averaged = [law for law in prepared.case.laws if not spec_of(law).sees_heights]
-    if ratio < AREA[0] and averaged:
-        text += f": below {100 * AREA[0]:.0f} % {', '.join(averaged)} are out of range; take table"
-    return [("real contact", text)]
-
-
-def _law_choice(prepared: PreparedCase) -> list[tuple[str, str]]:
-    """Which law to take, and how far the laws are expected from `direct`."""
-    from asperity.scenarios.law_choice import law_choice
-
-    transfer = partial(prepared.kind.square_transfer, prepared.bodies)
-    choice = law_choice(prepared.case, prepared.shape, prepared.textures, transfer)
-    return [] if choice is None else list(choice.rows())
+    return [("real contact", f"about {100 * expected.tried.area_ratio:.0f} % of the area of smooth bodies")]
 
 
 def _described_work(expected: Work) -> str:

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from asperity.cli.finished import earlier_run, name_of_run
 from asperity.config.case import Case
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable, remove_left_overs, require_space
+from asperity.files import (
+    alone_in,
+    discard,
+    refuse_unwritable,
+    remove_left_overs,
+    require_space,
+    together,
+)
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.scenarios.second_process import contact_compiled_beside
-from asperity.schema import rolling, spectra
+from asperity.schema import provenance, rolling, spectra
 from asperity.terminal import detail, remark, say
 
 if TYPE_CHECKING:
@@ -57,10 +66,24 @@ def run_into(
     InputError
         If the case cannot be computed, or its results not go into `directory`.
     """
-    refuse_folder(case, directory, overwrite=overwrite)
+    _refuse_full(case, directory)
     with alone_in(directory):
-        refuse_folder(case, directory, overwrite=overwrite)  # another run may have ended meanwhile
-        return _run_alone(case, directory, source, reporter, converge=converge)
+        refuse_folder(case, directory, overwrite=overwrite)
+        tree = _run_alone(case, directory, source, reporter, converge=converge)
+    return _told(tree, source, _files(directory, report=reporter is not None), computed=True)
+
+
+def told_of_earlier(
+    case: Case, directory: Path, *, report: bool, source: str = "case", converge: bool = False
+) -> dict[str, Any] | None:
+    """Say that a folder holds the run of a case already, if it does; return what a program wants to know."""
+    written = _files(directory, report=report)
+    tree = earlier_run(name_of_run(case), directory, written.get("Report"), converge=converge)
+    if tree is None:
+        return None
+    _warn(tree)
+    remark("Nothing to do: this case has been run, with the same files and program (--again runs it).")
+    return _told(tree, source, written, computed=False)
 
 
 def prepared_case(case: Case, source: str) -> PreparedCase:
@@ -76,12 +99,12 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
 
 def _run_alone(
     case: Case, directory: Path, source: str, reporter: ReportProcess | None, *, converge: bool
-) -> dict[str, Any]:
+) -> DataTree:
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.cli.planning import announce_scan
     from asperity.store import Store
 
-    before = time.monotonic(), COMPILATION.seconds
+    before, name = (time.monotonic(), COMPILATION.seconds), name_of_run(case)
     with contact_compiled_beside():
         from asperity.running import run
         from asperity.unneeded import spare_pint
@@ -92,39 +115,49 @@ def _run_alone(
             announce_scan(prepared, progress)
             ahead = None if reporter is None else reporter.ahead
             tree: DataTree = run(replace(prepared, ahead=ahead), progress=progress)
-    warnings = json.loads(tree.attrs.get("warnings", "[]"))
-    for warning in warnings:
-        times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
-        grade = warning.get("grade", "warning").capitalize()
-        say(f"{grade}: {warning['message']}{times}", err=True)
-    if reporter is None and (directory / PAGE).exists():
-        from asperity.kinds.report import remove_report
-
-        remove_report(directory)
-    written = _written(tree, directory, reporter)
+    if name and name == name_of_run(case):  # no file was changed meanwhile
+        tree.attrs[provenance.RUN.name] = name
+    _warn(tree)
+    _write(tree, directory, reporter)
     if converge:
         from asperity.convergence.running import with_convergence
 
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)
-        written = _written(tree, directory, reporter)
-    if verdict := tree.attrs.get("verdict"):
-        say(verdict)
-    for name, path in written.items():
-        say(f"{name}:{'':{8 - len(name)}}{path.resolve()}")
+        _write(tree, directory, reporter)
     _say_time(before)
     store = Store()
     remove_left_overs(store.root)
     if size := store.size():
         kept = f"{size / 2**20:.1f} MiB of finished work in {store.root}"
         remark(f"Kept:    {kept} (asperity cache --clear deletes it)")
+    return tree
+
+
+def _warnings(tree: DataTree) -> list[dict[str, Any]]:
+    return [{"grade": "warning", **warning} for warning in json.loads(tree.attrs.get("warnings", "[]"))]
+
+
+def _warn(tree: DataTree) -> None:
+    for warning in _warnings(tree):
+        times = f" ({warning['count']} times)" if warning["count"] > 1 else ""
+        say(f"{warning['grade'].capitalize()}: {warning['message']}{times}", err=True)
+
+
+def _told(tree: DataTree, source: str, written: Mapping[str, Path], *, computed: bool) -> dict[str, Any]:
+    """Say what a run found and where it lies; return what a program wants to know of it."""
+    if verdict := tree.attrs.get("verdict"):
+        say(verdict)
+    for name, path in written.items():
+        say(f"{name}:{'':{8 - len(name)}}{path.resolve()}")
     return {
         "case": source,
-        "kind": case.kind,
+        "kind": tree[provenance.KIND.group].attrs[provenance.KIND.name],
+        "computed": computed,
         "verdict": tree.attrs.get("verdict", ""),
         "laws": law_summaries(tree),
         **band_summaries(tree),
-        "warnings": [{"grade": "warning", **warning} for warning in warnings],
+        "warnings": _warnings(tree),
         "files": {name.lower(): str(path.resolve()) for name, path in written.items()},
     }
 
@@ -163,20 +196,43 @@ def band_summaries(tree: DataTree) -> dict[str, Any]:
     }
 
 
-def _written(tree: DataTree, directory: Path, reporter: ReportProcess | None) -> dict[str, Path]:
-    """Write a result, and its report if it is wanted; the paths, each with what it is."""
-    from asperity.results import save, save_after
+def _files(directory: Path, *, report: bool) -> dict[str, Path]:
+    """What is written, and where: results, and the report if it is wanted."""
+    return {"Results": directory / "run.nc"} | ({"Report": directory / PAGE} if report else {})
 
-    path = directory / "run.nc"
-    if reporter is None:
-        return {"Results": save(tree, path)}
-    page = reporter.write(tree, directory / PAGE, lambda before: save_after(before, tree, path))
-    return {"Results": path, "Report": page}
+
+def _write(tree: DataTree, directory: Path, reporter: ReportProcess | None) -> None:
+    """Write a result, and its report if it is wanted, in place of earlier ones.
+
+    What an earlier report has beyond this one goes: it would not belong to the run beside it.
+    """
+    from asperity.results import save
+
+    path, page = directory / "run.nc", directory / PAGE
+    with together(directory, last=PAGE) as new:
+        earlier: list[str] = []
+        if reporter is not None:
+            earlier = reporter.write(tree, new / PAGE, lambda: save(tree, new / path.name))
+        else:
+            save(tree, new / path.name)
+            if page.exists():
+                from asperity.kinds.report import names_of_reports
+
+                earlier = names_of_reports()
+        for name in earlier if page.exists() else []:
+            if not (new / name).exists():
+                discard(directory / name)
 
 
 def _expected_size(case: Case) -> float:
     """Bytes of results, about: a dozen numbers per law and time step, in run.nc and again as text."""
     return 400.0 * len(case.laws) * case.rolled_time / case.time_step
+
+
+def _refuse_full(case: Case, directory: Path) -> None:
+    """Refuse a folder that cannot be written to, or whose disk is too full."""
+    refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    require_space(directory, _expected_size(case))
 
 
 def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> None:
@@ -198,8 +254,7 @@ def refuse_folder(case: Case, directory: Path, *, overwrite: bool = False) -> No
     ComputationError
         If the disk is too full for them.
     """
-    refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
-    require_space(directory, _expected_size(case))
+    _refuse_full(case, directory)
     if overwrite:
         return
     allowed = "a new folder, or the folder of an earlier run of the same case"

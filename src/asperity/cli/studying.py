@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import shown
-from asperity.cli.study_files import SEED, write_ensemble, write_figures, write_mean
+from asperity.cli.study_files import NOT_ALWAYS, SEED, write_ensemble, write_figures, write_mean
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable
+from asperity.files import alone_in, discard, lasting, refuse_unwritable, together
 from asperity.progress import progress_bar
-from asperity.schema import rolling, spectra
 from asperity.studies.columns import axes_of, columns_of
 from asperity.studies.definition import Study, study_of
 from asperity.studies.ensemble import SCATTER, mean_and_scatter
-from asperity.terminal import remark, say, say_table
+from asperity.studies.kept import PLACES, names_kept
+from asperity.studies.ranges import separated
+from asperity.studies.shown import OVER, chosen, usual, usual_in_figures
+from asperity.terminal import line_width, remark, say, say_table
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
     import xarray
 
 MOST_ROWS = 60  # that are printed; the file has all of them
+FOLDED = 14  # characters of a line of a heading
+WIDTH = 200  # characters of a line where standard output is no terminal
 MOST_NAMED = 6  # members of a group of failures that are printed
 
 
@@ -36,22 +40,27 @@ def study_into(
     workers: int | None = None,
     scheduler: str | None = None,
     overwrite: bool = False,
+    show: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Compute a study and write its tables and figures to a folder; return what a program wants to know.
 
     Either processes of this machine compute it, one per processor by default, or the workers of the Dask
-    scheduler at an address. `overwrite` says whether another study in the folder may be replaced.
+    scheduler at an address. `overwrite` says whether another study in the folder may be replaced, `show`
+    names what is printed and drawn instead of what is usual.
     """
+    asked = chosen(show, str(study.data.get("kind")))
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
     refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
     with alone_in(directory):
         if not overwrite:
             _refuse_to_overwrite(study, directory)
-        return _study_alone(study, directory, workers, scheduler)
+        return _study_alone(study, directory, workers, scheduler, asked)
 
 
-def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: str | None) -> dict[str, Any]:
+def _study_alone(
+    study: Study, directory: Path, workers: int | None, scheduler: str | None, asked: tuple[str, ...]
+) -> dict[str, Any]:
     """Compute a study and write its table, while no other run does into this folder."""
     from xarray import DataTree
 
@@ -59,23 +68,35 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
     from asperity.studies.cluster import cluster
     from asperity.studies.running import study as computed
 
-    size = " × ".join(f"{len(axis.values)} {axis.name}" for axis in study.axes)
-    remark(f"Study of {size}")
+    kind = str(study.data.get("kind"))
+    remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
     place: AbstractContextManager[Executor | None] = nullcontext()
     if scheduler is not None:
         place = cluster(scheduler)
     with place as executor, progress_bar() as progress:
         table = computed(study, executor=executor, workers=workers, progress=progress)
     means = mean_and_scatter(table) if table.sizes.get(SEED, 0) > 1 else None
-    _show(table if means is None else means)
+    names = asked or usual(kind)
+    _show(table if means is None else means, names, asked=bool(asked))
+    for name in asked:
+        if name not in table:
+            say(
+                f"{name}: no member has it; there {names_kept(kind)[name] or 'are no bands to add up'}",
+                err=True,
+            )
     _report(table)
-    written = save(DataTree(table), directory / "study.nc")
-    files = {"results": written, "table": write_csv(directory / "study.csv", *columns_of(table))}
-    say(f"Results: {written.resolve()}")
-    say(f"Table:   {files['table'].resolve()}")
-    files |= write_mean(means, directory) | write_figures(table, means, directory)
-    files |= write_ensemble(table, directory)
-    heading, rows = columns_of(table, bands=False)
+    with together(directory, last="study.nc") as new:
+        files = {"results": save(DataTree(table), new / "study.nc")}
+        files["table"] = write_csv(new / "study.csv", *columns_of(table))
+        say(f"Results: {lasting(files['results']).resolve()}")
+        say(f"Table:   {lasting(files['table']).resolve()}")
+        files |= write_mean(means, new) | write_figures(table, means, asked or usual_in_figures(kind), new)
+        files |= write_ensemble(table, new)
+        for file in (each for pattern in NOT_ALWAYS for each in directory.glob(pattern)):
+            if not (new / file.name).exists():
+                discard(file)
+    told = table[[name for name in asked if name in table]].assign_attrs(table.attrs) if asked else table
+    heading, rows = columns_of(told, bands=bool(asked))
     return {
         "sweep": study.sweep,
         "members": int(table["completed"].size),
@@ -84,7 +105,7 @@ def _study_alone(study: Study, directory: Path, workers: int | None, scheduler: 
         "rows": rows,
         "warnings": json.loads(table.attrs["warnings"]),
         "failures": json.loads(table.attrs["failures"]),
-        "files": {name: str(path.resolve()) for name, path in files.items()},
+        "files": {name: str(lasting(path).resolve()) for name, path in files.items()},
     }
 
 
@@ -100,7 +121,7 @@ def varied(case: Path, words: Sequence[str]) -> Study:
             raise InputError(
                 "--vary", f"{name} more than once", "each key once", "Put all values behind one."
             )
-        sweep[name] = [_value(each.strip()) for each in values.split(",")]
+        sweep[name] = [_value(each) for each in separated(values)]
     return study_of(case, sweep)
 
 
@@ -121,13 +142,12 @@ def _refuse_to_overwrite(study: Study, directory: Path) -> None:
     file = directory / "study.nc"
     if not file.exists():
         return
-    import xarray
+    from asperity.results import attributes_of
 
     try:
-        with xarray.open_dataset(file, engine="h5netcdf") as found:
-            earlier = dict(found.attrs)
-            swept = json.loads(earlier["sweep"])
-    except Exception:  # h5py and xarray raise errors of many kinds on damaged files
+        earlier = attributes_of(file)
+        swept = json.loads(earlier["sweep"])
+    except (InputError, ValueError, KeyError, TypeError):  # damaged, or of another kind
         earlier, swept = {}, None
     if earlier.get("case") != study.text or swept != study.sweep:
         remedy = "Choose another folder with -o, or replace it with --overwrite."
@@ -135,44 +155,58 @@ def _refuse_to_overwrite(study: Study, directory: Path) -> None:
         raise InputError(str(directory), "the study.nc of another study", allowed, remedy)
 
 
-OVER = f"{spectra.FORCE_LEVEL.name}_a_difference_to_"
-PRINTED = (
-    f"{spectra.FORCE_LEVEL.name}_a",
-    f"{OVER}linear_filtered",
-    f"{OVER}linear",
-    "rms_force",
-    "peak_force",
-    rolling.CONTACT_LOSS_SHARE.name,
-)
-"""Quantities that are printed; the file has all."""
+def _show(found: xarray.Dataset, names: Sequence[str], *, asked: bool) -> None:
+    """Print quantities by name, with ± where they are means over seeds.
 
-
-def _show(found: xarray.Dataset) -> None:
-    """Print the quantities that matter most, with ± where they are means over seeds."""
-    names = [name for name in PRINTED if name in found]
-    held = [name for name in (*names, *(f"{name}{SCATTER}" for name in names)) if name in found]
-    heading, rows = columns_of(found[held].assign_attrs(found.attrs), bands=False)
-    heading = [title.replace(OVER, "dB(A) over ") for title in heading]  # as wide as its numbers
-    keys = len(axes_of(found))
-    paired = len(held) > len(names)
-    shown = [_printed_row(row, keys, paired=paired) for row in rows[:MOST_ROWS]]
+    Unasked, neither what is missing throughout nor what each place on a body has for itself.
+    """
+    held = [name for name in names if name in found and (asked or not {*PLACES} & {*found[name].dims})]
+    heading, rows = columns_of(found[held])
+    scatter = [f"{name}{SCATTER}" for name in held if f"{name}{SCATTER}" in found]
+    spread: list[list[object]] = [[""] * len(row) for row in rows]
     title = "Study"
-    if paired:
-        heading = [*heading[:keys], *heading[keys::2]]
+    if scatter:
+        names_of = {name: name.removesuffix(SCATTER) for name in scatter}
+        spread = columns_of(found[scatter].rename(names_of))[1]
         title = (
             f"Study: mean ± standard deviation over {found.attrs['members']} values of {found.attrs['over']}"
         )
-    say_table(title, heading, shown, width=200)
+    keys = len(axes_of(found[held]))
+    words = [_printed_row(*pair, keys) for pair in zip(rows, spread, strict=True)]
+    heading[keys:] = [each.replace(OVER, "dB(A) over ").replace("_", " ") for each in heading[keys:]]
+    kept = [n for n in range(len(heading)) if asked or any(row[n] != "–" for row in words)]
+    needs = [_width(heading[n], [row[n] for row in words[:MOST_ROWS]]) for n in range(len(heading))]
+    for columns in _side_by_side(needs, kept, keys):
+        shown = [[row[n] for n in columns] for row in words[:MOST_ROWS]]
+        widths = [needs[n] for n in columns]
+        say_table(title, [heading[n] for n in columns], shown, width=WIDTH, widths=widths)
     if len(rows) > MOST_ROWS:
         say(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
 
 
-def _printed_row(row: Sequence[object], keys: int, *, paired: bool) -> list[str]:
-    words = [item if isinstance(item, str) else _short(item) for item in row]
-    if not paired:
-        return words
-    pairs = zip(words[keys::2], words[keys + 1 :: 2], strict=True)
-    return [*words[:keys], *(mean if scatter == "–" else f"{mean} ± {scatter}" for mean, scatter in pairs)]
+def _width(heading: str, cells: Sequence[str]) -> int:
+    """Characters that a column needs: cells and the words of its heading stay whole."""
+    longest = max(map(len, (*heading.split(), *cells)))
+    return min(max(longest, FOLDED), len(heading)) if longest < len(heading) else longest
+
+
+def _side_by_side(needs: Sequence[int], kept: Sequence[int], keys: int) -> Iterator[list[int]]:
+    """Columns that one table is wide enough for; what is swept stands in each table."""
+    width = line_width(WIDTH)
+    block = list(kept[:keys])
+    for n in kept[keys:]:
+        if len(block) > keys and 1 + sum(3 + needs[each] for each in (*block, n)) > width:
+            yield block
+            block = list(kept[:keys])
+        block.append(n)
+    yield block
+
+
+def _printed_row(row: Sequence[object], scatter: Sequence[object], keys: int) -> list[str]:
+    """What is swept, and numbers, each with its ± where it has one."""
+    words, reach = ([each if isinstance(each, str) else _short(each) for each in of] for of in (row, scatter))
+    numbers = zip(words[keys:], reach[keys:], strict=True)
+    return [*words[:keys], *(f"{word} ± {by}" if by not in ("", "–") else word for word, by in numbers)]
 
 
 def _short(number: object) -> str:

@@ -11,26 +11,29 @@ from numpy.typing import NDArray
 from asperity.reporting.csv_files import write_columns
 from asperity.surfaces.areal_psd import psd_1d, psd_radial
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import nearly_complete
+from asperity.surfaces.third_octaves import full_lines
 
 Spectra = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 """Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""
 
 
 def spectra_of(surface: HeightMap | Profile) -> Spectra:
-    """Spectra of levelled heights along x, and of a map along y; none where points are missing."""
-    if not np.isfinite(surface.heights).all():
-        return {}
+    """Spectra of levelled heights along x, and of a map along y; none where more than 5 % are missing."""
     if isinstance(surface, Profile):
-        return {"along the line": _above_zero(psd_1d(surface))}
-    return {f"along {name}": _above_zero(psd_1d(surface, axis)) for axis, name in enumerate("xy")}
+        line = nearly_complete(surface)
+        return {} if line is None else {"along the line": _above_zero(psd_1d(line))}
+    whole = nearly_complete(surface)
+    if whole is None:
+        return {}
+    return {f"along {name}": _above_zero(psd_1d(whole, axis)) for axis, name in enumerate("xy")}
 
 
 def spectra_of_lines(lines: Sequence[Profile]) -> Spectra:
-    """Mean of the spectra of lines side by side, where they are equally long and complete."""
-    complete = all(np.isfinite(line.heights).all() for line in lines)
-    if not complete or len({len(line.heights) for line in lines}) > 1:
+    """Mean of the spectra of lines side by side, of those that are as long as the others."""
+    each = [_above_zero(psd_1d(line)) for line in full_lines(lines)]
+    if not each:
         return {}
-    each = [_above_zero(psd_1d(line)) for line in lines]
     return {"along the lines, mean": (each[0][0], np.mean([density for _, density in each], axis=0))}
 
 
@@ -56,7 +59,7 @@ def write_spectra(spectra: Spectra, surface: HeightMap | Profile | None, path: P
 
 
 def _areal(surface: HeightMap) -> tuple[NDArray[np.float64], str, NDArray[np.float64]]:
-    wavenumber, density = psd_radial(surface)
+    wavenumber, density = psd_radial(nearly_complete(surface) or surface)
     return wavenumber, "areal PSD, mean over directions [m⁴]", density
 
 

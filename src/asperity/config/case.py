@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import BeforeValidator
 
+from asperity.config.chosen import NominalPatch, choose_lengths
 from asperity.config.content import described_value
 from asperity.config.describing import in_toml, parameters, refused
 from asperity.config.form import Section, key
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
-from asperity.config.sections import ContactCase, Index, Numerics, Surface
+from asperity.config.sections import MOST_CELLS, ContactCase, Index, Numerics, Surface
 from asperity.config.writing import toml_text
 from asperity.errors import InputError
 from asperity.laws import names
@@ -130,6 +132,25 @@ class Case(Section):
         return parameters(self)
 
     @property
+    def nominal_patch(self) -> NominalPatch | None:
+        """Contact of its smooth bodies, from which grid and window are chosen; None where they are given."""
+
+    def _choose(self) -> None:
+        with suppress(InputError):  # bodies that do not touch in a point: `problems` say so
+            if (patch := self.nominal_patch) is not None:
+                choose_lengths(self, patch)
+
+    @property
+    def defect_length(self) -> float:
+        """Length in m of a defect that the window is to hold beside the contact; zero without one."""
+        return 0.0
+
+    @property
+    def coarsest_spacing(self) -> float:
+        """Spacing of the contact grid in m on which the highest frequency is still resolved."""
+        return self.speed / (SAMPLING * self.numerics.highest_frequency)
+
+    @property
     def time_step(self) -> float:
         """Time step in s: as given, or near 1/(20 f_max) with positions on the grid of the contact solution.
 
@@ -191,8 +212,8 @@ def problems_of_laws(case: Case) -> Iterator[InputError]:
 
 def problems_of_sampling(case: Case) -> Iterator[InputError]:
     """Grid and time step resolve the highest frequency and the shortest wavelength."""
-    highest = case.numerics.highest_frequency
-    coarsest = case.speed / (SAMPLING * highest)
+    yield from _problems_of_window(case.contact)
+    highest, coarsest = case.numerics.highest_frequency, case.coarsest_spacing
     spacing, surface = case.contact.spacing, case.surface
     if spacing > coarsest:
         received = f"{written(spacing, 'm', 'um')} at {case.speed:g} m/s and {highest:g} Hz"
@@ -201,10 +222,22 @@ def problems_of_sampling(case: Case) -> Iterator[InputError]:
     if case.time_step > 1 / (SAMPLING * highest):
         allowed = f"at most 1 / ({SAMPLING} highest_frequency) = {1e6 / (SAMPLING * highest):.4g} us"
         yield InputError("numerics.time_step", f"{case.time_step * 1e6:g} us", allowed)
-    shortest = surface.band[1]
+    shortest = surface.shortest
     if shortest is not None and shortest < 2 * spacing * (1 - 1e-9):
         received = f"{written(shortest, 'm', 'um')} on a spacing of {written(spacing, 'm', 'um')}"
         yield InputError("surface.shortest", received, f"at least two spacings, {2e6 * spacing:g} um")
+
+
+def _problems_of_window(contact: ContactCase) -> Iterator[InputError]:
+    """The window holds a sensible number of cells, and strips more than one window."""
+    if not 8 <= contact.cells <= MOST_CELLS:
+        window, spacing = (written(length, "m", "um") for length in (contact.window, contact.spacing))
+        received = f"{window}, {contact.cells} cells of {spacing}"
+        remedy = "Change window or spacing."
+        yield InputError("contact.window", received, f"8 to {MOST_CELLS} cells of the spacing", remedy)
+    if contact.sample_length is not None and contact.sample_length < 2 * contact.window:
+        received, allowed = written(contact.sample_length, "m", "um"), f"{2e6 * contact.window:g} um"
+        yield InputError("contact.sample_length", received, f"at least two windows, {allowed}")
 
 
 def problem_of_steps(case: Case, time: float) -> Iterator[InputError]:

@@ -71,8 +71,9 @@ class Section(BaseModel, metaclass=_Form):
     )
 
     def default_of(self, name: str) -> Any:
-        """Value of a key that is left out."""
-        return _default(type(self), name)
+        """Value of a key that is left out; without a fixed default, what was chosen for it."""
+        chosen = _default(type(self), name) is None and name not in self.model_fields_set
+        return getattr(self, name) if chosen else _default(type(self), name)
 
     def given(self) -> dict[str, Any]:
         """Keys whose values differ from their defaults, sections as dicts."""
@@ -123,10 +124,16 @@ class Section(BaseModel, metaclass=_Form):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Section:
-        errors = [*_implausible(self)] or [*_lonely(self), *self.problems()]
+        errors = [*_implausible(self)]
+        if not errors:
+            self._choose()
+            errors = [*_lonely(self), *self.problems()]
         if errors:
             raise Problems(errors)
         return self
+
+    def _choose(self) -> None:
+        """Fill in what follows from other keys."""
 
 
 @lru_cache(maxsize=1024)

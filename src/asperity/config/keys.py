@@ -116,6 +116,15 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Chosen(Quantity):
+    """A quantity that is chosen where nothing is given: it is not a number until then."""
+
+    def __call__(self, value: object, info: ValidationInfo | None) -> float:
+        """Return the value in SI; NaN for nothing."""
+        return math.nan if value is None else super().__call__(value, info)
+
+
+@dataclass(frozen=True)
 class Number:
     """A pure number."""
 
@@ -182,6 +191,7 @@ class Choice:
     """One of a few words, or of those that a registry holds when it is asked."""
 
     words: tuple[str, ...] | Callable[[], tuple[str, ...]]
+    numbers: tuple[int, ...] = ()  # that mean the words, one each
 
     @property
     def known(self) -> tuple[str, ...]:
@@ -195,6 +205,8 @@ class Choice:
 
     def __call__(self, value: object) -> str:
         """Return the word."""
+        if isinstance(value, int) and not isinstance(value, bool) and value in self.numbers:
+            return self.known[self.numbers.index(value)]
         if not isinstance(value, str) or value not in self.known:
             raise InputError("choice", shown(value), self.allowed, nearest(value, self.known))
         return value
@@ -443,8 +455,8 @@ def is_list(annotation: Any) -> bool:
 def outside_limits(
     name: str, value: object, kind: Kind | None, within: tuple[Limit, Limit, str] | None
 ) -> Iterator[InputError]:
-    """Error about a number out of its limits; zero and infinity, where they may stand, may."""
-    if within is None or not isinstance(value, int | float) or value == 0.0 or value == math.inf:
+    """Error about a number out of its limits; zero, infinity and NaN, where they may stand, may."""
+    if within is None or not isinstance(value, int | float) or value in (0.0, math.inf) or value != value:
         return
     low, high, reason = within
     unit = kind.dimension if isinstance(kind, Quantity) else ""
@@ -488,6 +500,7 @@ def _range(above: float | None, at_least: float | None, at_most: float | None = 
 
 
 Length = Annotated[float, BeforeValidator(Quantity("m", above=0))]
+ChosenLength = Annotated[float, BeforeValidator(Chosen("m", above=0))]
 Position = Annotated[float, BeforeValidator(Quantity("m", at_least=0))]
 Approach = Annotated[float, BeforeValidator(Quantity("m"))]
 Duration = Annotated[float, BeforeValidator(Quantity("s", above=0))]

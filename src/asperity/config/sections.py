@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, PlainValidator, model_validator
 
-from asperity.arguments import MOST_PASSES, SHAKEDOWN
+from asperity.arguments import FORMS, MOST_PASSES, SHAKEDOWN, shown
 from asperity.config.content import holds_memory
 from asperity.config.form import Section, key
 from asperity.config.keys import (
@@ -19,8 +19,10 @@ from asperity.config.keys import (
     Approach,
     Choice,
     ChoiceOrFile,
+    ChosenLength,
     Damping,
     Duration,
+    File,
     Frequency,
     HeightUnit,
     Length,
@@ -84,7 +86,14 @@ class MeasuredMap(Section):
         "take points that stand out of their neighbours by 8 standard deviations for points without a height",
         goes_with="file",
     )
-    form: Annotated[str, BeforeValidator(Choice(("plane", "quadratic")))] = key(
+    recipe: Annotated[Path, PlainValidator(File())] | None = key(
+        None,
+        "file that says how the map is read and prepared, before anything else; 'asperity surface FILE "
+        "--store recipe.toml' writes it",
+        example='"recipe.toml"',
+        goes_with="file",
+    )
+    form: Annotated[str, BeforeValidator(Choice(tuple(FORMS), tuple(FORMS.values())))] = key(
         "plane", "form that is removed from each measured map", goes_with="file"
     )
     direction: Angle = key(
@@ -101,8 +110,13 @@ class MeasuredMap(Section):
         return surfaces_from(data, "file", "pixel", "height_unit", (2, 3))
 
     def problems_of_maps(self) -> Iterator[InputError]:
-        """A map in memory has its own points."""
-        yield from _foreign(self, "file", ("array", "height_unit", "pixel"))
+        """A map in memory has its own points, and what a recipe says is not said twice."""
+        yield from _foreign(self, "file", ("array", "height_unit", "pixel", "recipe"))
+        if self.recipe is not None:
+            for name in ("array", "height_unit", "pixel", "index", "fill", "spikes"):
+                if (value := getattr(self, name)) not in (None, False):
+                    remedy = f"Write it into {self.recipe.name}."
+                    yield InputError(name, shown(value), "nothing beside a recipe, which says it", remedy)
 
 
 class MeasuredLine(Section):
@@ -159,7 +173,7 @@ def surfaces_from(data: Any, name: str, spacing: str, unit: str, dimensions: tup
     if heights.dtype.kind not in "fiu":
         errors.append(InputError(name, f"data of type {heights.dtype}", "an array of real numbers"))
     if keys.get(spacing) is None:
-        remedy = f"Give {spacing} beside the array, or hand over a HeightMap or a Profile."
+        remedy = f"Give {spacing} beside the array, or hand over a map or a line that knows it."
         errors.append(InputError(spacing, "nothing", "the distance of the points of an array", remedy))
     if errors:
         raise Problems(errors)
@@ -188,8 +202,6 @@ def _foreign(section: Section, name: str, keys: tuple[str, ...]) -> Iterator[Inp
 class Surface(MeasuredLine, MeasuredMap):
     """What is rolled over: samples (measured or synthesised), and the line of the path."""
 
-    synthesised_band: ClassVar = (0.4e-3, 16e-6)  # m, longest and shortest wavelength beside rms
-
     rms: Length | None = key(
         None,
         "rms height of synthesised samples, instead of a file",
@@ -205,14 +217,14 @@ class Surface(MeasuredLine, MeasuredMap):
     longest: Length | None = key(
         None,
         "longest wavelength of the samples",
-        otherwise="with rms 0.4 mm, else all they hold",
+        otherwise="with rms 20 half-widths of the smooth contact, else all they hold",
         example='"0.4 mm"',
         within=("10 nm", "10 m", "a texture is made of waves between atoms and bodies"),
     )
     shortest: Length | None = key(
         None,
         "shortest wavelength of the samples",
-        otherwise="with rms 16 um, else all they hold",
+        otherwise="with rms four times contact.spacing, else all they hold",
         example='"16 um"',
         within=("0.1 nm", "1 m", "a texture is made of waves between atoms and bodies"),
     )
@@ -221,6 +233,12 @@ class Surface(MeasuredLine, MeasuredMap):
         "ratio of the correlation lengths along and across the path",
         goes_with="rms",
         within=(0.01, 100, "a texture more drawn out than that is a line across"),
+    )
+    lay: Angle = key(
+        "0 deg",
+        "angle by which a drawn-out texture is turned from the path towards its left",
+        goes_with="rms",
+        within=("-360 deg", "360 deg", "more is a full turn and an angle"),
     )
     spectrum: (
         Annotated[
@@ -245,6 +263,14 @@ class Surface(MeasuredLine, MeasuredMap):
         within=("-120 dB", "120 dB", "a million times is another texture"),
     )
 
+    continuation: Annotated[str, BeforeValidator(Choice(("mirror", "repeat")))] | None = key(
+        None,
+        "how a measured map or line that is shorter than the run goes on",
+        otherwise="a path is synthesised in the likeness of a map; a line is refused",
+        example='"mirror"',
+        goes_with="file or line",
+    )
+
     @property
     def has_areal_spectrum(self) -> bool:
         """Whether the spectrum is that of a surface, from which samples are cut."""
@@ -259,14 +285,6 @@ class Surface(MeasuredLine, MeasuredMap):
     def has_line(self) -> bool:
         """Whether the path is given as a line, without the texture beside it."""
         return self.line is not None or (self.spectrum is not None and not self.has_areal_spectrum)
-
-    @property
-    def band(self) -> tuple[float | None, float | None]:
-        """Longest and shortest wavelength of the samples in m; None where a file decides."""
-        if self.rms is None:
-            return self.longest, self.shortest
-        longest, shortest = self.synthesised_band
-        return self.longest or longest, self.shortest or shortest
 
     def problems(self) -> Iterator[InputError]:
         """Some texture, from sources that do not exclude one another."""
@@ -291,7 +309,7 @@ class Surface(MeasuredLine, MeasuredMap):
             yield InputError(
                 "", "both line and spectrum", "one of them", "Remove one: the path has one line."
             )
-        longest, shortest = self.band
+        longest, shortest = self.longest, self.shortest
         if longest is not None and shortest is not None and longest <= shortest:
             received = f"{written(longest, 'm', 'um')} with shortest {written(shortest, 'm', 'um')}"
             yield InputError("longest", received, "a wavelength greater than shortest")
@@ -300,18 +318,22 @@ class Surface(MeasuredLine, MeasuredMap):
 class ContactCase(Section):
     """How the rough contact is solved and reduced."""
 
-    spacing: Length = key(
-        "8 um",
+    spacing: ChosenLength = key(
+        None,
         "grid spacing of the contact solution",
+        otherwise="a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
+        example='"8 um"',
         within=(
             "1 nm",
             "10 mm",
             "an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
         ),
     )
-    window: Length = key(
-        "0.5 mm",
+    window: ChosenLength = key(
+        None,
         "side of the square window in which contact is solved; wider than the contact",
+        otherwise="that of the smooth contact under three times the load, wider where the surface is rough",
+        example='"0.5 mm"',
         within=("10 nm", "1 m", "contacts lie between atoms and bodies"),
     )
     samples: Annotated[int, BeforeValidator(Number(at_least=1, at_most=10_000, whole=True))] = key(
@@ -365,7 +387,7 @@ class ContactCase(Section):
     normalise: Annotated[str, BeforeValidator(Choice(("low-wavenumber", "tangent")))] | None = key(
         None,
         "what the contact filter is 1 at: its own low wavenumbers (as printed), or the tangent stiffness",
-        otherwise="as printed for `printed`, tangent for every other law",
+        otherwise="as printed for the law printed, tangent for every other",
         example='"tangent"',
     )
     linearise: Annotated[str, BeforeValidator(Choice(("hertz", "rough", "secant")))] = key(
@@ -391,12 +413,7 @@ class ContactCase(Section):
         return round(self.window / self.spacing)
 
     def problems(self) -> Iterator[InputError]:
-        """The window holds a sensible number of cells; approaches increase; the filter order is even."""
-        if not 8 <= self.cells <= MOST_CELLS:
-            window, spacing = (written(length, "m", "um") for length in (self.window, self.spacing))
-            received = f"{window}, {self.cells} cells of {spacing}"
-            remedy = "Change window or spacing."
-            yield InputError("window", received, f"8 to {MOST_CELLS} cells of the spacing", remedy)
+        """Approaches increase; the filter order is even."""
         if self.approaches is not None and len(self.approaches) < 2:
             yield InputError(
                 "approaches", f"{len(self.approaches)} values", "at least 2", "Or remove the key."
@@ -407,9 +424,6 @@ class ContactCase(Section):
         if self.filter_taps is not None and self.filter_taps % 2:
             remedy = "An odd order would shift the texture by half a step."
             yield InputError("filter_taps", self.filter_taps, "an even number", remedy)
-        if self.sample_length is not None and self.sample_length < 2 * self.window:
-            allowed = f"at least two windows, {2e6 * self.window:g} um"
-            yield InputError("sample_length", written(self.sample_length, "m", "um"), allowed)
 
 
 class Numerics(Section):
@@ -427,7 +441,7 @@ class Numerics(Section):
     )
     rtol: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
         1e-6,
-        "tolerance of single contact solutions and of `direct`, relative to the largest overlap",
+        "tolerance of single contact solutions and of the law direct, relative to the largest overlap",
         within=(1e-12, 0.01, "double precision carries no more digits"),
     )
     force_accuracy: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from array import array
 from collections.abc import Callable, Iterator
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,11 +16,12 @@ from numpy.typing import NDArray
 from asperity.arguments import shown
 from asperity.config.content import name_of
 from asperity.config.form import Section
-from asperity.decoding import lines_of_cells, number_in, read_text
+from asperity.decoding import lines_in, lines_of_cells, number_in, read_text
 from asperity.errors import InputError
 from asperity.units import factor, unit_in_brackets
 
-LARGEST_TABLE = 10 * 2**20  # bytes
+LARGEST_TABLE = 10 * 2**20  # bytes of text
+NETCDF = (".nc", ".nc4")
 LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
 
 TABLE_OF_LEVELS = "a table of wavelengths and levels"
@@ -44,8 +46,7 @@ LEVELS = (Column("wavelength", "m"), Column("level", "dB"))
 def read_levels(table: TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Read one-third-octave band levels of a texture over wavelength, from a table of two columns.
 
-    Wavelengths (n,), m, unless the heading names another unit, falling, and levels (n,), dB re 1 µm; no band
-    may be missing.
+    Wavelengths (n,), m, falling, and levels (n,), dB re 1 µm; no band may be missing.
     """
     wavelength, level = read_table(table, LEVELS).T
     order = np.argsort(-wavelength)
@@ -94,9 +95,10 @@ def read_table(
 ) -> NDArray[np.float64]:
     """Read a table of numbers (lines, columns), in SI; all of its lines may have all `further` columns.
 
-    An array is taken as it is. In a file, columns are apart by comma, semicolon (with decimal commas) or
-    white space; text from '#' on is left out. A heading may name units in brackets, as ``wavelength (cm)``;
-    without one, they are SI. A line that does not hold one finite number for each column is refused.
+    An array is taken as it is, in SI. In a file, columns are apart by comma, semicolon (with decimal commas)
+    or white space; text from '#' on is left out. A heading, or a comment right above the numbers, names the
+    unit of each column that has one in brackets, as ``wavelength (cm)``; a table that does not is refused. So
+    is a line that does not hold one finite number for each column. A netCDF-4 file holds `columns` alone.
     """
     allowed = f"a table with the columns {_named(columns)}"
     if further:
@@ -105,21 +107,28 @@ def read_table(
         if not len(table) or not np.isfinite(table).all():
             raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
         return table
-    lines = list(lines_of_cells(read_text(table, table.name, allowed, largest=LARGEST_TABLE)))
-    if lines and len(lines[0][1]) == len(columns) + len(further):
-        columns += further
-    scale, rows = [1.0] * len(columns), []
-    for number, cells in lines:
+    if table.suffix.lower() in NETCDF:
+        from asperity.config.netcdf_tables import read_columns  # needs splines, and few cases have one
+
+        return read_columns(table, columns)
+    remedy = f"Write it as netCDF ({NETCDF[0]}), which may be larger."
+    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, shorten=remedy)
+    heading: list[str] = []
+    found = array("d")
+    for number, cells in lines_of_cells(content):
+        if not found and not heading and len(cells) == len(columns) + len(further):
+            columns += further
         values = [_number(cell) for cell in cells]
         if len(cells) == len(columns) and all(map(math.isfinite, values)):
-            rows.append(values)
-        elif len(cells) == len(columns) and not rows and all(map(math.isnan, values)):
-            scale = [_scale(cell, column, table) for cell, column in zip(cells, columns, strict=True)]
+            heading = heading or _comment_above(content, number)
+            found.extend(values)
+        elif len(cells) == len(columns) and not (found or heading) and all(map(math.isnan, values)):
+            heading = cells
         else:
             raise InputError(name_of(table), f"'{', '.join(cells)[:40]}' in line {number}", allowed)
-    if not rows:
+    if not found:
         raise InputError(name_of(table), "no line of numbers", allowed)
-    return np.array(rows) * scale
+    return np.array(found).reshape(-1, len(columns)) * _scales(heading, columns, table)
 
 
 def _named(columns: tuple[Column, ...]) -> str:
@@ -133,12 +142,44 @@ def _number(cell: str) -> float:
         return math.nan
 
 
+def _comment_above(content: str, number: int) -> list[str]:
+    """Cells of the comment in the line before a line, as programs write a heading; none without one."""
+    above = "".join(islice(lines_in(content), max(number - 2, 0), number - 1)).strip()
+    text = above.lstrip("#") if above.startswith("#") else ""
+    return next((cells for _, cells in lines_of_cells(text)), [])
+
+
+def _scales(heading: list[str], columns: tuple[Column, ...], path: Path) -> list[float]:
+    """SI values of the units that a heading names in brackets, for each column."""
+    units = [unit_in_brackets(cell) for cell in heading]
+    if len(units) != len(columns) or any(
+        not unit and column.dimension for unit, column in zip(units, columns, strict=True)
+    ):
+        received = f"the heading {shown(', '.join(heading))}" if len(units) == len(columns) else "no heading"
+        example = f"'{', '.join(c.name + f' ({c.dimension})' * bool(c.dimension) for c in columns)}'"
+        remedy = f"Add the line {example} above the numbers, with the units that they are in."
+        raise InputError(path.name, received, "a heading with the units in brackets", remedy)
+    for cell, column in zip(heading, columns, strict=True):
+        for other in columns:
+            if _words(cell) & (_words(other.name) - _words(column.name)) and not (
+                _words(cell) & (_words(column.name) - _words(other.name))
+            ):
+                received = f"the heading {shown(cell)} for the {column.name}"
+                allowed = f"columns in the order {_named(columns)}"
+                raise InputError(path.name, received, allowed, "Exchange the columns.")
+    return [_scale(cell, column, path) for cell, column in zip(heading, columns, strict=True)]
+
+
+def _words(text: str) -> set[str]:
+    return set(re.findall(r"[a-z]+", text.lower()))
+
+
 def _scale(heading: str, column: Column, path: Path) -> float:
-    """SI value of the unit that a heading names in brackets; 1 without one."""
+    """SI value of the unit that a heading names in brackets; 1 for a pure number."""
     unit = unit_in_brackets(heading)
     if column.dimension == "dB":
         unit = re.sub(r" ?re ?1 ?[uµμ]m$", "", unit)
-    if unit in ("", "-", "1"):
+    if not column.dimension and unit in ("", "-", "1"):
         return 1.0
     try:
         return factor(unit, column.dimension)

@@ -39,7 +39,7 @@ def warn_of_flaws(counts: Counts, what: str, tolerance: str, remedy: str = "Enla
         warnings.warn(
             UnconvergedWarning(
                 f"{unconverged} of {solved} contact solutions of {what} ({percent(share)}) missed their "
-                f"tolerance; their forces are approximate. Try a larger `{tolerance}`, and check the surface "
+                f"tolerance; their forces are approximate. Try a larger {tolerance}, and check the surface "
                 "for outliers.",
                 Grade.of_share(share),
             ),

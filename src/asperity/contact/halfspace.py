@@ -24,6 +24,7 @@ from asperity.kernels.scanning import Block, solve_positions
 from asperity.progress import Progress
 from asperity.store import Cache
 from asperity.surfaces.heightmap import HeightMap
+from asperity.threads import refuse_to_go_on
 
 if TYPE_CHECKING:
     import xarray
@@ -519,6 +520,7 @@ class HalfSpace:
         """Solve the contacts of a block, each from what is known of those before."""
         position, level, count = 0, 0, len(block.planes)
         while position < count:
+            refuse_to_go_on()
             end = min(position + AT_ONCE, count)
             position, level, nx, ny = solve_positions(self._known(single), block, position, level, end)
             if position < end:

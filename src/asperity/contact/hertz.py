@@ -25,7 +25,7 @@ class Hertz:
 
     Notes
     -----
-    K. L. Johnson, Contact Mechanics (1985), Eqs. 4.26–4.28, with e² = 1 − (b/a)². F = K_H δ^1.5.
+    K. L. Johnson, Contact Mechanics (1985), with e² = 1 − (b/a)². F = K_H δ^1.5.
 
     Examples
     --------
@@ -62,7 +62,7 @@ class Hertz:
             return k, (k - float(ellipe(m))) / m
 
         def mismatch(axis_ratio: float) -> float:
-            # curvature ratio A/B = (K − E) / ((a/b)² E − K) of Johnson's 4.26a, b
+            # curvature ratio A/B = (K − E) / ((a/b)² E − K) in complete elliptic integrals
             m1 = axis_ratio**2
             k, d = integrals(axis_ratio)
             m = 1.0 - m1

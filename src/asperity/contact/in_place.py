@@ -54,17 +54,25 @@ class ContactInPlace:
         continue_rolling(last, before, rows, rows_before, self.half_space.pressure_cap, self.start)
         self.block.solved[0] = 1
 
-    def solve(self, heights: NDArray[np.float64], approach: float, compliance: float = 0.0) -> Found:
+    def solve(
+        self,
+        heights: NDArray[np.float64],
+        approach: float,
+        compliance: float = 0.0,
+        rtol: float | None = None,
+    ) -> Found:
         """Solve at an approach, m, or where it falls with the force by a compliance of the bodies, m/N.
 
         Heights under the body (nx, ny), m. In the second case `approach` is that without force: the contact
-        and what the bodies yield are found together.
+        and what the bodies yield are found together. Another `rtol` holds for this contact alone.
         """
         space, counts = self.half_space, self.block.counts
         counts[:] = 0
         self.block.approaches[0] = approach
         self.block.rows[:] = heights
-        block = self.block._replace(compliance=compliance * space.cell_area)
+        block = self.block._replace(
+            compliance=compliance * space.cell_area, rtol=self.block.rtol if rtol is None else rtol
+        )
         space.solve_block(block)
         overlap = approach - float(block.room.lowest.min())
         if not counts[0]:

@@ -183,7 +183,7 @@ def run_in_surface(
 
     what = "body that runs in"
     if half_space.hardness is None:
-        remedy = "Give HalfSpace a hardness; an elastic surface keeps no mark."
+        remedy = "Give the half-space a hardness; an elastic surface keeps no mark."
         raise InputError("hardness of the half-space", "None", "a pressure at which asperities flow", remedy)
     heights = heights_on(half_space, surface, "surface to be run in")
     shape = real_array(what, body, "an array (nx, ny) of lengths in m")

@@ -18,6 +18,8 @@ from asperity.spectra import nominal_frequency
 
 CONVERGED = 0.5
 """Change of a level up to which a setting is fine enough, dB."""
+NOT_CONVERGED = "Not converged"
+"""How a sentence begins that comes before all others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,7 @@ def convergence_group(
     held = result[spectra.BAND.group].to_dataset()
     band, laws = held[spectra.BAND.name].values, [str(law) for law in held[spectra.LAW.name].values]
     changes = [comparison.change for comparison in found]
-    shown = compared_bands(held)
+    shown = compared_bands(held.drop_vars(spectra.START_SHARE.name, errors="ignore"))  # all start alike
     largest = [_largest(change.force[0], shown) for change in changes]
     laid_out: dict[Entry, object] = {
         convergence.SETTING: [comparison.setting for comparison in found],
@@ -80,6 +82,8 @@ def _sentences(group: xarray.Dataset, main: str) -> Iterator[str]:
     if tried:
         first, *others = tried
         band = float(group[convergence.LARGEST_BAND.name].values[names.index(first)])
+        lost = convergence.meaningless(size[first], size.get(convergence.PATH_LENGTH, np.nan))
+        yield f"{NOT_CONVERGED}: {first} is too coarse for these levels to mean anything." if lost else ""
         yield (
             f"Of its settings, {first} ({words[first]}) changes the levels of {main} most, by up to "
             f"{size[first]:.2f} dB ({nominal_frequency(band)})."

@@ -13,7 +13,7 @@ from xarray import DataTree
 from asperity import __version__
 from asperity.config.case import Case
 from asperity.config.content import content, file_digest
-from asperity.convergence.group import Comparison, convergence_group
+from asperity.convergence.group import NOT_CONVERGED, Comparison, convergence_group
 from asperity.convergence.levels import Levels, halves
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress
@@ -57,10 +57,12 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
             found.append(_compared(prepared, result, setting, _named(setting, progress)))
         progress(len(settings), len(settings), "convergence")
     group = convergence_group(prepared, result, found)
-    told = " ".join([str(result.attrs[provenance.VERDICT.name]), group.attrs[convergence.SENTENCE.name]])
+    told = [str(result.attrs[provenance.VERDICT.name]), str(group.attrs[convergence.SENTENCE.name])]
+    if told[1].startswith(NOT_CONVERGED):
+        told.reverse()
     tree = DataTree(result.to_dataset(inherit=False), children=result.children)
     tree["convergence"] = DataTree(group)
-    tree.attrs[provenance.VERDICT.name] = told
+    tree.attrs[provenance.VERDICT.name] = " ".join(told)
     return tree
 
 

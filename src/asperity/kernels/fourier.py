@@ -1,7 +1,7 @@
 """Fourier transforms of many columns at once: each vector lane holds a column of its own.
 
 A batch is a flat array (n, 2, lanes): n values of each column, real parts, then imaginary parts. Mixed-radix
-transforms that sort themselves (T. G. Stockham, AFIPS Conf. Proc. 28 (1966) 229); radices 2, 3, 4 and 5.
+transforms that sort themselves, called Stockham's; radices 2, 3, 4 and 5.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from xarray import DataTree
 from asperity.arguments import file_path, shown
 from asperity.comma_separated import csv_text
 from asperity.errors import InputError
-from asperity.files import write_bytes
+from asperity.files import together, write_bytes
 from asperity.kinds import KINDS
 from asperity.printable import printable
 from asperity.reporting.comparison import NamedRun, compared
@@ -144,9 +144,11 @@ def write_comparison(
     if target.suffix.lower() != ".html":
         target /= "comparison.html"
     rows = target.with_suffix(".csv")
-    written = write_bytes(rows, csv_text(*table_rows(runs, table)).encode("utf-8", errors="backslashreplace"))
     page = comparison_page(runs, table, levels, rows.name)
-    return write_bytes(target, page.encode("utf-8", errors="backslashreplace")), written
+    with together(target.parent, last=target.name) as new:
+        for file, text in ((rows, csv_text(*table_rows(runs, table))), (target, page)):
+            write_bytes(new / file.name, text.encode("utf-8", errors="backslashreplace"))
+    return target, rows
 
 
 def shown_levels(table: xarray.Dataset, entries: Sequence[Entry]) -> dict[str, str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
 
@@ -12,9 +11,10 @@ from xarray import DataTree
 
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError
-from asperity.files import write_bytes
+from asperity.files import together, write_bytes
 from asperity.forked import in_processes
 from asperity.kinds import KINDS
+from asperity.printable import printable
 from asperity.reporting.ahead import DrawnAhead
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.csv_files import write_columns
@@ -80,7 +80,9 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     target = file_path("report", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
         target /= "report.html"
-    return write_page(result, target)
+    with together(target.parent, last=target.name) as new:
+        write_page(result, new / target.name)
+    return target
 
 
 def draw_all(
@@ -112,16 +114,10 @@ def write_page(
 
 
 def _write(path: Path, text: str) -> Path:
-    return write_bytes(path, text.encode("utf-8", errors="backslashreplace"))
+    return write_bytes(path, printable(text, lines=True).encode())
 
 
-def remove_report(directory: str | os.PathLike[str]) -> None:
-    """Remove an earlier report, of any kind, from a folder: it would not belong to the run beside it."""
-    directory = Path(directory)
-    if not (directory / "report.html").exists():
-        return
+def names_of_reports() -> list[str]:
+    """Names of all files that a report of any kind may have."""
     parts = (part for kind in KINDS.values() for chapter in kind.chapters for part in chapter.parts)
-    names = [f"{part.name}.{ending}" for part in parts for ending in ("csv", "svg")]
-    for name in ["report.html", *names]:
-        with suppress(OSError):
-            (directory / name).unlink(missing_ok=True)
+    return ["report.html", *(f"{part.name}.{ending}" for part in parts for ending in ("csv", "svg"))]

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, BinaryIO, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 from asperity.interrupts import no_interrupt_for_children
 from asperity.threads import THREADS, processors
@@ -50,8 +50,8 @@ class ReportProcess:
         from asperity.streamed import send_result
 
         def tell() -> None:
-            if self._told(lambda to: to.write(b"null\n")) and self._told(lambda to: send_result(known, to)):
-                self._answered()
+            if self._told(lambda to: to.write(b"false\n")) and self._told(lambda to: send_result(known, to)):
+                self._answer()
 
         self._tell_next(tell)
 
@@ -67,54 +67,47 @@ class ReportProcess:
         self._telling = Thread(target=tell_after, daemon=True)
         self._telling.start()
 
-    def write(self, tree: DataTree, page: Path, save: Callable[[Callable[[], object]], object]) -> Path:
-        """Write the page of a result, and what goes beside it, but not before the result is saved.
+    def write(self, tree: DataTree, page: Path, save: Callable[[], object]) -> list[str]:
+        """Write the page of a result, and what goes beside it, once `save` has saved the result.
 
-        `save` saves it, and calls what it is given before it writes anything: then an earlier report is
-        removed. The other process draws meanwhile. If it cannot, because of an error or its end, this one
-        does what is left, or says why not.
+        The other process draws meanwhile. If it cannot, because of an error or its end, this one does what is
+        left, or says why not. Names of all files that a report may have are returned.
         """
         from asperity.streamed import send_result
 
-        removed = drawing = False
+        drawing = False
 
         def tell() -> None:
-            nonlocal removed, drawing
-            removed = self._did(page.parent)
-            drawing = self._told(lambda to: send_result(tree, to))
-
-        def remove_earlier() -> None:
-            self.told()
-            if not removed and page.exists():
-                from asperity.kinds.report import remove_report
-
-                remove_report(page.parent)
+            nonlocal drawing
+            drawing = self._told(lambda to: to.write(b"true\n")) and self._told(
+                lambda to: send_result(tree, to)
+            )
 
         self._tell_next(tell)
-        save(remove_earlier)
-        if drawing and self._did(page):
-            return page
-        from asperity.kinds.report import write_page
+        save()
+        self.told()
+        if drawing and self._told(lambda to: to.write(json.dumps(str(page)).encode() + b"\n")):
+            names = self._answer()
+            if isinstance(names, list):
+                return names
+        from asperity.kinds.report import names_of_reports, write_page
 
-        return write_page(tree, page)
+        write_page(tree, page)
+        return names_of_reports()
 
     def told(self) -> None:
         """Wait until all has been told, or cannot be."""
         if self._telling is not None:
             self._telling.join()
 
-    def _did(self, path: Path) -> bool:
-        """Tell the other process a path, and hear whether it did what was to be done with it."""
-        return self._told(lambda to: to.write(json.dumps(str(path)).encode() + b"\n")) and self._answered()
-
-    def _answered(self) -> bool:
-        """Hear whether the other process did what it was told."""
+    def _answer(self) -> Any:
+        """What the other process says when it has done what it was told; None if it has not."""
         assert self.process is not None
         assert self.process.stdout is not None
         try:
-            return json.loads(self.process.stdout.readline()) is True
+            return json.loads(self.process.stdout.readline())
         except (OSError, ValueError):
-            return False
+            return None
 
     def _told(self, say: Callable[[BinaryIO], object]) -> bool:
         """Tell the other process something; whether that is possible."""
@@ -176,13 +169,13 @@ def _end(reporter: ReportProcess) -> None:
 def draw_on_request() -> None:
     """Draw results that come by standard input, as the process that `report_process` starts, until it ends.
 
-    Before each comes a folder, from which an earlier report is removed, after it the path where its page is
-    to be written; the answer to both is that it was done. Before that may come a part of the result: it is
-    answered when it was read, and drawn from until something else comes. An error ends the process: the other
-    one will meet it, too, and tell.
+    Before each comes whether it is whole. After one that is comes the path where its page is to be written;
+    the answer are names of all files that a report may have. A part of a result is answered when it was read,
+    and drawn from until something else comes. An error ends the process: the other one will meet it, too, and
+    tell.
     """
     from asperity.kinds import KINDS
-    from asperity.kinds.report import draw_all, parts_of, remove_report, write_page
+    from asperity.kinds.report import draw_all, names_of_reports, parts_of, write_page
     from asperity.reporting.ahead import DrawnAhead, drawn_ahead, warm_up
     from asperity.streamed import receive_result
     from asperity.unneeded import spare_pint
@@ -197,21 +190,18 @@ def draw_on_request() -> None:
     asked, processes = sys.stdin.buffer, min(processors(), _MOST)
     ahead: dict[str, DrawnAhead] = {}
     while line := asked.readline():
-        folder = json.loads(line)
-        if folder is not None:
-            remove_report(folder)
-            _answer()
+        whole = json.loads(line)
         result = receive_result(asked)
         if result is None:
             return
-        if folder is None:
-            _answer()
+        if not whole:
+            _answer([])
             parts = [part for part in parts_of(result) if part.name not in ahead]
             ahead |= drawn_ahead(result, parts, _asked_again)
             continue
         drawn = draw_all(result, processes, ahead)
         write_page(result, Path(json.loads(asked.readline())), drawn, processes)
-        _answer()
+        _answer(names_of_reports())
 
 
 def _asked_again() -> bool:
@@ -219,6 +209,6 @@ def _asked_again() -> bool:
     return sys.platform == "win32" or bool(select.select([sys.stdin], [], [], 0)[0])
 
 
-def _answer() -> None:
-    sys.stdout.write("true\n")
+def _answer(words: list[str]) -> None:
+    sys.stdout.write(json.dumps(words) + "\n")
     sys.stdout.flush()

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from asperity.contact.in_place import ContactInPlace
     from asperity.laws.materials import Materials
 
+AT_REST = 1e-6
+"""Largest tolerance of contacts at rest, before anything rolls: they must carry the load to five digits."""
+
 
 @dataclass(frozen=True, eq=False)
 class Direct:
@@ -133,7 +136,8 @@ class DirectOnPath:
             self.contact.start_again()
         else:
             self._start(step)
-        found = self.contact.solve(heights, approach, compliance)
+        rtol = min(self.law.rtol, AT_REST) if self._last is None else self.law.rtol
+        found = self.contact.solve(heights, approach, compliance, rtol)
         self._tried = True
         self.truncated += found.truncated
         self.overlap = max(self.overlap, found.overlap)

@@ -28,6 +28,8 @@ class HertzLaw:
         Texture that the force follows, filtered or not, m; None for a smooth path.
     damping : float
         c, N s/m.
+    plane : StateTexture, optional
+        Plane from which the states of the texture count, m, as in `Areal`; the mean plane by default.
 
     Raises
     ------
@@ -39,6 +41,7 @@ class HertzLaw:
     texture: StateTexture | None = None
     damping: float = 0.0
     name: str = "hertz"
+    plane: StateTexture | None = None
 
     def __post_init__(self) -> None:
         from asperity.reduction.stiffness import ForceCurve
@@ -51,12 +54,17 @@ class HertzLaw:
         from asperity.laws.layout import on_curve
         from asperity.reduction.stiffness import ForceCurve
 
-        return on_curve(ForceCurve.hertz(self.stiffness), self.texture, positions, damping=self.damping)
+        curve = ForceCurve.hertz(self.stiffness)
+        return on_curve(curve, self.texture, positions, damping=self.damping, plane=self.plane)
 
 
 def _build(materials: Materials) -> HertzLaw:
-    """Build the law from the materials of a case."""
-    return HertzLaw(materials.hertz_constant, materials.line, materials.damping, materials.name)
+    """Build the law from the materials of a case; a filter is read by force, as rough contact is softer."""
+    from asperity.reduction.stiffness import ForceCurve
+
+    constant = materials.hertz_constant
+    line = materials.line_on(ForceCurve.hertz(constant))
+    return HertzLaw(constant, line, materials.damping, materials.name, materials.line_at_load)
 
 
 LAW = LawSpec(

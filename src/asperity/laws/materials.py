@@ -55,6 +55,10 @@ class Materials(Protocol):
         """Line texture of the path: through the contact filter where the law needs it (FILTER), else bare."""
         ...
 
+    def line_on(self, curve: ForceCurve) -> StateTexture:
+        """The line texture with its states where a curve, as that of smooth bodies, carries their forces."""
+        ...
+
     @property
     def line_at_load(self) -> StateTexture:
         """The line texture of one state, that under the working load."""

@@ -23,7 +23,8 @@ class Printed:
     """F = k_c(r) (r - h(r)) + c dr/dt while r > h; F = c dr/dt otherwise (thesis Eqs. 2.1, 2.2).
 
     The secant stiffness multiplies the texture while the approach sees the tangent: under a
-    constant load the body follows only 1/(1+n) of a slow bump when k_c ~ r^n. The damper goes on
+    constant load the body follows only 1/(1+n) of a slow bump when k_c ~ r^n. States count from the mean
+    plane: on waves of several approaches the filter is read where the contact is not. The damper goes on
     acting in flight.
 
     Parameters
@@ -79,7 +80,7 @@ def _build(materials: Materials) -> Printed:
 
 LAW = LawSpec(
     "printed",
-    "The thesis as printed: secant stiffness times the filtered line texture.",
+    "The thesis as printed: states from the mean plane, secant stiffness times the filtered line texture.",
     _build,
     frozenset({Need.SAMPLES, Need.DATUM, Need.FILTER}),
     normalise="low-wavenumber",

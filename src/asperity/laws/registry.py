@@ -72,8 +72,8 @@ def register(law: LawSpec) -> None:
             remedy = "Take another name, or unregister that law first."
             raise InputError("name of a law", shown(spec.name), "a name that no other law has", remedy)
         if spec.role in taken:
-            received = f'"{spec.role}", which `{taken[spec.role]}` has'
-            raise InputError(f"role of law `{spec.name}`", received, "a role that no other law has, or None")
+            received = f'"{spec.role}", which the law {taken[spec.role]} has'
+            raise InputError(f"role of law {spec.name}", received, "a role that no other law has, or None")
     _specs.update({spec.name: spec for spec in law.family})
     _families[law.name] = tuple(spec.name for spec in law.family)
 

@@ -29,6 +29,8 @@ class Shifted:
         Line texture after the contact filter, h, m, positive away from contact.
     damping : float
         c, N s/m.
+    plane : StateTexture, optional
+        Plane from which the states of the texture count, m, as in `Areal`; the mean plane by default.
 
     Raises
     ------
@@ -40,6 +42,7 @@ class Shifted:
     texture: StateTexture | None
     damping: float = 0.0
     name: str = "shifted"
+    plane: StateTexture | None = None
 
     def __post_init__(self) -> None:
         check_damping(self.damping)
@@ -48,12 +51,12 @@ class Shifted:
         """Lay the law out on positions (n,) of the contact, m."""
         from asperity.laws.layout import on_curve
 
-        return on_curve(self.curve, self.texture, positions, damping=self.damping)
+        return on_curve(self.curve, self.texture, positions, damping=self.damping, plane=self.plane)
 
 
 def _build(materials: Materials) -> Shifted:
     """Build the law from the materials of a case."""
-    return Shifted(materials.curve, materials.line, materials.damping, materials.name)
+    return Shifted(materials.curve, materials.line, materials.damping, materials.name, materials.line_at_load)
 
 
 LAW = LawSpec(

@@ -171,7 +171,7 @@ class LawSpec:
         if not isinstance(self.name, str) or not re.fullmatch(_WORD, self.name):
             allowed = 'small letters and digits, with hyphens between words, as "my-law"'
             raise InputError("name of a law", shown(self.name), allowed)
-        what = f"law `{self.name}`"
+        what = f"law {self.name}"
         if not isinstance(self.meaning, str) or not re.fullmatch(r"\S.*\.", self.meaning):
             raise InputError(f"meaning of {what}", shown(self.meaning), "one line that ends with a full stop")
         if not callable(self.build):

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.contact import HalfSpace
-from asperity.contact.flaws import total, warn_of_flaws
-from asperity.contact.scan import ScanJob, ScannedForces, scan_forces
+from asperity.contact.flaws import Counts, total, warn_of_flaws
 from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.reduction.stiffness import ForceCurve
-from asperity.surfaces.strip import Rows
 from asperity.threads import in_order
+
+TANGENT = 1e-4
+"""Relative residual of the tangent stiffnesses of a loading curve."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +25,7 @@ class StiffnessEnsemble:
 
     approaches: NDArray[np.float64]  # (k,), from the samples' patch planes, m, positive closing
     forces: NDArray[np.float64]  # (N, k), N
+    tangents: NDArray[np.float64]  # (N, k), dF/d(approach) of the solved contacts, N/m
     datum: float
     """d0, m: the state is r = approach + d0, one offset for all samples, no less than the highest first
     touch, so that F(r = 0) = 0 for each of them."""
@@ -48,8 +50,8 @@ class StiffnessEnsemble:
 
     @property
     def curve(self) -> ForceCurve:
-        """f(approach): monotone fit through the ensemble mean; k_c(r) = f/r (Eq. 2.3) is its secant."""
-        return ForceCurve.from_samples(self.approaches, self.mean_force)
+        """f(approach): monotone fit through the ensemble mean, with its slopes; k_c(r) = f/r (Eq. 2.3)."""
+        return ForceCurve.from_samples(self.approaches, self.mean_force, stiffness=self.tangents.mean(axis=0))
 
 
 def patches(
@@ -121,9 +123,16 @@ def stiffness_ensemble(
     do about contacts that do not converge or are cut off, as in `warn_of_flaws`.
     """
 
-    def load(sample: NDArray[np.float64]) -> ScannedForces[NDArray[np.float64]]:
-        job = ScanJob(half_space, Rows(sample), body, approaches, rtol=rtol, device=None)
-        return scan_forces(job, workers=1)
+    cell = half_space.cell_area
+
+    def load(sample: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], Counts]:
+        block = half_space.at_positions(sample, body, np.zeros(1), approaches, 1, rtol)
+        forces = cell * block.totals[:, 0]
+        tangents = [
+            half_space.tangent_stiffness(pressure, TANGENT) if force > 0.0 else 0.0
+            for force, pressure in zip(forces, block.pressures[0], strict=True)
+        ]
+        return forces, np.array(tangents), Counts(*block.counts.tolist())
 
     scans, message = [], "pressing the samples"
     if progress:
@@ -132,9 +141,10 @@ def stiffness_ensemble(
         scans.append(scanned)
         if progress:
             progress(len(scans), len(samples), message)
-    warn_of_flaws(total(s.counts for s in scans), "the loading curves", tolerance, remedy)
-    forces = np.array([scanned.forces[:, 0] for scanned in scans])
-    cut_off = max(s.counts.truncated for s in scans)  # contacts grow: the highest states are cut off
+    forces, tangents = (np.array([scanned[i] for scanned in scans]) for i in (0, 1))
+    counts = [scanned[2] for scanned in scans]
+    warn_of_flaws(total(counts), "the loading curves", tolerance, remedy)
+    cut_off = max(each.truncated for each in counts)  # contacts grow: the highest states are cut off
     return StiffnessEnsemble(
-        np.asarray(approaches, dtype=np.float64), forces, datum, len(approaches) - cut_off
+        np.asarray(approaches, dtype=np.float64), forces, tangents, datum, len(approaches) - cut_off
     )

@@ -30,8 +30,14 @@ class ForceCurve:
     bilateral: bool = False
 
     @classmethod
-    def from_samples(cls, approach: ArrayLike, force: ArrayLike, exponent: float = 1.5) -> ForceCurve:
-        """Curve through computed pairs of approach, m, increasing, and force, N.
+    def from_samples(
+        cls,
+        approach: ArrayLike,
+        force: ArrayLike,
+        exponent: float = 1.5,
+        stiffness: ArrayLike | None = None,
+    ) -> ForceCurve:
+        """Curve through computed pairs of approach, m, increasing, and force, N, with dF/ds, N/m, if known.
 
         Forces are not negative, increase once positive, and at least two are. The exponent is that of the
         start of the force, 3/2 for contact of solids. First touch lies where g, continued straight below its
@@ -44,7 +50,13 @@ class ForceCurve:
         slope = np.diff(g)[first - 1] / np.diff(s)[first - 1] if first else monotone_slopes(s, g)[0]
         s, g = s[first:], g[first:]
         s, g = np.concatenate([[s[0] - g[0] / slope], s]), np.concatenate([[0.0], g])
-        return cls(s, cubic_coefficients(s, g, monotone_slopes(s, g)), exponent, float(s[-1]))
+        slopes = monotone_slopes(s, g)
+        if stiffness is not None:
+            known = np.asarray(stiffness, dtype=float)[first:] / (exponent * g[1:] ** (exponent - 1.0))
+            secants = np.diff(g) / np.diff(s)
+            # up to three times the secants beside it a cubic is monotone
+            slopes[1:] = np.minimum(known, 3.0 * np.minimum(secants, np.append(secants[1:], secants[-1])))
+        return cls(s, cubic_coefficients(s, g, slopes), exponent, float(s[-1]))
 
     @classmethod
     def hertz(cls, stiffness: float) -> ForceCurve:

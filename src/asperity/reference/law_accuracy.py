@@ -29,6 +29,7 @@ class Place:
     across: float  # the same across; where the window ends before, the most that it shows
     within: float  # rms height over the plane that the nominal patch feels, over the approach
     dynamic: float  # rms force of the linear contact that follows the felt plane, over the load
+    highest_wavenumber: float  # k a: 2 pi `HIGH` over the speed, times the semi-axis along the path
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class MappedPoint:
 
     kind: str
     load: float  # N
+    speed: float  # m/s
     anisotropy: float  # correlation length along over that across, as the texture was asked for
     hurst: float
     place: Place  # mean of the paths
@@ -52,8 +54,9 @@ class LawMap:
     """All points, and how far their interpolation held elsewhere."""
 
     points: tuple[MappedPoint, ...]
+    fresh: tuple[MappedPoint, ...]  # cases that are no points: do the bands hold?
     # by law: standard deviations of the estimate, above and below it, within which the logarithm of the error
-    # stayed in the share `claim` of cases aside of the map
+    # stayed in the share `claim` of the points that were drawn at random, each estimated from all others
     spread: Mapping[str, float]
     claim: float
     bands: tuple[float, ...]  # centres of the one-third octaves, Hz
@@ -68,17 +71,21 @@ def law_map() -> LawMap:
 
 def law_map_of(data: Mapping[str, Any]) -> LawMap:
     """Lay a map out of what its file holds."""
-    points = tuple(
-        MappedPoint(
-            point["kind"],
-            point["load"],
-            point["anisotropy"],
-            point["hurst"],
-            Place(**point["place"]),
-            point["loss"],
-            {law: max(found["rms"], LEAST) for law, found in point["laws"].items()},
-            point,
+    points, fresh = (
+        tuple(
+            MappedPoint(
+                point["kind"],
+                point["load"],
+                point["speed"],
+                point["anisotropy"],
+                point["hurst"],
+                Place(**point["place"]),
+                point["loss"],
+                {law: max(found["rms"], LEAST) for law, found in point["laws"].items()},
+                point,
+            )
+            for point in data[part]
         )
-        for point in data["points"]
+        for part in ("points", "fresh")
     )
-    return LawMap(points, data["spread"], data["claim"], tuple(data["bands"]))
+    return LawMap(points, fresh, data["spread"], data["claim"], tuple(data["bands"]))

@@ -124,7 +124,7 @@ def contact_modulus(first: Material, second: Material) -> float:
     Returns
     -------
     float
-        E*, Pa: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, Eq. 4.22).
+        E*, Pa: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985).
     """
     compliance = sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in (first, second))
     return 1.0 / compliance

@@ -6,7 +6,7 @@ import difflib
 
 from asperity.errors import InputError
 
-_NORDBORG = "A. Nordborg, J. Acoust. Soc. Am., 2002, as used by a public re-implementation"
+_NORDBORG = "A. Nordborg, J. Acoust. Soc. Am., 2002 (not seen), as used by a public re-implementation"
 _NORDBORG_VISCOUS = "viscous variant of " + _NORDBORG
 _UIC60 = "UIC 60 as in the program rolland: E = 210 GPa, I = 3.037e-5 m^4, A = 76.7e-4 m^2, m' = 60.2 kg/m"
 _UIC60_SHEAR = _UIC60 + "; kappa = 0.393, G = 80.77 GPa"

@@ -118,11 +118,10 @@ def _levels(
         found |= _weighted(name, numbers, band, units, meaning)
     deviation = np.full((len(runs), len(band)), np.nan)
     for r, run in enumerate(runs):
-        if present(run.tree, spectra.BAND_TIME_PRODUCT, spectra.BAND):
+        if present(run.tree, spectra.LEVEL_DEVIATION, spectra.BAND):
             at = np.searchsorted(places, _places(values(run.tree, spectra.BAND)))
             inside = at < len(band)
-            product = values(run.tree, spectra.BAND_TIME_PRODUCT)[inside]
-            deviation[r, at[inside]] = 10.0 / np.log(10.0) / np.sqrt(product)
+            deviation[r, at[inside]] = values(run.tree, spectra.LEVEL_DEVIATION)[inside]
     meaning = "standard deviation of a level by the chance of one record"
     return found | {DEVIATION: _variable(("run", "band"), deviation, "dB", meaning)}
 

@@ -11,6 +11,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from asperity import __version__
+from asperity.printable import printable
 from asperity.reporting.comparison import MAIN, OF_CONTACT, NamedRun
 from asperity.reporting.comparison_figures import contact_figure, levels_figure
 from asperity.reporting.comparison_table import KIND, listed_keys, summary, sure
@@ -69,7 +70,7 @@ def comparison_page(
         light=Markup(colour_variables(dark=False, colours=colours)),
         dark=Markup(colour_variables(dark=True, colours=colours)),
     )
-    return share_styles(text)
+    return share_styles(printable(text, lines=True))
 
 
 def _sections(

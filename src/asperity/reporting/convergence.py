@@ -10,6 +10,7 @@ from asperity.reporting.data import doubtful, nominal_band, present, stored_vari
 from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
 from asperity.schema import Entry, convergence
 from asperity.schema.spectra import BAND_TIME_PRODUCT
+from asperity.spectra import say_little
 
 OFF, FAR = 0.5, 1.0
 """Sizes of changes above which a field is shaded, and shaded more, dB."""
@@ -98,7 +99,8 @@ def _largest_motion(tree: DataTree, count: int) -> NDArray[np.float64]:
         return np.full(count, np.nan)
     change = np.abs(values(tree, convergence.MOTION_LEVEL_CHANGE, "setting", "law", "band")[:, 0])
     band = values(tree, convergence.BAND)
-    shown = ~doubtful(tree, BAND_TIME_PRODUCT) & (band > 90.0) & (band < 5500.0)
+    little = say_little(values(tree, BAND_TIME_PRODUCT, "band"), 0.0)  # all start alike
+    shown = ~little & (band > 90.0) & (band < 5500.0)
     found = np.where(shown & np.isfinite(change), change, -1.0).max(axis=1)
     return np.where(found < 0.0, np.nan, found)
 

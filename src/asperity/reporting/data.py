@@ -16,7 +16,8 @@ from xarray import DataArray, DataTree
 from asperity.errors import InputError
 from asperity.schema import Attribute, Entry
 from asperity.schema.provenance import PARAMETERS
-from asperity.spectra import LEAST_PRODUCT, nominal
+from asperity.schema.spectra import BAND_TIME_PRODUCT, START_SHARE
+from asperity.spectra import nominal, say_little
 from asperity.units import quantity
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
@@ -167,11 +168,16 @@ def of_law(tree: DataTree, entry: Entry, law: str, *dims: str) -> NDArray[np.flo
 
 
 def doubtful(tree: DataTree, product: Entry) -> NDArray[np.bool_]:
-    """Bands whose levels say little, because the `product` of bandwidth and averaging time is small."""
+    """Bands whose levels say little: the `product` of bandwidth and averaging time is small.
+
+    Of force levels also those that still hold the start of the record.
+    """
     (dim,) = product.dims
     if not present(tree, product):
         return np.zeros(tree[product.group].sizes[dim], dtype=bool)
-    return values(tree, product, dim) < LEAST_PRODUCT
+    known = product is BAND_TIME_PRODUCT and present(tree, START_SHARE)
+    start = values(tree, START_SHARE) if known else 0.0
+    return np.asarray(say_little(values(tree, product, dim), start))
 
 
 def engineering(value: float, unit: str, digits: int = 3) -> str:

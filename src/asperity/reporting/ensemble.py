@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from asperity.reporting.style import INK, MUTED, band_axis, new_figure, shade_doubtful, styled
 from asperity.reporting.typed import typed_words
-from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW
-from asperity.spectra import LEAST_PRODUCT
+from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
+from asperity.spectra import say_little
 
 MOST_PANELS = 6
 """Members of other keys that are drawn; the CSV file has all of them."""
@@ -42,7 +42,8 @@ def ensemble_figure(bands: xarray.Dataset, colours: Mapping[str, str]) -> Figure
             axes.plot(centre, mean, color=colour, label=each, marker="o", markersize=3)
         band_axis(axes, centre)
         if BAND_TIME_PRODUCT.name in here:
-            shade_doubtful(axes, centre, here[BAND_TIME_PRODUCT.name].values < LEAST_PRODUCT)
+            little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
+            shade_doubtful(axes, centre, little.values)
         axes.set_ylabel("contact force level / dB re 1 N")
         axes.set_title(", ".join(_valued(here[dim]) for dim in others))
     panels[0].legend(ncols=3)

@@ -222,7 +222,7 @@ def _printed_filter_caption(tree: DataTree) -> str:
         low, high = float(np.nanmin(scale.values)), float(np.nanmax(scale.values))
         found = f" k_0/k_t = {plain(low, 2)} to {plain(high, 2)}: what the patch averages across is left out."
     normalised = _normalised(tree, contact.PRINTED_FILTER)
-    return f"The filter of `printed`: as above, but {normalised[:1].lower()}{normalised[1:]}{found}"
+    return f"The filter of the law printed: as above, but {normalised[:1].lower()}{normalised[1:]}{found}"
 
 
 FILTER = (

@@ -91,11 +91,14 @@ def _settings(tree: DataTree) -> Iterator[Light]:
     if not names:
         yield Light("change of levels by finer settings", "not known: run with --converge", limit, UNKNOWN)
         return
-    for name, size in zip(names, setting_numbers(tree, convergence.LARGEST_CHANGE), strict=True):
+    sizes = dict(zip(names, setting_numbers(tree, convergence.LARGEST_CHANGE).tolist(), strict=True))
+    chance = sizes.get(convergence.PATH_LENGTH, np.nan)
+    for name, size in sizes.items():
         if name == convergence.PATH_LENGTH:
             continue  # chance, not a setting
         quantity = f"change of levels by a finer setting: {name}"
         if not np.isfinite(size):
             yield Light(quantity, "not changed", limit, UNKNOWN)
         else:
-            yield Light(quantity, f"{size:.2f} dB", limit, IN_RANGE if size <= OFF else WARNING)
+            far = OUT if convergence.meaningless(size, chance) else WARNING
+            yield Light(quantity, f"{size:.2f} dB", limit, IN_RANGE if size <= OFF else far)

@@ -12,7 +12,7 @@ from xarray import DataTree
 
 from asperity.reporting.data import engineering, force_unit, json_list, laws, of_law, present, stated, values
 from asperity.reporting.law_entries import law_entry, law_style
-from asperity.reporting.style import band_axis, envelope, styled
+from asperity.reporting.style import ShownFigure, band_axis, envelope, styled
 from asperity.reporting.time_figures import main_limits, time_unit
 from asperity.schema import provenance
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, LONGEST_LOSS, TIME
@@ -68,10 +68,18 @@ def _time(seconds: float) -> str:
     return engineering(seconds, "s") if seconds > 0 else "–"
 
 
-@styled()
 def _picture(tree: DataTree) -> str:
+    image = io.BytesIO()
+    overview_figure(tree).savefig(image, format="png", dpi=110)
+    data = base64.b64encode(image.getvalue()).decode()
+    main = escape(laws(tree, CONTACT_FORCE)[0])
+    return f'<img alt="contact force of {main}" src="data:image/png;base64,{data}">'
+
+
+@styled()
+def overview_figure(tree: DataTree) -> Figure:
     """Force of the main law in time, and the force levels of all laws."""
-    figure = Figure(figsize=SIZE, layout="constrained")
+    figure = ShownFigure(figsize=SIZE, layout="constrained")
     history, *levels = figure.subplots(1, 2 if present(tree, FORCE_LEVEL) else 1, squeeze=False)[0]
     names = laws(tree, CONTACT_FORCE)
     main, time = names[0], values(tree, TIME, "time")
@@ -94,7 +102,4 @@ def _picture(tree: DataTree) -> str:
         band_axis(axes, band)
         axes.set(ylabel="force level / dB re 1 N")
         axes.legend(fontsize=7, ncols=2 if len(names) > 4 else 1)
-    image = io.BytesIO()
-    figure.savefig(image, format="png", dpi=110)
-    data = base64.b64encode(image.getvalue()).decode()
-    return f'<img alt="contact force of {escape(main)}" src="data:image/png;base64,{data}">'
+    return figure

@@ -12,6 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 from xarray import DataTree
 
+from asperity.printable import printable
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.convergence import setting_names
 from asperity.reporting.data import json_list, missing, stated
@@ -193,7 +194,7 @@ def page(tree: DataTree, chapters: Sequence[Chapter], drawn: Sequence[PageSectio
         light=Markup(colour_variables(dark=False, colours=colours)),
         dark=Markup(colour_variables(dark=True, colours=colours)),
     )
-    return share_styles(text)
+    return share_styles(printable(text, lines=True))
 
 
 def _verdict(tree: DataTree) -> tuple[str, str]:

@@ -21,7 +21,7 @@ from xarray import DataArray, DataTree
 from asperity.arguments import file_path, shown
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
-from asperity.files import write_bytes
+from asperity.files import together, write_bytes
 from asperity.reporting.pass_by import PASS_BY, pass_by_pressure
 from asperity.schema.rolling import LAW, TIME
 from asperity.spectra import a_weighting
@@ -114,17 +114,16 @@ def listen(
     louder = [max(heard) / each if matched and each > 0.0 else 1.0 for each in heard]
     largest = max(f * np.abs(s.samples).max() for f, s in zip(louder, sounds, strict=True)) or 1.0
     full = [largest / PEAK / factor for factor in louder]
-    files = [
-        write_bytes(folder / sound.file_name, wav_bytes(sound.samples / each))
-        for sound, each in zip(sounds, full, strict=True)
-    ]
     heading = ["file", "quantity", "law", "place", "unit", "full sample", "A-weighted rms"]
     rows = [
-        [file.name, s.quantity, s.law, s.place, s.unit, each, weighted]
-        for file, s, each, weighted in zip(files, sounds, full, heard, strict=True)
+        [s.file_name, s.quantity, s.law, s.place, s.unit, each, weighted]
+        for s, each, weighted in zip(sounds, full, heard, strict=True)
     ]
-    write_csv(folder / TABLE, heading, rows)
-    return files
+    with together(folder, last=TABLE) as new:
+        for sound, each in zip(sounds, full, strict=True):
+            write_bytes(new / sound.file_name, wav_bytes(sound.samples / each))
+        write_csv(new / TABLE, heading, rows)
+    return [folder / sound.file_name for sound in sounds]
 
 
 def sounds_of(tree: DataTree, what: str | None = None) -> list[Sound]:

@@ -35,8 +35,9 @@ from asperity.schema.spectra import (
     FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
     FORCE_PSD,
     FREQUENCY,
+    START_SHARE,
 )
-from asperity.spectra import LEAST_PRODUCT
+from asperity.spectra import LEAST_PRODUCT, MOST_START
 
 IN_FREQUENCY = "linear, frequency domain"
 """Name of the linear contact that is solved there."""
@@ -121,7 +122,7 @@ def product_series(tree: DataTree, product: Entry) -> dict[Any, Series]:
     enough = (~doubtful(tree, product)).astype(float)
     return {
         product: series(tree, product, "B T"),
-        "enough": Series(f"B T of {LEAST_PRODUCT:g} or more", "1", enough),
+        "enough": Series("level says something", "1", enough),
     }
 
 
@@ -195,9 +196,13 @@ def doubtful_words(tree: DataTree, product: Entry) -> str:
     if not doubtful(tree, product).any():
         return ""
     scatter = 4.34 / np.sqrt(LEAST_PRODUCT)
+    start = ""
+    if product is BAND_TIME_PRODUCT and present(tree, START_SHARE):
+        low = -10.0 * np.log10(1.0 - MOST_START)
+        start = f", or resonances have not built up yet, and it is low by more than {low:.0f} dB"
     return (
-        f" Shaded: bandwidth times averaging time B T is below {LEAST_PRODUCT:g}; a level there has a "
-        f"standard deviation of 4.34/√(B T) dB, more than {scatter:.1f} dB, and says little."
+        f" Shaded: levels that say little. Bandwidth times averaging time B T is below {LEAST_PRODUCT:g}, "
+        f"and the standard deviation of a level above {scatter:.1f} dB{start}."
     )
 
 

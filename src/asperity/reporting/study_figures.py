@@ -1,7 +1,8 @@
-"""A figure for each swept key of a study: dB(A), largest force and lost contact over it, and bands."""
+"""A figure for each swept key of a study: what was asked for over it, and the force level in bands."""
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Mapping, Sequence
 from itertools import product
@@ -12,48 +13,70 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from asperity.reporting.data import force_unit
 from asperity.reporting.style import INK, band_axis, new_figure, sequence, shade_doubtful, styled
 from asperity.reporting.typed import typed_unit, typed_values, typed_words
-from asperity.schema.rolling import CONTACT_LOSS_SHARE
-from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW
-from asperity.spectra import LEAST_PRODUCT
+from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
+from asperity.spectra import say_little
 
 MOST_LINES = 6
 """Values of other keys, or bands of one, that are told apart; the CSV file has all."""
+MOST_PANELS = 6
+"""Quantities in a figure; the table has all."""
+PLACES = ("sensor", "point")
+"""Dimensions over which levels are averaged; other words, as what radiates, are told apart."""
 LETTERS = 26
 """In a line of the label of an axis."""
 SPREAD = 20.0
 """Ratio of the largest value to the smallest from which the axis is logarithmic."""
 WEIGHTED = f"{FORCE_LEVEL.name}_a"
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
 @styled()
 def key_figure(
-    mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str, looks: Mapping[str, Mapping[str, Any]]
+    mean: xarray.Dataset,
+    scatter: xarray.Dataset | None,
+    key: str,
+    looks: Mapping[str, Mapping[str, Any]],
+    names: Sequence[str],
 ) -> Figure:
-    """Draw what a swept key does: four quantities over it, and the force level in bands for each value.
+    """Draw what a swept key does: quantities over it, and the force level in bands for each value.
 
     `mean` and `scatter` are tables of a study without its seeds, if it swept any: `scatter` holds standard
-    deviations under the same names. `looks` are line properties by law. Where other keys are swept, too, the
-    lines are those of the first law for their values.
+    deviations under the same names. `looks` are line properties by law, `names` the quantities: those
+    are drawn that are not zero or missing throughout. Where other keys are swept, too, the lines are those of
+    the first law for their values.
     """
     others = [name for name in _swept(mean) if name != key]
-    figure = new_figure(8.6)
+    drawn = [name for name in names if name in mean and _says_something(mean[name])][:MOST_PANELS]
+    rows = (len(drawn) + 1) // 2
+    figure = new_figure(2.55 * rows + 3.4)
     figure.set_facecolor("white")  # it goes to a file of its own
     figure.suptitle(_title(mean, scatter, key, others), x=0.01, ha="left", fontweight="bold")
-    grid = figure.add_gridspec(3, 2, height_ratios=[1, 1, 1.25])
-    panels = [figure.add_subplot(grid[n // 2, n % 2]) for n in range(4)]
-    for axes, (name, label, size) in zip(panels, _quantities(mean), strict=False):
-        for place, style in _lines(mean, key, others, looks):
+    grid = figure.add_gridspec(rows + 1, 2, height_ratios=[*[1.0] * rows, 1.25])
+    told: list[list[str]] = []
+    for n, name in enumerate(drawn):
+        axes = figure.add_subplot(grid[n // 2, n % 2])
+        size, label = _scale(mean[name])
+        labels = []
+        for place, style in _lines(mean, name, key, others, looks):
             reach = None if scatter is None else _along(scatter, name, key, place).mean("place") / size
-            _draw_over_key(axes, mean[key], _over_places(_along(mean, name, key, place)) / size, reach, style)
+            values = _over_places(_along(mean, name, key, place)) / size
+            _draw_over_key(axes, mean[key], values, reach, style)
+            labels.append(str(style["label"]))
         axes.set_ylabel(label)
-    for axes in panels[len(_quantities(mean)) :]:
-        axes.set_axis_off()
-    panels[0].legend(fontsize=7.5)
-    _draw_bands(figure.add_subplot(grid[2, :]), mean, key, others)
+        if any(labels) and labels not in told:
+            own = LAW.name in mean[name].dims and labels[0] not in mean[LAW.name].values and not others
+            axes.legend(fontsize=7.5, title=_main(mean) if own else None, title_fontsize=7.5)
+            told.append(labels)
+    _draw_bands(figure.add_subplot(grid[rows, :]), mean, key, others)
     return figure
+
+
+def _says_something(values: xarray.DataArray) -> bool:
+    """Whether a quantity without bands is anywhere neither missing nor zero."""
+    flat = not any(str(dim).endswith(BAND.name) for dim in values.dims)
+    return flat and bool((np.nan_to_num(np.asarray(values.values, dtype=float)) != 0.0).any())
 
 
 def _swept(table: xarray.Dataset) -> list[str]:
@@ -74,45 +97,56 @@ def _main(table: xarray.Dataset) -> str:
     return str(table[LAW.name].values[0])
 
 
-def _quantities(table: xarray.Dataset) -> list[tuple[str, str, float]]:
-    """What is drawn over the key: name, label of the axis, and its unit in SI."""
-    motion = [
-        str(name)
-        for name, values in table.data_vars.items()
-        if str(values.attrs.get("units", "")).startswith("dB(A)") and name != WEIGHTED
-    ]
-    size, symbol = force_unit(float(np.nanmax(table["peak_force"].values)))
-    wanted = [(WEIGHTED, "force level / dB(A) re 1 N", 1.0)]
-    heard = sorted(motion, key=lambda name: table[name].ndim)[:1]  # rather sound than motion at places
-    wanted += [(name, _level_label(table[name]), 1.0) for name in heard]
-    wanted += [
-        ("peak_force", f"largest force / {symbol}", size),
-        (CONTACT_LOSS_SHARE.name, "time without contact / %", 0.01),
-        ("rms_force", f"force, rms about its mean / {symbol}", size),
-    ]
-    return [item for item in wanted if item[0] in table][:4]
-
-
-def _level_label(level: xarray.DataArray) -> str:
-    what = str(level.attrs["long_name"]).removeprefix("A-weighted ").partition(",")[0]
-    units = str(level.attrs["units"]).replace("uPa", "µPa")
-    return f"{textwrap.fill(what, LETTERS)}\n/ {units}"
+def _scale(values: xarray.DataArray) -> tuple[float, str]:
+    """Unit in which a quantity reads well, in SI, and the label of its axis."""
+    what = str(values.attrs["long_name"]).removeprefix("A-weighted ").partition(",")[0].partition(":")[0]
+    units = str(values.attrs["units"])
+    if units == "1":
+        size, unit = 0.01, "%"
+    elif units.startswith("dB"):
+        size, unit = 1.0, units.replace("uPa", "µPa").replace("m/s2", "m/s²")
+    else:
+        largest = np.nanmax(np.abs(values.values))
+        power = 3 * math.floor(math.log10(largest) / 3) if largest > 0 else 0
+        power = min(max(power, -9), 9)
+        size, unit = 10.0**power, f"{_PREFIXES[power]}{units}"
+    return size, f"{textwrap.fill(what, LETTERS)}\n/ {unit}"
 
 
 def _lines(
-    table: xarray.Dataset, key: str, others: Sequence[str], looks: Mapping[str, Mapping[str, Any]]
+    table: xarray.Dataset,
+    name: str,
+    key: str,
+    others: Sequence[str],
+    looks: Mapping[str, Mapping[str, Any]],
 ) -> list[tuple[dict[str, Any], dict[str, Any]]]:
-    """Places that a line goes through, and how it looks: laws, or values of other keys."""
+    """Places that a line of a quantity goes through, and how it looks: laws, or values of other keys.
+
+    Of what is told apart by other words, as what radiates, a line for each of them, or where other keys are
+    swept the last of them, which is the whole.
+    """
+    held = table[name]
+    law = {LAW.name: _main(table)} if LAW.name in held.dims else {}
+    own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
+    if not others and own:
+        found = [word for word in table[own[0]].values if held.sel({**law, own[0]: word}).notnull().any()]
+        colours = sequence(len(found))
+        return [
+            ({**law, own[0]: word}, {"color": colour, "label": str(word)})
+            for word, colour in zip(found, colours, strict=True)
+        ]
     if not others:
-        laws = [str(law) for law in table[LAW.name].values]
-        return [({LAW.name: law}, {**looks.get(law, {}), "label": law}) for law in laws]
+        laws = [str(name) for name in table[LAW.name].values] if law else []
+        lines = [({LAW.name: each}, {**looks.get(each, {}), "label": each}) for each in laws]
+        return lines or [({}, {"color": INK, "label": ""})]
+    here = law | {dim: table[dim].values[-1] for dim in own}
     places = list(product(*(range(table.sizes[name]) for name in others)))[:MOST_LINES]
-    found = []
+    lines = []
     for place, colour in zip(places, sequence(len(places)), strict=True):
-        here = {name: table[name].values[at] for name, at in zip(others, place, strict=True)}
-        words = [f"{name} {typed_words(table[name])[at]}" for name, at in zip(others, place, strict=True)]
-        found.append(({LAW.name: _main(table), **here}, {"color": colour, "label": ", ".join(words)}))
-    return found
+        at = {name: table[name].values[n] for name, n in zip(others, place, strict=True)}
+        words = [f"{name} {typed_words(table[name])[n]}" for name, n in zip(others, place, strict=True)]
+        lines.append(({**here, **at}, {"color": colour, "label": ", ".join(words)}))
+    return lines
 
 
 def _along(table: xarray.Dataset, name: str, key: str, place: Mapping[str, Any]) -> xarray.DataArray:
@@ -170,9 +204,8 @@ def _draw_bands(axes: Axes, table: xarray.Dataset, key: str, others: Sequence[st
         axes.plot(band, level, color=colour, label=words[at], marker="o", markersize=2.5)
     band_axis(axes, band)
     if BAND_TIME_PRODUCT.name in here:
-        product_of = here[BAND_TIME_PRODUCT.name]
-        least = product_of.min([dim for dim in product_of.dims if dim != BAND.name]).values
-        shade_doubtful(axes, band, least < LEAST_PRODUCT)
+        little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
+        shade_doubtful(axes, band, little.any([dim for dim in little.dims if dim != BAND.name]).values)
     first = ", ".join(f"{name} {typed_words(table[name])[0]}" for name in others)
     axes.set_title(f"{_main(table)}{f', {first}' if first else ''}")
     axes.set_ylabel("force level / dB re 1 N")

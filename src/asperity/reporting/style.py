@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -15,7 +16,6 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLo
 from numpy.typing import NDArray
 
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
-from asperity.spectra import LEAST_PRODUCT
 
 WIDE, NARROW = 9.6, 4.5  # inches; a figure as wide as the page, and as that of a phone
 INK, MUTED, GRID = "#1c2126", "#5b6670", "#dfe3e7"
@@ -110,9 +110,18 @@ def is_narrow() -> bool:
     return _width.get() == NARROW
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows, whether or not matplotlib was told to draw into it."""
+
+    def _repr_png_(self) -> bytes:
+        image = io.BytesIO()
+        self.savefig(image, format="png")
+        return image.getvalue()
+
+
 def new_figure(height: float) -> Figure:
     """Empty figure, as wide as the page and `height` inches high."""
-    return Figure(figsize=(_width.get(), height))
+    return ShownFigure(figsize=(_width.get(), height))
 
 
 def side_by_side(height: float, widths: Sequence[float]) -> tuple[Figure, list[Axes]]:
@@ -159,14 +168,15 @@ def band_axis(axes: Axes, bands: NDArray[np.float64], label: str = "one-third oc
 def shade_doubtful(
     axes: Axes, bands: NDArray[np.float64], doubtful: NDArray[np.bool_], labelled: bool = True
 ) -> None:
-    """Shade the bands (by their centres) whose levels say little, for too few waves were averaged."""
+    """Shade the bands (by their centres) whose levels say little."""
     if not doubtful.any():
         return
     edge = 10**0.05
-    shaded = bands[doubtful]
-    axes.axvspan(shaded.min() / edge, shaded.max() * edge, color=GRID, alpha=0.6, linewidth=0, zorder=0)
+    marked = np.flatnonzero(doubtful)
+    for run in np.split(bands[marked], np.flatnonzero(np.diff(marked) > 1) + 1):
+        axes.axvspan(run.min() / edge, run.max() * edge, color=GRID, alpha=0.6, linewidth=0, zorder=0)
     if labelled:
-        note_at(axes, axes.get_xlim()[0], 0.03, f"B T < {LEAST_PRODUCT:g}", va="bottom")  # low bands are left
+        note_at(axes, axes.get_xlim()[0], 0.03, "says little", va="bottom")  # low bands are left
 
 
 def power_axis(axis: Any) -> None:

@@ -167,7 +167,7 @@ def _differences_table(tree: DataTree, name: str, entry: Entry, to: str | None) 
     if faint.any():
         note += (
             " In grey and in brackets: bands whose bandwidth times averaging time is below "
-            f"{LEAST_PRODUCT:g}; they say little, and are not in the last two rows."
+            f"{LEAST_PRODUCT:g}, or that hold the start; they say little, and are not in the last two rows."
         )
     title = f"Contact force level minus that of {to}, in dB"
     return ReportTable(name, title, ["band / Hz", *names], rows, note)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import cycle
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
@@ -22,6 +22,7 @@ from asperity.reporting.style import (
     INK,
     MUTED,
     VERMILLION,
+    band_axis,
     envelope,
     new_figure,
     note_at,
@@ -33,6 +34,11 @@ from asperity.reporting.style import (
 )
 from asperity.schema import surface
 from asperity.schema.contact import HERTZ_RADIUS
+from asperity.spectra import nominal
+from asperity.surfaces.material_ratio import material_ratio_curve
+
+if TYPE_CHECKING:
+    from asperity.surfaces.third_octaves import ThirdOctaves
 
 SLENDER = 2.5  # times longer than wide: such a map gets the whole width
 STRETCHES = 1200  # of the envelope of a long line
@@ -119,7 +125,7 @@ def height_histogram(axes: Axes, named: dict[str, Distribution], unit: tuple[flo
     power_axis(axes.yaxis)
     axes.set_xlabel(f"height / {unit[1]} (out of the material →)")
     axes.set_ylabel(f"probability density / (1/{unit[1]})")
-    axes.legend(loc="upper left")
+    axes.legend(loc="best")
 
 
 def _map_and_histogram(slender: bool) -> tuple[Figure, Axes, Axes]:
@@ -308,6 +314,7 @@ def surface_picture(
     spacing: tuple[float, float],
     title: str,
     spectra: NamedSpectra = MappingProxyType({}),
+    octaves: ThirdOctaves | None = None,
 ) -> Figure:
     """Draw what a surface file holds: its map, the distribution of its heights, and its spectra.
 
@@ -318,7 +325,7 @@ def surface_picture(
     size, symbol, colours = height_scale(heights)
     length = np.asarray(heights.shape, dtype=np.float64) * spacing[: heights.ndim]
     if heights.ndim == 1 or length[0] > SLENDER * length[1]:
-        figure, left, right = _picture_panels(4.6, (1, 1.4), spectra, stacked=True)
+        figure, left, right = _picture_panels(4.6, (1, 1.4), spectra, octaves, stacked=True)
     else:
         figure, left, right = _picture_panels(4.2, (1.25, 1), spectra, stacked=False)
     _titled(figure, title)
@@ -336,7 +343,19 @@ def surface_picture(
         figure.colorbar(image, ax=left, label=f"height / {symbol}", extend="both", shrink=0.9)
     left.xaxis.set_major_locator(MaxNLocator(6))
     height_histogram(right, {"heights": distribution(heights)}, (size, symbol))
+    _draw_material_ratio(right, heights, size)
     return figure
+
+
+def _draw_material_ratio(axes: Axes, heights: NDArray[np.float64], size: float) -> None:
+    """Draw the share of points that reach a height, on an axis of its own to the right."""
+    ratio, height = material_ratio_curve(heights)
+    share = axes.twinx()
+    share.plot(height / size, 100.0 * ratio, color=VERMILLION, linewidth=1.2)
+    share.set_ylim(0.0, 100.0)
+    share.grid(visible=False)
+    share.set_ylabel("material ratio / %", color=VERMILLION)
+    share.tick_params(axis="y", colors=VERMILLION)
 
 
 def _titled(figure: Figure, title: str) -> None:
@@ -345,7 +364,12 @@ def _titled(figure: Figure, title: str) -> None:
 
 
 def _picture_panels(
-    height: float, ratios: tuple[float, float], spectra: NamedSpectra, *, stacked: bool
+    height: float,
+    ratios: tuple[float, float],
+    spectra: NamedSpectra,
+    octaves: ThirdOctaves | None = None,
+    *,
+    stacked: bool,
 ) -> tuple[Figure, Axes, Axes]:
     """Figure of a file with two panels, side by side or stacked, above its spectra, if there are any."""
     held = {name: pair for name, pair in spectra.items() if (pair[1] > 0).sum() > 1}
@@ -357,9 +381,30 @@ def _picture_panels(
     else:
         inner = grid[0].subgridspec(1, 2, width_ratios=ratios)
     first, second = (figure.add_subplot(inner[n]) for n in range(2))
-    if held:
+    if held and octaves is not None:
+        _draw_third_octaves(figure.add_subplot(grid[1]), octaves)
+    elif held:
         _draw_spectra(figure.add_subplot(grid[1]), held)
     return figure, first, second
+
+
+def _draw_third_octaves(axes: Axes, octaves: ThirdOctaves) -> None:
+    shown = octaves.limited | (octaves.wavelength > 1e-3)
+    centres = 1.0 / octaves.wavelength[shown]
+    measured, processed, limit = (
+        each[shown] for each in (octaves.measured, octaves.processed, octaves.limit)
+    )
+    axes.plot(centres, measured, color=MUTED, marker=".", linestyle="--", label="as measured")
+    axes.plot(centres, processed, color=BLUE, marker="o", label="without spikes, rolled over (EN 15610)")
+    axes.plot(centres, limit, color=INK, linewidth=1.8, label="limit of EN ISO 3095:2013, rails")
+    over = processed > limit
+    if over.any():
+        axes.plot(centres[over], processed[over], "o", color=VERMILLION, label="above the limit")
+    band_axis(axes, centres, "wavelength / mm")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda k, _: f"{nominal(1e3 / k):g}"))
+    axes.set_ylabel("roughness / dB re 1 µm")
+    axes.set_title(f"one-third octaves: {over.sum()} of {np.isfinite(limit).sum()} above the limit")
+    axes.legend(loc="best")
 
 
 def _draw_spectra(axes: Axes, spectra: NamedSpectra) -> None:
@@ -383,6 +428,7 @@ def lines_picture(
     spacing: float,
     title: str,
     spectra: NamedSpectra = MappingProxyType({}),
+    octaves: ThirdOctaves | None = None,
 ) -> Figure:
     """Draw lines that were measured side by side, one above the other, their distribution and their spectra.
 
@@ -391,7 +437,7 @@ def lines_picture(
     together = np.concatenate(lines)
     size, symbol, _ = height_scale(together)
     reach = np.ptp(np.nanpercentile(together, [0.1, 99.9])) / size
-    figure, left, right = _picture_panels(2.4 + 0.42 * len(lines), (2.4, 1), spectra, stacked=False)
+    figure, left, right = _picture_panels(2.4 + 0.42 * len(lines), (2.4, 1), spectra, octaves, stacked=False)
     _titled(figure, title)
     longest = max(map(len, lines)) * spacing
     unit = length_unit(longest)
@@ -404,7 +450,17 @@ def lines_picture(
     left.set_yticks([-row * reach for row in range(len(lines))], [f"{n + 1}" for n in range(len(lines))])
     left.set_xlabel(f"distance along the lines / {unit[1]}")
     left.set_ylabel("line")
-    left.set_title(f"lines, {reach:.3g} {symbol} apart")
+    left.set_title(f"levelled lines, each drawn {reach:.3g} {symbol} below the one before")
+    length = _round_length(0.6 * reach)
+    left.plot([0.985 * longest / unit[0]] * 2, [0.5 * reach - length, 0.5 * reach], color=INK, linewidth=3)
+    left.text(0.975 * longest / unit[0], 0.5 * reach, f"{length:g} {symbol}", ha="right", va="top")
     height_histogram(right, {"heights": distribution(together)}, (size, symbol))
+    _draw_material_ratio(right, together, size)
     right.set_title("heights of all lines")
     return figure
+
+
+def _round_length(most: float) -> float:
+    """Largest 1, 2 or 5 times a power of ten that is no more than a length."""
+    decade = 10.0 ** np.floor(np.log10(most))
+    return float(decade * max(step for step in (1, 2, 5) if step * decade <= most))

@@ -13,8 +13,10 @@ from asperity.reporting.headline import HIGH, LOW
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 from asperity.schema import contact, convergence, provenance
 from asperity.schema.rolling import CONTACT_FORCE
-from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
+from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, LEVEL_DEVIATION, START_SHARE
 
+NOTICED = 0.1
+"""Level, dB, from which on the start of a record is told."""
 Known = tuple[str, str, str]
 """Source of an uncertainty, its size, and how it is known."""
 
@@ -58,21 +60,28 @@ def _law(tree: DataTree, main: str) -> Iterator[Known]:
 
 
 def _chance(tree: DataTree) -> Iterator[Known]:
-    """Standard deviation of a band level by chance, 4.34/√(B T) dB."""
-    if not present(tree, BAND, BAND_TIME_PRODUCT):
+    """Standard deviation of a band level by chance, and how far it is low from the start of the record."""
+    if not present(tree, BAND, BAND_TIME_PRODUCT, LEVEL_DEVIATION):
         return
-    band, product = values(tree, BAND), values(tree, BAND_TIME_PRODUCT)
-    shown = (band > LOW) & (band < HIGH) & ~doubtful(tree, BAND_TIME_PRODUCT)
-    if not shown.any():
-        yield "chance: one record of this length", "not small", "no band has B T of 10 or more"
-        return
-    ends = np.flatnonzero(shown)[[0, -1]]
-    told = [f"{4.34 / np.sqrt(product[i]):.1f} dB at {nominal_band(band[i])} Hz" for i in ends]
-    yield (
-        "chance: one record of this length",
-        " to ".join(dict.fromkeys(told)),
-        "standard deviation 4.34/√(B T), with the bandwidth B and the averaging time T",
-    )
+    band, deviation = values(tree, BAND), values(tree, LEVEL_DEVIATION)
+    shown = np.flatnonzero((band > LOW) & (band < HIGH) & ~doubtful(tree, BAND_TIME_PRODUCT))
+    if shown.size:
+        least, most = (pick(shown, key=lambda i: deviation[i]) for pick in (min, max))
+        told = [f"{deviation[i]:.1f} dB at {nominal_band(band[i])} Hz" for i in (least, most)]
+        how = "standard deviation of a level, from the bandwidth and the resonances that ring in it"
+        yield "chance: one record of this length", " to ".join(dict.fromkeys(told)), how
+    else:
+        yield "chance: one record of this length", "not small", "no band has a level that says something"
+    if present(tree, START_SHARE):
+        low = -10.0 * np.log10(1.0 - values(tree, START_SHARE))
+        worst = int(np.argmax(low))
+        if low[worst] >= NOTICED:
+            how = "mean square that resonances have not built up yet; longer settling, or more damping, helps"
+            yield (
+                "start of the record",
+                f"up to {low[worst]:.1f} dB low, at {nominal_band(band[worst])} Hz",
+                how,
+            )
 
 
 def _samples(tree: DataTree) -> Iterator[Known]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +14,11 @@ from asperity.kernels.modal import modal_coefficients
 from asperity.rolling.path import Path
 from asperity.rolling.stability import RESOLVED
 from asperity.structures.beam import Beam
+from asperity.structures.modal import Modal
 
 CHUNK = 2048  # steps whose mode shapes are held at once
+ON_SUPPORT = 1e-9
+"""Distance to a support that counts as none, m."""
 PLACES = 256
 """Positions at which mode shapes are looked at."""
 
@@ -26,7 +30,7 @@ class RolledBeam:
     beam: Beam
 
     def laid(self, path: Path, load: float) -> BeamSide:
-        """Let it carry the load at rest at the start of the path."""
+        """Let it carry the load as if it had rolled on it for long."""
         refuse_off_the_beam(self.beam, path)
         return BeamSide(self.beam, path, load)
 
@@ -36,16 +40,26 @@ class RolledBeam:
         return modal_alternating_compliance(beam_step(self.beam, path.time_step), shapes)
 
 
+def most_compliance(structure: Modal, paths: Sequence[Path]) -> float:
+    """Largest static compliance of a structure on some paths, m/N; infinite if nothing holds it."""
+    natural = 2.0 * np.pi * structure.natural_frequencies
+    if not (natural > 0.0).all():
+        return float("inf")
+    every = (path.positions[:: max(1, len(path.positions) // PLACES)] for path in paths)
+    return float(max(((structure.shapes(at)[0] / natural) ** 2).sum(axis=1).max() for at in every))
+
+
 class BeamSide:
     """A beam in contact, exact mode by mode: q'' + 2ζω q' + ω² q = φ F, displacement Σ φ q."""
 
     def __init__(self, beam: Beam, path: Path, load: float) -> None:
         self.path, self.shapes = path, ShapesAlong(beam, path)
         self.step = beam_step(beam, path.time_step)
-        shape = beam.shapes(path.positions[0])[0][0]
-        self.modes = shape * load / (2.0 * np.pi * beam.natural_frequencies) ** 2
-        self.rates = np.zeros_like(self.modes)
-        self.displacement, self.velocity = float(shape @ self.modes), 0.0
+        stiffness = (2.0 * np.pi * beam.natural_frequencies) ** 2
+        (shape,), (slope,) = under = beam.shapes(path.positions[0])
+        self.modes, self.rates = carried(stiffness, *under, np.array([load]), path.speed)
+        self.displacement = float(shape @ self.modes)
+        self.velocity = float(shape @ self.rates + path.speed * (slope @ self.modes))
 
     def free(self, step: int, before: float) -> float:
         """Displacement at the end of a step without the force there, m."""
@@ -100,6 +114,29 @@ class ShapesAlong:
         self.end_of_chunk(step)
         row = step - self.offset
         return self.shapes[row - 1], self.shapes[row], self.slopes[row]
+
+
+def carried(
+    stiffness: NDArray[np.float64],
+    shapes: NDArray[np.float64],
+    slopes: NDArray[np.float64],
+    forces: NDArray[np.float64],
+    speed: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Modal displacements and rates (modes,) under constant forces (k,), N, that have long moved at a speed.
+
+    Of ω² (modes,) and of shapes and slopes (k, modes) under the forces. Displacements are the static ones:
+    what is left to ring is less by (k v/ω)² than the static displacement of a mode of wavenumber k. A force
+    on a support has just come onto a structure at rest; so are modes that nothing holds.
+    """
+    moving = forces * (
+        np.abs(shapes).max(axis=1, initial=0.0) > ON_SUPPORT * np.abs(slopes).max(axis=1, initial=0.0)
+    )
+    displacement, rate = (
+        np.divide(push, stiffness, out=np.zeros_like(stiffness), where=stiffness > 0.0)
+        for push in (forces @ shapes, speed * (moving @ slopes))
+    )
+    return displacement, rate
 
 
 def beam_step(beam: Beam, time_step: float) -> NDArray[np.float64]:

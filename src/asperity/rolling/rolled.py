@@ -16,6 +16,7 @@ from asperity.laws.base import Law
 from asperity.progress import Progress
 from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.events import ContactLoss, contact_losses
+from asperity.rolling.momentum import displaced_in_contact, refuse_missed_load
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
 from asperity.rolling.path import Path
 from asperity.rolling.stability import (
@@ -66,6 +67,7 @@ def roll_along(
     alternating: tuple[float, float],
     limits: Callable[[float], Iterable[Limit]],
     judge: Callable[[S], None] = lambda stepper: None,
+    free: tuple[float, float] | None = None,
     progress: Progress | None,
     checkpoint: Checkpoint | None,
 ) -> tuple[Rolled, S]:
@@ -75,8 +77,10 @@ def roll_along(
     in series with the contact, m/N; `limits` says, of the contact stiffness at rest, N/m, what the time step
     must resolve; `alternating` holds the least alternating compliance of both bodies, and of what throws them
     apart, m/N (`asperity.rolling.stability`). `judge` looks at the bodies at the end, also at that of a
-    motion that runs away, and may warn. A checkpoint keeps the state about every 10 s, at the end and when
-    interrupted, to go on from there.
+    motion that runs away, and may warn. `free` holds the mass, kg, of a body that nothing but its contact
+    holds, and the largest static compliance, m/N, of what deflects on the path: a run that misses the load in
+    the mean is then refused (`asperity.rolling.momentum`). A checkpoint keeps the state about every 10 s, at
+    the end and when interrupted, to go on from there.
 
     Warned of are a coarse time step, a law that was continued beyond its data, and forces that missed the
     tolerance.
@@ -96,8 +100,12 @@ def roll_along(
         judge(stepper)
     record, counts, kept = stepper.record, stepper.motion.counts, slice(path.settled, None)
     seen = record.approach - softer * record.force
-    apart = flying(prepared, record.force, seen)[kept]
+    flown = flying(prepared, record.force, seen)
+    apart = flown[kept]
     warn_after(law.name, counts, prepared, seen)
+    if free is not None:
+        reach = free[1] * load + displaced_in_contact(record.approach, flown)
+        refuse_missed_load(law.name, record.force, load, free[0], reach, path.time_step, path.settled)
     rolled = Rolled(
         time=path.time,
         position=path.positions[kept],

@@ -151,7 +151,8 @@ def advance_to_end(
                 raise ComputationError(
                     f"the motion runs away: at step {step}, {stepper.where(step)}, the contact force is "
                     f"{forces[np.argmax(np.abs(forces))]:.3g} N under a load of {stepper.load:.4g} N",
-                    "a smaller numerics.time_step, and check masses, damping and the texture there",
+                    "what a warning asks for, as a smaller numerics.time_step; without one, other masses, "
+                    "damping or texture there, or a track without poles",
                 )
             held = _state(stepper, laws)
             if progress is not None:

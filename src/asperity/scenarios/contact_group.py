@@ -16,7 +16,7 @@ from asperity.scenarios.chain import Chain
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.population import Answer, answers
 from asperity.scenarios.running_in import RunInCase
-from asperity.scenarios.validity import Finding, rms_slope_of
+from asperity.scenarios.validity import Finding
 from asperity.schema import Attribute, Entry, attributes, contact, variables
 
 SMOOTH = "smooth bodies have one filter, that of the working load"
@@ -62,7 +62,7 @@ def contact_before(chain: Chain[Any]) -> xarray.Dataset:
         contact.CONTACT_AREA: working.area,
         contact.CONTACT_AREA_RATIO: reduction.area_ratio,
         contact.ISOLATED_SHARE: reduction.isolated_share,
-        contact.RMS_SLOPE: rms_slope_of(chain),
+        contact.RMS_SLOPE: chain.textures.rms_slope,
         contact.SAMPLES: len(ensemble.forces),
     }
     state = ensemble.states

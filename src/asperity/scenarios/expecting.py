@@ -5,18 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from asperity.config.case import Case
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress
-from asperity.reduction.real_contact import expected_area_ratio
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.running_in import running_in_passes, running_in_positions
 from asperity.scenarios.scan_sizes import Expected, scan_sizes
 from asperity.scenarios.trial import ContactTrial, timed, try_contacts
-from asperity.surfaces.statistics import rms_slope
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 
 SINGLE_TIME = 0.65
@@ -42,6 +38,7 @@ class Work:
     # ``"filters"`` where samples are scanned, ``"path"`` where a law looks its scan up
     scans: dict[str, Expected]
     seconds: dict[str, float]  # by part of the work
+    tried: ContactTrial | None = None  # contacts of a sample; None without samples
 
     @property
     def total(self) -> float:
@@ -65,32 +62,19 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
         On all threads of this machine, while nothing else is done on it and nothing is found in the cache;
         most often within a third.
     """
-    case, samples = prepared.case, bool(prepared.textures.maps)
+    case, trial = prepared.case, None
     with one_thread_in_linear_algebra():
         prepared.kind.compile_kernels(progress)
         pace = _pace()
         scans = scan_sizes(case, prepared.shape, prepared.textures)
         seconds = {"textures": prepared.processor}
-        if samples:
+        if prepared.textures.maps:
             trial = try_contacts(prepared, progress)
             scans = {name: _timed_scan(name, scan, trial) for name, scan in scans.items()}
             seconds |= _contact_seconds(prepared, trial, scans, pace)
         seconds |= prepared.kind.plan("seconds")(prepared, progress, pace)
         seconds |= _rolling_seconds(prepared, pace)
-    return Work(scans, seconds)
-
-
-def expect_area_ratio(prepared: PreparedCase) -> float | None:
-    """Expect the real contact area under the working load over that of smooth bodies, from slopes.
-
-    About what `asperity.scenarios.reducing.Reduction.area_ratio` will be; None without samples.
-    """
-    shape, samples = prepared.shape, prepared.textures.maps
-    if not samples:
-        return None
-    slope = float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in samples])))
-    peak = 1.5 * shape.load / (np.pi * math.prod(shape.semi_axes))
-    return expected_area_ratio(slope, peak, shape.modulus)
+    return Work(scans, seconds, trial)
 
 
 def expected_path_scan(prepared: PreparedCase, progress: Progress) -> Expected:

@@ -35,7 +35,6 @@ class Geometry:
     hertz: Hertz  # smooth contact; of the osculating paraboloids where the gap is none
     load: float  # working load, N
     largest_force: float  # that chosen states cover, N
-    lowest_approach: float = -math.inf  # that chosen states cover, m
 
     @property
     def semi_axes(self) -> tuple[float, float]:
@@ -95,13 +94,9 @@ class Geometry:
         )
 
     def within_window(self) -> Geometry:
-        """Bound the states: above by a contact that the window holds, below by the working approach.
-
-        States below minus the working approach, which a hollow deeper than it asks for, would take those away
-        that carry load. It is that of the class of the load.
-        """
+        """Bound the states by a contact that the window holds."""
         largest = min(self.largest_force, max(FILLED**3 * self.filling_force, self.load))
-        return replace(self, largest_force=largest, lowest_approach=-self.hertz.approach(self.class_load))
+        return replace(self, largest_force=largest)
 
 
 def window_cells(contact: ContactCase) -> int:

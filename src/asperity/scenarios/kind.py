@@ -63,7 +63,8 @@ class Kind:
         compute    ``compute(prepared, progress)``, from textures to runs
         result     ``layout(computed, caught, brief)``, the tree of a run
         schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
-                   entries, each with the place on its dimensions if not all of it
+                   entries, each with the place on its dimensions if not all of it; ``SHOWN``, names of
+                   what it shows of them unasked
         refining   ``settings_of(case)``, how finely its bodies are resolved
         measures   ``MEASURES``, by name what textures are judged by
         chapters   ``CHAPTERS`` of its report
@@ -161,6 +162,12 @@ class Kind:
     def kept(self) -> Mapping[Entry, Mapping[str, str]]:
         """What a study keeps of its results beside what it keeps of all, and where of it."""
         found: Mapping[Entry, Mapping[str, str]] = self.offers("schema", "KEPT")
+        return found
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """Names of what a study shows of that unasked."""
+        found: tuple[str, ...] = self.offers("schema", "SHOWN")
         return found
 
     @property

@@ -4,7 +4,7 @@ The error of a law is the rms, over the one-third octaves from 100 Hz to 5 kHz, 
 force less that of `direct`, dB. Between the points of the map its logarithm is the best linear estimate from
 all of them, for a random field whose correlation falls with distance (kriging; G. Matheron, Economic Geology
 58 (1963) 1246). Beside it stands a band as wide as the estimate is uncertain, the wider the farther the
-points are, scaled so that it held in four of five cases drawn at random aside of the map.
+points are, scaled so that it held in four of five random cases, each estimated from all other points.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 
 from asperity.config.case import Case
 from asperity.errors import percent
-from asperity.reference.law_accuracy import LawMap, MappedPoint, Place, law_map
+from asperity.reference.law_accuracy import HIGH, LawMap, MappedPoint, Place, law_map
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.law_place import SquareTransfer, place_of
 from asperity.scenarios.textures import Textures
 
 MEANING = (
     "rms over the one-third octaves from 100 Hz to 5 kHz of the force level less that of direct; in brackets "
-    "the band that held in four of five cases aside of the map"
+    "the band that held in four of five random cases"
 )
 WANTED = 1.0
 """Error that a law is taken for, dB."""
@@ -36,8 +36,8 @@ OTHER_KIND = 1.0
 """Distance between a ball on a beam and a wheel on a rail that are in the same place."""
 FAR = 1.0
 """Distance to the nearest point beyond which a place is off the map."""
-SMALL = 0.1
-"""Distance within which a point counts as met."""
+MARGIN = 1.1
+"""Ratio by which k a of the highest band may lie beyond those of the points."""
 REACH, TREND, NOISE = 2.0, 0.04, 0.1
 """Distance over which errors are alike; shares of a trend across the map, and of what chance adds to a point,
 in the variance of their logarithms."""
@@ -45,13 +45,16 @@ LONG, WIDE, TINY = 10.0, 1.0, 1e-4
 """Lengths of correlation beyond which nothing changes, in contacts, along and across; least ratio of all."""
 LOST = 0.1
 """Share of the time out of contact from which paths part and levels scatter."""
-CHEAP = ("areal", "table")
-"""Laws that are taken: the second scans the whole path, and is to be had wherever the first is."""
+CHEAP, SURE = ("areal", "table"), "table"
+"""Laws that are taken, the cheapest first; the sure one scans the whole path, and is to be had wherever the
+first is."""
+UNMAPPED = "direct"
+"""Law that is taken where the map knows nothing, as over a defect: windows that hold one are dear to scan."""
 
 
 @dataclass(frozen=True)
 class ExpectedError:
-    """The expected error of a law, dB, and the band that held in four of five cases aside of the map."""
+    """The expected error of a law, dB, and the band that held in four of five random cases."""
 
     law: str
     error: float
@@ -73,12 +76,22 @@ class LawChoice:
     loss: float  # expected share of the time out of contact
     distance: float  # to the nearest point, in half decades
     nearest: MappedPoint
-    taken: str  # law to take
+    reach: tuple[float, float]  # least and greatest k a of the highest band among the points of the bodies
+
+    @property
+    def taken(self) -> str:
+        """Law to take."""
+        return next(filter(self.trusts, CHEAP), SURE)
 
     @property
     def off_map(self) -> bool:
-        """Whether no point is near."""
-        return self.distance > FAR
+        """Whether no point is near, or none of the bodies has waves as short, or as long, for its contact."""
+        low, high = self.reach
+        return self.distance > FAR or not low <= self.place.highest_wavenumber <= high
+
+    def trusts(self, law: str) -> bool:
+        """Whether a law is expected to be as near as is wanted."""
+        return not self.off_map and any(e.law == law and e.high <= WANTED for e in self.expected)
 
     def rows(self) -> Iterator[tuple[str, str]]:
         """Say which law to take, the errors to expect, and where the case lies: names and values."""
@@ -89,8 +102,10 @@ class LawChoice:
         yield (
             "place on the map",
             f"rms {place.roughness:.2g} approaches, {place.within:.2g} within the patch; correlation length "
-            f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load. Nearest "
-            f"point: {near.kind}, {_force(near.load)}, {self.distance:.1f} half decades away{off}",
+            f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load; k a of "
+            f"{HIGH / 1e3:g} kHz {place.highest_wavenumber:.2g}, mapped from {self.reach[0]:.2g} to "
+            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {_force(near.load)}, {near.speed:g} m/s, "
+            f"{self.distance:.1f} half decades away{off}",
         )
 
     def entries(self) -> dict[str, Any]:
@@ -107,7 +122,7 @@ class LawChoice:
         found = next((expected for expected in self.expected if expected.law == law), None)
         if found is None:
             return None
-        instead = "" if law == self.taken or found.high <= WANTED else f"; take {self.taken}"
+        instead = "" if law == self.taken or self.trusts(law) else f"; take {self.taken}"
         guess = "A guess, off the map of law errors" if self.off_map else "By the map of law errors"
         return (
             f"{guess}: {law} is {_db(found.error)} dB ({_db(found.low)} to {_db(found.high)}) from direct, "
@@ -115,16 +130,22 @@ class LawChoice:
         )
 
     def _advice(self) -> str:
-        found = {expected.law: expected for expected in self.expected}
-        cheap, sure = (found[law] for law in CHEAP)
+        cheap = next(found for found in self.expected if found.law == CHEAP[0])
         if self.taken == cheap.law:
             text = f"{cheap.law}: expected within {WANTED:g} dB of direct, without a scan of the path"
+        elif self.off_map:
+            text = f"{self.taken}: how far {cheap.law} is off is not known here"
         else:
             leaves = "leaves its range" if cheap.error > WANTED else "may leave its range"
-            text = f"{sure.law}: {cheap.law} {leaves} ({_db(cheap.error)} dB, up to {_db(cheap.high)})"
+            text = f"{self.taken}: {cheap.law} {leaves} ({_db(cheap.error)} dB, up to {_db(cheap.high)})"
         if self.loss > LOST:
             text += f"; with contact lost {percent(self.loss)} of the time, levels of short records scatter"
         return text
+
+
+def law_to_take(choice: LawChoice | None) -> str:
+    """The law that every message advises: the map's where it knows, else the one all are held against."""
+    return UNMAPPED if choice is None else choice.taken
 
 
 def law_choice(
@@ -146,13 +167,14 @@ def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawC
     here = _coordinates(mapped, kind, place)
     distances = [float(np.linalg.norm(_coordinates(mapped, p.kind, p.place) - here)) for p in mapped.points]
     nearest = int(np.argmin(distances))
+    reached = [p.place.highest_wavenumber for p in mapped.points if p.kind == kind]
     return LawChoice(
         place,
         tuple(sorted(expected.values(), key=lambda found: found.error)),
         mapped.points[nearest].loss,
         distances[nearest],
         mapped.points[nearest],
-        next((law for law in CHEAP if expected[law].high <= WANTED), CHEAP[-1]),
+        (min(reached) / MARGIN, max(reached) * MARGIN),
     )
 
 
@@ -184,7 +206,7 @@ def _covariance(these: NDArray[np.float64], those: NDArray[np.float64]) -> NDArr
 def _coordinates(mapped: LawMap, kind: str, place: Place) -> NDArray[np.float64]:
     """Coordinates of a place; a contact feels no difference between lengths far beyond its own."""
     lengths = (min(place.correlation, LONG), min(place.across, WIDE))
-    ratios = np.maximum([place.within, place.dynamic, *lengths], TINY)
+    ratios = np.maximum([place.within, place.dynamic, *lengths, place.highest_wavenumber], TINY)
     kinds = [known == kind for known in sorted({point.kind for point in mapped.points})]
     return np.append(np.log(ratios) / STEP, np.multiply(kinds, OTHER_KIND / math.sqrt(2.0)))
 

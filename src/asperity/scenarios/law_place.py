@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -51,6 +52,7 @@ def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: Square
         across=across / (2.0 * b),
         within=float(np.sqrt(np.mean((heights[:, heights.shape[1] // 2] - felt) ** 2))) / approach,
         dynamic=force / shape.load,
+        highest_wavenumber=2.0 * math.pi * HIGH / speed * a,
     )
 
 

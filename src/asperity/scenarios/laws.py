@@ -50,10 +50,10 @@ class Workshop:
         law = spec.build(LaidReady(self, spec))
         if not isinstance(law, Law):
             allowed = "an object with name, damping and prepare(positions)"
-            raise InputError(f"law `{name}`", shown(law), allowed)
+            raise InputError(f"law {name}", shown(law), allowed)
         if law.name != name:
             remedy = "Hand the name of the materials on to it."
-            raise InputError(f"law `{name}`", f"one built as {shown(law.name)}", shown(name), remedy)
+            raise InputError(f"law {name}", f"one built as {shown(law.name)}", shown(name), remedy)
         return law
 
     @cached_property
@@ -164,7 +164,7 @@ class LaidReady:
         if not self.law.needs & set(needs):
             wanted = " or ".join(f'"{need}"' for need in needs)
             allowed = f"materials that it needs; this one goes with {wanted}"
-            raise InputError(f"materials of law `{self.law.name}`", material, allowed)
+            raise InputError(f"materials of law {self.law.name}", material, allowed)
 
     @property
     def name(self) -> str:
@@ -196,10 +196,17 @@ class LaidReady:
         """Approach, m, and stiffness, N/m, under the working load."""
         return working_point(self.workshop.contact, self.workshop.shape, self.workshop.reduction)
 
-    @property
+    @cached_property
     def line(self) -> StateTexture:
         """Line texture, filtered where the law needs it, m."""
         return self.workshop.filtered_line(self.law) if Need.FILTER in self.law.needs else self.workshop.line
+
+    def line_on(self, curve: ForceCurve) -> StateTexture:
+        """Line texture with its states where a curve carries their forces, m."""
+        if self.workshop.reduction is None or Need.FILTER not in self.law.needs:
+            return self.line
+        forces = self.workshop.reduction.ensemble.curve.force(self.line.approaches)
+        return replace(self.line, approaches=curve.inverse(forces))
 
     @property
     def line_at_load(self) -> StateTexture:

@@ -64,7 +64,7 @@ def line_filters(
     textures: Textures,
     shape: Geometry,
     ensemble: StiffnessEnsemble,
-    lightest: float,
+    loads: tuple[float, float],
     needed: Iterable[Normalise],
     *,
     rtol: float,
@@ -73,13 +73,14 @@ def line_filters(
 ) -> tuple[LineFilters, list[ScannedForces[NDArray[np.float64]]]]:
     """Scan the strips, and design a filter for every normalisation that is needed; return them and the scans.
 
-    States whose mean force is below `lightest`, N, have no filter. Filters of bodies without texture are sin
-    q/q in closed form.
+    States whose mean force is not between two `loads`, N, have no filter. Filters of bodies without texture
+    are sin q/q in closed form.
     """
-    dx, loaded = shape.spacing[0], ensemble.mean_force >= lightest
+    dx, force = shape.spacing[0], ensemble.mean_force
+    loaded = (force >= loads[0]) & (force <= loads[1])
     approaches, curve = ensemble.approaches[loaded], ensemble.curve
     tangent = curve.stiffness(approaches)
-    axes = np.array([shape.axes(force) for force in ensemble.mean_force[loaded]])
+    axes = np.array([shape.axes(f) for f in force[loaded]])
     if not any(np.ptp(strip.heights) for strip in textures.strips):
         wavenumber = np.geomspace(0.01, 2.0, SMOOTH_WAVENUMBERS) / axes[:, 0].max()
         smooth = closed_form(approaches, wavenumber, axes[:, 0], tangent)
@@ -147,8 +148,8 @@ def warn_of_filter(found: LineFilter, law: str, working_approach: float) -> None
     if found.miss > LARGEST_MISS:
         order = found.taps.shape[1] - 1
         warnings.warn(
-            f"the filter of `{law}` with J = {order} misses the fitted one by {found.miss:.2g} dB above "
-            "−30 dB: the report shows both. Leave out contact.filter_taps, or roll over a longer path.",
+            f"the filter of the law {law} with J = {order} misses the fitted one by {found.miss:.2g} dB "
+            "above −30 dB: the report shows both. Leave out contact.filter_taps, or roll over a longer path.",
             ContactFilterWarning,
             stacklevel=2,
         )
@@ -160,8 +161,8 @@ def warn_of_filter(found: LineFilter, law: str, working_approach: float) -> None
     ratio = float(np.interp(working_approach, estimated.approaches, ratios))
     warnings.warn(
         f"only {100 * share:.0f} % of the texture's power lies in waves with k a < {LONG_WAVE:g}, where the "
-        f"filter of `{law}` is set to one: k_0/k_t = {ratio:.2f} under the working load, so its force keeps "
-        f"{-20 * math.log10(ratio):.1f} dB that the contact averages away across the path. "
+        f"filter of the law {law} is set to one: k_0/k_t = {ratio:.2f} under the working load, so its "
+        f"force keeps {-20 * math.log10(ratio):.1f} dB that the contact averages away across the path. "
         'Set contact.normalise = "tangent", or take a law that has it by default.',
         ContactFilterWarning,
         stacklevel=2,

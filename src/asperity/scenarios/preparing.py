@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 from asperity.config.case import Case
+from asperity.config.chosen import with_chosen_window
 from asperity.contact.device import find_device
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.reduction.filter import FEWEST_POSITIONS
-from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.kind import Kind
 from asperity.scenarios.line_filters import filter_stride
 from asperity.scenarios.scan_sizes import problem_of_disk, scan_sizes
@@ -25,6 +29,18 @@ if TYPE_CHECKING:
     import xarray
 
 T = TypeVar("T")
+
+STEEPEST = 1.0
+"""Rms slope up to which surfaces are taken for such: the half-space is for small ones."""
+ROUGHEST = 100.0
+"""Rms height within the window up to which contacts are solved, in approaches of the smooth bodies."""
+_UNITS = {
+    "file": 'Are the heights in µm? Then set height_unit = "um", and the pixel with its unit.',
+    "rms": 'Is rms in µm? Then write it so: rms = "0.5 um".',
+    "line": 'Are the heights in µm? Then set line_unit = "um", and line_spacing with its unit.',
+    "spectrum": "Are the levels in dB re 1 µm, and the wavelengths in their unit?",
+}
+"""What to ask about heights that are too large, by the key that they come from."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +74,22 @@ def prepare_of_kind(case: Case, kind: Kind, source: str = "case") -> PreparedCas
         assert bodies is not None
         assert shape is not None
         assert textures is not None
+        if (smaller := _within_the_map(case, textures)) is not None:
+            return prepare_of_kind(smaller, kind, source)
         tried.errors += _problems(case, shape, textures)
         tried.refuse(source)
         kind.warn_of(case, shape, textures)
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
     return PreparedCase(case, kind, bodies, shape, textures, tuple(caught), seconds, processor)
+
+
+def _within_the_map(case: Case, textures: Textures) -> Case | None:
+    """The case with a window no wider than its measured maps, where it was chosen wider; else None."""
+    smallest = min((min(sample.shape) for sample in textures.maps), default=math.inf)
+    if "window" in case.contact.model_fields_set or window_cells(case.contact) <= smallest:
+        return None
+    cells = int(smallest) - 1 + int(smallest) % 2  # odd, as those of every window
+    return with_chosen_window(case, cells * case.contact.spacing)
 
 
 class _Attempts:
@@ -85,9 +112,31 @@ class _Attempts:
             raise CaseError(source, [str(error) for error in self.errors])
 
 
+def _problem_of_heights(case: Case, shape: Geometry, textures: Textures) -> InputError | None:
+    """Heights that no surface has on which bodies roll: most often in another unit."""
+    (nx, ny), maps = shape.body.shape, textures.maps
+    slope, rough = float(np.sqrt(np.mean(np.diff(textures.line) ** 2))) / case.contact.spacing, 0.0
+    if maps:
+        slope = textures.rms_slope
+        rough = float(np.mean([np.std(sample.heights[:nx, :ny]) for sample in maps]))
+    approach = shape.hertz.approach(shape.load)
+    if slope <= STEEPEST and rough <= ROUGHEST * approach:
+        return None
+    received = f"heights with an rms slope of {slope:.3g}"
+    allowed = f"slopes up to {STEEPEST:g}"
+    if slope <= STEEPEST:
+        received = f"heights of {1e6 * rough:.3g} um rms within the window"
+        allowed = f"up to {ROUGHEST:g} approaches of the bodies, {1e6 * approach:.3g} um each"
+    key = next((key for key in _UNITS if getattr(case.surface, key) is not None), "")
+    return InputError(f"surface.{key}".rstrip("."), received, allowed, _UNITS.get(key, ""))
+
+
 def _problems(case: Case, shape: Geometry, textures: Textures) -> Iterator[InputError]:
     """What fits neither samples nor window."""
     contact, (nx, ny) = case.contact, shape.body.shape
+    if (steep := _problem_of_heights(case, shape, textures)) is not None:
+        yield steep
+        return
     smallest = min((min(sample.shape) for sample in textures.maps), default=nx)
     if smallest < nx:
         allowed = f"at most the measured map, {smallest * contact.spacing * 1e6:.4g} um"

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
+from asperity.config.recipe import read_recipe
 from asperity.config.sections import MeasuredLine, Surface
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -28,6 +29,8 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
         if surface.spikes:
             chosen = tuple(each.without_spikes() for each in chosen)
         return [each.filled() if surface.fill else each for each in chosen]
+    if surface.recipe is not None:
+        return read_recipe(surface.recipe).read(surface.file)
     with spelled(in_case("surface", _MAP_KEYS)):
         read = read_surfaces if surface.index is None else partial(read_surface, index=surface.index)
         found = read(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
 from asperity.reduction.filter import Normalise
 from asperity.reduction.real_contact import isolated_share
+from asperity.reduction.stiffness import ForceCurve
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.line_filters import LineFilters, line_filters
 from asperity.scenarios.textures import Textures
@@ -27,9 +28,16 @@ from asperity.store import Cache
 from asperity.surfaces.strip import Strip
 
 STATES = 16
-"""States chosen where the case names no approaches, and more where the path is touched earlier."""
+"""States chosen where the case names no approaches; up to twice as many where the path is touched earlier."""
+EVENLY = 1.0 / 3.0
+"""Power of the mean force in which chosen states are evenly apart: close where asperities join in, and half a
+working approach under the largest force, where F^(2/3) is all but straight."""
+PRESSED = 5
+"""Forces for which approaches are found before states are chosen."""
 LIGHTEST_STATE = 0.02
-"""Least mean force of a state that has a filter, in loads of the class of the working load."""
+"""Mean force of the lowest chosen state, in loads of the class of the working load."""
+FILTERED = 2.0
+"""Times that the mean force of a state with a filter may lie outside the forces that chosen states cover."""
 SCAN_TOLERANCE = "numerics.force_accuracy"
 """Key of a case that says how tightly contacts of scans and loading curves are solved."""
 LEAST_DATUM = 1e-12
@@ -90,7 +98,7 @@ def reduce(
     if textures.path is not None and planes is not None:
         along = first_touch(textures.path, shape.body) + _centred(planes, shape)
     lowest = _lowest_touches(textures, shape, along, samples)
-    approaches = _approaches(contact, shape, lowest, samples, half_space)
+    approaches = _approaches(contact, textures, shape, along, samples, half_space)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
     working = float(np.mean([c.approach for c in contacts]))
@@ -109,7 +117,7 @@ def reduce(
     }
     ensemble = replace(ensemble, datum=datums[contact.datum])
     filters, scans = line_filters(
-        contact, textures, shape, ensemble, LIGHTEST_STATE * shape.class_load, needed,
+        contact, textures, shape, ensemble, filtered_loads(contact, shape), needed,
         rtol=rtol_for(FILTER_SHARE * numerics.force_accuracy), cache=cache, progress=progress,
     )  # fmt: skip
     counts = total(scan.counts for scan in scans)
@@ -128,6 +136,15 @@ def reduce(
         along,
         counts,
     )
+
+
+def filtered_loads(contact: ContactCase, shape: Geometry) -> tuple[float, float]:
+    """Least and largest mean force of a state that has a filter, N.
+
+    Chosen states go on to where the flattest place carries the largest force, and others carry far more.
+    """
+    largest = shape.largest_force if contact.approaches is None else math.inf
+    return LIGHTEST_STATE * shape.class_load / FILTERED, largest * FILTERED
 
 
 def refuse_low_states(
@@ -172,11 +189,11 @@ def _lowest_touches(
     along: NDArray[np.float64] | None,
     samples: Sequence[NDArray[np.float64]],
 ) -> dict[str, float]:
-    """Lowest approach of first touch of all samples, of samples and strips, and of these and the path, m."""
+    """Lowest approach of first touch of all samples, and of these, strips and path, m."""
     lowest = min(float(first_touch(s, shape.body).min()) for s in samples)
     strips = min([lowest, *(float(first_touch(s.heights, shape.body).min()) for s in textures.strips)])
     path = strips if along is None else min(strips, float(along.min()))
-    return {"samples": lowest, "strips": strips, "path": path}
+    return {"samples": lowest, "path": path}
 
 
 def _centred(planes: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64]:
@@ -187,28 +204,64 @@ def _centred(planes: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64
 
 def _approaches(
     contact: ContactCase,
+    textures: Textures,
     shape: Geometry,
-    lowest: Mapping[str, float],
+    along: NDArray[np.float64] | None,
     samples: Sequence[NDArray[np.float64]],
     half_space: HalfSpace,
 ) -> NDArray[np.float64]:
-    """States as given, or from the first touch to a high force, denser where contact begins.
+    """States as given, or by the load that places carry.
 
     Those of the samples do not depend on the path; more lie below where it is touched earlier, by whole
     steps: paths of other lengths over the same surface have them in common.
     """
     if contact.approaches is not None:
         return np.array(contact.approaches)
-    low = max(lowest["strips"], shape.lowest_approach)
-    high = max(
-        half_space.solve(shape.body - s, load=shape.largest_force, rtol=1e-3).approach for s in samples
-    )
-    states = chosen_states(low, high)
-    below, step = max(lowest["path"], shape.lowest_approach), 2.0 * (states[1] - states[0])
-    further = low - step * np.arange(math.ceil((low - below) / step), 0, -1)
-    return np.concatenate([further, states])
+    places = touched_places(textures, shape)
+    states = chosen_states([*samples, *places], shape, half_space)
+    if along is None or len(states) < 2:
+        return states
+    earlier = min(float((shape.body - place).min()) for place in places) - float(along.min())
+    step = 2.0 * (states[1] - states[0])
+    count = min(math.ceil(max(earlier, 0.0) / step), STATES)
+    return np.concatenate([states[0] - max(step, earlier / max(count, 1)) * np.arange(count, 0, -1), states])
 
 
-def chosen_states(low: float, high: float) -> NDArray[np.float64]:
-    """States from an approach to another, m, shape (STATES,), denser where contact begins."""
-    return np.asarray(low + (high - low) * np.linspace(0.0, 1.0, STATES) ** 1.3)
+def touched_places(textures: Textures, shape: Geometry) -> list[NDArray[np.float64]]:
+    """Places (nx, ny) of each strip that are touched first and last, levelled to their patch planes, m.
+
+    A few samples seldom meet the highest peak, nor the flattest place, which takes the largest forces last.
+    """
+    places, nx = [], shape.body.shape[0]
+    for strip in textures.strips:
+        planes = patch_planes(strip, shape)
+        touches = first_touch(strip.heights, shape.body) + _centred(planes, shape)
+        for row in (int(np.argmin(touches)), int(np.argmax(touches))):
+            places.append(strip.heights[row : row + nx] - planes[row + nx // 2])
+    return places
+
+
+def chosen_states(
+    places: Sequence[NDArray[np.float64]], shape: Geometry, half_space: HalfSpace
+) -> NDArray[np.float64]:
+    """States from a light load to the largest force at all of some places (nx, ny), m; shape (STATES,).
+
+    From the touch of a place to its load F^(2/3) is bent, and straight beyond: few states suffice where many
+    places carry much, many are wanted where few carry little. So they are even in a low power of the mean.
+    """
+    light = LIGHTEST_STATE * shape.class_load
+    forces = np.geomspace(light, shape.largest_force, PRESSED)
+    curves = []
+    for place in places:
+        pressed, start = [], None
+        for force in forces:
+            found = half_space.solve(shape.body - place, load=force, start=start, rtol=1e-3)
+            pressed.append(found.approach)
+            start = found.pressure
+        curves.append(ForceCurve.from_samples(pressed, forces))
+    lowest = min(curve.first_touch for curve in curves)
+    highest = max(float(curve.inverse(shape.largest_force)) for curve in curves)
+    approaches = np.linspace(lowest, highest, 64 * STATES)
+    mean = np.mean([curve.force(approaches) for curve in curves], axis=0)
+    even = np.linspace(light**EVENLY, mean[-1] ** EVENLY, STATES)
+    return np.interp(even, mean**EVENLY, approaches)

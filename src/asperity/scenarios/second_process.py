@@ -18,7 +18,10 @@ from asperity.threads import processors
 
 LAST = "asperity.kernels.scanning.solve_positions"
 """What is compiled last."""
-CODE = "from asperity.scenarios.compiling import compile_beside; compile_beside()"
+CODE = (
+    "from asperity.apart import end_with_parent; end_with_parent(); "
+    "from asperity.scenarios.compiling import compile_beside; compile_beside()"
+)
 _running = False
 
 
@@ -41,8 +44,9 @@ def contact_compiled_beside() -> Iterator[None]:
 def _started() -> subprocess.Popen[bytes] | None:
     """Start it; None where no process can be started, as inside another program."""
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    streams: dict[str, Any] = {"stdin": subprocess.PIPE}
+    streams |= {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     try:
-        return subprocess.Popen([sys.executable, "-W", "ignore", "-c", CODE], env=environment, **quiet)
+        return subprocess.Popen([sys.executable, "-W", "ignore", "-c", CODE], env=environment, **streams)
     except OSError:
         return None

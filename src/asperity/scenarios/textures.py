@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +14,11 @@ from asperity.config.sections import ContactCase, Surface
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.reading import read_maps
+from asperity.surfaces.continuation import Continuation, extend
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.rotation import QUARTER, rotated
+from asperity.surfaces.statistics import rms_slope
 from asperity.surfaces.strip import LongStrip, Strip, raised
 from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
 
@@ -27,7 +30,8 @@ FEWEST_WINDOWS = 4
 READ_POINTS = 2**18
 """Points of a path that are read in one go (2 MiB)."""
 
-FORM_DEGREE = {"plane": 1, "quadratic": 2}
+MOST_POINTS = 2.0**27
+"""Points of a measured map on the contact grid (1 GiB)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +58,11 @@ class Textures:
     # measured ones that a texture is interpolated between, by the body that bears them, m
     lines: dict[str, tuple[Profile, ...]] = field(default_factory=dict)
     untouched: Textures | None = None  # as they were before running-in; None where they still are
+
+    @property
+    def rms_slope(self) -> float:
+        """Rms slope of the samples on the contact grid."""
+        return float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in self.maps])))
 
     @property
     def recorded(self) -> slice:
@@ -88,7 +97,7 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
     With the share of points that had no height in the file.
     """
     found = read_maps(surface)
-    result, degree = [], FORM_DEGREE[surface.form]
+    result = []
     for measured in found:
         if not isinstance(measured, HeightMap):
             remedy = "A single line can be the path: give it as surface.line."
@@ -96,6 +105,12 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
         if measured.missing_share > 0.0:
             received = f"{100 * measured.missing_share:.2g} % of the points without a height"
             raise InputError("surface.file", received, "complete maps", "Set fill = true in [surface].")
+        points = math.prod(measured.size) / spacing**2
+        if points > MOST_POINTS:
+            sides = " × ".join(f"{1e3 * side:.4g} mm" for side in measured.size)
+            received = f"maps of {sides}, {points:.2g} points at contact.spacing = {spacing * 1e6:.3g} um"
+            remedy = "Is the pixel in µm, not mm? Else cut the map, or coarsen contact.spacing."
+            raise InputError("surface.file", received, f"at most {MOST_POINTS:.2g} points", remedy)
         if max(measured.spacing) > spacing * (1 + 1e-9):
             warnings.warn(
                 f"the map's points are {max(measured.spacing) * 1e6:.3g} µm apart, more than contact.spacing "
@@ -103,9 +118,9 @@ def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ..
                 ShortRecordWarning,
                 stacklevel=2,
             )
-        along = _in_direction(level(measured, degree), surface.direction, spacing)
-        on_grid = level(resample(along, spacing), degree)
-        longest, shortest = surface.band
+        along = _in_direction(level(measured, surface.form), surface.direction, spacing)
+        on_grid = level(resample(along, spacing), surface.form)
+        longest, shortest = surface.longest, surface.shortest
         limited = longest is not None or shortest is not None
         result.append(band_limit(on_grid, longest=longest, shortest=shortest) if limited else on_grid)
     return tuple(result), float(np.mean([m.missing_share for m in found]))
@@ -178,13 +193,19 @@ def cut_from(path: Strip, contact: ContactCase, duration: float, *, first: int =
 
 
 def path_of(
-    maps: tuple[HeightMap, ...], shape: tuple[int, int], seed: int, run_in: int, before: int
+    maps: tuple[HeightMap, ...],
+    shape: tuple[int, int],
+    seed: int,
+    run_in: int,
+    before: int,
+    continuation: str | None = None,
 ) -> tuple[Strip, str]:
     """Take the path (rows, ny) from measured maps, and say how.
 
     Cut from the first map where it is large enough, but for the run-in, whose rows are mirrored where it is
-    too short; else synthesised in their likeness, the same at every speed from the row `before` on, where the
-    record starts.
+    too short. Else the first map is mirrored, or repeated, from behind the run-in on, where the case asks for
+    that `continuation`; or the path is synthesised in their likeness, the same at every speed from the row
+    `before` on, where the record starts.
     """
     first = maps[0]
     if first.shape[0] >= shape[0] - run_in and first.shape[1] >= shape[1]:
@@ -193,7 +214,29 @@ def path_of(
         origin = "path cut from the first" + mirrored_words(heights, shape[0])
         path = mirrored_before(heights - heights.mean(), shape[0])
         return HeightMap(path, first.spacing, first.source), origin
+    if continuation in ("mirror", "repeat"):
+        return _continued(first, shape, run_in, cast(Continuation, continuation))
     return long_strip_like(maps, shape, seed, before=before), "path synthesised in their likeness"
+
+
+def _continued(
+    first: HeightMap, shape: tuple[int, int], run_in: int, how: Continuation
+) -> tuple[HeightMap, str]:
+    """Mirror or repeat the middle of a map along a path (rows, ny); a repeated one closes over a window."""
+    rows, ny = shape
+    if first.shape[1] < ny or rows * ny > MOST_POINTS:
+        received = (
+            f"{first.size[1] * 1e3:.4g} mm across" if first.shape[1] < ny else f"{rows * ny:.2g} points"
+        )
+        allowed = f"a map as wide as the window, and paths of at most {MOST_POINTS:.2g} points"
+        raise InputError("surface.continuation", received, allowed, "Leave it out, or roll shorter.")
+    middle = (first.shape[1] - ny) // 2
+    heights = first.heights[:, middle : middle + ny]
+    fade = min(ny, len(heights) // 2) if how == "repeat" else 0
+    path = extend(
+        heights - heights.mean(), rows, how, spacing=first.spacing[0], start=-run_in, crossfade=fade
+    )
+    return HeightMap(path, first.spacing, first.source), f"path cut from the first, {how}ed"
 
 
 def mirrored_before(heights: NDArray[np.float64], rows: int) -> NDArray[np.float64]:
@@ -232,9 +275,9 @@ def synthesised_path(
 
 
 def _self_affine_keys(surface: Surface) -> dict[str, float]:
-    longest, shortest = surface.band
+    longest, shortest = surface.longest, surface.shortest
     assert surface.rms is not None
     assert longest is not None
     assert shortest is not None
-    keys = {"rms": surface.rms, "hurst": surface.hurst, "anisotropy": surface.anisotropy}
+    keys = {"rms": surface.rms, "hurst": surface.hurst, "anisotropy": surface.anisotropy, "lay": surface.lay}
     return keys | {"longest": longest, "shortest": shortest}

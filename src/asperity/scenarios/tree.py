@@ -7,6 +7,7 @@ import warnings
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,20 +21,35 @@ from asperity.errors import Grade, PhysicsWarning
 from asperity.laws import baselines, reference, spec_of
 from asperity.results import checked
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.chance import PLACES, ForceTransfer, chance_and_start, values_seen
 from asperity.scenarios.law_choice import LawChoice
+from asperity.scenarios.laws import working_point
 from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
-from asperity.spectra import LEAST_PRODUCT, averaging_time, band_levels, band_product, psd
+from asperity.spectra import (
+    LEAST_PRODUCT,
+    MOST_START,
+    averaging_time,
+    band_levels,
+    band_product,
+    level_deviation,
+    psd,
+)
 
 SEGMENT = (0.025, 0.2)
 """Shortest and longest segment of the spectra, s: lines 40 Hz and 5 Hz apart."""
 METHOD = (
-    "O. Lundberg, State-dependent nonlinear contact modelling, licentiate thesis, KTH Stockholm (2014).",
+    "O. Lundberg, licentiate thesis, KTH Stockholm (2014).",
+    "Lundberg, Finnveden, Björklund, Pärssinen and Lopez Arteaga, A nonlinear state-dependent model for "
+    "vibrations excited by roughness in rolling contacts, submitted to J. Sound Vib. (2014): its paper A.",
+    "Lundberg, Nordborg, Lopez Arteaga and Finnveden, Estimation of nonlinearities in the wheel-rail rolling "
+    "noise generation process, ISMA (2014): its paper B.",
     "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies).",
 )
 ROUGH_CONTACT = (
     "A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377 (influence coefficients).",
     "I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206 (projected conjugate gradients).",
-    "E. A. H. Vollebregt, J. Comput. Phys. 257 (2014) 333 (preconditioning of rough contact).",
+    "E. A. H. Vollebregt, A new solver for the elastic normal contact problem using conjugate gradients, "
+    "deflation, and an FFT-based preconditioner (2014).",
 )
 BANDS = ("IEC 61260-1:2014 (one-third octaves, base 10).",)
 EXPECTED = ("G. Matheron, Economic Geology 58 (1963) 1246 (kriging, of the expected errors of laws).",)
@@ -171,8 +187,11 @@ def difference_to(baseline: str) -> Entry:
     return spectra.FORCE_LEVEL_DIFFERENCES[role]
 
 
-def force_spectra(chain: Chain[Any]) -> dict[str, xarray.Variable]:
-    """Lay out the contact force over frequency: narrow bands, one-third octaves, differences between laws."""
+def force_spectra(chain: Chain[Any], transfer: ForceTransfer | None = None) -> dict[str, xarray.Variable]:
+    """Lay out the contact force over frequency: narrow bands, one-third octaves, differences between laws.
+
+    With how sure the levels are, where the linear force of the bodies is known.
+    """
     step, highest = chain.case.time_step, chain.case.numerics.highest_frequency
     laws, force = list(chain.runs), chain.stacked("contact_force")
     segment = spectrum_segment(force.shape[1], step)
@@ -185,12 +204,33 @@ def force_spectra(chain: Chain[Any]) -> dict[str, xarray.Variable]:
             spectra.LAW: laws,
             spectra.FREQUENCY: frequency[shown],
             spectra.BAND: band,
-            spectra.BAND_TIME_PRODUCT: product_of_bands(spectra.BAND_TIME_PRODUCT, band, time),
             spectra.FORCE_PSD: density[:, shown],
             spectra.FORCE_LEVEL: level,
         }
+        | sureness(chain, band, time, transfer)
     )
     return found | level_differences(laws, level)
+
+
+def sureness(
+    chain: Chain[Any], band: NDArray[np.float64], time: float, transfer: ForceTransfer | None
+) -> dict[Entry, Any]:
+    """Lay out how sure the levels of bands (b,), Hz, are: B T for an averaging time, s, chance, and start."""
+    found: dict[Entry, Any] = {}
+    run = next(iter(chain.runs.values()))
+    values = band_product(band, time) * values_seen(run.contact_force, chain.case.time_step, band)
+    if transfer is not None:
+        record, (first, last) = float(run.time[-1]), run.position[[0, -1]]
+        places = first + (last - first) * (np.arange(PLACES) + 0.5) / PLACES
+        _, stiffness = working_point(chain.case.contact, chain.shape, chain.reduction)
+        linear = partial(transfer, stiffness, places)
+        held, start = chance_and_start(linear, band, chain.case.settled_time, record)
+        values = np.minimum(values, held * time / record)
+        found[spectra.START_SHARE] = spectra.START_SHARE.variable(start, most=MOST_START)
+    return found | {
+        spectra.BAND_TIME_PRODUCT: product_of_bands(spectra.BAND_TIME_PRODUCT, band, time),
+        spectra.LEVEL_DEVIATION: level_deviation(values),
+    }
 
 
 def drawn(frequency: NDArray[np.float64], highest: float) -> NDArray[np.bool_]:

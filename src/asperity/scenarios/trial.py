@@ -21,15 +21,17 @@ from asperity.laws import Need, needs_of
 from asperity.progress import Progress
 from asperity.reduction.areal import areal_texture, punch_weights
 from asperity.reduction.ensemble import patches
+from asperity.reduction.real_contact import isolated_share
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.line_filters import filter_stride
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import (
-    LIGHTEST_STATE,
     chosen_states,
+    filtered_loads,
     patch_planes,
     refuse_low_states,
+    touched_places,
 )
 from asperity.scenarios.running_in import running_in_job
 from asperity.surfaces.heightmap import HeightMap
@@ -63,6 +65,10 @@ class ContactTrial:
     direct: float  # a solution from its neighbour's pressure
     touch: float  # a row in finding first touches
     average: float  # a row in averaging under one patch
+    working: float = 0.0  # approach of a sample under the working load, m
+    area_ratio: float = 1.0  # contact area of samples under that load over that of smooth bodies
+    isolated_share: float = 0.0  # of that load on cells that touch alone
+    cut_off: float = 0.0  # share of the contacts of its loading curve that the window cuts off
 
 
 def timed(task: Callable[[], T]) -> tuple[T, float]:
@@ -87,7 +93,8 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     progress(1, 4, message)
     job = ScanJob(half_space, Rows(samples[0]), shape.body, approaches, rtol=rtol, device=None)
     scanned, curve = timed(partial(scan_forces, job, workers=1))
-    loaded = approaches[scanned.forces[:, 0] >= LIGHTEST_STATE * shape.class_load]
+    force, (least, most) = scanned.forces[:, 0], filtered_loads(case.contact, shape)
+    loaded = approaches[(force >= least) & (force <= most)]
     progress(2, 4, message)
     filters = path = 0.0
     if any(np.ptp(strip.heights) for strip in textures.strips) and len(loaded):
@@ -107,9 +114,31 @@ def try_contacts(prepared: PreparedCase, progress: Progress) -> ContactTrial:
     solve = partial(half_space.solve, shape.body - samples[0], rtol=case.numerics.rtol)
     start = solve(approach=working * 0.98).pressure
     _, direct = timed(lambda: solve(approach=working, start=start))
+    real = _real_contact(prepared, half_space, samples)
     progress(4, 4, message)
     shared = touch / min(101, rows.shape[0] - nx + 1), average / (2 * rows.shape[0])
-    return ContactTrial(approaches, len(loaded), load, curve, filters, path, rolled, direct, *shared)
+    counts = scanned.counts
+    return ContactTrial(
+        approaches, len(loaded), load, curve, filters, path, rolled, direct, *shared, working=working, **real,
+        cut_off=counts.truncated / max(counts.solved, 1),
+    )  # fmt: skip
+
+
+def _real_contact(
+    prepared: PreparedCase, half_space: HalfSpace, samples: list[NDArray[np.float64]]
+) -> dict[str, float]:
+    """Mean area and grid of contacts under the working load, of a few samples where that takes long."""
+    shape, rtol, begin = prepared.shape, prepared.case.numerics.rtol, time.process_time()
+    smooth = half_space.solve(shape.body, load=shape.load, rtol=rtol).area
+    pressed = []
+    for sample in samples:
+        pressed.append(half_space.solve(shape.body - sample, load=shape.load, rtol=rtol))
+        if time.process_time() - begin > LONG:
+            break
+    return {
+        "area_ratio": float(np.mean([contact.area for contact in pressed])) / smooth,
+        "isolated_share": float(np.mean([isolated_share(contact.pressure) for contact in pressed])),
+    }
 
 
 def _states(
@@ -126,11 +155,10 @@ def _states(
         pressed = [[half_space.solve(shape.body - s, r).force for r in given[-2:]] for s in samples]
         refuse_low_states(approaches, np.mean(pressed, axis=0), shape, working.approach)
         return approaches, working.approach, load
-    highest, more = timed(lambda: half_space.solve(gap, load=shape.largest_force, rtol=1e-3))
-    touched = [*samples, *(strip.heights for strip in prepared.textures.strips)]
-    low = max(min(float(first_touch(z, shape.body).min()) for z in touched), shape.lowest_approach)
-    approaches = chosen_states(low, highest.approach)
-    return approaches, working.approach, load + more
+    places = [samples[0], *touched_places(prepared.textures, shape)]
+    approaches, more = timed(partial(chosen_states, places, shape, half_space))
+    of_each = more / len(places)
+    return approaches, working.approach, load + of_each * (1 + (len(places) - 1) / len(samples))
 
 
 def _position_time(job: ScanJob, level_by: Geometry | None = None) -> float:

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from asperity.config.case import Case
 from asperity.errors import Grade, OutOfRangeWarning, percent
 from asperity.laws import spec_of
 from asperity.scenarios.chain import Chain
+from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.law_choice import WANTED, LawChoice, law_choice, law_to_take
+from asperity.scenarios.law_place import SquareTransfer
 from asperity.scenarios.population import EFFECT, answers
-from asperity.surfaces.statistics import rms_slope, shortest_wave_for
+from asperity.scenarios.textures import Textures
+from asperity.scenarios.trial import ContactTrial
+from asperity.surfaces.statistics import shortest_wave_for
 
 _CUT_OFF = "share of contacts that the window cuts off"
 
@@ -52,12 +58,53 @@ class Finding:
         return f"{self.quantity}: {self.value}, in range {self.limit}. {self.meaning} {self.remedy}"
 
 
-def findings(chain: Chain[Any]) -> list[Finding]:
-    """Hold a case to the range in which its laws are known to hold; without samples, its time steps alone."""
+def findings(chain: Chain[Any], choice: LawChoice | None = None) -> list[Finding]:
+    """Hold a case to the range in which its laws are known to hold; without samples, its time steps alone.
+
+    Which law to take instead is what the map of law errors chooses, where it knows of the case.
+    """
     steps = _time_steps(chain)
     if chain.reduction is None:
         return [steps]
-    return [_area(chain), _slope(chain), _isolated(chain), *_cut_off(chain), *_populations(chain), steps]
+    case, reduction = chain.case, chain.reduction
+    return [
+        _area(case, reduction.area_ratio, choice),
+        _slope(case, chain.shape, chain.textures),
+        _isolated(case, reduction.isolated_share),
+        *_cut_off(chain),
+        *_populations(chain),
+        steps,
+    ]
+
+
+def choice_of(chain: Chain[Any], square_transfer: SquareTransfer, *, brief: bool) -> LawChoice | None:
+    """What the map of law errors says of a case; in brief only where the real contact asks for it."""
+    if brief and (chain.reduction is None or chain.reduction.area_ratio >= AREA[0]):
+        return None
+    return law_choice(chain.case, chain.shape, chain.textures, square_transfer)
+
+
+def foreseen(
+    case: Case, shape: Geometry, textures: Textures, tried: ContactTrial, choice: LawChoice | None
+) -> list[Finding]:
+    """What a run will find fault with, from contacts that were tried."""
+    remedy = shape.remedy_for_cut_off(
+        float(tried.approaches[-1]), tried.working, -float(tried.approaches[0]), textures.widest_window
+    )
+    share = tried.cut_off
+    window = Finding(
+        f"{_CUT_OFF}, the loading curve of a sample",
+        percent(share),
+        "below 1 %",
+        Grade.of_share(share) if share else None,
+        "Their force is too small.",
+        remedy,
+        "",
+        (),
+    )
+    area, grid = _area(case, tried.area_ratio, choice), _isolated(case, tried.isolated_share)
+    found = (area, _slope(case, shape, textures), grid, window)
+    return [finding for finding in found if finding.grade is not None]
 
 
 def warn_of_findings(found: list[Finding]) -> None:
@@ -67,11 +114,6 @@ def warn_of_findings(found: list[Finding]) -> None:
             warnings.warn(OutOfRangeWarning(finding.message, finding.grade), stacklevel=2)
 
 
-def rms_slope_of(chain: Chain[Any]) -> float:
-    """Rms slope of the samples on the contact grid."""
-    return float(np.sqrt(np.mean([rms_slope(sample) ** 2 for sample in chain.textures.maps])))
-
-
 def _grade(value: float, limits: tuple[float, float]) -> Grade | None:
     """Grade of a value: out of range below limits that fall, above limits that rise."""
     sign = 1.0 if limits[1] > limits[0] else -1.0
@@ -79,31 +121,39 @@ def _grade(value: float, limits: tuple[float, float]) -> Grade | None:
     return Grade.OUT if out else Grade.WARNING if warned else None
 
 
-def _area(chain: Chain[Any]) -> Finding:
-    ratio = chain.reduction.area_ratio  # type: ignore[union-attr]
-    averaged = tuple(law for law in chain.case.laws if not spec_of(law).sees_heights)
-    scanned = [law for law in chain.case.laws if spec_of(law).sees_heights]
+def doubted_by_area(laws: Sequence[str], ratio: float, choice: LawChoice | None) -> tuple[str, ...]:
+    """Laws of a case that a ratio of real contact makes doubtful, where the map does not trust them.
+
+    None where the map trusts the first, which the others are compared with.
+    """
+    if ratio >= AREA[0] or (choice is not None and choice.trusts(laws[0])):
+        return ()
+    blind = [law for law in laws if not spec_of(law).sees_heights]
+    return tuple(law for law in blind if choice is None or not choice.trusts(law))
+
+
+def _area(case: Case, ratio: float, choice: LawChoice | None) -> Finding:
+    doubted, taken = doubted_by_area(case.laws, ratio, choice), law_to_take(choice)
     return Finding(
         "real contact area over that of smooth bodies",
         f"{ratio:.2f}",
-        f"from {AREA[0]:g} on",
-        _grade(ratio, AREA) if averaged else None,
-        "The rough contact is only a part of the patch that laws of a line or an averaged texture take for "
-        "it: `areal` was 0.8 dB from `table` at 0.96 (rms over the bands), 1.2 dB at 0.81, 2.8 dB at 0.64.",
-        f"Read `{scanned[0]}`, which was rolled as well." if scanned else "Take `table`.",
+        f"from {AREA[0]:g} on, or within {WANTED:g} dB by the map of law errors",
+        _grade(ratio, AREA) if doubted else None,
+        "Laws of a line or an averaged texture take the whole patch for the contact; this is a part of it.",
+        f"Read {taken}, which was rolled as well." if taken in case.laws else f"Take {taken}.",
         f"real contact area {percent(ratio)} of that of smooth bodies",
-        averaged,
+        doubted,
     )
 
 
-def _slope(chain: Chain[Any]) -> Finding:
-    slope, spacing = rms_slope_of(chain), chain.shape.spacing[0]
-    pressure = 0.5 * chain.shape.modulus * slope
-    shortest = max(shortest_wave_for(sample, SLOPE[0]) for sample in chain.textures.maps)
+def _slope(case: Case, shape: Geometry, textures: Textures) -> Finding:
+    slope, spacing = textures.rms_slope, shape.spacing[0]
+    pressure = 0.5 * shape.modulus * slope
+    shortest = max(shortest_wave_for(sample, SLOPE[0]) for sample in textures.maps)
     remedy = "Leave out the short waves that yield at first touch"
     if shortest > 2 * spacing:
         remedy += f": surface.shortest = {_um(shortest)} leaves a slope of {SLOPE[0]:g}"
-    hard = "" if chain.case.contact.hardness is not None else ", or give contact.hardness"
+    hard = "" if case.contact.hardness is not None else ", or give contact.hardness"
     return Finding(
         "rms slope of the samples, Sdq",
         f"{slope:.2g}",
@@ -113,16 +163,14 @@ def _slope(chain: Chain[Any]) -> Finding:
         f"{pressure / 1e9:.2g} GPa.",
         f"{remedy}{hard}.",
         f"rms slope {slope:.2g}",
-        tuple(chain.case.laws),
+        tuple(case.laws),
     )
 
 
-def _isolated(chain: Chain[Any]) -> Finding:
-    share, spacing = chain.reduction.isolated_share, chain.shape.spacing[0]  # type: ignore[union-attr]
-    least = CELLS_PER_WAVE * spacing
+def _isolated(case: Case, share: float) -> Finding:
+    least, surface = CELLS_PER_WAVE * case.contact.spacing, case.surface
     ways = [f"surface.shortest = {_um(least)} leaves out the waves that this one does not resolve"]
-    surface = chain.case.surface
-    known = surface.band[1] or (2.0 * surface.pixel if surface.pixel is not None else None)
+    known = surface.shortest or (2.0 * surface.pixel if surface.pixel is not None else None)
     if known is not None and known < least:
         ways.insert(0, f"contact.spacing = {_um(known / CELLS_PER_WAVE, down=True)} resolves all waves")
     return Finding(
@@ -133,7 +181,7 @@ def _isolated(chain: Chain[Any]) -> Finding:
         "The grid does not resolve the asperities: forces depend on contact.spacing.",
         f"A grid that would do: {', or '.join(ways)}.",
         f"{percent(share)} of the load on single cells",
-        tuple(chain.case.laws),
+        tuple(case.laws),
     )
 
 
@@ -206,7 +254,7 @@ def _populations(chain: Chain[Any]) -> Iterator[Finding]:
                 f"an effect of up to {EFFECT[0]:g} dB",
                 answer.grade,
                 answer.answer,
-                "Take more samples or a longer path; `table` has the stiffness of every place.",
+                "Take more samples or a longer path; the law table has the stiffness of every place.",
                 answer.brief,
                 answer.laws,
             )

@@ -18,8 +18,9 @@ from asperity.schema.spectra import (
     BAND,
     BAND_TIME_PRODUCT,
     FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
+    START_SHARE,
 )
-from asperity.spectra import LEAST_PRODUCT, nominal_frequency
+from asperity.spectra import nominal_frequency, say_little
 
 COMPARED = (100.0, 5000.0)
 """Band centres between which laws are compared, Hz."""
@@ -75,11 +76,12 @@ def _doubts(chain: Chain[Any], found: Sequence[Finding]) -> Iterator[str]:
 
 
 def compared_bands(spectra: xarray.Dataset) -> np.ndarray:
-    """Bands in which laws are compared: those that are averaged enough."""
+    """Bands in which laws are compared: those whose levels say something."""
     low, high = COMPARED
     band = spectra[BAND.name]
+    product, start = spectra[BAND_TIME_PRODUCT.name], spectra.get(START_SHARE.name, 0.0)
     inside = (band >= low * 0.9) & (band <= high * 1.1)
-    return np.asarray((inside & (spectra[BAND_TIME_PRODUCT.name] >= LEAST_PRODUCT)).values)
+    return np.asarray(inside & ~say_little(product, start))
 
 
 def _compared(bands: xarray.Dataset, main: str, others: list[str]) -> Iterator[str]:

@@ -13,6 +13,18 @@ _NOT_COMPARED = "this setting was not changed, or changes nothing of the kind"
 PATH_LENGTH = "path length"
 """The setting that needs no other run: half of the record is compared with all; by chance they differ."""
 
+MEANINGLESS = 3.0
+"""Change of levels, dB, from which on a run has not come near to what it computes."""
+
+
+def meaningless(size: float, chance: float) -> bool:
+    """Whether a change of levels, dB, says that they mean nothing: large, and twice what chance does, dB.
+
+    Chance is the change by half of the record; none if it is not known (NaN).
+    """
+    return size > MEANINGLESS and not size <= 2.0 * chance
+
+
 SETTING = _entry("setting", ("setting",), "1", "setting that was changed")
 CHANGE = _entry("change", ("setting",), "1", "from what to what")
 LIMIT = _entry("limit", ("setting",), "1", "why it was not changed; empty where it was")

@@ -18,6 +18,12 @@ SEED = _root("seed", "1", "of all that was drawn at random")
 CITATIONS = _root("citations", "JSON", "sources of methods and data")
 VERDICT = _root("verdict", "text", "what the run says, in a few sentences")
 WARNINGS = _root("warnings", "JSON", "warnings on the physics: category, message, grade, count")
+RUN = _root(
+    "run",
+    "text",
+    "names the run by case, contents of its files and program, so that none is computed twice",
+    "where the command line ran the case",
+)
 
 KIND = _scenario("kind", "text", "kind of case")
 PARAMETERS = _scenario("parameters", "JSON", "every key of the case, with its value and default")

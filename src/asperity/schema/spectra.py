@@ -16,9 +16,21 @@ BAND_TIME_PRODUCT = _entry(
     "band_time_product",
     ("band",),
     "1",
-    "bandwidth times averaging time; a level has a standard deviation of 4.34/sqrt of it, dB",
+    "bandwidth times averaging time; a level has a standard deviation of 4.34/sqrt of it, dB, or more",
     attributes=("least",),
 )
+LEVEL_DEVIATION = _entry(
+    "level_deviation", ("band",), "dB", "standard deviation of a force level by the chance of one record"
+)
+START_SHARE = _entry(
+    "start_share",
+    ("band",),
+    "1",
+    "share of the mean square of the force that is not built up yet in the record",
+    "of what rolls over structures whose receptances are known",
+    attributes=("most",),
+)
+
 FORCE_PSD = _entry("force_psd", ("law", "frequency"), "N2/Hz", "PSD of the contact force, one-sided")
 FORCE_LEVEL = _entry("force_level", ("law", "band"), "dB re 1 N", "contact force level", missing=NO_SIGNAL)
 

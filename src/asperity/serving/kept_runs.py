@@ -8,10 +8,14 @@ import re
 import secrets
 import shutil
 from collections.abc import Iterator
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from asperity.config.parsing import LARGEST_CASE
+from asperity.decoding import read_text
+from asperity.errors import InputError
 from asperity.files import discard, write_bytes
 from asperity.printable import printable
 
@@ -73,8 +77,7 @@ def shortened_name(text: str) -> str:
 
 def told_of(folder: Path) -> dict[str, Any]:
     """What a run is, and what became of it: done, failed, cancelled, or interrupted where nobody knows."""
-    facts = _read(folder / _FACTS)
-    outcome = _read(folder / _OUTCOME)
+    facts, outcome = _read(folder / _FACTS), _read(folder / _OUTCOME)
     if (folder / RESULT).is_file():
         outcome = {"state": "done"}
     told = {
@@ -88,12 +91,19 @@ def told_of(folder: Path) -> dict[str, Any]:
     return told | facts | outcome | {"id": folder.name}
 
 
-def _read(file: Path) -> dict[str, Any]:
+def _read(file: Path) -> dict[str, str]:
+    """Words that were kept by their names; none of a file that is missing or damaged."""
     try:
-        found = json.loads(file.read_bytes())
-    except (OSError, ValueError):
+        found = json.loads(read_text(file, file.name, "JSON", largest=LARGEST_CASE))
+    except (InputError, ValueError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
+    words = found.items() if isinstance(found, dict) else ()
+    return {name: printable(word, lines=True) for name, word in words if isinstance(word, str)}
+
+
+def case_of_run(folder: Path) -> str:
+    """Text of the case of a run; an `InputError` if it is missing or damaged."""
+    return read_text(folder / CASE, f"the case of {folder.name}", "a case", largest=LARGEST_CASE)
 
 
 def write_outcome(folder: Path, state: str, message: str = "") -> None:
@@ -110,6 +120,23 @@ def forget_outcome(folder: Path) -> None:
 def remove_kept(folder: Path) -> None:
     """Delete a run, or a surface, with all its files."""
     shutil.rmtree(folder, ignore_errors=True)
+
+
+def remove_unnamed(root: Path, runs: Path) -> None:
+    """Delete what no case of a run names."""
+    named = ""
+    for folder in kept_in(runs):
+        with suppress(InputError):
+            named += case_of_run(folder)
+    for folder in kept_in(root):
+        if folder.name not in named:
+            remove_kept(folder)
+
+
+def keep_latest(root: Path, most: int) -> None:
+    """Delete all but the latest."""
+    for folder in list(kept_in(root))[most:]:
+        remove_kept(folder)
 
 
 def file_of_run(folder: Path, name: str) -> Path | None:

@@ -682,6 +682,7 @@ function listenToForm() {
   find("find").oninput = arrange;
   find("reset").onclick = () => { firstValues(form()); changed(); };
   find("roll").onclick = roll;
+  find("clear-surfaces").onclick = () => { if (confirm("Delete the surfaces that no run uses?")) ask("ask/surfaces/clear", {}).then(listSurfaces); };
   find("surface-file").onchange = (event) => upload(event.target.files[0]).finally(() => { event.target.value = ""; });
   find("case-file").onchange = async (event) => {
     try { fill(await ask("ask/fill", { text: await event.target.files[0].text() })); showErrors([]); } catch (error) { showErrors(error.errors || [String(error)]); }

@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 import os
 import sys
-import threading
 import time
 import warnings
 from contextlib import suppress
 from pathlib import Path
 from typing import TextIO
 
-from asperity.apart import reason
-from asperity.errors import AsperityError
+from asperity.apart import end_with_parent, reason
+from asperity.errors import TOO_MUCH_MEMORY, AsperityError
 
 NICENESS = 5
 """How far it stands back for the slider."""
@@ -25,7 +24,7 @@ def roll_run() -> None:
     """Roll the case in the folder that is the last argument, as the process that `jobs.Jobs` starts."""
     folder, told = Path(sys.argv[-1]), os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print is no report
-    threading.Thread(target=_end_with_server, daemon=True).start()
+    end_with_parent()
     if hasattr(os, "nice"):
         os.nice(NICENESS)
     try:
@@ -34,8 +33,7 @@ def roll_run() -> None:
     except AsperityError as error:
         _tell(told, {"state": "failed", "message": str(error)})
     except MemoryError:
-        what = "The memory of this machine is too small. Try a smaller contact.window or a shorter duration."
-        _tell(told, {"state": "failed", "message": what})
+        _tell(told, {"state": "failed", "message": TOO_MUCH_MEMORY})
     except Exception as error:  # a fault of the program, which the page shows
         _tell(told, {"state": "failed", "message": f"The program failed with {reason(error)}."})
 
@@ -79,11 +77,3 @@ def _tell(told: TextIO, report: dict[str, object]) -> None:
     with suppress(OSError):  # nobody listens any more
         told.write(json.dumps(report) + "\n")
         told.flush()
-
-
-def _end_with_server() -> None:
-    """End this process when the server has ended, however it has: its end of standard input closes then."""
-    with suppress(OSError, ValueError):
-        while os.read(0, 4096):
-            pass
-    os._exit(1)

@@ -28,6 +28,8 @@ from asperity.serving.page_template import page_text
 CONTACT_SECONDS, FILE_SECONDS = 60.0, 120.0
 """Time that a contact, and a file, may take, s."""
 MOST_COMPARED = 4
+MOST_COMPARISONS = 20
+"""Comparisons that are kept; others are written again when they are asked for."""
 LONGEST_SIZE = 19  # digits of a number of bytes
 Handler = Callable[["Server", Request], Awaitable[Response]]
 _STATIC = {"page.js": "text/javascript", "page.css": "text/css"}
@@ -88,6 +90,7 @@ class Server:
                 Route("/ask/fill", self._bound(fill_from_file), methods=["POST"]),
                 Route("/ask/surfaces", self._bound(send_surfaces)),
                 Route("/ask/surfaces", self._bound(take_upload), methods=["POST"]),
+                Route("/ask/surfaces/clear", self._bound(clear_surfaces), methods=["POST"]),
                 Route("/ask/runs", self._bound(send_runs)),
                 Route("/ask/runs", self._bound(start_run), methods=["POST"]),
                 Route("/ask/compare", self._bound(send_comparison)),
@@ -191,7 +194,7 @@ async def fill_from_file(server: Server, request: Request) -> Response:
 @told_plainly
 async def fill_from_run(server: Server, request: Request) -> Response:
     """Read the case of a run into the form."""
-    text = (server.run_of(request) / kept_runs.CASE).read_text(encoding="utf-8")
+    text = kept_runs.case_of_run(server.run_of(request))
     return JSONResponse(await server.contacts.ask("fill", text=text, surfaces=str(server.surfaces)))
 
 
@@ -215,6 +218,12 @@ async def take_upload(server: Server, request: Request) -> Response:
     return JSONResponse(told | {"id": file.parent.name, "name": file.name})
 
 
+async def clear_surfaces(server: Server, request: Request) -> Response:
+    """Delete the surfaces that no run uses; tell which are left."""
+    kept_runs.remove_unnamed(server.surfaces, server.runs)
+    return JSONResponse(uploads.uploaded(server.surfaces))
+
+
 async def send_runs(server: Server, request: Request) -> Response:
     """All runs, the latest first."""
     found = [server.told(folder) for folder in kept_runs.kept_in(server.runs)]
@@ -234,7 +243,11 @@ async def start_run(server: Server, request: Request) -> Response:
         name=str(found.get("name", "")),
         changed=told["changed"],
     )
-    server.jobs.start(server.runs / identifier)
+    try:
+        server.jobs.start(server.runs / identifier)
+    except Refused:  # too many wait: it is not kept as one that was begun
+        kept_runs.remove_kept(server.runs / identifier)
+        raise
     return JSONResponse({"id": identifier})
 
 
@@ -302,6 +315,7 @@ async def send_comparison_file(server: Server, request: Request) -> Response:
         identifier = kept_runs.identifier_of_runs([Path(path).parent.name for path in runs["paths"]])
         if identifier == request.path_params["run"]:
             await server.files.ask("comparison", **runs, folder=str(root / identifier))
+            kept_runs.keep_latest(root, MOST_COMPARISONS)
     folder = kept_runs.folder_of(root, request.path_params["run"])
     return _handed_out(folder, name)
 

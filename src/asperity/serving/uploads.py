@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
 import warnings
 from collections.abc import AsyncIterator
@@ -20,7 +21,13 @@ from asperity.units import written
 
 LARGEST_UPLOAD = 256 * 2**20
 """Bytes of a file, at most."""
+LARGEST_TOTAL = 2 * 2**30
+"""Bytes of all files that are kept, at most."""
+STALLED, SLOWEST = 30.0, 20 * 2**10
+"""Time, s, that may pass without a byte, and rate, in bytes/s, below which a file is not waited for."""
 _LONGEST = 100  # characters of its name
+_DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)
+"""Names that stand for a device on Windows, whatever their ending."""
 _HINTS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill", "spikes")}
 _ADVISED = "in [surface]"
 
@@ -40,7 +47,8 @@ def safe_name(name: str) -> str:
     """Name of an uploaded file that leads nowhere else; its ending stays, for it names the format."""
     last = PurePosixPath(name.replace("\\", "/")).name
     cleaned = re.sub(r"[^\w.+-]", "_", last, flags=re.ASCII).lstrip(".")
-    return cleaned[-_LONGEST:].lstrip(".") or "surface"
+    found = cleaned[-_LONGEST:].strip(".") or "surface"
+    return f"_{found}" if _DEVICE.match(found) else found
 
 
 async def receive(
@@ -48,32 +56,47 @@ async def receive(
 ) -> Path:
     """Write a file that comes in pieces into a folder of its own below the root.
 
-    What is too large is refused when it is announced, bytes, or else as soon as more has come.
+    What is too large, alone or with all that is there, is refused when it is announced, bytes, or else as
+    soon as more has come; what stalls is not waited for.
 
     Raises
     ------
     TooLarge
         If it is too large; nothing is left of it.
     InputError
-        If it is empty.
+        If it is empty, or stalls.
     ComputationError
         If the disk has no space for it.
     """
-    if announced is not None and announced > largest:
-        raise too_large(announced)
+    left = LARGEST_TOTAL - sum(file.stat().st_size for file in root.rglob("*") if file.is_file())
+
+    def check(size: int) -> None:
+        if size > largest:
+            raise too_large(size)
+        if size > left:
+            received, allowed = "more surfaces", f"{amount(LARGEST_TOTAL)} of them"
+            raise TooLarge("the surfaces kept", received, allowed, "Delete those that no run uses.")
+
+    check(announced or 1)
     require_space(root, float(announced or 0))
     folder = root / new_identifier()
     folder.mkdir(parents=True)
     try:
-        size = 0
+        size, now = 0, asyncio.get_running_loop().time
+        begun = now()
         with open(folder / safe_name(name), "xb") as file:
-            async for piece in pieces:
-                size += len(piece)
-                if size > largest:
-                    raise too_large(size)
-                file.write(piece)
+            async with asyncio.timeout(STALLED) as patience:
+                async for piece in pieces:
+                    size += len(piece)
+                    check(size)
+                    file.write(piece)
+                    patience.reschedule(min(now(), begun + size / SLOWEST) + STALLED)
         if not size:
             raise InputError("the file", "an empty file", "a file with heights", "Export it again.")
+    except TimeoutError:
+        remove_kept(folder)
+        received = f"nothing more for {STALLED:.0f} s, or less than {amount(SLOWEST)} in a second"
+        raise InputError("the file", received, "one that comes", "Upload it again.") from None
     except BaseException:
         remove_kept(folder)
         raise

@@ -48,10 +48,20 @@ def modal_receptance(structure: Modal, frequency: ArrayLike, x: float, x0: float
 
     Zero frequency gives the static compliance, which a structure with modes of a rigid body has not.
     """
+    (response, force), _ = structure.shapes([x, x0])
+    return np.asarray(_answers(structure, frequency) @ (response * force), dtype=complex)
+
+
+def driving_point(structure: Modal, frequency: ArrayLike, x: ArrayLike) -> NDArray[np.complex128]:
+    """Displacement of places (p,), m, per harmonic force there (p, f), m/N, as `modal_receptance`."""
+    return np.asarray(structure.shapes(x)[0] ** 2 @ _answers(structure, frequency).T, dtype=complex)
+
+
+def _answers(structure: Modal, frequency: ArrayLike) -> NDArray[np.complex128]:
+    """Of all modes to a unit force on each (..., m)."""
     omega = 2.0 * np.pi * np.asarray(frequency, dtype=float)[..., None]
     natural = 2.0 * np.pi * structure.natural_frequencies
     if not omega.all() and not natural.all():
         raise InputError("frequency (Hz)", 0, "above 0: what nothing holds has no static receptance")
-    (response, force), _ = structure.shapes([x, x0])
-    dynamic = natural**2 - omega**2 + 2j * structure.damping_ratios * natural * omega
-    return np.sum(response * force / dynamic, axis=-1)
+    answers = 1.0 / (natural**2 - omega**2 + 2j * structure.damping_ratios * natural * omega)
+    return np.asarray(answers, dtype=complex)

@@ -61,13 +61,13 @@ def read_modal_structure(
     """Read a structure from a file of its modes.
 
     *Text or CSV*: a line ``frequency (Hz)`` with one number for each mode, a line ``damping ratio``, perhaps
-    one ``modal mass (kg)`` (without it the shapes are mass-normalised, kg^(−1/2)), then for each position a
-    line with the position, m, and the shape of each mode there. A heading ``position (mm)`` before those may
-    name another unit; if it ends with ``residual flexibility (m/N)``, the last column is that.
+    one ``modal mass (kg)`` (without it the shapes are mass-normalised, kg^(−1/2)), a heading ``position
+    (mm)``, then for each position a line with it and the shape of each mode there. If the heading ends with
+    ``residual flexibility (m/N)``, the last column is that. Without these units the table is refused.
 
     *NetCDF-4*: the variables ``positions``, ``natural_frequencies``, ``damping_ratios``, ``mode_shapes`` with
     the dimensions of positions and of frequencies; ``modal_masses`` and ``residual_flexibility`` if there are
-    any. Attributes ``units`` may name units.
+    any. Attributes ``units`` name the units of what has one.
 
     *Universal file*: modes in datasets 55, nodes in dataset 15 or 2411, units in dataset 164, through the
     package pyuff. The keywords are for these files alone.
@@ -162,7 +162,7 @@ def _table_of_modes(file: Path) -> dict[str, Array]:
     """Read a text table, see `read_modal_structure`."""
     found: dict[str, Array] = {}
     rows: list[list[float]] = []
-    unit, residual = 1.0, math.nan
+    unit, residual = math.nan, math.nan
     for number, cells in lines_of_cells(read_text(file, file.name, _TABLE, largest=LARGEST_FILE)):
         values = [_cell(cell) for cell in cells]
         words = 0
@@ -173,11 +173,11 @@ def _table_of_modes(file: Path) -> dict[str, Array]:
         row = next((row for row in ROWS if label.startswith(row)), None)
         if row and not rows and words < len(cells) and np.isfinite(values[words:]).all():
             name, dimension = ROWS[row]
-            found[name] = np.array(values[words:]) * factor(unit_in_brackets(heading) or dimension, dimension)
+            found[name] = np.array(values[words:]) * _stated(heading, row, dimension, file)
         elif label.startswith("position") and not rows:
-            unit = factor(unit_in_brackets(heading) or "m", "m")
+            unit = _stated(heading.partition("residual")[0], "position", "m", file)
             _, there, last = " ".join(cells).rpartition("residual flexibility")
-            residual = factor(unit_in_brackets(last) or "m/N", "m/N") if there else math.nan
+            residual = _stated(last, "residual flexibility", "m/N", file) if there else math.nan
         elif words == 0 and np.isfinite(values).all() and len(values) == len((rows or [values])[0]):
             rows.append(values)
         else:
@@ -185,11 +185,27 @@ def _table_of_modes(file: Path) -> dict[str, Array]:
     missing = [row for row, (name, _) in ROWS.items() if name in NEEDED and name not in found]
     if missing or not rows:
         raise InputError(file.name, f"no line of {missing[0] if missing else 'numbers'}", _TABLE)
-    table = np.array(rows)
+    table, modes = np.array(rows), found["natural_frequencies"].size
+    columns = 1 + modes + (not math.isnan(residual))
+    if table.shape[1] != columns:
+        last = "" if math.isnan(residual) else ", and the residual flexibility"
+        allowed = f"{columns}: a position, a shape of each of {modes} modes{last}"
+        raise InputError(file.name, f"lines of {table.shape[1]} numbers", allowed)
+    if math.isnan(unit):
+        _stated("", "position", "m", file)
     if not math.isnan(residual):
         found["residual_flexibility"] = residual * table[:, -1]
         table = table[:, :-1]
     return found | {"positions": unit * table[:, 0], "mode_shapes": table[:, 1:]}
+
+
+def _stated(heading: str, name: str, dimension: str, file: Path) -> float:
+    """SI value of the unit that a heading names in brackets; nothing with a dimension goes without."""
+    unit = unit_in_brackets(heading)
+    if dimension and not unit:
+        remedy = f"Write '{name} ({dimension})' with the unit that it is in."
+        raise InputError(file.name, f"no unit of the {name}", "a unit in brackets", remedy)
+    return factor(unit, dimension) if unit else 1.0
 
 
 def _cell(cell: str) -> float:
@@ -210,7 +226,7 @@ def serve_netcdf(path: str, answers: BinaryIO) -> None:
             if name not in present:
                 allowed = f"the variables {', '.join(NEEDED)}"
                 raise InputError(file.name, f"no variable {name}", allowed)
-        arrays = [_variable(opened.variables[name], name, file) for name in present]
+        arrays = [netcdf_numbers(opened.variables[name], name, *VARIABLES[name], file) for name in present]
         modes = opened.variables["natural_frequencies"].dimensions
         shapes = present.index("mode_shapes")
         if opened.variables["mode_shapes"].dimensions[:1] == modes:
@@ -218,12 +234,15 @@ def serve_netcdf(path: str, answers: BinaryIO) -> None:
     send(answers, present, arrays)
 
 
-def _variable(variable: Any, name: str, file: Path) -> Array:
-    unit, dimensions = VARIABLES[name]
+def netcdf_numbers(variable: Any, name: str, unit: str, dimensions: int, file: Path) -> Array:
+    """Read a variable of at most so many dimensions in SI; with a unit, its attribute must name one."""
     check_claim(file.name, variable.shape, variable.dtype.itemsize / MAX_COMPRESSION, file.stat().st_size)
     if not 1 <= variable.ndim <= dimensions or variable.dtype.kind not in "fiu":
         received = f"{name} of {variable.ndim} dimensions and type {variable.dtype}"
         raise InputError(file.name, received, f"numbers along at most {dimensions} dimensions")
     stated = variable.attrs.get("units")
-    scale = factor(stated, unit) if unit and isinstance(stated, str) else 1.0
+    if unit and not isinstance(stated, str):
+        remedy = f"Set its attribute units = '{unit}', or the unit that it is in."
+        raise InputError(file.name, f"{name} without a unit", "attributes that name the units", remedy)
+    scale = factor(stated, unit) if unit else 1.0
     return np.asarray(variable[...], dtype=np.float64) * scale

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Any, NamedTuple, TypeVar
@@ -10,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from asperity.errors import ComputationError
+from asperity.errors import CoarseSamplingWarning, ComputationError, Grade, InputError, ShortRecordWarning
 from asperity.structures.rational_fit import vector_fit
 from asperity.threads import one_thread_in_linear_algebra
 
@@ -28,6 +29,9 @@ NEGLIGIBLE = 1e-3  # of the squared error: a mode below it only follows noise
 ONLY_NOISE = 0.1  # the same for a mode with shapes, which has more numbers to follow noise with
 RESIDUAL_MODES = (1.5, 3.0)  # of the highest frequency: the stiffness of all modes above the band
 RESIDUAL_DAMPING = 0.01
+LARGEST, SLOWEST = 1e20, 1e-6  # receptance, m/N, or one over it, and frequency, Hz: products stay finite
+REACH = 2.0  # of the highest frequency that matters: how far receptances are to be known and are fitted
+LEAST_LINES = 0.5  # lines in the width of a mode at half its power, below which it is noted
 FLOOR = 0.05  # of the rms of all responses at a frequency, below which errors count no more
 MOST_RANKS, SMALL_RANK = 8, 0.02  # of the residual stiffness: its largest parts, and of the largest
 SINGULAR = 1e-9  # of the largest eigenvalue of normal equations, below which one is left out
@@ -45,6 +49,7 @@ def fit_modes(frequency: Array, receptance: Complex, rigid: Complex) -> Modes:
     every frequency, also outside of the band. Relative errors count the same at all points. Modes that
     contribute nothing are left out.
     """
+    check_range(frequency, receptance, rigid)
     flexible, weights = receptance - rigid, 1.0 / np.abs(receptance)
     nothing = (np.zeros(0), np.zeros(0), np.zeros(0))
 
@@ -66,6 +71,7 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
     that all modal masses are positive. Errors count relative to each response, but for responses far below
     the others.
     """
+    check_range(frequency, receptance, rigid)
     flexible = receptance - rigid
     level = np.sqrt(np.mean(np.abs(receptance) ** 2, axis=(1, 2)))
     weights = 1.0 / np.hypot(np.abs(receptance), FLOOR * level[:, None, None])
@@ -78,6 +84,50 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
     responses, none = flexible.reshape(len(frequency), -1).T, float(np.linalg.norm(weights * flexible))
     with one_thread_in_linear_algebra():
         return _searched(frequency, responses, 1.0 / level, level, nothing, shapes, none)
+
+
+def check_range(frequency: Array, *receptances: Complex) -> None:
+    """Refuse what cannot be computed with, m/N at rising frequencies, Hz; zeros are nothing."""
+    for each in receptances:
+        size = np.abs(each).reshape(len(frequency), -1).max(axis=1)
+        size = size[size > 0.0]
+        low, high = float(size.min(initial=1.0)), float(size.max(initial=1.0))
+        if not (low > 1.0 / LARGEST and high < LARGEST and SLOWEST < frequency[0] < frequency[-1] < LARGEST):
+            received = f"{low:.2g} to {high:.2g} m/N at {frequency[0]:.2g} to {frequency[-1]:.2g} Hz"
+            allowed = f"{1.0 / LARGEST:g} to {LARGEST:g} m/N from {SLOWEST:g} to {LARGEST:g} Hz"
+            raise InputError("receptance", received, allowed, "Check the units, and the mass.")
+
+
+def warn_of_short_band(what: str, frequency: Array, highest: float) -> None:
+    """Warn where receptances, at rising frequencies, end below twice the highest that matters; Hz."""
+    end = frequency[-1] + (frequency[-1] - frequency[-2])  # the next line would be there
+    if end >= REACH * highest:
+        return
+    told = (
+        f"The receptances of the {what} end at {frequency[-1]:.4g} Hz, {frequency[-1] / highest:.2g} times "
+        f"numerics.highest_frequency; {REACH:g} times it, {REACH * highest:.4g} Hz, are wanted. Of what is "
+        "above, little but the stiffness is known, and the highest bands may be decibels off. Give them to "
+        f"{REACH * highest:.4g} Hz, or lower numerics.highest_frequency to {end / REACH:.4g} Hz."
+    )
+    grade = Grade.WARNING if end >= highest else Grade.OUT
+    warnings.warn(ShortRecordWarning(told, grade), stacklevel=3)
+
+
+def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
+    """Note modes that fall between the lines of a record, rising Hz: noise leaves little of them."""
+    inside = (natural > frequency[0]) & (natural < frequency[-1])
+    own, width = natural[inside], 2.0 * (natural * ratios)[inside]
+    apart = np.interp(own, 0.5 * (frequency[1:] + frequency[:-1]), np.diff(frequency))
+    narrow = width < LEAST_LINES * apart
+    if narrow.any():
+        worst = int(np.argmin(width / apart))
+        told = (
+            f"{int(narrow.sum())} of {own.size} modes are narrower at half their power than half a line of "
+            f"the receptance: that at {own[worst]:.4g} Hz is {width[worst]:.2g} Hz wide, of lines "
+            f"{apart[worst]:.3g} Hz apart. With noise its loss factor is a guess. Give lines at most "
+            f"{width[worst]:.2g} Hz apart there; they need not be even, and a netCDF file holds many."
+        )
+        warnings.warn(CoarseSamplingWarning(told, Grade.NOTE), stacklevel=4)
 
 
 def _searched(
@@ -104,9 +154,9 @@ def _searched(
             break
         try:
             poles = vector_fit(2j * np.pi * frequency, mixed, start, weights=weights).poles
-        except ComputationError:
+            modes, error, count = residues(_with_residual(poles, frequency))
+        except (ComputationError, np.linalg.LinAlgError):
             continue
-        modes, error, count = residues(_with_residual(poles, frequency))
         before = best_error
         if error < before:
             best, best_error = modes, error
@@ -158,12 +208,23 @@ def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Co
     right = np.concatenate([(weights * flexible).real, (weights * flexible).imag])
     size = np.linalg.norm(matrix, axis=0)
     # a share is the norm of what a mode contributes
-    shares, error = scipy.optimize.nnls(matrix / size, right)
+    shares, error = _not_negative(matrix / size, right)
     kept = np.flatnonzero(shares**2 > max(NEGLIGIBLE * error**2, 1e-12 * shares.max(initial=0.0) ** 2))
     kept = kept[np.argsort(natural[kept])]
-    shares, error = scipy.optimize.nnls(matrix[:, kept] / size[kept], right)
+    shares, error = _not_negative(matrix[:, kept] / size[kept], right)
     kept, shares = kept[shares > 0.0], shares[shares > 0.0]
     return (natural[kept] / (2.0 * np.pi), ratio[kept], size[kept] / shares), float(error)
+
+
+def _not_negative(matrix: Array, right: Array) -> tuple[Array, float]:
+    """Least squares without negative values, and the error that they leave."""
+    if not matrix.shape[1]:  # scipy ends the process
+        return np.zeros(0), float(np.linalg.norm(right))
+    try:
+        values, error = scipy.optimize.nnls(matrix, right)
+    except (RuntimeError, ValueError) as reason:  # it does not converge, or has numbers that are not finite
+        raise ComputationError(f"the fit of modal masses broke down: {reason}", "another table") from None
+    return values, float(error)
 
 
 class _Sums(NamedTuple):
@@ -279,6 +340,8 @@ def _rows(sums: _Sums, places: Iterable[int], mode: NDArray[np.intp], at_driven:
 
 def _solved(matrix: Array, right: Array, positive: bool = False) -> Array:
     """Least squares from their normal equations, in columns of size one."""
+    if not right.size:
+        return right
     size = np.sqrt(np.diagonal(matrix))
     size = np.where(size > 0.0, size, 1.0)
     values, vectors = np.linalg.eigh(matrix / np.outer(size, size))
@@ -286,5 +349,5 @@ def _solved(matrix: Array, right: Array, positive: bool = False) -> Array:
     root, vectors = np.sqrt(values[kept]), vectors[:, kept]
     turned = (vectors.T @ (right / size)) / root
     if positive:
-        return np.asarray(scipy.optimize.nnls(root[:, None] * vectors.T, turned)[0] / size)
+        return np.asarray(_not_negative(root[:, None] * vectors.T, turned)[0] / size)
     return np.asarray(vectors @ (turned / root) / size)

@@ -52,6 +52,11 @@ class MovingKernel:
         """Times of the columns, s."""
         return np.asarray(np.arange(self.weights.shape[1]) * self.time_step)
 
+    @property
+    def left_over(self) -> float:
+        """Largest value in its last tenth, relative to the largest of all."""
+        return _left_over(self.weights)
+
 
 def moving_kernel(
     track: Track,

@@ -48,7 +48,7 @@ class RailBetween:
         found = self.crossing.get(apart)
         if found is None:
             known = ", ".join(f"{at:g}" for at in sorted(self.crossing)) or "none"
-            remedy = "Compute `rail_between` for the places of these contacts."
+            remedy = "Compute the rail between them for the places of these contacts."
             raise InputError("distance of two contacts on the rail (m)", f"{apart:g}", known, remedy)
         return found
 
@@ -146,7 +146,7 @@ def _fitted(
             if count > most_poles(kernel.weights.shape[1]):
                 break
             fit = rail_poles(kernel, count, cache=cache)
-            left = fit.weights() - kernel.weights
+            left = fit.missed()
             within = np.abs(left.sum(axis=1)).max() / np.abs(direct.kernel.weights.sum(axis=1)).min()
             error = max(_size(left) / _size(direct.kernel.weights), float(within))
             if error <= TOLERANCE:

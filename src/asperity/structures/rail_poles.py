@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.store import Cache, content_key, made
-from asperity.structures.moving_kernel import MovingKernel
+from asperity.structures.moving_kernel import DIED_AWAY, MovingKernel
 from asperity.structures.rational_fit import paired, vector_fit
 
 POLES = 100
@@ -28,6 +28,12 @@ PIECE = 64
 ITERATIONS = 8
 TOLERANCE = 5e-3
 """Largest error of a fitted kernel that is accepted, relative (see `RailPoles`)."""
+ENOUGH = 2e-3
+"""Error from which on more poles are not worth their time."""
+GONE = 0.01
+"""Share of itself that a pole has at most left after a kernel that has died away."""
+DETERMINED = 1e-8
+"""Singular values of the residues, relative to the largest, below which the kernel says nothing of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +41,8 @@ class RailPoles:
     """A moving kernel as a sum of decaying oscillations.
 
     For lags k >= 1 the weights of a start position x are Re Σ_p c_p(x) z_p^(k−1), so that the displacement of
-    the next step follows from states q_p ← z_p q_p + c_p(x) F.
+    the next step follows from states q_p ← z_p q_p + c_p(x) F. They go on after the last lag of the kernel:
+    where this has died away, errors are taken over twice its lags, zero beyond.
     """
 
     kernel: MovingKernel  # what was fitted
@@ -52,58 +59,85 @@ class RailPoles:
 
     @property
     def accepted(self) -> bool:
-        """Whether the fit is good enough to stand for the kernel."""
-        return max(self.fit_error, self.static_error) <= TOLERANCE
+        """Whether the fit is good enough to stand for the kernel: near to it, and passive."""
+        return max(self.fit_error, self.static_error) <= TOLERANCE and self.is_passive
 
-    def weights(self) -> NDArray[np.float64]:
-        """The fitted kernel, in the shape of the kernel's weights, m/N."""
-        result = self.kernel.weights.copy()
-        result[:, 1:] = self.residues.real @ _decays(self.poles, result.shape[1] - 1).real
-        result[:, 1:] -= self.residues.imag @ _decays(self.poles, result.shape[1] - 1).imag
-        return result
+    @property
+    def is_passive(self) -> bool:
+        """Whether no sinusoidal force that moves along, in the band of the fit, gets power from the rail.
+
+        Looked at are the frequencies of the fit, and those at which a pole may hide between them. Over whole
+        bays the power depends on the mean of the residues alone: it is −ω|F|² Im(W)/2 of their transform W.
+        """
+        step, pole, residue = self.kernel.time_step, self.poles, self.residues.mean(axis=0)
+        own = np.abs(np.angle(pole))
+        angle = np.union1d(_angles(step), own[own > 0.0])
+        at = np.exp(1j * angle[angle <= 2.0 * np.pi * _highest(step) * step])[:, None]
+        mean = (residue / (at - pole) + residue.conj() / (at - pole.conj())).sum(axis=1)
+        return bool((mean.imag <= 0.0).all())
+
+    def weights(self, taps: int | None = None) -> NDArray[np.float64]:
+        """The fitted kernel, (positions, taps), m/N; as many as the kernel has by default."""
+        direct = self.kernel.weights[:, :1]
+        decays = _decays(self.poles, (taps or self.kernel.weights.shape[1]) - 1)
+        return np.hstack([direct, self.residues.real @ decays.real - self.residues.imag @ decays.imag])
+
+    def missed(self) -> NDArray[np.float64]:
+        """What it has beyond the kernel from lag 1 on, (positions, lags), m/N, also after the last one."""
+        wanted = _wanted(self.kernel)
+        return self.weights(1 + wanted.shape[1])[:, 1:] - wanted
 
 
 def rail_poles(kernel: MovingKernel, count: int = 100, *, cache: Cache | None = None) -> RailPoles:
     """Fit a moving kernel by common poles, both of each conjugate pair counted, and residues for every start.
 
-    Their number is even, from 4 to a tenth of that of the lags. Poles by vector fitting of the transform on
-    the unit circle, with weights between absolute and relative error; residues by least squares in time, of
-    the weights, of their running sums (the response to a force that stays) and of the static sum together.
+    Their number is even, from 4 to `most_poles`. Poles by vector fitting of the transform on the unit circle,
+    with weights between absolute and relative error, none slower than the kernel; residues by least squares
+    in time, of the weights, of their running sums (the response to a force that stays), within the kernel and
+    after it.
     """
-    taps = kernel.weights.shape[1]
-    if count % 2 or not 4 <= count <= most_poles(taps):
-        allowed = f"an even number from 4 to {most_poles(taps)}, a tenth of the kernel's lags"
+    most = most_poles(kernel.weights.shape[1])
+    if count % 2 or not 4 <= count <= most:
+        allowed = f"an even number from 4 to {most}, a tenth of the kernel's lags or {LINES}"
         raise InputError("number of poles", count, allowed)
-    key = content_key("rail-poles", kernel.weights, kernel.time_step, count, ITERATIONS, LINES)
+    key = content_key("rail-poles", kernel.weights, kernel.time_step, count, ITERATIONS, LINES, GONE)
 
     def make() -> dict[str, NDArray[Any]]:
         poles = _poles(kernel, count)
-        return {"poles": poles, "residues": _residues(kernel.weights[:, 1:], poles)}
+        residues = _residues(_wanted(kernel), poles)
+        left = RailPoles(kernel, poles, residues, 0.0, 0.0).missed()
+        error = np.linalg.norm(left) / np.linalg.norm(kernel.weights[:, 1:])
+        static = np.abs(left.sum(axis=1) / kernel.weights.sum(axis=1)).max()
+        return {"poles": poles, "residues": residues, "errors": np.array([error, static])}
 
     kept = make() if cache is None else made(cache, key, make)
-    fit = RailPoles(kernel, kept["poles"], kept["residues"], 0.0, 0.0)
-    left = fit.weights()[:, 1:] - kernel.weights[:, 1:]
-    error = float(np.linalg.norm(left) / np.linalg.norm(kernel.weights[:, 1:]))
-    static = float(np.abs(left.sum(axis=1) / kernel.weights.sum(axis=1)).max())
+    error, static = kept["errors"].tolist()
     if not np.isfinite(error):
         raise ComputationError("the fit of the moving kernel by poles broke down", "fewer poles")
-    return RailPoles(kernel, fit.poles, fit.residues, error, static)
+    return RailPoles(kernel, kept["poles"], kept["residues"], error, static)
 
 
 def poles_or_kernel(
-    kernel: MovingKernel, count: int | None = None, *, cache: Cache | None = None
+    kernel: MovingKernel, most: int | None = None, *, cache: Cache | None = None
 ) -> RailPoles | MovingKernel:
-    """Fit a moving kernel by poles, `POLES` of them where it has lags enough, or as many as are asked for.
+    """Fit a moving kernel by poles, `POLES` of them by default, or as many as it has lags for.
 
-    Where they miss it, the kernel itself is returned, with a warning.
+    At most so many if told: `POLES` first, and twice as many as long as a fit misses it by more than
+    `ENOUGH`. Where none is accepted, the kernel itself is returned, with a warning.
     """
-    wanted = count or min(POLES, most_poles(kernel.weights.shape[1]))
-    found = rail_poles(kernel, count=wanted, cache=cache)
-    if found.accepted:
-        return found
+    most = min(most or POLES, most_poles(kernel.weights.shape[1]))
+    counts = [min(most, POLES)]
+    fits = [rail_poles(kernel, counts[0], cache=cache)]
+    while counts[-1] < most and not (fits[-1].accepted and fits[-1].fit_error <= ENOUGH):
+        counts.append(min(most, 2 * counts[-1]))
+        fits.append(rail_poles(kernel, counts[-1], cache=cache))
+    best = min(fits, key=lambda fit: (not fit.accepted, fit.fit_error))
+    if best.accepted:
+        return best
+    missed = f"miss the moving kernel by {100 * max(best.fit_error, best.static_error):.2g} %"
     warnings.warn(
-        f"{wanted} poles miss the moving kernel by {100 * found.fit_error:.2g} %: the track is scattered "
-        "from the kernel itself, which is slower. Take more poles.",
+        f"{counts[-1]} poles {missed if best.is_passive else 'give off energy'}: the track is scattered from "
+        "the kernel itself, which is slower. Take more poles.",
         UnconvergedWarning,
         stacklevel=2,
     )
@@ -112,29 +146,47 @@ def poles_or_kernel(
 
 def most_poles(lags: int) -> int:
     """Largest even number of poles for a kernel of so many lags."""
-    return lags // 10 // 2 * 2
+    return min(lags // 10 // 2 * 2, LINES)
+
+
+def _wanted(kernel: MovingKernel) -> NDArray[np.float64]:
+    """Weights from lag 1 on that a fit is held to, (positions, lags): with zeros after a kernel that died."""
+    weights = kernel.weights[:, 1:]
+    return np.hstack([weights, np.zeros_like(weights)]) if kernel.left_over <= DIED_AWAY else weights
+
+
+def _highest(time_step: float) -> float:
+    """Up to where frequencies are close, Hz."""
+    return min(0.1 / time_step, 5000.0)
+
+
+def _angles(time_step: float) -> NDArray[np.float64]:
+    """Frequencies of the fit, rad per time step."""
+    logarithmic = np.geomspace(LOWEST, 0.995 * 0.5 / time_step, LINES)
+    linear = np.linspace(LOWEST, _highest(time_step), LINES)
+    return 2.0 * np.pi * np.union1d(logarithmic, linear) * time_step
 
 
 def _poles(kernel: MovingKernel, count: int) -> NDArray[np.complex128]:
     """Common poles, by vector fitting on the unit circle."""
-    half = 0.5 / kernel.time_step
-    frequency = np.union1d(
-        np.geomspace(LOWEST, 0.995 * half, LINES), np.linspace(LOWEST, min(0.2 * half, 5000.0), LINES)
-    )
-    angle = 2.0 * np.pi * frequency * kernel.time_step
-    lag = np.arange(1, kernel.weights.shape[1])
+    half, taps = 0.5 / kernel.time_step, kernel.weights.shape[1]
+    angle, lag = _angles(kernel.time_step), np.arange(1, taps)
     weights = kernel.weights[:, 1:].astype(complex)
     pieces = np.array_split(angle, math.ceil(angle.size / PIECE))  # the whole matrix is fifty megabytes
     transform = np.hstack([weights @ np.exp(-1j * lag[:, None] * piece) for piece in pieces])
     size = np.sqrt(np.mean(np.abs(transform) ** 2, axis=0))
     start = 2.0 * np.pi * np.geomspace(2.0 * LOWEST, 0.9 * half, count // 2) * kernel.time_step
+    # a pole that a kernel of this length would not show to decay is not determined by it
+    gone = np.clip(50.0 * kernel.left_over, GONE, 0.5)
+    slowest = -np.log(gone) / taps
     fit = vector_fit(
         np.exp(1j * angle),
         transform,
-        np.exp(start * (1j - 0.02)),
+        np.exp(1j * start - np.maximum(0.02 * start, slowest)),
         weights=1.0 / np.sqrt(size),
         iterations=ITERATIONS,
         domain="disc",
+        radius=float(np.exp(-slowest)),
     )
     return fit.poles
 
@@ -158,7 +210,7 @@ def _residues(weights: NDArray[np.float64], poles: NDArray[np.complex128]) -> ND
     matrix = np.vstack([basis, slow * np.cumsum(basis, axis=0)])
     right = np.vstack([right, slow * np.cumsum(right, axis=0)])
     size = np.linalg.norm(matrix, axis=0)
-    solution = np.linalg.lstsq(matrix / size, right, rcond=1e-13)[0] / size[:, None]
+    solution = np.linalg.lstsq(matrix / size, right, rcond=DETERMINED)[0] / size[:, None]
     return paired(solution, poles)
 
 

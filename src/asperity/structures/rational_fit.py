@@ -34,12 +34,13 @@ def vector_fit(
     weights: ArrayLike | None = None,
     iterations: int = 10,
     domain: Domain = "half-plane",
+    radius: float = 1.0,
 ) -> RationalFit:
     """Fit responses by rational functions with common poles and no polynomial part.
 
     Responses (m, n) or (n,) are known at points (n,): s = iω for ``"half-plane"``, z = e^{iωΔt} for
     ``"disc"``; they are those of real signals, so that conjugate points have conjugate responses. Start poles
-    (p,) have Im >= 0. Stable poles lie where Re s < 0, or |z| < 1; others are mirrored there. The poles are
+    (p,) have Im >= 0. Stable poles lie where Re s < 0, or |z| < `radius`; others are mirrored there. They are
     relocated `iterations` times; the best set met is kept.
 
     B. Gustavsen and A. Semlyen, IEEE Trans. Power Delivery 14 (1999) 1052; relaxed: B. Gustavsen, ibid. 21
@@ -60,7 +61,7 @@ def vector_fit(
     scale, spanning = np.linalg.norm(weighted), _spanning(weighted)
     best = RationalFit(found, np.zeros((len(values), found.size), dtype=complex), np.inf)
     for _ in range(iterations):
-        found = _stable(_relocated(s, weight, spanning, found), domain)
+        found = _stable(_relocated(s, weight, spanning, found), domain, radius)
         if found.size == 0 or not np.isfinite(found).all():
             break
         residues, left = _residues(s, weight, weighted, found)
@@ -149,10 +150,10 @@ def _realisation(poles: NDArray[np.complex128]) -> tuple[NDArray[np.float64], ND
     return state, drive
 
 
-def _stable(poles: NDArray[np.complex128], domain: Domain) -> NDArray[np.complex128]:
+def _stable(poles: NDArray[np.complex128], domain: Domain, radius: float) -> NDArray[np.complex128]:
     if domain == "disc":
         with np.errstate(divide="ignore", invalid="ignore"):
-            mirrored = np.where(np.abs(poles) > 1.0, 1.0 / np.conj(poles), poles)
+            mirrored = np.where(np.abs(poles) > radius, radius**2 / np.conj(poles), poles)
     else:
         mirrored = -np.abs(poles.real) + 1j * poles.imag
     return np.asarray(mirrored, dtype=complex)

@@ -24,12 +24,12 @@ def axes_of(table: xarray.Dataset) -> list[str]:
 
 
 def columns_of(table: xarray.Dataset, *, bands: bool = True) -> Rows:
-    """Heading and rows of a study, one for each member and law; with or without what has bands or places."""
+    """Heading and rows of a study, one for each member and law; with or without what has bands."""
     axes = axes_of(table)
     heading = [key_title(table[axis]) for axis in axes]
     chosen: list[tuple[list[str], NDArray[Any]]] = []
     for name, others in _in_order(table, axes):
-        if len(others) > (1 if bands else 0):
+        if len(others) > 1 or (not bands and _has_bands(others)):
             continue
         values = table[name]
         own = [axis for axis in axes if axis in values.dims]
@@ -47,12 +47,16 @@ def columns_of(table: xarray.Dataset, *, bands: bool = True) -> Rows:
 
 
 def _in_order(table: xarray.Dataset, axes: Sequence[str]) -> list[tuple[str, list[str]]]:
-    """Quantities, each with its dimensions beside the axes: plain numbers first, scatter after its mean."""
+    """Quantities, each with its dimensions beside the axes: those with bands last, scatter after its mean."""
     names = [str(name) for name in table.data_vars]
     whole = [name for name in names if not name.endswith(SCATTER)]
     paired = [each for name in whole for each in (name, f"{name}{SCATTER}") if each in names]
     found = [(name, [str(dim) for dim in table[name].dims if dim not in axes]) for name in paired]
-    return sorted(found, key=lambda item: len(item[1]))
+    return sorted(found, key=lambda item: _has_bands(item[1]))
+
+
+def _has_bands(dims: Sequence[str]) -> bool:
+    return any(dim.endswith("band") for dim in dims)
 
 
 def _titles(table: xarray.Dataset, name: str, others: Sequence[str]) -> list[str]:

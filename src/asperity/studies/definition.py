@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from asperity import __version__
 from asperity.arguments import file_path, shown
 from asperity.config.case import Case
+from asperity.config.chosen import shared_lengths
 from asperity.config.content import content, described_value, file_digest, holds_memory
 from asperity.config.describing import CaseKey, in_toml, value_in_toml
 from asperity.config.parsing import FROM_PYTHON, Origin, plain_data, read_definition, read_toml
@@ -27,11 +28,12 @@ from asperity.kinds.cases import case_of, kind_named
 from asperity.reference.materials import Material
 from asperity.reporting.typed import TYPED_FACTOR, TYPED_UNIT
 from asperity.store import content_key
+from asperity.studies.ranges import expanded
 from asperity.units import factor, unit_in
 
 MOST_MEMBERS = 10_000
 MOST_KEYS = 100  # that are swept: more than a case has
-FORMAT = 4
+FORMAT = 5
 """Raise it when more is kept of a member, or when what is kept no longer means what it meant."""
 TEMPLATE = """\
 # A case for every combination of the values of some keys. Run it with: asperity study STUDY
@@ -40,8 +42,8 @@ TEMPLATE = """\
 case = "case.toml"
 
 [sweep]                         # keys of the case, each with a list of values as they stand in a case
-speed = ["20 m/s", "56 m/s"]
-seed = [1, 2, 3]
+speed = ["20 m/s", "56 m/s"]    # or a range: "80..300 km/h, 6 steps", both ends among the 6 values
+seed = "1..3"                   # every whole number; "6 ratios" in place of steps: equal ratios
 # "contact.spacing" = ["4 um", "8 um"]
 """
 
@@ -124,19 +126,26 @@ class Study:
         return {axis.name: list(axis.written) for axis in self.axes}
 
     def members(self) -> list[Member]:
-        """List all cases; the last key varies fastest. A `CaseError` says that none is valid."""
+        """List all cases; the last key varies fastest. A `CaseError` says that none is valid.
+
+        Lengths that are chosen for each of them are the same for all, so that all roll over one surface.
+        """
         digest_of = lru_cache(maxsize=None)(file_digest)
-        found = [self._member(index, digest_of) for index in np.ndindex(self.shape)]
+        found = [self._member(index, digest_of, {}) for index in np.ndindex(self.shape)]
+        if shared := shared_lengths([member.case for member in found if member.case is not None]):
+            found = [self._member(member.index, digest_of, shared) for member in found]
         errors = [member.error for member in found if member.error is not None]
         if len(errors) == len(found):
             messages = dict.fromkeys(message for error in errors for message in error.errors)
             raise CaseError(self.origin.source, list(messages))
         return found
 
-    def _member(self, index: tuple[int, ...], digest_of: Callable[[Path], str]) -> Member:
+    def _member(
+        self, index: tuple[int, ...], digest_of: Callable[[Path], str], shared: Mapping[str, float]
+    ) -> Member:
         values = {axis.name: axis.written[i] for axis, i in zip(self.axes, index, strict=True)}
         try:
-            case = case_of(_with_values(self.data, values), self.origin)
+            case = case_of(_with_values(self.data, values), self.origin).with_(**shared)
         except CaseError as error:
             return Member(index, values, None, error, "")
         told = json.dumps(content(case, digest_of), sort_keys=True)  # at once: there are many
@@ -174,7 +183,9 @@ def study_of(case: str | os.PathLike[str] | Mapping[str, Any] | Case, sweep: Map
     case : path, mapping or case object
         The case, as `asperity.run` takes it.
     sweep : mapping of str to list
-        Keys with lists of values, in SI or as text with a unit: ``{"contact.spacing": ["4 um", "8 um"]}``.
+        Keys with lists of values, in SI or as text with a unit: ``{"contact.spacing": ["4 um", "8 um"]}``;
+        or with a range as text: ``{"speed": "80..300 km/h, 6 steps"}`` has six values, both ends among them,
+        ``"60..1900 MN/m, 6 ratios"`` six in equal ratios, and ``"1..20"`` every whole number.
 
     Returns
     -------
@@ -259,8 +270,10 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> Axis:
     entry = entry_of(kind_named(kind).case, dotted)
     if isinstance(values, np.ndarray) and values.ndim == 1:
         values = values.tolist()
+    values = expanded(dotted, values)
     if not isinstance(values, list | tuple):
-        raise InputError(dotted, shown(values), "a list of values", "Put the values into [ ].")
+        allowed = "a list of values, or a range as '80..300 km/h, 6 steps'"
+        raise InputError(dotted, shown(values), allowed, "Put the values into [ ].")
     if not values:
         raise InputError(dotted, "an empty list", "one value or more", "Remove the key for that of the case.")
     if len(values) > MOST_MEMBERS:

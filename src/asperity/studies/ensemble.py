@@ -48,7 +48,7 @@ def prediction_band(table: xarray.Dataset, over: str = "seed", share: float = SH
     -----
     The band is a prediction interval, mean ± t s √(1 + 1/n), with the standard deviation s of the n members
     and Student's t for n − 1 degrees of freedom: it holds one more member with the probability given, for any
-    n. G. J. Hahn and W. Q. Meeker, Statistical Intervals (1991), section 4.7. It is exact for normally
+    n. G. J. Hahn and W. Q. Meeker, Statistical Intervals (1991). It is exact for normally
     distributed values. Levels of noise whose power is averaged over B T, chi-square with 2 B T degrees of
     freedom, are skew; their band of 80 % holds 79 % to 83 % of them, also where B T is one.
 
@@ -78,8 +78,9 @@ def prediction_band(table: xarray.Dataset, over: str = "seed", share: float = SH
     kept = {name: values.variable for name, values in table.coords.items() if name != over}
     count = int(table["completed"].sum(over).max())
     attrs = {"over": over, "members": count, "share": share, "meaning": meaning(over, count, share)}
-    if "band_time_product" in table:
-        found["band_time_product"] = table["band_time_product"].mean(over, keep_attrs=True).variable
+    for name in ("band_time_product", "start_share"):
+        if name in table:
+            found[name] = table[name].mean(over, keep_attrs=True).variable
     return xarray.Dataset(found | kept, attrs=attrs)
 
 

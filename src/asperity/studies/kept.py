@@ -12,20 +12,30 @@ from numpy.typing import NDArray
 
 from asperity.kinds import KINDS
 from asperity.results import variable
-from asperity.schema import contact, provenance, rolling, spectra
+from asperity.schema import Entry, contact, provenance, rolling, spectra
 from asperity.schema.provenance import KIND
 from asperity.spectra import a_weighted_total
 
 KEPT = (
     spectra.FORCE_LEVEL,
     spectra.BAND_TIME_PRODUCT,
+    spectra.START_SHARE,
     *spectra.FORCE_LEVEL_DIFFERENCES.values(),
     spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
     rolling.CONTACT_LOSS_SHARE,
     rolling.CONTACT_LOSS_EVENTS,
     rolling.LONGEST_LOSS,
+    contact.TRACK_RMS,
+    contact.TRACK_STIFFNESS,
 )
 """What is kept of the results of all kinds; what is kept beside it stands in the schema of a kind."""
+FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE)
+"""Attributes of a result that are kept."""
+FORCES = {
+    "mean_force": "mean contact force",
+    "rms_force": "rms of the contact force about its mean",
+    "peak_force": "largest contact force",
+}
 LEVEL = "dB re"
 """Beginning of the units of levels."""
 PLACES = ("sensor", "point")
@@ -44,27 +54,47 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
         if entry.name in tree[entry.group]
     }
     force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name]
-    found["mean_force"] = _described(force.mean("time"), "N", "mean contact force")
-    found["rms_force"] = _described(force.std("time"), "N", "rms of the contact force about its mean")
-    found["peak_force"] = _described(force.max("time"), "N", "largest contact force")
+    for (name, what), of in zip(FORCES.items(), (force.mean, force.std, force.max), strict=True):
+        found[name] = _described(of("time"), "N", what)
+    lowering = contact.RUNNING_IN_LOWERING
+    if lowering.name in tree[lowering.group]:
+        most = tree[lowering.group].to_dataset()[lowering.name].max(contact.RUNNING_IN_PASS.name)
+        found[lowering.name] = _described(most, "m", "largest lowering of a place in a pass of running-in")
     found |= _weighted(
         {name: values for name, values in found.items() if isinstance(values, xarray.DataArray)}
     )
     table = xarray.Dataset(found).drop_attrs(deep=False)
     for place in set(PLACES) & set(map(str, table.dims)):
         table = _numbered(table, place)
-    approach = contact.WORKING_APPROACH
-    value = tree[approach.group].attrs[approach.name]
-    table[approach.name] = variable((), value, approach.units, approach.meaning)
+    for fact in FACTS:
+        if (value := tree[fact.group].attrs.get(fact.name)) is not None:
+            table[fact.name] = variable((), value, fact.units, fact.meaning)
     told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
     return table.assign_attrs({name: tree.attrs[name] for name in told})
+
+
+def names_kept(kind: str) -> dict[str, str]:
+    """Names that the table of a study of a kind may have, each with which results have it, if not all."""
+    entries = (*KEPT, contact.RUNNING_IN_LOWERING, *KINDS[kind].kept)
+    found = dict.fromkeys(FORCES, "") | {entry.name: entry.condition for entry in entries}
+    found |= {fact.name: fact.condition for fact in FACTS}
+    for entry in entries:
+        if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"):
+            found.setdefault(f"{entry.name}_a", entry.condition)
+    for entry in spectra.FORCE_LEVEL_DIFFERENCES.values():
+        found[_weighted_name(entry)] = entry.condition
+    return found
+
+
+def _weighted_name(difference: Entry) -> str:
+    return difference.name.replace(spectra.FORCE_LEVEL.name, f"{spectra.FORCE_LEVEL.name}_a")
 
 
 def _weighted(found: Mapping[str, xarray.DataArray]) -> dict[str, xarray.DataArray]:
     """A-weighted totals of levels, where the result has none, and of the force over the linear laws."""
     totals: dict[str, xarray.DataArray] = {}
     for name, level in found.items():
-        units, band = str(level.attrs["units"]), str(level.dims[-1])
+        units, band = str(level.attrs["units"]), str(level.dims[-1]) if level.dims else ""
         if units.startswith(LEVEL) and band.endswith("band") and f"{name}_a" not in found:
             long_name = f"A-weighted {level.attrs['long_name']}, over the bands computed"
             total = _total(level, band)
@@ -75,8 +105,9 @@ def _weighted(found: Mapping[str, xarray.DataArray]) -> dict[str, xarray.DataArr
             law, band = str(found[entry.name].attrs["reference"]), str(force.dims[-1])
             both = np.isfinite(force) & np.isfinite(force.sel(law=law, drop=True))
             change = _total(force.where(both), band) - _total(force.sel(law=law, drop=True).where(both), band)
-            name = entry.name.replace(spectra.FORCE_LEVEL.name, f"{spectra.FORCE_LEVEL.name}_a")
-            totals[name] = _described(change, "dB", f"A-weighted {entry.long_name}, over the bands of both")
+            totals[_weighted_name(entry)] = _described(
+                change, "dB", f"A-weighted {entry.long_name}, over the bands of both"
+            )
     return totals
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from asperity.errors import AsperityError, ComputationError
+from asperity.errors import TOO_MUCH_MEMORY, AsperityError, ComputationError
 
 if TYPE_CHECKING:
     from asperity.config.case import Case
@@ -29,7 +29,7 @@ class Failure:
     def of(cls, error: BaseException) -> Failure:
         """Describe an error."""
         if isinstance(error, MemoryError):
-            return cls("MemoryError", "The memory is too small. Try: fewer workers, or a smaller window.")
+            return cls("MemoryError", f"{TOO_MUCH_MEMORY} Or fewer workers.")
         name = type(error).__name__
         return cls(name, str(error) if isinstance(error, AsperityError) else f"{name}: {error}")
 

@@ -39,7 +39,8 @@ def study(
     definition : path, Study, or with `sweep` a mapping or a case object
         A study file; with `sweep`, a case as `asperity.run` takes it.
     sweep : mapping of str to list, optional
-        Keys with lists of values as they stand in TOML, as ``{"contact.spacing": ["4 um", "8 um"]}``.
+        Keys with lists of values as they stand in TOML, as ``{"contact.spacing": ["4 um", "8 um"]}``, or with
+        a range, as ``{"speed": "80..300 km/h, 6 steps"}``: six values, both ends among them.
     executor : concurrent.futures.Executor, optional
         Where the members are computed: for instance the executor of a Dask client. By default processes of
         this machine; a script then needs ``if __name__ == "__main__":`` around the call.
@@ -56,8 +57,9 @@ def study(
         `longest_loss`; by law and band: `force_level`, `force_level_difference_to_linear_filtered`,
         `force_level_difference_to_linear`, `force_level_difference_to_reference`, and of what its
         kind computes `acceleration_level`, `point_velocity_level` or `sound_power_level`; by band:
-        `band_time_product`, below 10 where a level says little. NaN where a member failed or has no such
-        value. The attributes ``failures`` and ``warnings`` are JSON lists of what members met, grouped.
+        `band_time_product`, below 10, and `start_share`, above 0.2, where a level says little. NaN where a
+        member failed or has no such value. The attributes ``failures`` and ``warnings`` are JSON lists of
+        what members met, grouped.
 
     Raises
     ------
@@ -119,7 +121,7 @@ def _planned(
         return load_study(definition)
     if isinstance(definition, Case | Mapping):
         raise InputError("sweep", "nothing", "keys of the case, each with a list of values")
-    allowed = "the path of a study file, or with `sweep` a case"
+    allowed = "the path of a study file, or with keys to sweep a case"
     raise InputError("definition of the study", shown(definition), allowed)
 
 

@@ -81,7 +81,7 @@ def flat_geometry(
 
     `x` counts from the middle of the flat. Fresh: a chord, -(d - x²/2R) for |x| <= l/2. Worn: rounded, -d/2
     (1 + cos 2πx/l), its length l, m, at least that of the chord √(8 R d), which all others have. S. G. Newton
-    and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287-297 (chord and rounded flat).
+    and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287 (not seen; chord and rounded flat).
     """
     length = _length(depth, radius, shape, length)
     distance = np.asarray(x, dtype=np.float64)
@@ -117,7 +117,7 @@ def flat_trajectory(
     `x` is the centre's position, m, from where the middle of the flat is below it; the rest as in
     `flat_geometry`. Over a fresh flat the wheel turns about the ends of the chord in turn: -(l/2 - |x|)²/2R,
     with a kink of slope ±l/2R at the middle. For a worn flat z(s) the envelope max over s of z(s) - (s -
-    x)²/2R is tabulated. T. X. Wu and D. J. Thompson, J. Sound Vib. 251 (2002) 115-139 (wheel flats).
+    x)²/2R is tabulated. T. X. Wu and D. J. Thompson, ISVR Technical Memorandum 859 (2001) (wheel flats).
     """
     length = _length(depth, radius, shape, length)
     distance = np.abs(np.asarray(x, dtype=np.float64))

@@ -92,13 +92,19 @@ class HeightMap:
         """
         return self.heights[first:stop]
 
-    def levelled(self, degree: int = 1) -> HeightMap:
+    def _repr_html_(self) -> str:
+        from asperity.surfaces.surface_view import surface_view
+
+        return surface_view(self)
+
+    def levelled(self, degree: int | str = "plane") -> HeightMap:
         """Return the map less its least-squares polynomial form.
 
         Parameters
         ----------
-        degree : int
-            Total degree of the polynomial in x and y; 0 removes the mean, 1 the mean plane.
+        degree : str or int
+            ``"plane"`` or ``"quadratic"``, as in a case, or the total degree of the polynomial in x and y: 1,
+            2, or 0, which removes the mean.
 
         Returns
         -------
@@ -109,8 +115,14 @@ class HeightMap:
 
         return level(self, degree)
 
-    def filled(self) -> HeightMap:
+    def filled(self, lines: bool | None = None) -> HeightMap:
         """Return the map with its missing points interpolated from their neighbours.
+
+        Parameters
+        ----------
+        lines : bool, optional
+            Whether the array holds lines measured side by side, which are filled along themselves; by default
+            its shape tells.
 
         Returns
         -------
@@ -119,7 +131,7 @@ class HeightMap:
         """
         from asperity.surfaces.levelling import fill
 
-        return fill(self)
+        return fill(self, lines)
 
     def without_spikes(self) -> HeightMap:
         """Return the map with its spikes as points without a height.
@@ -263,13 +275,19 @@ class Profile:
         """Share of the points without a height, 0 to 1."""
         return float(np.isnan(self.heights).mean())
 
-    def levelled(self, degree: int = 1) -> Profile:
+    def _repr_html_(self) -> str:
+        from asperity.surfaces.surface_view import surface_view
+
+        return surface_view(self)
+
+    def levelled(self, degree: int | str = "plane") -> Profile:
         """Return the line less its least-squares polynomial of the given degree.
 
         Parameters
         ----------
-        degree : int
-            Degree of the polynomial in x; 0 removes the mean, 1 the mean line.
+        degree : str or int
+            ``"plane"`` for the mean line or ``"quadratic"``, as in a case, or the degree: 1, 2, or 0, which
+            removes the mean.
 
         Returns
         -------

@@ -10,12 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from asperity.arguments import real
+from asperity.arguments import FORMS, real, shown
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.surfaces.form import Form, Surface, fit_form, polynomial, remove_form
-from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.parallel_lines import are_lines
 
-__all__ = ["GAUSSIAN_CONSTANT", "Form", "band_limit", "fill", "fit_form", "level", "remove_form", "resample"]
+__all__ = [
+    "GAUSSIAN_CONSTANT",
+    "Form",
+    "band_limit",
+    "fill",
+    "fit_form",
+    "level",
+    "nearly_complete",
+    "remove_form",
+    "resample",
+]
 
 GAUSSIAN_CONSTANT = float(np.sqrt(np.log(2.0) / np.pi))
 """Of ISO 16610-21: makes the transmission 50 % at the cut-off wavelength."""
@@ -23,14 +34,16 @@ GAUSSIAN_CONSTANT = float(np.sqrt(np.log(2.0) / np.pi))
 FILLED_SHARE_WARNED = 0.05
 
 
-def level(surface: Surface, degree: int = 1) -> Surface:
-    """Remove the least-squares polynomial of a total degree; missing points stay missing.
+def level(surface: Surface, degree: int | str = "plane") -> Surface:
+    """Remove a least-squares polynomial, by the word of a case or by its degree; missing points stay missing.
 
-    0 removes the mean, 1 the mean plane or line, 2 a paraboloid.
+    ``"plane"`` or 1 is the mean plane or line, ``"quadratic"`` or 2 a paraboloid, 0 the mean.
     """
-    if degree not in (0, 1, 2):
-        raise InputError("degree", degree, "0 (mean), 1 (plane) or 2", "Use remove_form for more.")
-    return replace(surface, heights=surface.heights - polynomial(surface, degree))
+    known: dict[Any, int] = {**FORMS, 0: 0, 1: 1, 2: 2}
+    if not isinstance(degree, int | str | np.integer) or degree not in known:
+        allowed = '"plane" (or 1), "quadratic" (or 2) or 0, the mean'
+        raise InputError("degree", shown(degree), allowed, "Use remove_form for more.")
+    return replace(surface, heights=surface.heights - polynomial(surface, known[degree]))
 
 
 def band_limit(surface: Surface, longest: float | None = None, shortest: float | None = None) -> Surface:
@@ -90,14 +103,21 @@ def _convolve(values: NDArray[np.float64], kernel: NDArray[np.float64], axis: in
     return np.take(full, np.arange(start, start + values.shape[axis]), axis=axis)
 
 
-def fill(surface: Surface) -> Surface:
+def fill(surface: Surface, lines: bool | None = None) -> Surface:
     """Fill missing points: the harmonic surface through their neighbours, or straight lines in a profile.
 
     Solves the five-point Laplace equation on the missing points, with no slope at the border: no new peak or
     valley arises. `source` states the share that was filled; more than 5 % are warned of, as filled points
-    carry no roughness.
+    carry no roughness. `lines` says whether an array holds lines measured side by side; by default its shape
+    does, see `parallel_lines.are_lines`. Neighbours need not be in register: such lines are filled along
+    themselves, by straight lines, and what is missing at their ends stays missing.
     """
     missing = np.isnan(surface.heights)
+    along = None
+    if isinstance(surface, HeightMap) and (are_lines(surface) if lines is None else lines):
+        along = int(np.argmax(surface.shape))
+        known = [np.maximum.accumulate(~each, axis=along) for each in (missing, np.flip(missing, along))]
+        missing &= known[0] & np.flip(known[1], along)
     share = float(missing.mean())
     if share == 0.0:
         return surface
@@ -108,9 +128,20 @@ def fill(surface: Surface) -> Surface:
         )
         warnings.warn(message, MissingPointsWarning, stacklevel=2)
     heights = np.array(surface.heights)
-    heights[missing] = _harmonic(surface.heights, missing, np.atleast_1d(np.asarray(surface.spacing)))
+    if along is None:
+        heights[missing] = _harmonic(surface.heights, missing, np.atleast_1d(np.asarray(surface.spacing)))
+    else:
+        for line, holes in zip(*(np.moveaxis(each, along, -1) for each in (heights, missing)), strict=True):
+            there = np.flatnonzero(np.isfinite(line))
+            if holes.any():
+                line[holes] = np.interp(np.flatnonzero(holes), there, line[there])
     source = f"{surface.source}; {share:.2%} of the points filled".lstrip("; ")
     return replace(surface, heights=heights, source=source)
+
+
+def nearly_complete(surface: Surface) -> Surface | None:
+    """Surface with its missing points filled, for what needs all; None where more than 5 % are missing."""
+    return fill(surface, lines=False) if surface.missing_share <= FILLED_SHARE_WARNED else None
 
 
 def _harmonic(

@@ -22,6 +22,8 @@ LAGS = 2
 """Lengths of the map beyond which the correlation is taken as zero."""
 ROUNDING = 1e-12
 """Heights, relative to the largest before levelling, that are nothing but rounding."""
+FLAT = 1e-15
+"""Heights within which a map that was levelled before is a plane, m: less than any atom."""
 LONGEST = 2.0
 """Wavelength, in lengths of the map, that heights are given which the spectrum does not explain."""
 
@@ -81,7 +83,7 @@ def _prepared(maps: tuple[HeightMap, ...], spacing: float | tuple[float, float] 
             raise InputError("maps", received, "one spacing for all", "Use resample first.")
     levelled = [level(one) for one in maps]
     if all(
-        np.ptp(flat.heights) <= ROUNDING * np.abs(one.heights).max()
+        np.ptp(flat.heights) <= max(ROUNDING * np.abs(one.heights).max(), FLAT)
         for flat, one in zip(levelled, maps, strict=True)
     ):
         received = f"a plane without roughness, {maps[0].source or 'a map'}"

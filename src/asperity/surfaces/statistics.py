@@ -13,6 +13,8 @@ from asperity.errors import InputError
 from asperity.surfaces.areal_psd import psd_1d, psd_2d, psd_radial, texture_direction
 from asperity.surfaces.correlation import autocorrelation, autocorrelation_lengths
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import nearly_complete
+from asperity.surfaces.material_ratio import stratified
 
 __all__ = [
     "Statistic",
@@ -42,9 +44,10 @@ class Statistic:
 
 
 def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:
-    """Areal roughness parameters Sq, Sa, Ssk, Sku, Sz, Sdq, Sdr, Sal, Str, Std, ISO 25178-2:2021.
+    """Areal roughness parameters, ISO 25178-2:2021, from Sq to Std, and Sk, Spk, Svk, Smr1, Smr2.
 
-    Levelled heights, m; the mean is removed here, missing points are left out. `bandwidth` is that of
+    Levelled heights, m; the mean is removed here, missing points are left out; for Std up to 5 % are filled.
+    `bandwidth` is that of
     filtered data, m; by default from two samples to the longest side. Slopes are by the seven-point formula
     of ISO 4287:1997. If the autocorrelation does not fall to 0.2 inside the map, there is a warning, see
     `autocorrelation_lengths`.
@@ -53,15 +56,16 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
     square = _square_slope(surface)
     slopes = (float(np.nanmean(square)), float(np.nanmean(np.sqrt(1.0 + square)) - 1.0))
     lengths = autocorrelation_lengths(surface)
-    complete = not np.isnan(surface.heights).any()
+    whole = nearly_complete(surface)
     direction = Statistic(
         "Std",
-        texture_direction(surface) if complete else np.nan,
+        np.nan if whole is None else texture_direction(whole),
         "rad",
         band,
         "direction from x in which it varies most, across the lay; means little where Str is above 0.5",
     )
-    return [*areal_parameters(*_amplitudes(surface.heights), slopes, lengths, band), direction]
+    named = areal_parameters(*_amplitudes(surface.heights), slopes, lengths, band)
+    return [*named, direction, *_stratified("S", surface.heights, band)]
 
 
 def areal_parameters(
@@ -71,7 +75,7 @@ def areal_parameters(
     lengths: tuple[float, float],
     band: tuple[float, float],
 ) -> list[Statistic]:
-    """Name areal roughness parameters, in the order of `areal_statistics`, but for Std.
+    """Name areal roughness parameters, in the order of `areal_statistics`, up to Str.
 
     `powers` are the means of |z|, z², z³ and z⁴ about the mean, m to m⁴; `total` is from the highest peak to
     the lowest valley, m; `slopes` are the mean square slope, and the developed area beyond the plane's over
@@ -118,28 +122,61 @@ def shortest_wave_for(surface: HeightMap, slope: float) -> float:
     return float(2.0 ** (scipy.optimize.brentq(left, *ends, xtol=1e-3) if left(ends[1]) < 0.0 else ends[1]))
 
 
-def profile_statistics(profile: Profile, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:
-    """Profile roughness parameters Rq, Ra, Rsk, Rku, Rz, Rdq, ISO 21920-2:2021.
+def profile_statistics(
+    profile: Profile, bandwidth: tuple[float, float] | None = None, section: float | None = None
+) -> list[Statistic]:
+    """Profile roughness parameters, ISO 21920-2:2021: Rq to Rku, Rt, Rz, Rp, Rv, Rdq, and Rk to Rmr2.
 
     Levelled heights, m; the mean is removed here, missing points are left out. `bandwidth` is that of
-    filtered data, m; by default from two samples to the length. The whole line is one evaluation length, over
-    which Rz is the total height. Slopes are by the seven-point formula of ISO 4287:1997.
+    filtered data, m; by default from two samples to the length. The whole line is the evaluation length; Rz,
+    Rp and Rv are means over its whole sections of a length, m: a fifth of it by default; of a line that was
+    filtered, the nesting index of the L-filter. Slopes are by the seven-point formula of ISO 4287:1997.
     """
     band = bandwidth or (2.0 * profile.spacing, profile.size)
     rms_slope = float(np.sqrt(np.nanmean(slope(profile.heights, profile.spacing, 0) ** 2)))
+    powers, total = _amplitudes(profile.heights)
+    heights = profile.heights - np.nanmean(profile.heights)
+    points = max(1, min(round(section / profile.spacing) if section else heights.size // 5, heights.size))
+    pieces = heights[: heights.size // points * points].reshape(-1, points)
+    pieces = pieces[np.isfinite(pieces).any(axis=1)]
+    peak, valley = float(np.nanmax(pieces, axis=1).mean()), float(-np.nanmin(pieces, axis=1).mean())
+    mean = f"mean of {len(pieces)} sections of {1e3 * points * profile.spacing:.4g} mm"
     return [
-        *_named("R", *_amplitudes(profile.heights), band),
+        *_named("R", powers, total, band)[:-1],
+        Statistic("Rt", total, "m", band, "highest peak to lowest valley"),
+        Statistic("Rz", peak + valley, "m", band, f"highest peak to lowest valley, {mean}"),
+        Statistic("Rp", peak, "m", band, f"highest peak above the mean line, {mean}"),
+        Statistic("Rv", valley, "m", band, f"lowest valley below the mean line, {mean}"),
         Statistic("Rdq", rms_slope, "1", band, "rms slope"),
+        *_stratified("R", heights, band),
     ]
 
 
-def line_statistics(lines: Sequence[Profile]) -> list[tuple[Statistic, float, float]]:
+def _stratified(letter: str, heights: NDArray[np.float64], band: tuple[float, float]) -> list[Statistic]:
+    found = stratified(heights)
+    values = [
+        ("k", found.core, "m", "height of the core, by the flattest 40 % of the material ratio curve"),
+        ("pk", found.peaks, "m", "reduced height of the peaks above the core"),
+        ("vk", found.valleys, "m", "reduced depth of the valleys below the core"),
+        ("mr1", found.peak_ratio, "1", "material ratio of the peaks (Smrk1 of 2021)"),
+        ("mr2", found.valley_ratio, "1", "material ratio above the valleys (Smrk2 of 2021)"),
+    ]
+    return [
+        Statistic(letter + name, value, unit, band, meaning.replace("Smrk", f"{letter}mrk"))
+        for name, value, unit, meaning in values
+    ]
+
+
+def line_statistics(
+    lines: Sequence[Profile], bandwidth: tuple[float, float] | None = None, section: float | None = None
+) -> list[tuple[Statistic, float, float]]:
     """Roughness parameters of lines side by side, with the lowest and highest value of a single line.
 
-    As of `profile_statistics`: their means over the lines, as ISO 21920-2:2021 takes over evaluation lengths.
+    Bandwidth and section as of `profile_statistics`: their means over the lines, as ISO 21920-2:2021 takes
+    over evaluation lengths.
     """
     rough = [line for line in lines if np.nanmax(line.heights) > np.nanmin(line.heights)] or list(lines[:1])
-    each = [profile_statistics(line) for line in rough]
+    each = [profile_statistics(line, bandwidth, section) for line in rough]
     found = []
     for same in zip(*each, strict=True):
         values = [item.value for item in same]

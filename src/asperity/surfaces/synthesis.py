@@ -47,14 +47,16 @@ def self_affine(
     longest: float,
     shortest: float,
     anisotropy: float = 1.0,
+    lay: float = 0.0,
     seed: int,
 ) -> HeightMap:
     """Gaussian self-affine surface with a roll-off and a cut-off (spectrum of B. N. J. Persson et al., 2005).
 
     The power spectral density is C(q') = constant below 2π/longest and falls as q'^(-2-2·hurst) up to the
-    cut-off |q| = 2π/shortest, beyond which it is zero; q'² = (qx √anisotropy)² + (qy/√anisotropy)²: the
-    anisotropy is the correlation length in x over that in y. J. Phys.: Condens. Matter 17 (2005) R1. Lengths
-    are in m; 0 < hurst <= 1, and the shortest wave has at least two samples.
+    cut-off at 2π/shortest, and is zero beyond; q'² = (qx √anisotropy)² + (qy/√anisotropy)²: the anisotropy is
+    the correlation length in x over that in y. With a `lay`, rad, all of this is turned from x towards y:
+    ridges that are drawn out along x then lie in that direction. J. Phys.: Condens. Matter 17 (2005) R1.
+    Lengths are in m; 0 < hurst <= 1, and the shortest wave has at least two samples.
 
     The rms is that of the *ensemble* about zero, m, exact on this grid. One realisation scatters about it,
     the more the fewer longest wavelengths fit in; it is not rescaled, since that would make short pieces
@@ -64,8 +66,8 @@ def self_affine(
     steps = (float(spacing[0]), float(spacing[1]))
     _check_shape(shape)
     _check_self_affine(steps, rms, hurst, longest, shortest, anisotropy)
-    stretch = np.sqrt(anisotropy)
-    reach = (longest * stretch, longest / stretch)
+    stretch, (cosine, sine) = np.sqrt(anisotropy), (np.cos(lay), np.sin(lay))
+    reach = _reach(longest, anisotropy, lay)
     grid = [
         fft.next_fast_len(int(np.ceil(max(n + r / d, 2.0 * r / d))), real=True)
         for n, r, d in zip(shape, reach, steps, strict=True)
@@ -76,13 +78,21 @@ def self_affine(
         raise InputError("longest", received, f"at most {LARGEST_MAP} points", remedy)
     qx = 2.0 * np.pi * fft.fftfreq(grid[0], steps[0])[:, None]
     qy = 2.0 * np.pi * fft.rfftfreq(grid[1], steps[1])[None, :]
-    scaled = np.maximum((qx * stretch) ** 2 + (qy / stretch) ** 2, (2.0 * np.pi / longest) ** 2)
+    along, across = qx * cosine + qy * sine, qy * cosine - qx * sine
+    scaled = np.maximum((along * stretch) ** 2 + (across / stretch) ** 2, (2.0 * np.pi / longest) ** 2)
     power = scaled ** (-1.0 - hurst)
     power[qx**2 + qy**2 > (2.0 * np.pi / shortest) ** 2 * (1.0 + 1e-12)] = 0.0
     power[0, 0] = 0.0
     field = _gaussian_field(power, grid, rms, seed)
     source = f"self-affine: rms {rms:.4g} m, Hurst {hurst:g}, {shortest:.4g} to {longest:.4g} m, seed {seed}"
     return HeightMap(field[: shape[0], : shape[1]], steps, source)
+
+
+def _reach(longest: float, anisotropy: float, lay: float) -> tuple[float, float]:
+    """How far the longest waves reach along x and y, m: a drawn-out circle, turned by the lay, rad."""
+    stretch, (cosine, sine) = np.sqrt(anisotropy), (np.cos(lay), np.sin(lay))
+    along = float(np.hypot(stretch * cosine, sine / stretch))
+    return longest * along, longest * float(np.hypot(stretch * sine, cosine / stretch))
 
 
 def _check_shape(shape: tuple[int, int]) -> None:
@@ -99,7 +109,7 @@ def _check_self_affine(
         ("rms", rms, 0.0 <= rms < np.inf, "zero or more, m"),
         ("hurst", hurst, 0.0 < hurst <= 1.0, "above 0, up to 1"),
         ("shortest", shortest, shortest >= coarsest * (1 - 1e-9), f"at least two samples, {coarsest:.4g} m"),
-        ("longest", longest, shortest < longest < np.inf, "longer than `shortest`"),
+        ("longest", longest, shortest < longest < np.inf, "longer than the shortest"),
         ("anisotropy", anisotropy, 0.0 < anisotropy < np.inf, "above zero"),
     ]
     for what, received, right, allowed in checks:
@@ -160,6 +170,7 @@ def long_self_affine(
     longest: float,
     shortest: float,
     anisotropy: float = 1.0,
+    lay: float = 0.0,
     seed: int,
     before: int = 0,
 ) -> LongStrip:
@@ -175,12 +186,12 @@ def long_self_affine(
     def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
         return self_affine(
             (rows, shape[1]), steps, rms=rms, hurst=hurst, longest=longest, shortest=shortest,
-            anisotropy=anisotropy, seed=piece_seed,
+            anisotropy=anisotropy, lay=lay, seed=piece_seed,
         ).heights  # fmt: skip
 
-    reach = int(np.ceil(longest * np.sqrt(anisotropy) / steps[0]))
+    reach = int(np.ceil(_reach(longest, anisotropy, lay)[0] / steps[0]))
     source = f"self-affine: rms {rms:.4g} m, Hurst {hurst:g}, {shortest:.4g} to {longest:.4g} m, seed {seed}"
-    name = "self-affine", steps, rms, hurst, longest, shortest, anisotropy
+    name = "self-affine", steps, rms, hurst, longest, shortest, anisotropy, lay
     stride, blend = _pieces(shape[1], reach)
     return LongStrip(shape, steps, piece, seed, stride, blend, source=source, before=before, name=name)
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.modal import driving_point
 
 MODES_BEYOND = 4.0
 """Beam modes are kept up to this multiple of the highest frequency, where the case says nothing."""
@@ -53,11 +54,19 @@ def highest_mode(case: BallOnBeam) -> float:
 def square_transfer(bodies: Bodies, stiffness: float, frequency: NDArray[np.float64]) -> NDArray[np.float64]:
     """Mean square along the beam of the linear contact force per height of the texture (f,), (N/m)².
 
-    F/z = 1/(α_ball + 1/k + α_beam), the ball at rest at each of `PLACES`; stiffness k of the contact, N/m;
-    frequencies (f,), Hz.
+    The ball at rest at each of `PLACES`; stiffness of the contact, N/m; frequencies (f,), Hz.
     """
-    beam = bodies.beam
+    places = bodies.beam.length * np.array(PLACES)
+    return np.asarray(np.mean(np.abs(ball_transfer(bodies, stiffness, places, frequency)) ** 2, axis=0))
+
+
+def ball_transfer(
+    bodies: Bodies, stiffness: float, places: NDArray[np.float64], frequency: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Force of the linear contact per height of the texture (p, f), N/m, the ball at rest at places (p,), m.
+
+    F/z = 1/(α_ball + 1/k + α_beam); stiffness k of the contact, N/m; frequencies (f,), Hz.
+    """
     carried = 1.0 / stiffness - 1.0 / (bodies.ball.mass * (2.0 * np.pi * frequency) ** 2)
-    places = [share * beam.length for share in PLACES]
-    squares = [np.abs(carried + beam.receptance(frequency, x, x)) ** -2.0 for x in places]
-    return np.asarray(np.mean(squares, axis=0))
+    found: NDArray[np.complex128] = 1.0 / (carried + driving_point(bodies.beam, frequency, places))
+    return found

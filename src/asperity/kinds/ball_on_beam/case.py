@@ -8,6 +8,7 @@ from typing import Annotated
 from pydantic import BeforeValidator
 
 from asperity.config.case import SETTLED, problem_of_steps, problems_of_sampling
+from asperity.config.chosen import NominalPatch
 from asperity.config.form import Section, key
 from asperity.config.keys import (
     Choice,
@@ -24,7 +25,9 @@ from asperity.config.keys import (
 from asperity.config.sections import ContactCase, Numerics
 from asperity.config.surface_laws import LawsOfSurface, problems_of_surface_laws
 from asperity.errors import InputError
+from asperity.reference.materials import contact_modulus
 from asperity.scenarios.kind import Words
+from asperity.structures.ball import Ball
 from asperity.units import written
 
 LONGEST_SETTLING = 0.2
@@ -168,6 +171,13 @@ class BallOnBeam(LawsOfSurface):
     numerics: Numerics = key({}, "how finely time is resolved")
 
     @property
+    def nominal_patch(self) -> NominalPatch:
+        """Contact of the smooth ball, from which grid and window are chosen."""
+        modulus = contact_modulus(self.ball.material, self.beam.material)
+        ball = Ball(self.ball.radius, self.ball.material, self.ball.load, self.ball.mass)
+        return NominalPatch.of(modulus, ball.radius, ball.radius, ball.static_load)
+
+    @property
     def settled_time(self) -> float:
         """Time in s that is rolled before the record starts.
 
@@ -225,5 +235,5 @@ ROLLING = "ball"
 WORDS = Words(
     "A ball rolls over a rough beam.",
     " in [surface]: file, rms, line or spectrum",
-    {"surface.rms": '"0.5 um"'},
+    {"duration": '"0.12 s"', "settling": '"50 ms"', "surface.rms": '"0.1 um"', "ball.load": '"50 N"'},
 )

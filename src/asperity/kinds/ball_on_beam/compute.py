@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.config.content import content
 from asperity.kinds.ball_on_beam.bodies import Bodies
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.compiling import compile_kernels
 from asperity.kinds.ball_on_beam.roll import Rolling, roll_ball
-from asperity.laws import Law, spec_of
+from asperity.laws import Law
 from asperity.progress import Progress
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
-from asperity.scenarios.textures import Textures
+from asperity.scenarios.usual.compute import checkpoint_of
 from asperity.scenarios.usual.textures import recorded_time
-from asperity.store import Checkpoint, Store, content_key
+from asperity.store import Store
 from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
 
@@ -55,11 +54,6 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     compile_kernels(progress)  # not before the files are known to be right
     watch.lap("compiled functions")
     duration = recorded_time(case, textures)
-    checkpoints = {
-        name: Checkpoint(store, _run_key(name, case, textures, duration))
-        for name in case.laws
-        if spec_of(name).solved_every_step
-    }
 
     def roll_law(law: Law) -> Rolling:
         return roll_ball(
@@ -74,20 +68,8 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             sensors=case.beam.sensor_positions,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=checkpoints.get(law.name),
+            checkpoint=checkpoint_of(law, prepared, store),
         )
 
     chain = reduce_and_roll(prepared, roll_law, store, progress, watch)
     return Computed(case, chain, ball, beam)
-
-
-def _run_key(law: str, case: BallOnBeam, textures: Textures, duration: float) -> str:
-    """Name of a run of a law that solves every step: everything that its motion depends on."""
-    assert textures.path is not None
-    scalars = [
-        case.speed, case.record_start, case.settled_time, duration, case.time_step, case.numerics.rtol,
-        case.numerics.highest_frequency, case.contact.hardness, case.contact.running_in, case.contact.damping,
-        list(case.beam.sensor_positions),
-    ]  # fmt: skip
-    sections = [content(case.ball), content(case.beam)]
-    return content_key(law, textures.path.rows(0, textures.path.shape[0]), scalars, sections)

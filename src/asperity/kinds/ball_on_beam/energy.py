@@ -55,15 +55,14 @@ def beam_energy(system: System, motion: BeamMotion) -> float:
     return 0.5 * float(np.sum(motion.velocity**2 + system.stiffness * motion.displacement**2))
 
 
-def balance(system: System, motion: BeamMotion, at_rest: tuple[float, float]) -> EnergyBalance:
-    """Balance of a run that started with the ball at rest.
-
-    `at_rest` holds the displacement of the ball, m, and the energy of the beam, J, at the start.
+def balance(system: System, motion: BeamMotion, first: tuple[float, float, float]) -> EnergyBalance:
+    """Balance of a run; `first` holds displacement, m, and velocity, m/s, of the ball and the energy of the
+    beam, J, at its start.
     """
-    displacement, energy = at_rest
+    displacement, velocity, energy = first
     return EnergyBalance(
         load=system.load * (float(motion.ball[0]) - displacement),
-        ball=0.5 * system.mass * float(motion.ball[1]) ** 2,
+        ball=0.5 * system.mass * (float(motion.ball[1]) ** 2 - velocity**2),
         beam=beam_energy(system, motion) - energy,
         beam_damping=float(motion.ledger[BEAM_DAMPING]),
         contact=float(motion.ledger[CONTACT_WORK]),

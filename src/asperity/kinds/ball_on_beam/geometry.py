@@ -31,4 +31,4 @@ def ball_geometry(case: BallOnBeam, load: float, modulus: float) -> Geometry:
             allowed = f"at least {width * 1e6:.3g} um, the width of the smooth contact under {load:.3g} N"
             remedy = "A beam smaller than its contact is no elastic half-space: enlarge it, or press less."
             raise InputError(key, f"{side * 1e6:.3g} um", allowed, remedy)
-    return shape
+    return shape.within_window()

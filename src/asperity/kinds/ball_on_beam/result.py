@@ -9,10 +9,9 @@ from functools import partial
 import xarray
 
 from asperity.kinds.ball_on_beam import schema
-from asperity.kinds.ball_on_beam.bodies import Bodies, square_transfer
+from asperity.kinds.ball_on_beam.bodies import Bodies, ball_transfer, square_transfer
 from asperity.kinds.ball_on_beam.compute import Computed
 from asperity.scenarios.contact_group import contact_group
-from asperity.scenarios.law_choice import law_choice
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import (
     assembled,
@@ -21,7 +20,7 @@ from asperity.scenarios.tree import (
     rolling_group,
     spectrum_segment,
 )
-from asperity.scenarios.validity import findings, warn_of_findings
+from asperity.scenarios.validity import choice_of, findings, warn_of_findings
 from asperity.scenarios.verdict import verdict
 from asperity.schema import variables
 from asperity.spectra import band_levels, psd
@@ -33,14 +32,14 @@ def layout(
     """Lay out what was computed, as scenario, surface, contact, rolling and spectra.
 
     With units and provenance. `caught` are the warnings met on the way; those of laying out may still be
-    added to it. In brief without what only a report shows: what the path is like, and the choice of a law.
+    added to it. In brief without what only a report shows: what the path is like, and the choice of a law
+    where nothing depends on it.
     """
     over_frequency = _spectra(computed)
-    found = findings(computed.chain)
-    warn_of_findings(found)
     transfer = partial(square_transfer, Bodies(computed.ball, computed.beam))
-    shape, textures = computed.chain.shape, computed.chain.textures
-    choice = None if brief else law_choice(computed.case, shape, textures, transfer)
+    choice = choice_of(computed.chain, transfer, brief=brief)
+    found = findings(computed.chain, choice)
+    warn_of_findings(found)
     groups = {
         "/surface": surface_group(computed.chain, brief=brief),
         "/contact": contact_group(computed.chain, found),
@@ -99,4 +98,5 @@ def _spectra(computed: Computed) -> xarray.Dataset:
             schema.ACCELERATION_LEVEL: level,
         }
     )
-    return xarray.Dataset(force_spectra(computed.chain) | own)
+    transfer = partial(ball_transfer, Bodies(computed.ball, computed.beam))
+    return xarray.Dataset(force_spectra(computed.chain, transfer) | own)

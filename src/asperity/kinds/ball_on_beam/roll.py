@@ -16,7 +16,7 @@ from asperity.kinds.ball_on_beam.stepper import BeamStepper
 from asperity.laws.base import Law
 from asperity.progress import Progress
 from asperity.rolling.ball import RollingBall
-from asperity.rolling.beam import RolledBeam, beam_step, refuse_off_the_beam
+from asperity.rolling.beam import RolledBeam, beam_step, carried, most_compliance, refuse_off_the_beam
 from asperity.rolling.path import Path
 from asperity.rolling.rolled import Limit, Rolled, roll_along
 from asperity.store import Checkpoint
@@ -52,16 +52,17 @@ def roll_ball(
     progress: Progress | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> Rolling:
-    """Roll a ball over a beam at constant speed, from static equilibrium, and keep what follows the run-in.
+    """Roll a ball over a beam at constant speed, and keep what follows the run-in.
 
     The contact is at `start` at time zero, after the run-in, m; the law reads its texture at the same
     coordinate. Speed in m/s, times in s, sensors (k,) on the beam, m. The time step is checked against the
     highest frequency of interest, Hz. A checkpoint keeps the state about every 10 s, at the end and when
     interrupted, to go on from there.
 
-    The beam is advanced exactly mode by mode and the ball exactly, for a contact force that varies linearly
-    over a step; the force at the end of each step solves the contact law implicitly, to second order. A step
-    that is too long to be stable is kept so by a softened contact, with a warning
+    The beam starts as under a load that has long rolled on it, or at rest where the path begins on its
+    support. It is advanced exactly mode by mode and the ball exactly, for a contact force that varies
+    linearly over a step; the force at the end of each step solves the contact law implicitly, to second
+    order. A step that is too long to be stable is kept so by a softened contact, with a warning
     (`asperity.rolling.stability`). Warned of are also a coarse time step, a law that was continued beyond its
     data, large deflections and forces that missed the tolerance.
     """
@@ -72,7 +73,7 @@ def roll_ball(
 
     def stand(approach: float, softening: float) -> BeamStepper:
         softened = system._replace(softening=softening)
-        return BeamStepper(softened, *_at_rest(softened, beam, path, approach), beam, path)
+        return BeamStepper(softened, *_carried(softened, beam, path, approach), beam, path)
 
     def limits(stiffness: float) -> Iterator[Limit]:
         resonance = np.sqrt(max(stiffness, 0.0) / ball.mass) / (2.0 * np.pi)
@@ -88,6 +89,7 @@ def roll_ball(
         stand,
         alternating=(alternating, alternating),
         limits=limits,
+        free=(ball.mass, most_compliance(beam, [path])),
         judge=lambda stepper: _warn_if_bent(stepper.record.beam, beam),
         progress=progress,
         checkpoint=checkpoint,
@@ -98,7 +100,7 @@ def roll_ball(
         ball_displacement=record.ball[path.settled :],
         beam_displacement=record.beam[path.settled :],
         acceleration=record.acceleration[:, path.settled :],
-        energy=balance(stepper.system, stepper.motion, stepper.at_rest),
+        energy=balance(stepper.system, stepper.motion, stepper.first),
     )
 
 
@@ -117,16 +119,17 @@ def _system(beam: Beam, ball: Ball, sensors: NDArray[np.float64], path: Path) ->
     )
 
 
-def _at_rest(system: System, beam: Beam, path: Path, approach: float) -> tuple[BeamMotion, BeamRecord]:
-    """State and records with the load carried statically at the start of the path."""
-    shape, slope = (row[0] for row in beam.shapes(path.positions[0]))
-    displacement = shape * system.load / system.stiffness
+def _carried(system: System, beam: Beam, path: Path, approach: float) -> tuple[BeamMotion, BeamRecord]:
+    """State and records with the load carried at the start of the path as if it had rolled for long."""
+    (shape,), (slope,) = under = beam.shapes(path.positions[0])
+    displacement, velocity = carried(system.stiffness, *under, np.array([system.load]), path.speed)
     modes, samples = displacement.size, len(path.positions)
+    below, sinking = shape @ displacement, shape @ velocity + path.speed * (slope @ displacement)
     motion = BeamMotion(
         displacement,
+        velocity,
         np.zeros(modes),
-        np.zeros(modes),
-        np.array([approach + system.softening * system.load + float(shape @ displacement), 0.0]),
+        np.array([approach + system.softening * system.load + below, sinking]),
         np.full(2, system.load),
         np.full(2, approach),
         np.zeros(5),

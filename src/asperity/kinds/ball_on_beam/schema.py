@@ -56,3 +56,5 @@ ACCELERATION_LEVEL = Entry(
 
 KEPT: dict[Entry, dict[str, str]] = {ACCELERATION_LEVEL: {}}
 """What a study keeps."""
+SHOWN = (f"{ACCELERATION_LEVEL.name}_a",)
+"""What a study shows of it unasked."""

@@ -23,9 +23,9 @@ from asperity.structures.beam import Beam
 
 
 class BeamStepper:
-    """Ball and beam, from rest, behind the protocol of `asperity.rolling.stepping.Stepper`.
+    """Ball and beam behind the protocol of `asperity.rolling.stepping.Stepper`.
 
-    `at_rest` holds the displacement of the ball, m, and the energy of the beam, J, at the start.
+    `first` holds displacement, m, and velocity, m/s, of the ball and the energy of the beam, J, at the start.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class BeamStepper:
         self.system, self.motion, self.record = system, motion, record
         self.path, self.along = path, ShapesAlong(beam, path)
         self.load, self.total = system.load, path.total
-        self.at_rest = float(motion.ball[0]), beam_energy(system, motion)
+        self.first = float(motion.ball[0]), float(motion.ball[1]), beam_energy(system, motion)
 
     def bound(self) -> int:
         """End of the chunk in which the next step lies; its mode shapes are made ready."""

@@ -6,13 +6,17 @@ import warnings
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.bodies.smooth import load_of, upper_stiffness
-from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
+from asperity.kinds.wheel_on_rail.tables import fitted_to, read_modes, read_receptance
 from asperity.structures.ball import GRAVITY
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body
-from asperity.structures.modal import Modal
+from asperity.structures.modal import Modal, driving_point
+from asperity.structures.modal_fit import warn_of_short_band
 from asperity.structures.receptance_fit import fit_body
 from asperity.structures.supported_beam import SupportedBeam
 from asperity.structures.suspended import bogie, carriage, chain
@@ -80,6 +84,8 @@ def structure_of(case: Bodies) -> Modal | Track | None:
     if case.over == "structure":
         for doubt in case.structure.doubts:
             warnings.warn(doubt, stacklevel=2)
+        if case.structure.measured_at is not None:
+            warn_of_short_band("structure", case.structure.measured_at, case.numerics.highest_frequency)
         return case.structure.model
     return case.track.model() if case.over == "track" else None
 
@@ -105,7 +111,9 @@ def body_of(case: Bodies) -> Body:
     """Build one of what rolls, with the resonances of what touches."""
     if case.body.receptance is not None:
         measured = read_receptance(case.body.receptance)
-        return fit_body(case.body.contact_mass, load_of(case), *measured)
+        warn_of_short_band("body", measured[0], case.numerics.highest_frequency)
+        with fitted_to(case.body.receptance):
+            return fit_body(case.body.contact_mass, load_of(case), *measured)
     body = _rigid_body(case)
     return body if case.body.modes is None else body.with_modes(*read_modes(case.body.modes))
 
@@ -139,6 +147,22 @@ def _inertia(case: Bodies) -> float:
 def highest_beam_mode(case: Bodies) -> float:
     """Frequency up to which the modes of a beam are kept, Hz."""
     return case.beam.modes_up_to or MODES_BEYOND * case.numerics.highest_frequency
+
+
+def body_transfer(
+    bodies: RolledCase, stiffness: float, places: NDArray[np.float64], frequency: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Force of the linear contact per height of the texture (p, f), N/m, of the first contact alone.
+
+    At places (p,), m, by the stiffness of the contact, N/m, and frequencies (f,), Hz.
+    """
+    over = bodies.over
+    carried = bodies.rolling[0].receptance(frequency)[:, 0, 0] + 1.0 / stiffness
+    if isinstance(over, Track):
+        carried = carried + over.receptance(frequency, places, places)
+    elif over is not None:
+        carried = carried + driving_point(over, frequency, places)
+    return 1.0 / np.atleast_2d(carried)
 
 
 def square_transfer(bodies: RolledCase, stiffness: float, frequency: Any) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator
 
 from asperity.config.case import SETTLED, problem_of_steps, problems_of_sampling, time_step_on_grid
+from asperity.config.chosen import NominalPatch
 from asperity.config.form import key
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position
 from asperity.config.sections import ContactCase, Numerics
@@ -73,6 +74,14 @@ class Bodies(LawsOfSurface):
     structure: StructureCase = key({}, "any other structure that is rolled over, by its modes or receptances")
     contact: ContactCase = key({}, "how the rough contact is solved and reduced")
     numerics: Numerics = key({}, "how finely time is resolved")
+
+    @property
+    def nominal_patch(self) -> NominalPatch:
+        """Smooth contact of each body, from which grid and window are chosen."""
+        from asperity.kinds.bodies.smooth import load_of, smooth_contact
+
+        hertz = smooth_contact(self)
+        return NominalPatch.of(hertz.modulus, hertz.radius_x, hertz.radius_y, load_of(self))
 
     @property
     def room(self) -> float | None:
@@ -196,5 +205,5 @@ ROLLING = "body"
 WORDS = Words(
     "Bodies roll over a structure.",
     " in [surface]: file, rms, line or spectrum",
-    {"surface.rms": '"0.5 um"'},
+    {"duration": '"0.12 s"', "surface.rms": '"0.1 um"', "body.load": '"50 N"'},
 )

@@ -8,14 +8,17 @@ import numpy as np
 
 from asperity.config.case import Case
 from asperity.laws import HertzLaw
+from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.rolling.several import roll_bodies
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
+from asperity.scenarios.trial_track import POLE_TIME, try_track
 from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
-from asperity.structures.rail_between import RailBetween
+from asperity.structures.rail_between import DECIMALS, RailBetween
 from asperity.structures.rail_poles import POLES, RailPoles
 from asperity.structures.track import Track
+from asperity.threads import thread_count
 
 
 def rows(case: Any) -> list[tuple[str, str]]:
@@ -29,6 +32,21 @@ def rows(case: Any) -> list[tuple[str, str]]:
 def records(case: Any) -> int:
     """Histories that a law leaves behind."""
     return 6 * len(case.body.offsets) + 2
+
+
+def seconds(prepared: PreparedCase, progress: Progress, pace: float) -> dict[str, float]:
+    """Time of the moving kernels of a track, under each contact and between them, and of their poles, s."""
+    case, over = prepared.case, prepared.bodies.over
+    if not isinstance(over, Track):
+        return {}
+    trial = try_track(over, case.speed, case.time_step, progress)
+    offsets: tuple[float, ...] = case.body.offsets  # type: ignore[attr-defined]
+    apart = {round(abs(one - other), DECIMALS) for one in offsets for other in offsets} - {0.0}
+    kernels, poles = 2 * len(apart), POLES * POLE_TIME * pace
+    return {
+        "moving kernel": trial.kernel / thread_count() + poles,
+        "rail between contacts": kernels * (trial.last / thread_count() + poles),
+    }
 
 
 def step_seconds(prepared: PreparedCase) -> float:

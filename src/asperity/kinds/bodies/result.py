@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable
+from functools import partial
 
 import numpy as np
 import xarray
 from numpy.typing import NDArray
 
 from asperity.kinds.bodies import schema
+from asperity.kinds.bodies.bodies import body_transfer
 from asperity.kinds.bodies.compute import Computed
 from asperity.kinds.bodies.textures import loads_of
 from asperity.scenarios.contact_group import contact_group
@@ -34,7 +36,9 @@ def layout(
     In brief without what only a report shows: what the path is like.
     """
     chain = computed.chain
-    spectra = xarray.Dataset(force_spectra(chain) | variables(_spectra(computed)))
+    spectra = xarray.Dataset(
+        force_spectra(chain, partial(body_transfer, computed.bodies)) | variables(_spectra(computed))
+    )
     found = findings(chain)
     warn_of_findings(found)
     groups = {

@@ -26,7 +26,7 @@ __all__ = [
     "SPECTRA_SENSOR",
 ]
 
-_CONTACT = "number of the contact, body by body, each from its rearmost; `contact_force` is that of the first"
+_CONTACT = "number of the contact, body by body, each from its rearmost; contact_force is that of the first"
 _DEGREE = "degree of freedom of a body: what moves, and how"
 BODY_REFERENCE = 1e-6
 """Of acceleration levels, m/s²."""
@@ -117,3 +117,5 @@ PASSING_FREQUENCY = Entry(
 
 KEPT: dict[Entry, dict[str, str]] = {FORCE_LEVELS: {}, ACCELERATION_LEVEL: {}}
 """What a study keeps."""
+SHOWN = (f"{ACCELERATION_LEVEL.name}_a",)
+"""What a study shows of it unasked."""

@@ -103,7 +103,7 @@ class StructureCase(Section):
 
     file: ModesFile | None = key(
         None,
-        "its modes: a text table, netCDF, or a universal file (.uff, .unv); or a ModalStructure",
+        "its modes: a text table, netCDF, or a universal file (.uff, .unv); or, from Python, such modes",
         example='"guide.csv"',
     )
     along: Axis | None = key(
@@ -195,21 +195,27 @@ class StructureCase(Section):
         """What was warned of when it was read or fitted."""
         return self._made[1]
 
+    @property
+    def measured_at(self) -> NDArray[np.float64] | None:
+        """Frequencies of its receptances, Hz, rising; None of modes."""
+        return self._made[2]
+
     @cached_property
-    def _made(self) -> tuple[ModalStructure, list[Warning]]:
+    def _made(self) -> tuple[ModalStructure, list[Warning], NDArray[np.float64] | None]:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", PhysicsWarning)
-            found = self._fitted() if self.file is None else self._read()
-        return found, [each.message for each in caught if isinstance(each.message, Warning)]
+            found, lines = self._fitted() if self.file is None else (self._read(), None)
+        return found, [each.message for each in caught if isinstance(each.message, Warning)], lines
 
-    def _fitted(self) -> ModalStructure:
-        """Modes that meet the receptances."""
+    def _fitted(self) -> tuple[ModalStructure, NDArray[np.float64]]:
+        """Modes that meet the receptances, and the frequencies of these."""
         from asperity.structures.receptance_fit import fit_structure, receptances_in
 
         assert self.receptances is not None
         rows = read_table(self.receptances, RECEPTANCES)
         at, driven, frequency, given = receptances_in(rows, name_of(self.receptances))
-        return fit_structure(at, driven, frequency, given, mass=self.mass, inertia=self.inertia)
+        fitted = fit_structure(at, driven, frequency, given, mass=self.mass, inertia=self.inertia)
+        return fitted, frequency
 
     def _read(self) -> ModalStructure:
         """Modes of the file, with those of the rigid body."""

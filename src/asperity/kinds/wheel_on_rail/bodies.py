@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.linear_reference import mean_square_transfer
-from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
+from asperity.kinds.wheel_on_rail.linear_reference import force_transfer, mean_square_transfer
+from asperity.kinds.wheel_on_rail.tables import fitted_to, read_modes, read_receptance
+from asperity.structures.modal_fit import REACH, warn_of_short_band
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
@@ -35,8 +36,22 @@ def wheel_of(case: WheelOnRail) -> Wheel:
     if section.receptance is not None:
         highest = case.numerics.highest_frequency
         measured = read_receptance(section.receptance)
-        return Wheel.from_receptance(section.mass, section.load, *measured, highest_frequency=highest)
+        warn_of_short_band("wheel", measured[0], highest)
+        with fitted_to(section.receptance):
+            return Wheel.from_receptance(
+                section.mass, section.load, *measured, highest_frequency=REACH * highest
+            )
     return Wheel.rigid(section.mass, section.load)
+
+
+def transfer_at(
+    bodies: Bodies, stiffness: float, places: NDArray[np.float64], frequency: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Force of the linear contact per height of the texture (p, f), N/m, the wheel at rest at places (p,), m.
+
+    Stiffness of the contact, N/m; frequencies (f,), Hz.
+    """
+    return force_transfer(frequency, bodies.wheel, bodies.track, stiffness, places)
 
 
 def square_transfer(bodies: Bodies, stiffness: float, frequency: NDArray[np.float64]) -> NDArray[np.float64]:

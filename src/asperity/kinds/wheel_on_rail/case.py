@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, model_validator
 
 from asperity.config.case import (
     Case,
@@ -16,8 +16,9 @@ from asperity.config.case import (
     problems_of_sampling,
     time_step_on_grid,
 )
+from asperity.config.chosen import NominalPatch
 from asperity.config.describing import in_words
-from asperity.config.form import key
+from asperity.config.form import Section, key
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
 from asperity.config.tables import check_band_levels, read_levels
 from asperity.errors import InputError
@@ -25,6 +26,7 @@ from asperity.kinds.wheel_on_rail.noise_keys import NoiseCase
 from asperity.kinds.wheel_on_rail.surface_keys import RailSurface
 from asperity.kinds.wheel_on_rail.track_keys import OVERRIDES, RailContact, RailNumerics, TrackCase
 from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
+from asperity.reference.materials import contact_modulus
 from asperity.scenarios.kind import Words
 from asperity.units import written
 
@@ -33,6 +35,10 @@ if TYPE_CHECKING:
 
 STEPS_PER_PERIOD = 8  # of the highest frequency
 CLOSE = 1.2  # a time step may be changed by this factor to bring positions onto the grid
+
+ROLLED = ("areal", "shifted", "printed", "linear-filtered", "linear")
+OVER_DEFECTS = ("direct", "linear-filtered", "linear")
+"""Laws that are rolled where a case names none, and where it rolls over a flat or a joint."""
 
 
 class WheelOnRail(Case):
@@ -56,8 +62,8 @@ class WheelOnRail(Case):
         within=("1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
     )
     laws: tuple[Law, ...] = key(
-        ("areal", "shifted", "printed", "linear-filtered", "linear"),
-        "laws of the contact force; the first is the main one",
+        ROLLED,
+        "laws of the contact force; the first is the main one, direct where a flat or a joint is rolled over",
     )
     start: Position = key(
         "0 m",
@@ -76,6 +82,40 @@ class WheelOnRail(Case):
     contact: RailContact = key({}, "how the rough contact is solved and reduced")
     numerics: RailNumerics = key({}, "how finely time and the track are resolved")
     noise: NoiseCase = key({}, "what radiates, and the labels of CNOSSOS-EU")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _laws_that_see_defects(cls, data: Any) -> Any:
+        """Roll over a flat or a joint by a law that sees its shape, where the case names none."""
+        if not isinstance(data, Mapping) or "laws" in data:
+            return data
+        keys: set[str] = set()
+        for section in (data.get("wheel"), data.get("surface")):
+            found = section.given() if isinstance(section, Section) else section
+            keys |= set(found) if isinstance(found, Mapping) else set()
+        return {**data, "laws": OVER_DEFECTS} if keys & {"flat_depth", "flat_length", "joint_depth"} else data
+
+    def default_of(self, name: str) -> Any:
+        """Value of a key that is left out: laws as the defects ask for them."""
+        return OVER_DEFECTS if name == "laws" and self.has_defect else super().default_of(name)
+
+    @property
+    def has_defect(self) -> bool:
+        """Whether a flat or a joint is rolled over."""
+        return self.wheel.flat is not None or self.surface.joint_depth is not None
+
+    @property
+    def defect_length(self) -> float:
+        """Length of a flat in m, which the window is to hold beside the contact."""
+        flat = self.wheel.flat
+        return 0.0 if flat is None else flat[1]
+
+    @property
+    def nominal_patch(self) -> NominalPatch:
+        """Contact of wheel and rail by their radii, from which grid and window are chosen."""
+        wheel, modulus = self.wheel, contact_modulus(self.wheel.material, self.track.material)
+        across = 1.0 / (1.0 / wheel.transverse_radius + 1.0 / self.track.rail_head_radius)
+        return NominalPatch.of(modulus, wheel.radius, across, wheel.load)
 
     @property
     def time_step(self) -> float:
@@ -143,7 +183,6 @@ class WheelOnRail(Case):
         yield from _problems_of_texture(self)
         yield from _problems_of_levels(self)
         yield from self.track.problems_at(self.speed)
-        yield from _problem_of_poles(self)
         yield from _problems_of_path(self)
         widest = 2 * min(self.wheel.radius, self.track.rail_head_radius)
         if self.contact.window > widest:
@@ -177,20 +216,6 @@ def _problems_of_levels(case: WheelOnRail) -> Iterator[InputError]:
                 check_band_levels(levels + level, name)
             except InputError as error:
                 yield error
-
-
-def _problem_of_poles(case: WheelOnRail) -> Iterator[InputError]:
-    """No more poles than the shortest kernel of a track can tell apart."""
-    if case.numerics.poles is None:
-        return
-    from asperity.structures.moving_kernel import SHORTEST
-    from asperity.structures.rail_poles import most_poles
-
-    most = most_poles(round(SHORTEST / case.time_step))
-    if case.numerics.poles > most:
-        allowed = f"an even number up to {most}, a tenth of the time steps that the track remembers"
-        remedy = "Take fewer numerics.poles, or a shorter numerics.time_step."
-        yield InputError("numerics.poles", case.numerics.poles, allowed, remedy)
 
 
 def _problems_of_path(case: WheelOnRail) -> Iterator[InputError]:

@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.content import content, file_digest
 from asperity.kinds.wheel_on_rail.bodies import Bodies
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compiling import compile_kernels
 from asperity.kinds.wheel_on_rail.passing import passed_points
 from asperity.kinds.wheel_on_rail.roll import WheelRolling, roll_wheel
-from asperity.laws import Law, spec_of
+from asperity.laws import Law
 from asperity.progress import Progress
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
-from asperity.scenarios.textures import Textures
-from asperity.store import Checkpoint, Store, content_key
+from asperity.scenarios.usual.compute import checkpoint_of
+from asperity.store import Store
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailPoles, poles_or_kernel
 from asperity.structures.track import Track
@@ -46,7 +45,7 @@ class Computed:
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Reduce and roll a case from `asperity.running.prepare_case`."""
-    case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
+    case, bodies = prepared.case, prepared.bodies
     assert isinstance(case, WheelOnRail)
     assert isinstance(bodies, Bodies)
     track, wheel, store = bodies.track, bodies.wheel, Store()
@@ -58,11 +57,6 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     if case.numerics.kernel == "poles":
         rail = poles_or_kernel(kernel, case.numerics.poles, cache=store)
     watch.lap("track")
-    checkpoints = {
-        name: Checkpoint(store, _run_key(name, case, textures))
-        for name in case.laws
-        if spec_of(name).solved_every_step
-    }
 
     def roll_law(law: Law) -> WheelRolling:
         return roll_wheel(
@@ -74,7 +68,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             settling=case.settling,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=checkpoints.get(law.name),
+            checkpoint=checkpoint_of(law, prepared, store, told_after=("noise",)),
         )
 
     def known(chain: Chain[WheelRolling]) -> dict[str, Dataset]:
@@ -86,14 +80,3 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     points = passed_points(kernel, list(chain.runs.values()), case.point_positions, progress)
     watch.lap("passed points")
     return Computed(case, chain, wheel, track, kernel, rail, points)
-
-
-def _run_key(law: str, case: WheelOnRail, textures: Textures) -> str:
-    """Name of a run of a law that solves every step: everything that its motion depends on."""
-    scalars = [case.speed, case.start, case.duration, case.settling, case.time_step, case.numerics.rtol]
-    contact = [
-        case.contact.hardness, case.contact.running_in, case.contact.damping, case.contact.spacing,
-    ]  # fmt: skip
-    sections = [content(section, file_digest) for section in (case.wheel, case.track, case.numerics)]
-    heights = textures.surface.rows(0, len(textures.line))
-    return content_key(f"{law}-rail", heights, scalars, contact, sections)

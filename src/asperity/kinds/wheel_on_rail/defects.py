@@ -51,8 +51,10 @@ def defects(
         trajectory += roll_over(Profile(dip, spacing), wheel.radius).heights
     if wheel.flat is not None:
         depth, length = wheel.flat
-        around = turn * spacing
-        along = np.mod(position - case.start - wheel.flat_position + 0.5 * around, around) - 0.5 * around
+        around, first = turn * spacing, wheel.flat_position
+        if first is None:
+            first = 0.5 * min(around, case.speed * case.duration)
+        along = np.mod(position - case.start - first + 0.5 * around, around) - 0.5 * around
         shape = cast(FlatShape, wheel.flat_shape)
         worn = length if shape == "worn" else None
         geometry += flat_geometry(along, depth, wheel.radius, shape, worn)

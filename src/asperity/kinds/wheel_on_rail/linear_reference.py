@@ -1,8 +1,9 @@
 """The linear reference in the frequency domain: roughness moved between a wheel and a rail at rest.
 
 The force is F = −h/(α_W + α_C + α_R) with the receptances of wheel, contact spring and rail, and the texture
-h positive away from contact: F = z/(α_W + α_C + α_R) of heights z. P. J. Remington, J. Sound Vib. 46 (1976)
-359-379; D. J. Thompson, Railway Noise and Vibration (Elsevier, 2009).
+h positive away from contact: F = z/(α_W + α_C + α_R) of heights z. P. J. Remington, Wheel/rail
+rolling noise, I: Theoretical analysis, J. Acoust. Soc. Am. 81 (1987); D. J. Thompson, Railway Noise and
+Vibration (Elsevier, 2009).
 """
 
 from __future__ import annotations

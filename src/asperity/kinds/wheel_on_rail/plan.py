@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,27 +16,16 @@ from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
+from asperity.scenarios.trial_track import POLE_TIME, try_track
 from asperity.scenarios.validity import warn_of_findings
-from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel, moving_kernel
+from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
 from asperity.structures.rail_poles import POLES, RailPoles
 from asperity.threads import thread_count
 
 REPORT = 4.0
 """Time of starting the program, and of drawing and writing a report, s."""
-POLE_TIME = 6e-3
-"""Time of fitting a pole, s."""
-SHORT_KERNEL, FEW = 0.03, (4, 12)
-"""Length, s, and start positions of the moving kernels that are tried."""
 LAG_TIME = 2e-7
 """Time of points that are passed, per bay, law and lag of the moving kernel, s."""
-
-
-@dataclass(frozen=True, eq=False)
-class TrackTrial:
-    """Times of what the rail adds, on one core, s."""
-
-    length: float  # of the moving kernel, s
-    kernel: float  # the moving kernel, with the shorter ones before it
 
 
 def rows(case: Any) -> list[tuple[str, str]]:
@@ -70,8 +57,8 @@ def records(case: Any) -> int:
 def seconds(prepared: PreparedCase, progress: Progress, pace: float) -> dict[str, float]:
     """Time of the moving kernel, its poles, and of the points that the wheel passes, s."""
     case: Any = prepared.case
-    trial = try_track(prepared, progress)
-    poles = (case.numerics.poles or POLES) if case.numerics.kernel == "poles" else 0
+    trial = try_track(case.track_model(), case.speed, case.time_step, progress)
+    poles = min(case.numerics.poles or POLES, POLES) if case.numerics.kernel == "poles" else 0
     first, last = case.rolled_range
     bays, lags = (last - first) / case.track_model().sleeper_spacing, trial.length / case.time_step
     return {
@@ -97,30 +84,6 @@ def _rail_like(prepared: PreparedCase) -> RailPoles | MovingKernel:
     kernel = MovingKernel(case.track_model(), case.speed, case.time_step, np.full((STARTS, lags), 1e-20))
     if case.numerics.kernel != "poles":
         return kernel
-    count = (case.numerics.poles or POLES) // 2
+    count = min(case.numerics.poles or POLES, POLES) // 2
     poles = 0.5 * np.exp(1j * np.linspace(0.1, 3.0, count))
     return RailPoles(kernel, poles, np.full((STARTS, count), 1e-20 + 0j), 0.0, 0.0)
-
-
-def try_track(prepared: PreparedCase, progress: Progress) -> TrackTrial:
-    """Compute short moving kernels of a track."""
-    case: Any = prepared.case
-    track, speed, step = case.track_model(), case.speed, case.time_step
-    message = "trying the track"
-    progress(0, 3, message)
-    sparse, _ = timed(lambda: moving_kernel(track, speed, step, positions=2))
-    length = sparse.weights.shape[1] * step
-    progress(1, 3, message)
-    tried = partial(moving_kernel, track, speed, step, duration=SHORT_KERNEL)
-    times = [timed(partial(tried, positions=count))[1] for count in FEW]
-    progress(2, 3, message)
-    bays = speed / track.sleeper_spacing  # a second
-    each = (times[1] - times[0]) / ((FEW[1] ** 2 - FEW[0] ** 2) * SHORT_KERNEL * (bays * SHORT_KERNEL + 2))
-    shared = max(times[0] - each * FEW[0] ** 2 * SHORT_KERNEL * (bays * SHORT_KERNEL + 2), 0.0) / SHORT_KERNEL
-    lengths, kernel = [SHORTEST], 0.0
-    while lengths[-1] < 0.99 * length:
-        lengths.append(1.6 * lengths[-1])
-    for each_length in lengths:
-        kernel += shared * each_length + each * STARTS**2 * each_length * (bays * each_length + 2)
-    progress(3, 3, message)
-    return TrackTrial(length, kernel)

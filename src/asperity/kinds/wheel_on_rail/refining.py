@@ -8,9 +8,9 @@ from asperity.structures.rail_poles import POLES
 
 
 def settings_of(case: WheelOnRail) -> list[Setting]:
-    """Twice as many poles, or half as many where the kernel has too few lags."""
+    """The kernel itself, which any number of poles can only come near to."""
     if case.numerics.kernel != "poles":
         return [Setting("poles", (), "the rail is scattered from its kernel, without poles")]
-    count = case.numerics.poles or POLES
-    ways = [Way(f"{count} → {n}", {"numerics.poles": n}) for n in (2 * count, count // 4 * 2)]
-    return [Setting("poles", tuple(ways), scans_kept=True)]
+    words = f"up to {case.numerics.poles or POLES} → the kernel that they are fitted to"
+    scattered = Way(words, {"numerics.kernel": "scatter", "numerics.poles": None})
+    return [Setting("poles", (scattered,), scans_kept=True)]

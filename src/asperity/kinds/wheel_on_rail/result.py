@@ -20,10 +20,9 @@ from asperity.kinds.wheel_on_rail.spectra import spectra_group
 from asperity.kinds.wheel_on_rail.track_group import track_group
 from asperity.reference.cnossos import CITATION
 from asperity.scenarios.contact_group import contact_group
-from asperity.scenarios.law_choice import law_choice
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import assembled, rolling_group
-from asperity.scenarios.validity import findings, warn_of_findings
+from asperity.scenarios.validity import choice_of, findings, warn_of_findings
 from asperity.scenarios.verdict import verdict
 from asperity.structures.rail_poles import RailPoles
 
@@ -34,18 +33,18 @@ def layout(
     """Lay out what was computed, as scenario, surface, track, contact, rolling and spectra.
 
     With units and provenance. `caught` are the warnings met on the way; those of laying out may still be
-    added to it. In brief without what only a report shows: what the path is like, and the choice of a law.
+    added to it. In brief without what only a report shows: what the path is like, and the choice of a law
+    where nothing depends on it.
     """
     spectra, losses = spectra_group(computed), error_of_losses(computed)
-    found = [*findings(computed.chain), *findings_of_losses(losses)]
+    transfer = partial(square_transfer, Bodies(computed.wheel, computed.track))
+    choice = choice_of(computed.chain, transfer, brief=brief)
+    found = [*findings(computed.chain, choice), *findings_of_losses(losses)]
     if schema.SOUND_POWER_LEVEL.name in spectra:
         found += findings_of_labels(computed.case)
     warn_of_findings(found)
     warn_of_silence(computed.case)
     warn_of_loss_factors(losses)
-    transfer = partial(square_transfer, Bodies(computed.wheel, computed.track))
-    shape, textures = computed.chain.shape, computed.chain.textures
-    choice = None if brief else law_choice(computed.case, shape, textures, transfer)
     groups = {
         "/surface": surface_group(computed.chain, brief=brief),
         "/track": track_group(computed),

@@ -81,6 +81,7 @@ def roll_wheel(
         stand,
         alternating=(over.alternating_compliance(path) + thrown, thrown),
         limits=limits,
+        free=(wheel.mass, float(kernel.weights.sum(axis=1).max())),
         progress=progress,
         checkpoint=checkpoint,
     )

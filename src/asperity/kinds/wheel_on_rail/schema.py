@@ -304,4 +304,6 @@ KEPT: dict[Entry, dict[str, str]] = {
     RADIATED_POWER_LEVEL: {},
     RADIATED_POWER_LEVEL_A: {},
 }
-"""What a study keeps, and where of it; the first level of a whole is drawn over what was swept."""
+"""What a study keeps, and where of it."""
+SHOWN = (RADIATED_POWER_LEVEL_A.name, PASS_BY_MAXIMUM_LEVEL.name, TRANSIT_EXPOSURE_LEVEL.name)
+"""What a study shows of it unasked."""

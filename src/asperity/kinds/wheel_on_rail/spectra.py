@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,14 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity.kinds.wheel_on_rail import schema
+from asperity.kinds.wheel_on_rail.bodies import Bodies, transfer_at
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
 from asperity.kinds.wheel_on_rail.noise_group import noise
 from asperity.kinds.wheel_on_rail.radiated import radiation
+from asperity.reduction.texture import along_path
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.tree import level_differences, product_of_bands, spectrum_segment
+from asperity.scenarios.tree import level_differences, product_of_bands, spectrum_segment, sureness
 from asperity.schema import Attribute, Entry, attributes, spectra, variables
 from asperity.spectra import averaging_time, band_levels, psd
 from asperity.surfaces.heightmap import Profile
@@ -38,13 +41,14 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
         spectra.LAW: laws,
         spectra.FREQUENCY: frequency[shown],
         spectra.BAND: band,
-        spectra.BAND_TIME_PRODUCT: product_of_bands(spectra.BAND_TIME_PRODUCT, band, time),
         spectra.FORCE_PSD: force[:, shown],
         spectra.FORCE_LEVEL: force_level,
         schema.TEXTURE_PSD: texture[shown],
         schema.LINEAR_REFERENCE_PSD: reference[shown],
         schema.LINEAR_REFERENCE_LEVEL: reference_level,
     }
+    transfer = partial(transfer_at, Bodies(computed.wheel, computed.track))
+    found |= sureness(computed.chain, band, time, transfer)
     found |= _points(computed, segment) | _roughness(computed) | noise(computed, band, force_level)
     found |= radiation(computed, band, frequency, force, segment)
     if schema.NOISE_BAND in found:
@@ -67,8 +71,8 @@ def linear_reference(
     case, chain = computed.case, computed.chain
     run = next(iter(chain.runs.values()))
     textures = chain.textures
-    at = textures.start + case.contact.spacing * np.arange(len(textures.line))
-    passed = np.interp(run.position, at, textures.followed)
+    line = textures.followed[None, :]
+    passed = along_path("texture", line, textures.start, case.contact.spacing, run.position)[:, 0]
     _, texture = psd(passed, case.time_step, segment=segment)
     _, stiffness = working_point(case.contact, chain.shape, chain.reduction)
     force = np.zeros_like(texture)

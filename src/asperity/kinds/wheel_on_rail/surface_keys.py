@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,22 +51,20 @@ class MeasuredLines(MeasuredLine):
 class RailSurface(MeasuredLines, Surface):
     """Texture of the rail: measured or synthesised, with defects on top; or smooth."""
 
-    synthesised_band: ClassVar = (20e-3, 1.25e-3)
-
     file: MapFile | None = key(
         None, "measured map: the samples, and the path where it is long enough", example='"rail.x3p"'
     )
     longest: Length | None = key(
         None,
         "longest wavelength of the samples",
-        otherwise="with rms 20 mm, else all they hold",
+        otherwise="with rms 20 half-widths of the smooth contact, else all they hold",
         example='"20 mm"',
         within=("1 um", "1 km", "waves lie between contacts and tracks"),
     )
     shortest: Length | None = key(
         None,
         "shortest wavelength of the samples",
-        otherwise="with rms 1.25 mm, else all they hold",
+        otherwise="with rms four times contact.spacing, else all they hold",
         example='"1.25 mm"',
         within=("0.1 um", "10 m", "waves lie between contacts and tracks"),
     )
@@ -106,7 +104,10 @@ class RailSurface(MeasuredLines, Surface):
         within=(0.001, 3, "a narrower one is a sine: leave it out"),
     )
     joint_depth: Length | None = key(
-        None, "depth of a dipped joint", example='"1 mm"', within=("1 um", "100 mm", "dips lie between")
+        None,
+        "depth of a dipped joint, which direct and table see",
+        example='"1 mm"',
+        within=("1 um", "100 mm", "dips lie between"),
     )
     joint_length: Length = key(
         "1 m", "length of the dip", goes_with="joint_depth", within=("1 mm", "100 m", "dips lie between")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +23,17 @@ RADIATION = (
 """Further columns of modes: how they move the whole wheel, rms per radial velocity at the contact."""
 RATIOS = (Column("frequency", "Hz"), Column("radiation ratio", ""))
 RECEPTANCE = (Column("frequency", "Hz"), Column("real part", "m/N"), Column("imaginary part", "m/N"))
+
+
+@contextmanager
+def fitted_to(table: TableSource) -> Iterator[None]:
+    """Name the table where modes cannot be fitted to its receptance."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            f"{error.what} in {name_of(table)}", error.received, error.allowed, error.remedy
+        ) from None
 
 
 def read_modes(table: TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

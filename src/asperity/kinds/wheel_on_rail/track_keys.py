@@ -10,6 +10,7 @@ from pydantic import BeforeValidator
 from asperity.config.form import Section, key
 from asperity.config.keys import (
     Choice,
+    ChosenLength,
     Damping,
     Duration,
     Force,
@@ -214,18 +215,22 @@ OVERRIDES = (
 class RailContact(ContactCase):
     """How the contact of wheel and rail is solved and reduced."""
 
-    spacing: Length = key(
-        "0.5 mm",
+    spacing: ChosenLength = key(
+        None,
         "grid spacing of the contact solution",
+        otherwise="a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
+        example='"0.5 mm"',
         within=(
             "1 um",
             "10 mm",
             "an elastic continuum is coarser than grains, and contacts are smaller than 10 mm",
         ),
     )
-    window: Length = key(
-        "20 mm",
+    window: ChosenLength = key(
+        None,
         "side of the square window in which contact is solved; wider than the contact",
+        otherwise="that of the smooth contact under three times the load, wider by roughness and by a flat",
+        example='"20 mm"',
         within=("10 um", "1 m", "contacts lie between grains and bodies"),
     )
 
@@ -245,7 +250,7 @@ class RailNumerics(Numerics):
     )
     poles: Annotated[int, BeforeValidator(Number(at_least=10, at_most=1000, whole=True))] | None = key(
         None,
-        "number of poles, even",
+        "largest number of poles, even; no more are taken than tell anything of the track",
         otherwise="100, or a tenth of the time steps that the track remembers if that is less",
         example="100",
         goes_with="kernel=poles",

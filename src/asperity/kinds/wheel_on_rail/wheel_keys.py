@@ -29,6 +29,7 @@ from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_leve
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines
 from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
+from asperity.structures.ball import GRAVITY
 from asperity.units import written
 
 WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")
@@ -87,7 +88,11 @@ class WheelBody(Section):
         return 2 * math.pi * self.radius
 
     def problems_of_body(self) -> Iterator[InputError]:
-        """One shape, and one set of resonances."""
+        """One shape, one set of resonances, and a load that holds the wheel's own weight."""
+        if self.load < (weight := GRAVITY * self.mass) * (1.0 - 1e-9):
+            allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {self.mass:g} kg on the contact"
+            remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
+            yield InputError("load", written(self.load, "N", "kN"), allowed, remedy)
         for one, other in (("profile", "transverse_radius"), ("modes", "receptance")):
             if {one, other} <= self.model_fields_set:
                 yield InputError("", f"both {one} and {other}", "one of them", "Remove one.")
@@ -109,7 +114,7 @@ class WheelCase(MeasuredLines, WheelBody):
     )
     flat_depth: Length | None = key(
         None,
-        "depth of a flat on the tread; with flat_length alone, that of its chord",
+        "depth of a flat on the tread, which direct and table see; with flat_length alone, that of its chord",
         example='"0.5 mm"',
         within=("10 nm", "100 mm", "flats lie between"),
     )
@@ -122,9 +127,11 @@ class WheelCase(MeasuredLines, WheelBody):
     flat_shape: Annotated[str, BeforeValidator(Choice(("fresh", "worn")))] = key(
         "fresh", "a chord with sharp ends, or rounded", goes_with="flat_depth or flat_length"
     )
-    flat_position: Position = key(
-        "0 m",
+    flat_position: Position | None = key(
+        None,
         "where the flat is on the tread, along the circumference from the point that touches at start",
+        otherwise="half a turn on, or half of the record if that is shorter, so that no impact is cut",
+        example='"1 m"',
         goes_with="flat_depth or flat_length",
         within=("0 m", "100 m", "wheels are smaller"),
     )
@@ -171,7 +178,7 @@ class WheelCase(MeasuredLines, WheelBody):
             yield InputError("flat_depth", written(self.flat_depth, "m", "mm"), allowed)
         elif self.flat_length is not None:
             yield from self._problem_of_both(self.flat_depth, self.flat_length)
-        if self.flat_position >= self.circumference:
+        if self.flat_position is not None and self.flat_position >= self.circumference:
             allowed = f"less than the circumference, {self.circumference:.4g} m"
             yield InputError("flat_position", f"{self.flat_position:g} m", allowed)
 

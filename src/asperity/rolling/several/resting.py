@@ -1,4 +1,4 @@
-"""The state from which several bodies start: at rest, on a rail rolling steadily, loads carried."""
+"""The state from which several bodies start: loads carried as if they had rolled steadily for long."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from asperity.kernels.several import Assembly, ContactsMotion
 from asperity.kernels.several_rail import preload_channels
 from asperity.kernels.several_records import POWERS
 from asperity.laws.base import SteppedLaw
+from asperity.rolling.beam import carried
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation
 from asperity.rolling.path import Path
 from asperity.rolling.rail import PRELOAD
@@ -42,10 +43,10 @@ class Resting:
         self.laws = [evaluation(law, 0) for law in prepared]
         self.relative = 1e-9 if all(isinstance(law, Prepared) for law in prepared) else STEPPED_EQUILIBRIUM
         self.yields = under.static_compliance(paths)
-        self.shapes = under.shapes(np.array([path.positions[0] for path in paths]))
+        self.shapes, self.slopes = under.shapes(np.array([path.positions[0] for path in paths]))
         self.taps = under.memory
         self.motion = blank(system)
-        self.rates = np.zeros(len(paths))  # of a rail under the contacts, m/s
+        self.rates = np.zeros(len(paths))  # of what is under the contacts, m/s
 
     def on(self, softer: Array) -> Rest:
         """Bodies at rest with compliances (n,), m/N, in series with the contacts."""
@@ -71,10 +72,13 @@ class Resting:
         return motion.rail_ahead.copy()
 
     def start(self, rest: Rest) -> ContactsMotion:
-        """The state at rest."""
-        motion, steps = self.motion, self.steps
+        """The state, from that at rest: modes and contacts move as their loads roll on."""
+        motion, steps, speed = self.motion, self.steps, self.system.speed
         motion.push[:] = rest.force @ self.shapes
-        motion.displacement[:] = _held(motion.push, self.system.stiffness)
+        motion.displacement[:], motion.velocity[:] = carried(
+            self.system.stiffness, self.shapes, self.slopes, rest.force, speed
+        )
+        self.rates += self.shapes @ motion.velocity + speed * (self.slopes @ motion.displacement)
         np.add.at(motion.core_push, steps.body, rest.force[:, None] * steps.core_shapes)
         np.add.at(motion.flexible_push, steps.body, rest.force[:, None] * steps.flexible_shapes)
         motion.flexible[0] = _held(motion.flexible_push, steps.flexible_stiffness)

@@ -21,6 +21,7 @@ from asperity.kernels.several_records import (
 from asperity.laws.base import Law
 from asperity.progress import Progress
 from asperity.rolling.events import ContactLoss, contact_losses
+from asperity.rolling.momentum import displaced_in_contact, free_motion, refuse_missed_load
 from asperity.rolling.outcome import flying
 from asperity.rolling.path import Path
 from asperity.rolling.several.energy import Ledger
@@ -73,7 +74,7 @@ def roll_bodies(
     progress: Progress | None = None,
     checkpoint: Checkpoint | None = None,
 ) -> RolledBodies:
-    """Roll bodies over a structure at constant speed, from rest, and keep what follows the run-in.
+    """Roll bodies over a structure at constant speed, and keep what follows the run-in.
 
     All contacts feel each other, through the structure and through the bodies. Structure and bodies are
     advanced exactly for contact forces that are linear over a step; the forces at the end of each step solve
@@ -84,9 +85,9 @@ def roll_bodies(
     Parameters
     ----------
     over : Modal or RailBetween or None
-        What is rolled over: a structure by its modes (those without stiffness start undisplaced); a rail,
-        over which the loads have rolled long enough to be steady (`asperity.structures.rail_between`); None
-        for a plane that does not move.
+        What is rolled over: a structure by its modes, a rail (`asperity.structures.rail_between`), or None
+        for a plane that does not move. Loads have rolled on it long enough to be steady; one that stands on a
+        support has just come on, and modes without stiffness are at rest.
     bodies : sequence of Body
         What rolls, pressed down by its constant forces; contacts are numbered through the bodies.
     laws : sequence of Law
@@ -145,8 +146,10 @@ def _rolled(standing: Stand, whole: Path, energies: tuple[float, float, float]) 
             flying(law, force, approach)
             for law, force, approach in zip(stepper.prepared, record.force, seen, strict=True)
         ]
-    )[:, kept]
+    )
     warn_after_contacts(stepper, seen)
+    _refuse_missed_loads(standing, apart, whole)
+    apart = apart[:, kept]
     dofs = zip(standing.steps.bases, record.core, strict=True)
     return RolledBodies(
         time=whole.time,
@@ -165,6 +168,20 @@ def _rolled(standing: Stand, whole: Path, energies: tuple[float, float, float]) 
         unconverged_steps=int(counts[1]),
         outcome=Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
     )
+
+
+def _refuse_missed_loads(standing: Stand, apart: NDArray[np.bool_], whole: Path) -> None:
+    """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
+    record, names = standing.stepper.record, [law.name for law in standing.stepper.laws]
+    touched = [displaced_in_contact(*each) for each in zip(record.approach, apart, strict=True)]
+    sunk = standing.compliance * sum(float(np.abs(body.static_loads).sum()) for body in standing.bodies)
+    for k, body in enumerate(standing.bodies):
+        own = standing.steps.body == k
+        if (free := free_motion(body)) is not None:
+            shape, mass, load = free
+            name, reach = names[int(np.argmax(own))], sunk + max(np.compress(own, touched))
+            force = shape @ record.force[own]
+            refuse_missed_load(name, force, load, mass, reach, whole.time_step, whole.settled)
 
 
 def _ledger(motion: ContactsMotion, standing: Stand, before: tuple[float, float, float]) -> Ledger:

@@ -43,6 +43,7 @@ class Stand:
     steps: BodySteps
     stepper: ContactsStepper
     largest: float  # contact force that makes no sense any more, N
+    compliance: float  # largest static one under a contact on its path, m/N; infinite if nothing holds it
 
     def energies(self) -> tuple[float, float, float]:
         """Now, J: of the structure, of the bodies, and of the bodies under their constant forces."""
@@ -87,7 +88,7 @@ def stand(
     stepper = ContactsStepper(
         system, resting.start(rest), _record(system, paths), modal, paths, laws, prepared
     )
-    return Stand(bodies, steps, stepper, largest)
+    return Stand(bodies, steps, stepper, largest, under.most_compliance(paths))
 
 
 def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
@@ -149,7 +150,7 @@ def _limits(
     highest_frequency: float | None,
 ) -> Iterator[Limit]:
     """What the time step must resolve."""
-    shapes = under.shapes(np.array([path.positions[0] for path in paths]))
+    shapes = under.shapes(np.array([path.positions[0] for path in paths]))[0]
     direct = system.own + shapes**2 @ system.coefficients[3]
     resonances = [
         contact_resonance(stiffness, own, least, system.time_step)

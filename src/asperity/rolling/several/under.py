@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.errors import InputError
 from asperity.kernels.several_rail import Channels
-from asperity.rolling.beam import PLACES, alternating_of_modes, resolved_step
+from asperity.rolling.beam import PLACES, alternating_of_modes, most_compliance, resolved_step
 from asperity.rolling.path import Path
 from asperity.rolling.rail import RolledRail
 from asperity.rolling.rolled import Limit
@@ -39,8 +39,8 @@ class Under(Protocol):
         """Mode shapes at places, m, (k, m), kg^(−1/2)."""
         ...
 
-    def shapes(self, positions: Array) -> Array:
-        """Mode shapes at positions (k,), m: (k, m), kg^(−1/2)."""
+    def shapes(self, positions: Array) -> tuple[Array, Array]:
+        """Mode shapes, kg^(−1/2), and their slopes, per metre, at positions (k,), m: both (k, m)."""
         ...
 
     def channels(self, paths: Sequence[Path]) -> Channels:
@@ -49,6 +49,10 @@ class Under(Protocol):
 
     def static_compliance(self, paths: Sequence[Path]) -> Array:
         """Displacement of each contact at the start for a constant unit force at each (n, n), m/N."""
+        ...
+
+    def most_compliance(self, paths: Sequence[Path]) -> float:
+        """Largest static compliance of a contact on its path, m/N; infinite if nothing holds it."""
         ...
 
     def alternating(self, paths: Sequence[Path]) -> tuple[float, float]:
@@ -123,13 +127,14 @@ class OnModes:
         """Mode shapes there."""
         if places.size and self.over is None:
             raise InputError("sensors", f"{places.size} on a rigid plane", "none: it does not move")
-        return self.shapes(places)
+        return self.shapes(places)[0]
 
-    def shapes(self, positions: Array) -> Array:
-        """Mode shapes."""
+    def shapes(self, positions: Array) -> tuple[Array, Array]:
+        """Mode shapes and slopes."""
         if self.over is None or not positions.size:
-            return np.zeros((positions.size, len(self.modes[0])))
-        return self.over.shapes(positions)[0]
+            none = np.zeros((positions.size, len(self.modes[0])))
+            return none, none
+        return self.over.shapes(positions)
 
     def channels(self, paths: Sequence[Path]) -> Channels:
         """None."""
@@ -137,9 +142,13 @@ class OnModes:
 
     def static_compliance(self, paths: Sequence[Path]) -> Array:
         """Of the modes that have a stiffness."""
-        shapes, natural = self.shapes(_starts(paths)), self.modes[0]
+        (shapes, _), natural = self.shapes(_starts(paths)), self.modes[0]
         held = natural > 0.0
         return np.asarray((shapes[:, held] / natural[held] ** 2) @ shapes[:, held].T)
+
+    def most_compliance(self, paths: Sequence[Path]) -> float:
+        """Of all modes, at some places."""
+        return 0.0 if self.over is None else most_compliance(self.over, paths)
 
     def alternating(self, paths: Sequence[Path]) -> tuple[float, float]:
         """The same for both, at some places on the path."""
@@ -147,7 +156,7 @@ class OnModes:
             return 0.0, 0.0
         each = alternating_of_modes(resolved_step(*self.modes, paths[0].time_step))
         places = slice(None, None, max(1, len(paths[0].positions) // PLACES))
-        shapes = np.stack([self.shapes(path.positions[places]) for path in paths], axis=1)
+        shapes = np.stack([self.shapes(path.positions[places])[0] for path in paths], axis=1)
         least = float(np.linalg.eigvalsh((shapes * each) @ shapes.transpose(0, 2, 1)).min())
         return least, least
 
@@ -181,9 +190,9 @@ class OnRail:
             raise InputError("sensors", f"{places.size} on a rail", allowed)
         return np.zeros((0, 0))
 
-    def shapes(self, positions: Array) -> Array:
+    def shapes(self, positions: Array) -> tuple[Array, Array]:
         """Without modes."""
-        return np.zeros((positions.size, 0))
+        return np.zeros((positions.size, 0)), np.zeros((positions.size, 0))
 
     def _tables(
         self, paths: Sequence[Path]
@@ -242,6 +251,10 @@ class OnRail:
             found[receiver, source] = kernel.weights.sum(axis=1).mean()
         squares, vectors = np.linalg.eigh(0.5 * (found + found.T))
         return np.asarray((vectors * np.maximum(squares, 0.0)) @ vectors.T)
+
+    def most_compliance(self, paths: Sequence[Path]) -> float:
+        """Under the force itself."""
+        return float(self.kernel.weights.sum(axis=1).max())
 
     def alternating(self, paths: Sequence[Path]) -> tuple[float, float]:
         """An endless rail carries impacts away."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 
+from asperity import __version__
 from asperity.config.content import content, file_digest
 from asperity.laws import Law, spec_of
 from asperity.progress import Progress
@@ -48,10 +50,19 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     return Computed(prepared, reduce_and_roll(prepared, roll_law, store, progress, watch))
 
 
-def checkpoint_of(law: Law, prepared: PreparedCase, store: Store) -> Checkpoint | None:
-    """Where a law that is solved in every step is kept, by all that its motion depends on."""
-    path = prepared.textures.path
-    if path is None or not spec_of(law.name).solved_every_step:
+def checkpoint_of(
+    law: Law, prepared: PreparedCase, store: Store, told_after: tuple[str, ...] = ()
+) -> Checkpoint | None:
+    """Where a law that is solved in every step is kept, by the whole case and its path.
+
+    Left out of the case are the names of its laws, each of which rolls alone, and `told_after`: keys by which
+    only that is computed which is told of a motion. What is no such key is never forgotten.
+    """
+    if prepared.textures.path is None or not spec_of(law.name).solved_every_step:
         return None
-    rows = path.rows(0, path.shape[0])
-    return Checkpoint(store, content_key(law.name, rows, content(prepared.case, file_digest)))
+    case = content(prepared.case, file_digest)
+    for name in ("laws", *told_after):
+        del case[name]
+    surface = prepared.textures.surface
+    rows = surface.rows(0, surface.shape[0])
+    return Checkpoint(store, content_key(law.name, __version__, rows, json.dumps(case, sort_keys=True)))

@@ -21,3 +21,5 @@ ROLLING_DISPLACEMENT = Entry(
 
 KEPT: dict[Entry, dict[str, str]] = {}
 """What a study keeps of it."""
+SHOWN: tuple[str, ...] = ()
+"""What a study shows of it unasked."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ from asperity.scenarios.textures import (
     synthesised_path,
 )
 from asperity.spectra import HALF_BAND
+from asperity.surfaces.continuation import Continuation, extend
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.strip import Strip
@@ -62,7 +64,8 @@ def gather(case: Case, margin: int, ahead: float = 0.0) -> Textures:
     if case.surface.file is not None:
         maps, missing = measured_maps(case.surface, spacing)
         strips, strip_origin = strips_of(maps, case.contact, seeds[1:])
-        path, path_origin = path_of(maps, (rows, ny), seeds[0], lead, margin + lead)
+        how = case.surface.continuation
+        path, path_origin = path_of(maps, (rows, ny), seeds[0], lead, margin + lead, how)
         measured = f"{len(maps)} measured from {name_of(case.surface.file)}"
         measured += direction_words(case.surface, maps)
         origin = f"{measured}; {strip_origin}; {path_origin}"
@@ -124,6 +127,13 @@ def _line(case: Case, rows: int, least: int, lead: int, seed: int) -> tuple[NDAr
         )
     profile = level(resample(level(measured), spacing))
     length = profile.heights.size * spacing
+    how = case.surface.continuation
+    if how is not None and profile.heights.size < rows:
+        origin = f"path measured, {name_of(case.surface.line)}, {how}ed"
+        fade = min(least, profile.heights.size) // 2 if how == "repeat" else 0
+        kind = cast(Continuation, how)
+        line = extend(profile.heights, rows + lead, kind, spacing=spacing, start=-lead, crossfade=fade)
+        return line, origin
     if case.duration is None:
         rows = min(rows, profile.heights.size)  # the run lasts as long as the line
     if profile.heights.size < rows or rows < least:
@@ -131,10 +141,14 @@ def _line(case: Case, rows: int, least: int, lead: int, seed: int) -> tuple[NDAr
             "surface.line",
             f"{length:.4g} m",
             f"at least {max(rows, least) * spacing:.4g} m: the path and a window at both ends",
-            "Give a shorter duration, or a longer line.",
+            "Give a shorter duration, a longer line, or surface.continuation.",
         )
     held = profile.heights[: rows + lead]
-    origin = f"path measured, {name_of(case.surface.line)}{mirrored_words(held, rows + lead)}"
+    margin = 1e3 * spacing * ((least - 2) // 2)
+    origin = (
+        f"path measured, {name_of(case.surface.line)}, from {margin:.4g} mm before the record on"
+        f"{mirrored_words(held, rows + lead)}"
+    )
     return mirrored_before(held, rows + lead), origin
 
 

@@ -49,6 +49,7 @@ def read_surface(
     transpose: bool = False,
     fill: bool = False,
     spikes: bool = False,
+    lines: bool | None = None,
 ) -> HeightMap | Profile:
     """Read one measured surface or line.
 
@@ -80,6 +81,9 @@ def read_surface(
         Interpolate missing points, see `HeightMap.filled`. They are reported in any case.
     spikes : bool
         Take spikes for points without a height, before those are filled: see `HeightMap.without_spikes`.
+    lines : bool, optional
+        Whether an array of two dimensions holds lines measured side by side, which are filled along
+        themselves and not at their ends; by default its shape tells.
 
     Returns
     -------
@@ -114,7 +118,7 @@ def read_surface(
         raise InputError(str(path), received, "one sample", remedy)
     what = f"index of a sample in {path}"
     chosen = 0 if index is None else whole(what, index, allowed, at_least=0, at_most=len(surfaces) - 1)
-    return _finished([surfaces[chosen]], transpose, fill, spikes)[0]
+    return _finished([surfaces[chosen]], transpose, fill, spikes, lines)[0]
 
 
 def read_surfaces(
@@ -190,19 +194,20 @@ def _by_members(file: Path) -> Reader | None:
     return None
 
 
-def _finished(surfaces: list[S], transpose: bool, fill: bool, spikes: bool) -> list[S]:
+def _finished(
+    surfaces: list[S], transpose: bool, fill: bool, spikes: bool, lines: bool | None = None
+) -> list[S]:
     for name, flag in (("transpose", transpose), ("fill", fill), ("spikes", spikes)):
         if not isinstance(flag, bool | np.bool_):
             raise InputError(name, shown(flag), "True or False")
     read = surfaces
     if spikes:
         surfaces = [_without_spikes(surface) for surface in surfaces]
-    _report_missing(read, surfaces, fill)
     if transpose:
         surfaces = [_transposed(surface) for surface in surfaces]
-    if fill:
-        surfaces = [surface.filled() if surface.missing_share else surface for surface in surfaces]
-    return surfaces
+    filled = [_filled(surface, lines) for surface in surfaces] if fill else surfaces
+    _report_missing(read, surfaces, filled)
+    return filled
 
 
 def _without_spikes(surface: S) -> S:
@@ -210,6 +215,10 @@ def _without_spikes(surface: S) -> S:
         remedy = "Lines of a rail or a wheel have processing of their own."
         raise InputError("spikes", f"a line, {surface.source}", "a height map", remedy)
     return surface.without_spikes()
+
+
+def _filled(surface: S, lines: bool | None) -> S:
+    return surface.filled() if isinstance(surface, Profile) else surface.filled(lines)
 
 
 def _transposed(surface: S) -> S:
@@ -222,17 +231,19 @@ def _missing_points(surfaces: Sequence[Surface]) -> int:
     return sum(int(np.isnan(surface.heights).sum()) for surface in surfaces)
 
 
-def _report_missing(read: Sequence[Surface], surfaces: Sequence[Surface], fill: bool) -> None:
-    """Warn of points without a height in what was read, and of those that its spikes leave."""
+def _report_missing(read: Sequence[Surface], surfaces: Sequence[Surface], filled: Sequence[Surface]) -> None:
+    """Warn of points without a height in what was read, of those that its spikes leave, and of the filled."""
     missing = _missing_points(surfaces)
     if not missing:
         return
     spikes = missing - _missing_points(read)
     share = missing / sum(surface.heights.size for surface in surfaces)
-    left = (
-        "interpolated from their neighbours" if fill else "left as NaN, which contact cannot be solved with"
-    )
-    remedy = "check the measurement" if fill else f"{spell('fill', True)} interpolates them"
+    left = "left as NaN, which contact cannot be solved with"
+    remedy = f"{spell('fill', True)} interpolates them"
+    if filled is not surfaces:
+        left, remedy = "interpolated from their neighbours", "check the measurement"
+        if ends := _missing_points(filled):
+            left = f"interpolated along the lines but for {ends} at their ends"
     what = f"{read[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
     what += f" ({spikes} of them were spikes)" * bool(spikes)
     message = f"{what}; {left}; {remedy}"

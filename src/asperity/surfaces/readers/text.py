@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import codecs
+import math
 import re
-from collections import Counter
+from array import array
+from collections import deque
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,9 +16,10 @@ from numpy.typing import NDArray
 
 from asperity.decoding import number_in
 from asperity.errors import InputError
+from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers.grid import line, rasterised
-from asperity.surfaces.readers.guards import check_claim, hostile
+from asperity.surfaces.readers.guards import MAX_POINTS, check_claim, hostile
 from asperity.surfaces.readers.headers import Header, parsed_header
 from asperity.surfaces.readers.hints import Hints, Surface, surfaces_of
 from asperity.surfaces.readers.spelling import advice, spell
@@ -22,7 +27,13 @@ from asperity.surfaces.readers.spelling import advice, spell
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")
 
-_NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]|nan|bad|null|none|na|n/a)*", re.IGNORECASE)
+_CHECK = "Check the file and its separators."
+_NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
+
+
+MAX_TEXT_BYTES = 1 << 30
+MAX_HEADER = 1 << 20  # characters of headings and comments
+PIECE = 1 << 16  # fields of a long line that are split off at a time; bytes that are looked at
 
 
 @dataclass(frozen=True)
@@ -32,11 +43,32 @@ class Dialect:
     delimiter: str | None  # of the columns; None for white space
     decimal_comma: bool  # whether the comma is the decimal mark
 
-    def fields(self, text: str) -> list[str]:
-        """Return the stripped fields of one line."""
-        words = text.rstrip("\r\n").split(self.delimiter)
-        words = [word.strip() for word in words]
-        return [word.replace(",", ".") for word in words] if self.decimal_comma else words
+    def numbers(self, text: str) -> array[float] | None:
+        """Return the numbers of one line, NaN for missing ones; None if it holds anything else."""
+        row = array("d")
+        rest: str | None = text.rstrip("\r\n")
+        while rest is not None:
+            words = rest.split(self.delimiter, PIECE)
+            rest = words.pop() if len(words) > PIECE else None
+            for word in words:
+                word = word.strip()
+                try:
+                    row.append(number_in(word.replace(",", ".") if self.decimal_comma else word))
+                except ValueError:
+                    if word.lower() not in MISSING and word.strip("*"):
+                        return None
+                    row.append(math.nan)
+        return row
+
+    def is_blank(self, text: str, *, above: bool) -> bool:
+        """Whether a line is empty; above the numbers, delimiters alone are as good as nothing."""
+        if self.delimiter and above:
+            text = text.replace(self.delimiter, "")
+        return not text.strip() and (self.delimiter is None or self.delimiter not in text)
+
+    def is_closed(self, text: str) -> bool:
+        """Whether a delimiter follows the last number of a line."""
+        return self.delimiter is not None and not text.rpartition(self.delimiter)[2].strip()
 
 
 def read(path: Path, hints: Hints) -> list[Surface]:
@@ -46,29 +78,51 @@ def read(path: Path, hints: Hints) -> list[Surface]:
     of heights whose rows follow one another along x, so the first axis of the map is the line number. Missing
     heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that start with
     ``#``, ``%`` or ``//`` are header, see `asperity.surfaces.readers.headers`; a hint is stronger than it.
+    The file is read line by line, so that memory is a few times what its numbers take.
     """
+    size = path.stat().st_size
+    if size > MAX_TEXT_BYTES:
+        allowed = f"at most {amount(MAX_TEXT_BYTES)} of text"
+        remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
+        raise InputError(f"size of {path.name}", amount(size), allowed, remedy)
     with hostile(path.name, "text"):
-        lines = _decoded(path.read_bytes(), path.name).splitlines()
-        dialect = _dialect(lines, hints.decimal, path.name)
-        header_lines, table = _table(lines, dialect, path.name)
+        encoding = _encoding(path)
+        with path.open(encoding=encoding) as lines:
+            dialect = _dialect(lines, hints.decimal, path.name)
+        with path.open(encoding=encoding) as lines:
+            header_lines, table = _table(lines, dialect, path.name)
         header = parsed_header(header_lines, dialect.delimiter, table.shape[1])
         return _surfaces(table, header, hints, path.name)
 
 
-def _decoded(data: bytes, source: str) -> str:
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16")
-    if b"\x00" in data:
-        raise InputError(source, "binary data", "text", "Rename the file to the extension of its format.")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
+def _encoding(path: Path) -> str:
+    """Marked UTF-16, UTF-8, or Latin-1 for what is neither."""
+    decoder = codecs.getincrementaldecoder("utf-8-sig")()
+    found = "utf-8-sig"
+    with path.open("rb") as file:
+        if file.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+            return "utf-16"
+        file.seek(0)
+        while chunk := file.read(PIECE):
+            if b"\x00" in chunk:
+                remedy = "Rename the file to the extension of its format."
+                raise InputError(path.name, "binary data", "text", remedy)
+            try:
+                decoder.decode(chunk)
+            except UnicodeDecodeError:
+                decoder.reset()
+                found = "latin-1"
+        try:
+            decoder.decode(b"", final=True)
+        except UnicodeDecodeError:
+            found = "latin-1"
+    return found
 
 
-def _dialect(lines: list[str], decimal: str | None, source: str) -> Dialect:
+def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
     """Judge by the last lines that hold nothing but numbers and missing markers."""
-    sample = [text.strip(" ") for text in lines if _NUMERIC.fullmatch(text) and text.strip()][-50:]
+    numeric = (text.strip(" \r\n") for text in lines if _NUMERIC.fullmatch(text) and text.strip())
+    sample = deque(numeric, maxlen=50)
     joined = "\n".join(sample)
     for delimiter in "\t;":
         if delimiter in joined:
@@ -89,72 +143,62 @@ def _dialect(lines: list[str], decimal: str | None, source: str) -> Dialect:
     raise InputError(source, received, allowed, remedy)
 
 
-def _table(lines: list[str], dialect: Dialect, source: str) -> tuple[list[str], NDArray[np.float64]]:
+def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[str], NDArray[np.float64]]:
+    """Read lines above and among the numbers, and the numbers (rows, columns)."""
     header: list[str] = []
-    rows: list[list[float]] = []
-    marked: list[tuple[int, int]] = []  # line and fields of headings that are numbers but for marks in them
-    blanks: list[int] = []  # how many rows stand above each empty line
-    closed = 0  # rows whose last field is not empty
-    for i, text in enumerate(lines, 1):
-        if text.lstrip().startswith(COMMENT):
-            header.append(text)
+    marked: list[tuple[int, str, int]] = []  # headings that are numbers but for marks in them, and fields
+    found, columns, closed, said = array("d"), 0, True, 0
+    blanks = array("q")  # how many rows stand above each empty line
+    for number, text in enumerate(lines, 1):
+        comment = text.lstrip().startswith(COMMENT)
+        if not comment and dialect.is_blank(text, above=not columns):
+            blanks.append(len(found) // columns if columns else 0)
             continue
-        words = dialect.fields(text)
-        row = _numbers(words)
-        if not any(words) and (len(words) < 2 or not rows):
-            blanks.append(len(rows))
-        elif row is not None:
-            rows.append(row)
-            closed += bool(words[-1])
-        elif not rows:
+        row = None if comment else dialect.numbers(text)
+        if row is None:
+            if columns and not comment:
+                raise _no_numbers(text, number, source)
             header.append(text)
-            if any(map(str.isdigit, text)) and _numbers([word.replace("_", "") for word in words]):
-                marked.append((i, len(words)))
-        else:
-            raise _no_numbers(lines, i, source)
-    for i, fields in marked:
-        if rows and fields == len(rows[0]):
-            raise _no_numbers(lines, i, source)
-    if rows and not closed and len(rows[0]) > 1:  # every line ends with a delimiter
-        rows = [row[:-1] for row in rows]
-    return header, _rectangular(rows, blanks, source)
+            unmarked = dialect.numbers(text.replace("_", "")) if any(map(str.isdigit, text)) else None
+            if unmarked and not comment:
+                marked.append((number, text, len(unmarked)))
+            said += len(text)
+            if said > MAX_HEADER:
+                received = f"more than {amount(MAX_HEADER)} of text that is no number"
+                raise InputError(source, received, "heights as text", _CHECK)
+            continue
+        if not columns:
+            columns = len(row)
+            for line_number, heading, fields in marked:
+                if fields == columns:
+                    raise _no_numbers(heading, line_number, source)
+        if len(row) != columns:
+            received = f"{len(row)} values in row {len(found) // columns + 1}"
+            allowed = f"{columns}, as in the first row"
+            raise InputError(source, received, allowed, "Mark missing heights with NaN.")
+        closed = closed and dialect.is_closed(text)
+        found.extend(row)
+        if len(found) > MAX_POINTS:
+            check_claim(source, (len(found) // columns, columns), 1, len(found))
+    if not columns:
+        raise InputError(source, "no line of numbers", "heights as text", _CHECK)
+    table = np.frombuffer(found).reshape(-1, columns)
+    if closed and columns > 1:  # every line ends with a delimiter
+        table = table[:, :-1]
+    if table.shape[1] == 1:  # an empty line between single heights is a missing height
+        gaps = np.bincount(np.array(blanks, dtype=np.int64), minlength=len(table))[: len(table)]
+        gaps[0] = 0
+        spread = np.full((len(table) + int(gaps.sum()), 1), np.nan)
+        spread[np.arange(len(table)) + np.cumsum(gaps)] = table
+        table = spread
+    return header, table
 
 
-def _no_numbers(lines: list[str], number: int, source: str) -> InputError:
-    received = f"{lines[number - 1].strip()[:60]!r} in line {number}"
+def _no_numbers(text: str, number: int, source: str) -> InputError:
+    received = f"{text.strip()[:60]!r} in line {number}"
     return InputError(
         source, received, "numbers, NaN, BAD, NA, *** or nothing", "Correct or remove the line."
     )
-
-
-def _numbers(words: list[str]) -> list[float] | None:
-    row = []
-    for word in words:
-        if word.lower() in MISSING or not word.strip("*"):
-            row.append(np.nan)
-            continue
-        try:
-            row.append(number_in(word))
-        except ValueError:
-            return None
-    return row
-
-
-def _rectangular(rows: list[list[float]], blanks: list[int], source: str) -> NDArray[np.float64]:
-    if not rows:
-        raise InputError(
-            source, "no line of numbers", "heights as text", "Check the file and its separators."
-        )
-    columns = len(rows[0])
-    for i, row in enumerate(rows):
-        if len(row) != columns:
-            received, allowed = f"{len(row)} values in row {i + 1}", f"{columns}, as in the first row"
-            raise InputError(source, received, allowed, "Mark missing heights with NaN.")
-    check_claim(source, (len(rows), columns), 1, len(rows) * columns)
-    if columns == 1:  # an empty line between single heights is a missing height
-        gaps = Counter(blank for blank in blanks if blank)
-        rows = [each for i, row in enumerate(rows) for each in (*[[np.nan]] * gaps[i], row)]
-    return np.array(rows)
 
 
 def _surfaces(table: NDArray[np.float64], header: Header, hints: Hints, source: str) -> list[Surface]:
@@ -171,7 +215,8 @@ def _surfaces(table: NDArray[np.float64], header: Header, hints: Hints, source: 
             x, y = _lateral(header.x_unit, hints, source), _lateral(header.y_unit, hints, source)
             stated = steps[0] * x, steps[1] * y
         return surfaces_of(heights * unit, stated, source)
-    return surfaces_of(table * unit, hints.spacing_in(source, stated), source)
+    table *= unit
+    return surfaces_of(table, hints.spacing_in(source, stated), source)
 
 
 def _lateral(stated: float | None, hints: Hints, source: str) -> float:
