@@ -3,6 +3,8 @@
 import signal
 import time
 import weakref
+from importlib.machinery import ExtensionFileLoader
+from importlib.util import module_from_spec, spec_from_file_location
 
 import pytest
 
@@ -38,3 +40,25 @@ def test_other_errors_in_callbacks_are_told_as_before():
             del thing
     assert reference() is None
     assert [lost.exc_type for lost in told] == [ZeroDivisionError]
+
+
+def test_an_interrupt_waits_until_a_compiled_module_is_set_up():
+    """Half a module of machine code may end the process later."""
+    whole = []
+
+    class Loader(ExtensionFileLoader):
+        def create_module(self, spec):
+            return None
+
+        def exec_module(self, module):
+            signal.raise_signal(signal.SIGINT)
+            whole.append(module)
+
+    def work():
+        spec = spec_from_file_location("compiled", "compiled.so", loader=Loader("compiled", "compiled.so"))
+        spec.loader.exec_module(module_from_spec(spec))
+        time.sleep(5.0)
+
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        work()
+    assert whole

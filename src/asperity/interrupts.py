@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 from typing import Any
 
@@ -44,8 +45,20 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
     _received.append(number)
     if _holding:
         _held.append(number)
-        return
-    raise KeyboardInterrupt
+    elif _loads_machine_code(frame):
+        _interrupt_soon(number)
+    else:
+        raise KeyboardInterrupt
+
+
+def _loads_machine_code(frame: FrameType | None) -> bool:
+    """Whether a compiled module is being set up: left half-way, it may end the process."""
+    while frame is not None:
+        loads = frame.f_code.co_name in ("create_module", "exec_module")
+        if loads and isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _again(lost: Any, otherwise: Callable[[Any], object]) -> None:
@@ -53,7 +66,10 @@ def _again(lost: Any, otherwise: Callable[[Any], object]) -> None:
     if lost.exc_type is None or not issubclass(lost.exc_type, KeyboardInterrupt):
         otherwise(lost)
         return
-    number = _received[-1] if _received else signal.SIGINT
+    _interrupt_soon(_received[-1] if _received else signal.SIGINT)
+
+
+def _interrupt_soon(number: int) -> None:
     again = threading.Timer(0.01, _raise_in_main, [number])
     again.daemon = True
     again.start()

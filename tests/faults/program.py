@@ -40,7 +40,7 @@ def program(folder, *words, code=START, **more):
     environment = os.environ | {"ASPERITY_CACHE": str(folder / "cache")} | more.pop("env", {})
     environment.pop("COVERAGE_PROCESS_CONFIG", None)  # what measures it breaks by signals and full disks
     return subprocess.Popen(
-        [sys.executable, "-c", code, *words],
+        [sys.executable, "-X", "faulthandler", "-c", code, *words],
         cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, **more,
     )  # fmt: skip
 
