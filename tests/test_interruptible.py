@@ -5,6 +5,7 @@ import time
 import weakref
 from importlib.machinery import ExtensionFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
+from types import FunctionType
 
 import pytest
 
@@ -40,6 +41,24 @@ def test_other_errors_in_callbacks_are_told_as_before():
             del thing
     assert reference() is None
     assert [lost.exc_type for lost in told] == [ZeroDivisionError]
+
+
+def test_an_interrupt_waits_until_a_kernel_is_compiled():
+    """Half a compiled function ended the process by signal 11."""
+    whole = []
+
+    def compiles():
+        signal.raise_signal(signal.SIGINT)
+        whole.append(True)
+
+    def work():
+        there = {"__name__": "numba.core.compiler", "signal": signal}
+        FunctionType(compiles.__code__, there, closure=compiles.__closure__)()
+        time.sleep(5.0)
+
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        work()
+    assert whole
 
 
 def test_an_interrupt_waits_until_a_compiled_module_is_set_up():

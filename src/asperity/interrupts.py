@@ -13,6 +13,7 @@ from types import FrameType
 from typing import Any
 
 _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+_COMPILERS = ("numba", "llvmlite")
 _received: list[int] = []
 _held: list[int] = []
 _holding = 0
@@ -52,8 +53,10 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 
 def _loads_machine_code(frame: FrameType | None) -> bool:
-    """Whether a compiled module is being set up: left half-way, it may end the process."""
+    """Whether a compiled module is set up, or a kernel compiled: half of it may end the process."""
     while frame is not None:
+        if frame.f_globals.get("__name__", "").partition(".")[0] in _COMPILERS:
+            return True
         loads = frame.f_code.co_name in ("create_module", "exec_module")
         if loads and isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
             return True
@@ -70,7 +73,7 @@ def _again(lost: Any, otherwise: Callable[[Any], object]) -> None:
 
 
 def _interrupt_soon(number: int) -> None:
-    again = threading.Timer(0.01, _raise_in_main, [number])
+    again = threading.Timer(0.02, _raise_in_main, [number])
     again.daemon = True
     again.start()
 
