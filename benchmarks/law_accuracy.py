@@ -44,8 +44,9 @@ RANDOM = {
         (3141, 48, (20.0, 28.0, 41.0, 66.0, 90.0)),
         (1618, 64, (25.0, 37.0, 53.0, 75.0)),
         (2718, 64, (22.0, 33.0, 48.0, 80.0)),
+        (5772, 64, (24.0, 35.0, 50.0, 72.0)),
     ),
-    "fresh": ((5772, 64, (24.0, 35.0, 50.0, 72.0)),),
+    "fresh": ((9973, 128, (21.0, 30.0, 44.0, 62.0, 85.0)),),
 }
 """Sets of random cases, those that fill the map and set the bands and those that test these: seed, number,
 and speeds of the wheels, m/s, few of them: each has a track to lay out."""

@@ -28,7 +28,7 @@ def test_every_figure_is_there_and_drawn_by_the_script():
 
 
 def median(law, points):
-    return statistics.median(p.details["laws"][law]["rms"] for p in points if law in p.details["laws"])
+    return statistics.median(p.details["laws"][law] for p in points if law in p.details["laws"])
 
 
 def test_its_numbers_are_those_of_the_map():

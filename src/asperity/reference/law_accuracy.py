@@ -8,7 +8,7 @@ practice in front of the linear contact of smooth bodies.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -54,7 +54,6 @@ class LawMap:
     """All points, and how far their interpolation held elsewhere."""
 
     points: tuple[MappedPoint, ...]
-    fresh: tuple[MappedPoint, ...]  # cases that are no points: do the bands hold?
     # by law: standard deviations of the estimate, above and below it, within which the logarithm of the error
     # stayed in the share `claim` of the points that were drawn at random, each estimated from all others
     spread: Mapping[str, float]
@@ -71,21 +70,22 @@ def law_map() -> LawMap:
 
 def law_map_of(data: Mapping[str, Any]) -> LawMap:
     """Lay a map out of what its file holds."""
-    points, fresh = (
-        tuple(
-            MappedPoint(
-                point["kind"],
-                point["load"],
-                point["speed"],
-                point["anisotropy"],
-                point["hurst"],
-                Place(**point["place"]),
-                point["loss"],
-                {law: max(found["rms"], LEAST) for law, found in point["laws"].items()},
-                point,
-            )
-            for point in data[part]
+    return LawMap(mapped_points(data["points"]), data["spread"], data["claim"], tuple(data["bands"]))
+
+
+def mapped_points(entries: Iterable[Mapping[str, Any]]) -> tuple[MappedPoint, ...]:
+    """Lay points out of what a file holds of each."""
+    return tuple(
+        MappedPoint(
+            point["kind"],
+            point["load"],
+            point["speed"],
+            point["anisotropy"],
+            point["hurst"],
+            Place(**point["place"]),
+            point["loss"],
+            {law: max(error, LEAST) for law, error in point["laws"].items()},
+            point,
         )
-        for part in ("points", "fresh")
+        for point in entries
     )
-    return LawMap(points, fresh, data["spread"], data["claim"], tuple(data["bands"]))
