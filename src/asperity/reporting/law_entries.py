@@ -10,8 +10,9 @@ from typing import Any
 
 from xarray import DataTree
 
+from asperity.reporting.chart import Dashes
 from asperity.reporting.data import json_list, present
-from asperity.reporting.style import COLOURS, Dashes
+from asperity.reporting.style import COLOURS
 from asperity.schema import Entry, provenance
 from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES
 
@@ -27,7 +28,7 @@ class LawEntry:
     name: str
     meaning: str = ""
     colour: str = "#6f7a85"
-    dashes: Dashes = (0, (4, 1, 1, 1, 1, 1))
+    dashes: Dashes = (4, 1, 1, 1, 1, 1)
     marker: str = "<"
     may_pull: bool = False
     needs: frozenset[str] = frozenset()
@@ -48,7 +49,7 @@ def _read(entry: dict[str, Any]) -> LawEntry:
         name,
         str(entry.get("meaning", "")),
         colour if isinstance(colour, str) and re.fullmatch("#[0-9a-f]{6}", colour) else usual.colour,
-        _dashes(dashes) or usual.dashes,
+        usual.dashes if (found := _dashes(dashes)) is None else found,
         marker if isinstance(marker, str) and len(marker) == 1 and marker in _MARKERS else usual.marker,
         entry.get("may_pull") is True,
         frozenset(map(str, needs)) if isinstance(needs, list) else usual.needs,
@@ -60,9 +61,9 @@ def _dashes(dashes: Any) -> Dashes | None:
     """Dashes of JSON, whose pairs are lists."""
     match dashes:
         case "-":
-            return "-"
-        case [int() | float() as offset, [*lengths]] if lengths and all(_is_length(n) for n in lengths):
-            return (float(offset), tuple(map(float, lengths)))
+            return ()
+        case [int() | float(), [*lengths]] if lengths and all(_is_length(n) for n in lengths):
+            return tuple(map(float, lengths))
         case _:
             return None
 
@@ -77,10 +78,9 @@ def law_entry(tree: DataTree, law: str) -> LawEntry:
 
 
 def law_style(tree: DataTree, law: str, main: str) -> dict[str, Any]:
-    """Line properties of a law; the main law is drawn thicker and on top."""
+    """Look of a line of a law, as `chart.Line` takes it; the main law is drawn thicker."""
     entry = law_entry(tree, law)
-    emphasis = {"linewidth": 2.2, "zorder": 4} if law == main else {"linewidth": 1.25, "zorder": 3}
-    return {"color": entry.colour, "linestyle": entry.dashes, **emphasis}
+    return {"colour": entry.colour, "dashes": entry.dashes, "width": 2.2 if law == main else 1.25, "law": law}
 
 
 def law_colours(tree: DataTree) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""What a figure of the report consists of: its numbers, a drawing of them, and a caption."""
+"""What a figure of the report consists of: its numbers, how they are laid out, and a caption."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.reporting.chart import Chart
 from asperity.reporting.data import laws, of_law, present, values
 from asperity.schema import Entry
 
@@ -100,10 +100,9 @@ class Part:
     title: str  # its heading
     needs: tuple[Entry, ...]  # variables without which it is left out
     collect: Callable[[DataTree], Data]  # takes its numbers from a result
-    plot: Callable[[DataTree, Data], Figure]  # draws them; what is said beside them stands in the result
+    chart: Callable[[DataTree, Data], Chart]  # lays them out; what is said beside them stands in the result
     caption: Callable[[DataTree], str]  # says what is drawn and with which conventions
     any_of: tuple[Entry, ...] = ()  # variables of which it needs at least one
-    live: Callable[[DataTree], dict[str, Any]] | None = None  # what a browser draws in its place
     # whether these variables have anything to show: a smooth surface has no spectrum
     worth: Callable[[DataTree], bool] = lambda _: True
 
@@ -112,9 +111,9 @@ class Part:
         some = not self.any_of or any(present(tree, entry) for entry in self.any_of)
         return some and present(tree, *self.needs) and self.worth(tree)
 
-    def draw(self, tree: DataTree) -> Figure:
+    def laid_out(self, tree: DataTree) -> Chart:
         """The figure of a result."""
-        return self.plot(tree, self.collect(tree))
+        return self.chart(tree, self.collect(tree))
 
     def columns(self, tree: DataTree) -> Columns:
         """The numbers of the figure."""

@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.reporting.axes import band_axis, doubtful_boxes, frequency_axis, levels_axis
+from asperity.reporting.chart import Boxes, Chart, Line, Mark, Note, Panel, Rules
 from asperity.reporting.data import doubtful, laws, present, values
 from asperity.reporting.law_entries import differences, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, by_law, series
-from asperity.reporting.style import (
-    INK,
-    MUTED,
-    band_axis,
-    decibels,
-    frequency_axis,
-    legend_above,
-    level_limits,
-    new_figure,
-    shade_doubtful,
-    smooth_on_log_axis,
-    styled,
-)
+from asperity.reporting.style import INK, decibels, smooth_on_log_axis
 from asperity.schema import Entry
 from asperity.schema.spectra import (
     BAND,
@@ -42,10 +30,9 @@ from asperity.spectra import LEAST_PRODUCT, MOST_START
 IN_FREQUENCY = "linear, frequency domain"
 """Name of the linear contact that is solved there."""
 REFERENCE_STYLE: dict[str, Any] = {
-    "color": INK,
-    "linestyle": (0, (3, 3)),
-    "linewidth": 1.0,
-    "zorder": 5,
+    "colour": INK,
+    "dashes": (3.0, 3.0),
+    "width": 1.0,
     "label": IN_FREQUENCY,
 }
 
@@ -72,10 +59,11 @@ def narrow_level(tree: DataTree, psd: NDArray[np.float64], reference: float) -> 
     return smooth, decibels(power, reference)
 
 
-def shade_bands(axes: Axes, tree: DataTree, labelled: bool = True) -> None:
-    """Shade the frequencies of the bands that say little."""
-    if present(tree, BAND):
-        shade_doubtful(axes, values(tree, BAND), doubtful(tree, BAND_TIME_PRODUCT), labelled)
+def shaded_bands(tree: DataTree, labelled: bool = True) -> list[Boxes | Note]:
+    """Shades of the frequencies of the bands that say little."""
+    if not present(tree, BAND):
+        return []
+    return doubtful_boxes(values(tree, BAND), doubtful(tree, BAND_TIME_PRODUCT), labelled)
 
 
 def shaded_words(tree: DataTree) -> str:
@@ -88,31 +76,24 @@ def force_spectrum_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), by_law(tree, FORCE_PSD))
 
 
-@styled()
-def force_spectrum_figure(tree: DataTree, data: Data) -> Figure:
+def force_spectrum_chart(tree: DataTree, data: Data) -> Chart:
     """Power spectral densities of the contact force of all laws on one axis."""
-    figure = new_figure(4.4)
-    axes = figure.subplots()
-    draw_laws(axes, tree, data.lines, 1.0)
-    axes.set_ylabel("contact force PSD / dB re 1 N²/Hz")
-    return figure
+    return Chart((laws_panel(tree, data.lines, "contact force PSD / dB re 1 N²/Hz"),))
 
 
-def draw_laws(axes: Axes, tree: DataTree, lines: Mapping[Any, Series], reference: float) -> None:
-    """Draw the level of each law's PSD, the main law first, over frequency."""
+def laws_panel(tree: DataTree, lines: Mapping[Any, Series], label: str, reference: float = 1.0) -> Panel:
+    """Level of each law's PSD over frequency, the main law first."""
     main = next(iter(lines))
     spectra = {law: narrow_level(tree, psd.values, reference) for law, psd in lines.items()}
-    for law, spectrum in spectra.items():
-        axes.plot(*spectrum, label=law, **law_style(tree, law, main))
-    finish_spectrum(axes, tree, list(spectra.values()))
+    drawn = [Line(*spectra[law], label=law, **law_style(tree, law, main)) for law in main_last(spectra)]
+    levels = levels_axis(label, [level for _, level in spectra.values()])
+    return Panel(frequency_axis(*frequency_range(tree)), levels, (*shaded_bands(tree), *drawn), height=4.4)
 
 
-def finish_spectrum(axes: Axes, tree: DataTree, spectra: Sequence[Spectrum]) -> None:
-    """Axes of levels over frequency, what says little, and a legend."""
-    frequency_axis(axes, *frequency_range(tree))
-    shade_bands(axes, tree)
-    level_limits(axes, [level for _, level in spectra])
-    legend_above(axes)
+def main_last(laws: Iterable[str]) -> list[str]:
+    """Laws in the order in which they are drawn: the main law, the first, on top."""
+    main, *others = laws
+    return [*others, main]
 
 
 def product_series(tree: DataTree, product: Entry) -> dict[Any, Series]:
@@ -137,36 +118,31 @@ def band_data(tree: DataTree, *reference: Entry) -> Data:
     return Data(series(tree, BAND, "band centre"), lines)
 
 
-@styled()
-def band_figure(tree: DataTree, data: Data, *reference: Entry) -> Figure:
+def band_chart(tree: DataTree, data: Data, *reference: Entry) -> Chart:
     """One-third-octave levels of the contact force, and below them the differences to the linear laws."""
-    compared = differences(tree)
-    figure = new_figure(4.0 + 2.4 * len(compared))
-    heights = [3.4, *(2.4 for _ in compared)]
-    panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
-    _draw_bands(panels[0], tree, data, FORCE_LEVEL, span=100.0, step=10.0)
-    for entry in reference:
-        if entry in data.lines:
-            panels[0].plot(values(tree, BAND), data.lines[entry].values, **REFERENCE_STYLE)
-    panels[0].set_ylabel("contact force level / dB re 1 N")
-    legend_above(panels[0])
-    for axes, (entry, name) in zip(panels[1:], compared.items(), strict=True):
-        _draw_bands(axes, tree, data, entry, span=np.inf, step=5.0)
-        axes.axhline(0, color=MUTED, linewidth=0.9)
-        axes.set_ylabel(f"level − {name} / dB")
-    for axes in panels:
-        shade_bands(axes, tree, labelled=axes is panels[0])
-        axes.label_outer()
-    return figure
+    levels = data.of(FORCE_LEVEL)
+    held = [data.lines[entry].values for entry in reference if entry in data.lines]
+    marks = [*_band_lines(tree, data, levels), *(Line(data.at, each, **REFERENCE_STYLE) for each in held)]
+    axis = levels_axis("contact force level / dB re 1 N", list(levels.values()), span=100.0)
+    panels = [Panel(band_axis(data.at), axis, (*shaded_bands(tree), *marks), height=3.6)]
+    for entry, name in differences(tree).items():
+        found = data.of(entry)
+        axis = levels_axis(f"level − {name} / dB", list(found.values()), span=np.inf, step=5.0)
+        under: list[Mark] = [*shaded_bands(tree, labelled=False), Rules(np.zeros(1), "y", dashes=())]
+        lines = _band_lines(tree, data, found)
+        panels.append(Panel(band_axis(data.at), axis, (*under, *lines), height=2.4))
+    return Chart(tuple(panels))
 
 
-def _draw_bands(axes: Axes, tree: DataTree, data: Data, entry: Entry, *, span: float, step: float) -> None:
-    levels, main = data.of(entry), next(iter(data.of(FORCE_LEVEL)))
-    for law, level in levels.items():
-        style = law_style(tree, law, main)
-        axes.plot(data.at, level, label=law, marker=law_entry(tree, law).marker, markeredgewidth=0, **style)
-    level_limits(axes, list(levels.values()), span, step)
-    band_axis(axes, data.at)
+def _band_lines(tree: DataTree, data: Data, levels: Mapping[str, NDArray[np.float64]]) -> list[Line]:
+    main = next(iter(data.of(FORCE_LEVEL)))
+    ordered = sorted(levels, key=lambda law: law == main)
+    return [
+        Line(
+            data.at, levels[law], label=law, marker=law_entry(tree, law).marker, **law_style(tree, law, main)
+        )
+        for law in ordered
+    ]
 
 
 DRAWN = "drawn as mean power per 1/24 octave where the lines are denser than that"
@@ -213,7 +189,7 @@ def force_bands(*reference: Entry) -> Part:
         "Contact force in one-third octaves",
         (FORCE_LEVEL, BAND),
         lambda tree: band_data(tree, *reference),
-        lambda tree, data: band_figure(tree, data, *reference),
+        lambda tree, data: band_chart(tree, data, *reference),
         lambda tree: band_caption(tree, *reference),
     )
 
@@ -223,7 +199,7 @@ FORCE_SPECTRUM = Part(
     "Contact force against frequency",
     (FORCE_PSD, FREQUENCY),
     force_spectrum_data,
-    force_spectrum_figure,
+    force_spectrum_chart,
     _force_caption,
 )
 FORCE_BANDS = force_bands()

@@ -1,0 +1,68 @@
+"""Axes of the field: frequency, one-third octaves, wavenumber beside wavelength, words, levels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from asperity.reporting.chart import FREQUENCY, Axis, Boxes, Note, Numbers, Second
+from asperity.reporting.data import nominal_band
+from asperity.reporting.style import GRID
+
+EDGE = 10**0.05
+"""From the centre of a one-third octave to its upper edge."""
+
+
+def frequency_axis(low: float, high: float, label: str = "frequency / Hz") -> Axis:
+    """Logarithmic frequency axis with grid lines at the one-third octaves, named at the octaves."""
+    centres = (1000 * 10 ** (np.arange(-30, 21) / 10)).tolist()
+    ticks = tuple((f, nominal_band(f)) for f in centres[::3])  # … 31.5, 63, 125, …, 1k, 2k, 4k
+    minor = tuple(f for n, f in enumerate(centres) if n % 3)
+    return Axis(label, float(low), float(high), log=True, ticks=ticks, minor=minor, linked=FREQUENCY)
+
+
+def band_axis(
+    bands: Numbers, label: str = "one-third octave band / Hz", name: Callable[[float], str] = nominal_band
+) -> Axis:
+    """Logarithmic axis with every one-third octave named, of frequencies unless `name` says otherwise."""
+    ticks = tuple((band, name(band)) for band in bands.tolist())
+    low, high = float(bands[0] / EDGE), float(bands[-1] * EDGE)
+    linked = FREQUENCY if name is nominal_band else ""
+    return Axis(label, low, high, log=True, ticks=ticks, linked=linked)
+
+
+def wavenumber_axis(low: float, high: float) -> Axis:
+    """Logarithmic axis of wavenumber in 1/m (cycles per metre), with the wavelength opposite."""
+    second = Second("wavelength", inverse=True, unit="m")
+    label = "wavenumber / (1/m)"
+    return Axis(label, float(low), float(high), log=True, second=second, linked="wavenumber")
+
+
+def words_axis(words: Sequence[str], label: str = "") -> Axis:
+    """Axis with a place, 0, 1, 2, …, for each word."""
+    ticks = tuple((float(n), word) for n, word in enumerate(words))
+    return Axis(label, -0.5, len(words) - 0.5, ticks=ticks)
+
+
+def levels_axis(label: str, levels: Sequence[Numbers], span: float = 80.0, step: float = 10.0) -> Axis:
+    """Axis in dB that holds all the peaks, and at most `span` dB below the highest."""
+    finite = np.concatenate([np.ravel(each)[np.isfinite(np.ravel(each))] for each in levels] or [np.zeros(0)])
+    if finite.size == 0:
+        return Axis(label, 0.0, step)
+    top = step * np.ceil((finite.max() + 0.1 * step) / step)
+    bottom = max(step * np.floor(finite.min() / step), top - span)
+    return Axis(label, float(bottom), float(top))
+
+
+def doubtful_boxes(bands: Numbers, doubtful: np.ndarray, labelled: bool = True) -> list[Boxes | Note]:
+    """Shades of the bands (by their centres) whose levels say little, and their name."""
+    if not doubtful.any():
+        return []
+    marked = np.flatnonzero(doubtful)
+    runs = np.split(bands[marked], np.flatnonzero(np.diff(marked) > 1) + 1)
+    left, right = (np.array([edge(run) for run in runs]) for edge in (np.min, np.max))
+    whole = np.full(len(runs), np.inf)
+    shade = Boxes(left / EDGE, right * EDGE, -whole, whole, colour=GRID, opacity=0.6)
+    note = Note("says little", 0.005, 0.03, x_share=True, y_share=True)  # low bands are left
+    return [shade, note] if labelled else [shade]
