@@ -1,4 +1,4 @@
-"""Figures of the contact force in time: the whole run as envelopes, a short piece in full."""
+"""Figures of the contact force in time: the whole run, and a short piece of it."""
 
 from __future__ import annotations
 
@@ -7,28 +7,23 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.reporting.axes import words_axis
+from asperity.reporting.chart import TIME as OVER_TIME
+from asperity.reporting.chart import Axis, Boxes, Chart, Line, Mark, Numbers, Panel, Rules
 from asperity.reporting.data import engineering, force_unit, laws, of_law, values
 from asperity.reporting.law_entries import law_entry, law_style, pulling
 from asperity.reporting.part import Data, Part, Series, by_law, series
-from asperity.reporting.style import (
-    INK,
-    MUTED,
-    envelope,
-    is_narrow,
-    legend_above,
-    new_figure,
-    styled,
-)
+from asperity.reporting.spectrum_figures import main_last
+from asperity.reporting.style import GRID, envelope
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, TIME
 
 COLUMNS = 700  # stretches of an envelope
 PIECE = 2000  # time steps of the short piece, at most
 HEADROOM = 0.5  # share of the main law's range by which other laws may widen its axis
+AROUND = 400  # time steps that are shown around the largest force
 
 
 def lost(tree: DataTree, law: str, force: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -105,6 +100,13 @@ def time_unit(duration: float) -> tuple[float, str]:
     return (1.0, "s") if duration >= 0.5 else (1e-3, "ms")
 
 
+def time_axis(tree: DataTree, time: Numbers) -> tuple[Axis, float]:
+    """Axis from end to end of a piece of the run, and the size of its unit, that of the whole run."""
+    unit, symbol = time_unit(float(np.ptp(values(tree, TIME))))
+    axis = Axis(f"time / {symbol}", float(time[0]) / unit, float(time[-1]) / unit, linked=OVER_TIME)
+    return axis, unit
+
+
 def envelope_data(tree: DataTree) -> Data:
     """Lowest and highest contact force of each law in each stretch of the run."""
     time = values(tree, TIME)
@@ -116,50 +118,30 @@ def envelope_data(tree: DataTree) -> Data:
     return Data(Series("time", TIME.units, time[envelope(time, COLUMNS)[0]]), lines)
 
 
-@styled()
-def envelope_figure(tree: DataTree, data: Data) -> Figure:
-    """Contact force of the whole run, one row per law, as the envelope of its extremes."""
-    names = laws(tree, CONTACT_FORCE)
-    whole, limits = values(tree, TIME), main_limits(_forces(tree), pulling(tree))
-    figure = new_figure(0.6 + 1.0 * len(names))
-    panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
-    unit, symbol = time_unit(whole[-1] - whole[0])
-    size, force_symbol = force_unit_of(tree)
-    for axes, law in zip(panels, names, strict=True):
-        lowest, highest = (data.lines[law, end].values for end in ("lowest", "highest"))
-        columns = COLUMNS // 2 if is_narrow() else COLUMNS
-        starts, low, _ = envelope(lowest, columns)
-        high, time = envelope(highest, columns)[2], data.at[starts] / unit
-        axes.fill_between(time, low / size, high / size, color=law_entry(tree, law).colour, linewidth=0.5)
-        axes.axhline(0, color=MUTED, linewidth=0.8)
-        _flight_marks(axes, time[lost(tree, law, low)])
-        axes.set_title(law + (" (main law)" if law == names[0] and len(names) > 1 else ""))
-        axes.set_xlim(whole[0] / unit, whole[-1] / unit)
-        axes.set_ylabel(f"F / {force_symbol}")
-        if law == names[0] or not law_entry(tree, law).may_pull:
-            axes.set_ylim(*(limit / size for limit in limits))
-    panels[-1].set_xlabel(f"time / {symbol}")
-    return figure
+def whole_chart(tree: DataTree, _: Data) -> Chart:
+    """Contact force of all laws over the whole run, every time step."""
+    whole, unit = forces_data(tree, slice(None)), time_axis(tree, values(tree, TIME))[1]
+    peak = int(np.nanargmax(next(iter(whole.lines.values())).values))
+    losses = stretches(_main_flight(tree))
+    found = {
+        "largest force": [_around(peak, AROUND)],
+        "next loss of contact": [
+            _around(sum(ends) // 2, 6 * (ends[1] - ends[0] + 1) + 40) for ends in losses
+        ],
+    }
+    last = len(whole.at) - 1
+    places = {name: whole.at[np.clip(steps, 0, last)] / unit for name, steps in found.items() if steps}
+    return replace(forces_chart(tree, whole, width=0.9), places=places)
 
 
-def _forces(tree: DataTree) -> dict[str, NDArray[np.float64]]:
-    """Contact force of each law over the whole run."""
-    return {law: force.values for law, force in by_law(tree, CONTACT_FORCE).items()}
+def _around(step: int, length: int) -> tuple[int, int]:
+    return step - length // 2, step + length // 2
 
 
 def cut_off(tree: DataTree, data: Data) -> str:
     """Say which laws leave the force axis of a piece."""
     forces = {law: force.values for law, force in data.lines.items()}
     return beyond_limits(forces, main_limits(forces, pulling(tree)), "N")
-
-
-def _flight_marks(axes: Axes, instants: NDArray[np.float64]) -> None:
-    ends = np.tile([-0.04, 0.1, np.nan], len(instants))  # one line with gaps: far smaller than many marks
-    (marks,) = axes.plot(
-        np.repeat(instants, 3), ends, transform=axes.get_xaxis_transform(), color=INK, linewidth=0.8,
-        clip_on=False, zorder=5,
-    )  # fmt: skip
-    marks.set_in_layout(False)
 
 
 def piece_data(tree: DataTree) -> Data:
@@ -176,51 +158,49 @@ def forces_data(tree: DataTree, part: slice) -> Data:
     return Data(replace(time, values=time.values[part]), lines)
 
 
-@styled()
-def forces_figure(tree: DataTree, data: Data) -> Figure:
+def forces_chart(tree: DataTree, data: Data, **look: Any) -> Chart:
     """Contact force of all laws over a piece of the run, and below it, where there is any, the loss of it."""
-    flights = {law: lost(tree, law, force.values) for law, force in data.lines.items()}
-    flies = any(flight.any() for flight in flights.values())
-    unit, symbol = time_unit(data.at[-1])
-    time = data.at / unit
-    figure = new_figure(3.9 + 0.16 * len(flights) if flies else 3.9)
-    rows = [1, 0.06 * len(flights) + 0.04] if flies else [1]
-    panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False, height_ratios=rows)[:, 0]
-    _draw_forces(panels[0], tree, time, {law: data.lines[law].values for law in flights})
-    if flies:
-        _draw_flights(panels[1], tree, time, flights)
-    panels[-1].set_xlabel(f"time / {symbol}")
-    return figure
+    axis, unit = time_axis(tree, data.at)
+    names = [str(law) for law in data.lines]
+    flights = (lost(tree, law, data.lines[law].values) for law in names)
+    found = (
+        _bars(tree, law, data.at / unit, flight, row)
+        for row, (law, flight) in enumerate(zip(names, flights, strict=True))
+    )
+    bars = [each for each in found if each.left.size]
+    forces = Panel(axis, *_forces(tree, data, unit, look), height=3.3)
+    if not bars:
+        return Chart((forces,))
+    shade = [
+        replace(each, low=np.full_like(each.low, -np.inf), high=np.full_like(each.high, np.inf), colour=GRID)
+        for each in bars
+        if each.law == names[0]
+    ]
+    rows = replace(words_axis(names, "no contact"), low=len(names) - 0.4, high=-0.6)
+    below = Panel(axis, rows, tuple(bars), height=0.6 + 0.16 * len(names))
+    return Chart((replace(forces, marks=(*shade, *forces.marks)), below))
 
 
-def _draw_forces(
-    axes: Axes, tree: DataTree, time: NDArray[np.float64], forces: dict[str, NDArray[np.float64]]
-) -> None:
+def _forces(tree: DataTree, data: Data, unit: float, look: dict[str, Any]) -> tuple[Axis, tuple[Mark, ...]]:
+    """Forces of all laws, and an axis that suits the main one."""
+    forces = {law: force.values for law, force in data.lines.items()}
     main, (low, high) = next(iter(forces)), main_limits(forces, pulling(tree))
     size, symbol = force_unit_of(tree)
-    for law, force in forces.items():
-        faint = {"alpha": 0.5, "linewidth": 0.8} if force.min() < low or force.max() > high else {}
-        axes.plot(time, force / size, label=law, **law_style(tree, law, main) | faint)
-    axes.axhline(0, color=MUTED, linewidth=0.8)
-    axes.set_ylim(low / size, high / size)
-    axes.set_ylabel(f"contact force / {symbol}")
-    axes.set_xlim(time[0], time[-1])
-    legend_above(axes)
+    marks: list[Mark] = [Rules(np.zeros(1), "y", dashes=())]
+    for law in main_last(forces):
+        beyond = np.nanmin(forces[law]) < low or np.nanmax(forces[law]) > high
+        faint = {"opacity": 0.5, "width": 0.8} if beyond else {}
+        style = law_style(tree, law, main) | look | faint
+        marks.append(Line(data.at / unit, forces[law] / size, law, **style))
+    return Axis(f"contact force / {symbol}", low / size, high / size), tuple(marks)
 
 
-def _draw_flights(
-    axes: Axes, tree: DataTree, time: NDArray[np.float64], flights: dict[str, NDArray[np.bool_]]
-) -> None:
-    """Draw a bar per law where it has lost contact."""
-    for row, (law, flight) in enumerate(flights.items()):
-        found, half = stretches(flight), 0.5 * (time[1] - time[0])
-        bars = [(time[first] - half, time[last] - time[first] + 2 * half) for first, last in found]
-        colour = law_entry(tree, law).colour
-        axes.broken_barh(bars, (row - 0.35, 0.7), color=colour, linewidth=0.8)
-    axes.set_ylim(len(flights) - 0.4, -0.6)
-    axes.set_yticks(range(len(flights)), list(flights))
-    axes.grid(visible=False, axis="y")
-    axes.set_ylabel("no contact", fontsize=8.5)
+def _bars(tree: DataTree, law: str, time: Numbers, flight: NDArray[np.bool_], row: int) -> Boxes:
+    """Stretches without contact in a row, half a time step longer at either end than from first to last."""
+    first, last = np.array(stretches(flight), dtype=int).reshape(-1, 2).T
+    half, middle = 0.5 * (time[1] - time[0]), np.full(first.shape, float(row))
+    ends = (time[first] - half, time[last] + half, middle - 0.35, middle + 0.35)
+    return Boxes(*ends, colour=law_entry(tree, law).colour, law=law)
 
 
 def _piece_caption(tree: DataTree) -> str:
@@ -239,22 +219,15 @@ def bars_words(tree: DataTree, data: Data) -> str:
     return " Bars below: no contact (F ≤ 0)" + (f"; {held} cannot lose it." if held else ".")
 
 
-def _envelope_caption(tree: DataTree) -> str:
-    stretches = min(COLUMNS, len(values(tree, TIME)))
+def _whole_caption(tree: DataTree) -> str:
+    whole = forces_data(tree, slice(None))
+    shaded = " Shaded: the main law has lost contact." if _main_flight(tree).any() else ""
     return (
-        "Compression positive. Contact is lost where bars stand along the bottom, by law; where the main law "
-        f"loses it, the background is shaded. As a drawing: lowest and highest force in each of {stretches} "
-        "stretches of the run, with marks where contact is lost; a linear law beside the main one has its "
-        "own axis. All time steps are in run.nc."
-        f"{_cut_off_of_those_that_let_go(tree)}"
+        "Every time step; compression positive. Where steps lie too close to be drawn, a line spans lowest and "
+        f"highest force.{shaded}{bars_words(tree, whole)}{cut_off(tree, whole)} The CSV file holds the "
+        f"lowest and the highest force in each of {min(COLUMNS, len(whole.at))} stretches, run.nc every time "
+        "step."
     )
-
-
-def _cut_off_of_those_that_let_go(tree: DataTree) -> str:
-    forces = _forces(tree)
-    main = next(iter(forces))
-    shared = {law: force for law, force in forces.items() if law == main or law not in pulling(tree)}
-    return beyond_limits(shared, main_limits(forces, pulling(tree)), "N")
 
 
 FORCE_PIECE = Part(
@@ -262,7 +235,7 @@ FORCE_PIECE = Part(
     "Contact force, a short piece",
     (CONTACT_FORCE, TIME),
     piece_data,
-    forces_figure,
+    forces_chart,
     _piece_caption,
 )
 FORCE_ENVELOPE = Part(
@@ -270,6 +243,6 @@ FORCE_ENVELOPE = Part(
     "Contact force, the whole run",
     (CONTACT_FORCE, TIME),
     envelope_data,
-    envelope_figure,
-    _envelope_caption,
+    whole_chart,
+    _whole_caption,
 )

@@ -12,7 +12,6 @@ from asperity.kinds.wheel_on_rail.figures.roughness import ROUGHNESS_LEVELS
 from asperity.kinds.wheel_on_rail.figures.scene import TRACK_SCENE
 from asperity.kinds.wheel_on_rail.figures.track import TRACK
 from asperity.reporting.chapter import CONTACT, Chapter
-from asperity.reporting.history import FORCE_HISTORY
 from asperity.reporting.tables import (
     homogeneity_table,
     loss_table,
@@ -21,6 +20,7 @@ from asperity.reporting.tables import (
     statistics_table,
 )
 from asperity.reporting.texture import TEXTURE
+from asperity.reporting.time_figures import FORCE_ENVELOPE
 
 CHAPTERS = (
     Chapter("setup", "Scene", (TRACK_SCENE,)),
@@ -30,7 +30,7 @@ CHAPTERS = (
     Chapter(
         "force",
         "Contact force",
-        (FORCE_HISTORY, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS),
+        (FORCE_ENVELOPE, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS),
         (practice_table, reference_table, loss_table),
     ),
     Chapter(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from asperity.reporting.chapter import CONTACT, Chapter
-from asperity.reporting.history import FORCE_HISTORY
 from asperity.reporting.spectrum_figures import FORCE_BANDS, FORCE_SPECTRUM
 from asperity.reporting.tables import (
     homogeneity_table,
@@ -13,7 +12,7 @@ from asperity.reporting.tables import (
     statistics_table,
 )
 from asperity.reporting.texture import TEXTURE
-from asperity.reporting.time_figures import FORCE_PIECE
+from asperity.reporting.time_figures import FORCE_ENVELOPE, FORCE_PIECE
 
 CHAPTERS = (
     Chapter("texture", "Texture", TEXTURE, (statistics_table, homogeneity_table)),
@@ -21,7 +20,7 @@ CHAPTERS = (
     Chapter(
         "force",
         "Contact force",
-        (FORCE_HISTORY, FORCE_PIECE, FORCE_SPECTRUM, FORCE_BANDS),
+        (FORCE_ENVELOPE, FORCE_PIECE, FORCE_SPECTRUM, FORCE_BANDS),
         (practice_table, reference_table, loss_table),
     ),
 )
