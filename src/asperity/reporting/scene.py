@@ -6,19 +6,20 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.patches import Ellipse, Rectangle
 from xarray import DataTree
 
+from asperity.reporting.chart import Axis, Dashes, Line, Mark, Note, Panel, Shape
 from asperity.reporting.data import engineering, number, present, values
 from asperity.reporting.part import Data, Series
-from asperity.reporting.style import BLUE, GRID, INK, MUTED
+from asperity.reporting.style import BLUE, GRID, INK
 from asperity.reporting.texture import length_unit
 from asperity.schema import contact
 from asperity.schema.rolling import POSITION
 
 BESIDE = 1.6
 """Half the side of what is drawn around a patch without a window, in its larger semi-axis."""
+CORNERS, HEAD = 120, 0.1
+"""Of an oval; and the length of the head of an arrow, as a share of it."""
 
 
 def lengths(tree: DataTree, own: Mapping[str, float | None]) -> Data:
@@ -44,42 +45,30 @@ def length_of(data: Data, name: str) -> float | None:
     return float(data.lines[name].values[0]) if name in data.lines else None
 
 
-def draw_patch(axes: Axes, data: Data) -> None:
-    """Draw the contact from above: the window with its cells, and the nominal patch in it."""
+def patch_panel(data: Data, **place: Any) -> Panel:
+    """The contact from above: the window with its cells, and the nominal patch in it."""
     along, across = (length_of(data, f"semi-axis of the contact {way}") for way in ("along", "across"))
-    axes.set_aspect("equal")
-    axes.grid(visible=False)
-    axes.set_title("the contact from above")
     if along is None:
-        return
+        return Panel(Axis(""), Axis(""), (), title="the contact from above", bare=True, **place)
     across = across or along
     sides = [
         length_of(data, f"window {way}") or 2 * BESIDE * max(along, across) for way in ("along", "across")
     ]
     size, symbol = length_unit(max(sides))
-    half = [side / 2 / size for side in sides]
-    cell = length_of(data, "cell")
-    if cell is not None:
-        axes.add_patch(Rectangle((-half[0], -half[1]), 2 * half[0], 2 * half[1], fill=False, edgecolor=INK))
-        axes.add_patch(Rectangle((-half[0], -half[1]), cell / size, cell / size, facecolor=INK, linewidth=0))
-        axes.annotate(
-            f"a cell, {engineering(cell, 'm', 2)}", (-half[0] + cell / size, -half[1] + cell / size),
-            xytext=(4, 3), textcoords="offset points", fontsize=8, color=MUTED,
-        )  # fmt: skip
-    axes.add_patch(
-        Ellipse((0, 0), 2 * along / size, 2 * across / size, facecolor=BLUE, alpha=0.25, linewidth=0)
-    )
-    axes.add_patch(
-        Ellipse((0, 0), 2 * along / size, 2 * across / size, fill=False, edgecolor=BLUE, linewidth=1.4)
-    )
-    axes.annotate(
-        "", (0.45 * along / size, 0), (-0.45 * along / size, 0),
-        arrowprops={"arrowstyle": "->", "color": INK, "linewidth": 1.0},
-    )  # fmt: skip
-    axes.set_xlim(-1.08 * half[0], 1.08 * half[0])
-    axes.set_ylim(-1.08 * half[1], 1.08 * half[1])
-    axes.set_xlabel(f"x / {symbol} (rolling direction →)")
-    axes.set_ylabel(f"y / {symbol}")
+    wide, high = (side / size for side in sides)
+    marks: list[Mark] = []
+    if cell := length_of(data, "cell"):
+        side = cell / size
+        marks = [
+            ground(-wide / 2, -high / 2, wide, high, fill=""),
+            ground(-wide / 2, -high / 2, side, side, fill=INK, width=0.0),
+            Note(f" a cell, {engineering(cell, 'm', 2)}", side - wide / 2, 2 * side - high / 2),
+        ]
+    marks += oval(0.0, 0.0, along / size, across / size)
+    marks += arrow(-0.45 * along / size, 0.45 * along / size, 0.0)
+    x = Axis(f"x / {symbol} (rolling direction →)", -0.54 * wide, 0.54 * wide)
+    y = Axis(f"y / {symbol}", -0.54 * high, 0.54 * high)
+    return Panel(x, y, tuple(marks), title="the contact from above", equal=True, **place)
 
 
 def patch_words(data: Data) -> str:
@@ -93,7 +82,34 @@ def patch_words(data: Data) -> str:
     return f" From above: the patch of smooth bodies under the load, {size}{inside}."
 
 
-def ground(axes: Axes, left: float, bottom: float, width: float, height: float, **look: Any) -> None:
-    """Draw a body as a rectangle."""
-    usual: dict[str, Any] = {"facecolor": GRID, "edgecolor": INK, "linewidth": 0.8}
-    axes.add_patch(Rectangle((left, bottom), width, height, **usual | look))
+def ground(left: float, bottom: float, width: float, height: float, **look: Any) -> Shape:
+    """Draw a body as a rectangle, in the look of a `Shape`."""
+    x, y = left + width * np.array([0, 1, 1, 0]), bottom + height * np.array([0, 0, 1, 1])
+    return Shape(x, y, **{"fill": GRID} | look)
+
+
+def oval(
+    x: float,
+    y: float,
+    along: float,
+    across: float,
+    *,
+    dashes: Dashes = (),
+    inside: float = 0.25,
+    width: float = 1.4,
+) -> list[Mark]:
+    """Draw an ellipse by its semi-axes, or a circle, filled as densely as `inside` says."""
+    angle = np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False)
+    outline = (x + along * np.cos(angle), y + across * np.sin(angle))
+    fill = Shape(*outline, fill=BLUE, colour="", opacity=inside)
+    return [*([fill] if inside else []), Shape(*outline, colour=BLUE, width=width, dashes=dashes)]
+
+
+def arrow(left: float, right: float, y: float, colour: str = INK) -> list[Mark]:
+    """Draw an arrow to the right."""
+    head = HEAD * (right - left)
+    shaft = Line(np.array([left, right]), np.array([y, y]), colour=colour, width=1.0)
+    tip = Line(
+        right - np.array([head, 0, head]), y + np.array([head, 0, -head]) / 2, colour=colour, width=1.0
+    )
+    return [shaft, tip]

@@ -223,7 +223,7 @@ def _whole_caption(tree: DataTree) -> str:
     whole = forces_data(tree, slice(None))
     shaded = " Shaded: the main law has lost contact." if _main_flight(tree).any() else ""
     return (
-        "Every time step; compression positive. Where steps lie too close to be drawn, a line spans lowest and "
+        "Every time step; compression positive. Where steps lie too close to draw, a line spans lowest and "
         f"highest force.{shaded}{bars_words(tree, whole)}{cut_off(tree, whole)} The CSV file holds the "
         f"lowest and the highest force in each of {min(COLUMNS, len(whole.at))} stretches, run.nc every time "
         "step."
