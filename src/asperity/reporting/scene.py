@@ -61,7 +61,7 @@ def patch_panel(data: Data, **place: Any) -> Panel:
         side = cell / size
         marks = [
             ground(-wide / 2, -high / 2, wide, high, fill=""),
-            ground(-wide / 2, -high / 2, side, side, fill=INK, width=0.0),
+            ground(-wide / 2, -high / 2, side, side, fill=INK, colour=""),
             Note(f" a cell, {engineering(cell, 'm', 2)}", side - wide / 2, 2 * side - high / 2),
         ]
     marks += oval(0.0, 0.0, along / size, across / size)
@@ -82,9 +82,9 @@ def patch_words(data: Data) -> str:
     return f" From above: the patch of smooth bodies under the load, {size}{inside}."
 
 
-def ground(left: float, bottom: float, width: float, height: float, **look: Any) -> Shape:
+def ground(left: float, bottom: float, length: float, height: float, **look: Any) -> Shape:
     """Draw a body as a rectangle, in the look of a `Shape`."""
-    x, y = left + width * np.array([0, 1, 1, 0]), bottom + height * np.array([0, 0, 1, 1])
+    x, y = left + length * np.array([0, 1, 1, 0]), bottom + height * np.array([0, 0, 1, 1])
     return Shape(x, y, **{"fill": GRID} | look)
 
 
