@@ -113,7 +113,7 @@ class Note:
     y: float
     x_share: bool = False
     y_share: bool = False
-    align: str = "left"  # of the place: the words stand to its "right" or "left", or are in its "center"
+    align: str = "left"  # words begin ("left") or end ("right") at the place, or have it in their "center"
     upright: bool = False  # written along y
     colour: str = MUTED
 

@@ -186,7 +186,7 @@ def force_bands(*reference: Entry) -> Part:
     """Figure of the force in one-third octaves, with the levels of a `reference` where there is one."""
     return Part(
         "force_bands",
-        "Contact force in one-third octaves",
+        "Contact force levels in one-third octaves",
         (FORCE_LEVEL, BAND),
         lambda tree: band_data(tree, *reference),
         lambda tree, data: band_chart(tree, data, *reference),
