@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from asperity.reporting.chart import FREQUENCY, Axis, Boxes, Note, Numbers, Second
 from asperity.reporting.data import nominal_band
@@ -55,14 +57,22 @@ def levels_axis(label: str, levels: Sequence[Numbers], span: float = 80.0, step:
     return Axis(label, float(bottom), float(top))
 
 
-def doubtful_boxes(bands: Numbers, doubtful: np.ndarray, labelled: bool = True) -> list[Boxes | Note]:
+def stretches(flags: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """First and last index of each run of places (n,) that are flagged, (m, 2)."""
+    edges = np.flatnonzero(np.diff(flags.astype(np.int8), prepend=0, append=0))
+    return edges.reshape(-1, 2) - np.array([0, 1])
+
+
+def shade(left: Numbers, right: Numbers, colour: str = GRID, **look: Any) -> Boxes:
+    """Stretches of an axis, shaded from bottom to top."""
+    whole = np.full(left.shape, np.inf)
+    return Boxes(left, right, -whole, whole, colour=colour, **look)
+
+
+def doubtful_boxes(bands: Numbers, doubtful: NDArray[np.bool_], labelled: bool = True) -> list[Boxes | Note]:
     """Shades of the bands (by their centres) whose levels say little, and their name."""
     if not doubtful.any():
         return []
-    marked = np.flatnonzero(doubtful)
-    runs = np.split(bands[marked], np.flatnonzero(np.diff(marked) > 1) + 1)
-    left, right = (np.array([edge(run) for run in runs]) for edge in (np.min, np.max))
-    whole = np.full(len(runs), np.inf)
-    shade = Boxes(left / EDGE, right * EDGE, -whole, whole, colour=GRID, opacity=0.6)
+    first, last = bands[stretches(doubtful)].T
     note = Note("says little", 0.005, 0.03, x_share=True, y_share=True)  # low bands are left
-    return [shade, note] if labelled else [shade]
+    return [shade(first / EDGE, last * EDGE, opacity=0.6), *([note] if labelled else [])]

@@ -91,15 +91,13 @@ def present(tree: DataTree, *entries: Entry) -> bool:
 
 
 def missing(tree: DataTree, *entries: Entry) -> str:
-    """Say of which of these variables how many values are missing, and why; nothing where none is."""
-    told = []
-    for entry in entries:
-        found = stored_variable(tree, entry)
-        if found is not None and "missing" in found.attrs:
-            lost = int((~np.isfinite(found.values)).sum())
-            what = f"{lost} of {found.size} values of the {entry.long_name}"
-            told.append(f"{what} are missing: {found.attrs['missing']}.")
-    return " ".join(told)
+    """Say of which of these variables values are missing, and why; nothing where none is."""
+    found = [variable for entry in entries if (variable := stored_variable(tree, entry)) is not None]
+    return " ".join(
+        f"Gaps in the {variable.attrs['long_name'].replace(': ', ', ')}: {variable.attrs['missing']}."
+        for variable in found
+        if "missing" in variable.attrs
+    )
 
 
 def stated(tree: DataTree, attribute: Attribute) -> Any:

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.axes import words_axis
+from asperity.reporting.axes import shade, stretches, words_axis
 from asperity.reporting.chart import TIME as OVER_TIME
 from asperity.reporting.chart import Axis, Boxes, Chart, Line, Mark, Numbers, Panel, Rules
 from asperity.reporting.data import engineering, force_unit, laws, of_law, values
 from asperity.reporting.law_entries import law_entry, law_style, pulling
 from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.spectrum_figures import main_last
-from asperity.reporting.style import GRID, envelope
+from asperity.reporting.style import envelope
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, TIME
 
 COLUMNS = 700  # stretches of an envelope
@@ -35,19 +35,13 @@ def lost(tree: DataTree, law: str, force: NDArray[np.float64]) -> NDArray[np.boo
     return force <= 0
 
 
-def stretches(flight: NDArray[np.bool_]) -> list[list[int]]:
-    """First and last time step of each stretch in which contact is lost."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], flight.astype(np.int8), [0]))))
-    return [[int(start), int(end) - 1] for start, end in zip(edges[::2], edges[1::2], strict=True)]
-
-
 def piece(tree: DataTree) -> slice:
     """Short piece of the run: around the main law's longest loss of contact, else in the middle."""
     flight = _main_flight(tree)
     count = len(flight)
     middle = count // 2
     if flight.any():
-        first, last = max(stretches(flight), key=lambda stretch: stretch[1] - stretch[0])
+        first, last = max(stretches(flight).tolist(), key=lambda stretch: stretch[1] - stretch[0])
         middle = (first + last + 1) // 2
     length = min(PIECE, max(count // 5, min(count, 200)))
     start = min(max(middle - length // 2, 0), count - length)
@@ -122,7 +116,7 @@ def whole_chart(tree: DataTree, _: Data) -> Chart:
     """Contact force of all laws over the whole run, every time step."""
     whole, unit = forces_data(tree, slice(None)), time_axis(tree, values(tree, TIME))[1]
     peak = int(np.nanargmax(next(iter(whole.lines.values())).values))
-    losses = stretches(_main_flight(tree))
+    losses = stretches(_main_flight(tree)).tolist()
     found = {
         "largest force": [_around(peak, AROUND)],
         "next loss of contact": [
@@ -171,14 +165,10 @@ def forces_chart(tree: DataTree, data: Data, **look: Any) -> Chart:
     forces = Panel(axis, *_forces(tree, data, unit, look), height=3.3)
     if not bars:
         return Chart((forces,))
-    shade = [
-        replace(each, low=np.full_like(each.low, -np.inf), high=np.full_like(each.high, np.inf), colour=GRID)
-        for each in bars
-        if each.law == names[0]
-    ]
+    shades = [shade(each.left, each.right, law=each.law) for each in bars if each.law == names[0]]
     rows = replace(words_axis(names, "no contact"), low=len(names) - 0.4, high=-0.6)
     below = Panel(axis, rows, tuple(bars), height=0.6 + 0.16 * len(names))
-    return Chart((replace(forces, marks=(*shade, *forces.marks)), below))
+    return Chart((replace(forces, marks=(*shades, *forces.marks)), below))
 
 
 def _forces(tree: DataTree, data: Data, unit: float, look: dict[str, Any]) -> tuple[Axis, tuple[Mark, ...]]:
@@ -197,7 +187,7 @@ def _forces(tree: DataTree, data: Data, unit: float, look: dict[str, Any]) -> tu
 
 def _bars(tree: DataTree, law: str, time: Numbers, flight: NDArray[np.bool_], row: int) -> Boxes:
     """Stretches without contact in a row, half a time step longer at either end than from first to last."""
-    first, last = np.array(stretches(flight), dtype=int).reshape(-1, 2).T
+    first, last = stretches(flight).T
     half, middle = 0.5 * (time[1] - time[0]), np.full(first.shape, float(row))
     ends = (time[first] - half, time[last] + half, middle - 0.35, middle + 0.35)
     return Boxes(*ends, colour=law_entry(tree, law).colour, law=law)
