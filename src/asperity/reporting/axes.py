@@ -24,6 +24,11 @@ def frequency_axis(low: float, high: float, label: str = "frequency / Hz") -> Ax
     return Axis(label, float(low), float(high), log=True, ticks=ticks, minor=minor, linked=FREQUENCY)
 
 
+def linear_frequency_axis(high: float) -> Axis:
+    """Frequency axis from 0 on, for what stands at equal distances."""
+    return Axis("frequency / Hz", 0.0, float(high), linked=FREQUENCY)
+
+
 def band_axis(
     bands: Numbers, label: str = "one-third octave band / Hz", name: Callable[[float], str] = nominal_band
 ) -> Axis:

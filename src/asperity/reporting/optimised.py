@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from asperity.reporting.style import INK, MUTED, legend_above, new_figure, styled
+from asperity.reporting.axes import EDGE, band_axis, levels_axis
+from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Numbers, Panel, Second
+from asperity.reporting.style import INK, MUTED
 from asperity.spectra import nominal_length
 
 BEFORE, AFTER = "before", "after"
-MOST_LABELS = 11
+_DASHES: dict[str, Dashes] = {BEFORE: (1.5, 1.5), AFTER: ()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,36 +30,40 @@ class TextureBands:
     heard: Mapping[str, Mapping[str, NDArray[np.float64]]]
 
 
-@styled()
-def optimised_figure(bands: TextureBands, heard: str, units: str, colours: Mapping[str, str]) -> Figure:
-    """Draw the texture above, and below what is heard of it in each band; colours by law."""
-    figure = new_figure(6.4)
-    figure.set_facecolor("white")  # it goes to a file of its own
-    above, below = figure.subplots(2, 1, sharex=True)
-    place = np.arange(len(bands.wavelength))
-    edges = np.arange(len(place) + 1) - 0.5
-    above.stairs(
-        bands.highest, edges, baseline=bands.lowest, fill=True, color=MUTED, alpha=0.15, label="allowed"
-    )
-    for name, style in ((BEFORE, ":"), (AFTER, "-")):
-        above.stairs(bands.levels[name], edges, baseline=None, linestyle=style, color=INK, label=name)
+def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mapping[str, str]) -> Chart:
+    """The texture above, and below what is heard of it in each band; colours by law."""
+    edges = bands.wavelength / EDGE, bands.wavelength * EDGE
+    bounded = np.isfinite(bands.lowest) & np.isfinite(bands.highest)
+    box = (each[bounded] for each in (*edges, bands.lowest, bands.highest))
+    texture: list[Boxes | Line] = [Boxes(*box, label="allowed", colour=MUTED, opacity=0.15)]
+    response = []
+    for name, dashes in _DASHES.items():
+        texture.append(Line(*_steps(*edges, bands.levels[name]), name, INK, dashes))
         for law, levels in bands.heard.items():
-            look = {"color": colours.get(law, INK), "linestyle": style, "marker": "o", "markersize": 3}
-            below.plot(place, levels[name], label=f"{law}, {name}", **look)
-    above.set_ylabel("roughness level / dB re 1 µm")
-    below.set_ylabel(f"in the band / {units}")
-    below.set_title(heard)
-    every = max(1, -(-len(place) // MOST_LABELS))
-    labels = [
-        f"{nominal_length(w)}\n{_in_hertz(f)}"
-        for w, f in zip(bands.wavelength[::every], bands.frequency[::every], strict=True)
-    ]
-    below.set_xticks(place[::every], labels)
-    below.set_xlabel("one-third octave of wavelength, and the frequency at which it is passed")
-    legend_above(above)
-    below.legend(ncols=2)
-    return figure
+            look = colours.get(law, INK), dashes
+            response.append(
+                Line(bands.wavelength, levels[name], f"{law}, {name}", *look, marker="o", law=law)
+            )
+    along = _wavelengths(bands)
+    found = [*bands.levels.values(), bands.lowest, bands.highest]
+    above = levels_axis("roughness level / dB re 1 µm", found)
+    return Chart(
+        (
+            Panel(along, above, tuple(texture), height=3.2),
+            Panel(along, Axis(f"in the band / {units}"), tuple(response), heard, height=3.2),
+        )
+    )
 
 
-def _in_hertz(frequency: float) -> str:
-    return f"{frequency / 1000:.3g} kHz" if frequency >= 1000 else f"{frequency:.3g} Hz"
+def _wavelengths(bands: TextureBands) -> Axis:
+    """Bands by wavelength, long waves on the left, and opposite the frequency at which they are passed."""
+    axis = band_axis(np.sort(bands.wavelength), "one-third octave of wavelength", nominal_length)
+    speed = float(np.median(bands.wavelength * bands.frequency))
+    second = Second("frequency at which it is passed / Hz", speed, inverse=True)
+    return replace(axis, low=axis.high, high=axis.low, second=second, linked="wavelength")
+
+
+def _steps(left: Numbers, right: Numbers, level: Numbers) -> tuple[Numbers, Numbers]:
+    """A line that keeps its height within each band."""
+    order = np.argsort(left)
+    return np.stack([left, right], axis=1)[order].ravel(), np.repeat(level[order], 2)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -86,8 +86,14 @@ def laws_panel(tree: DataTree, lines: Mapping[Any, Series], label: str, referenc
     main = next(iter(lines))
     spectra = {law: narrow_level(tree, psd.values, reference) for law, psd in lines.items()}
     drawn = [Line(*spectra[law], label=law, **law_style(tree, law, main)) for law in main_last(spectra)]
-    levels = levels_axis(label, [level for _, level in spectra.values()])
-    return Panel(frequency_axis(*frequency_range(tree)), levels, (*shaded_bands(tree), *drawn), height=4.4)
+    return spectrum_panel(tree, drawn, label)
+
+
+def spectrum_panel(tree: DataTree, levels: Sequence[Line], label: str, behind: Sequence[Mark] = ()) -> Panel:
+    """Levels over frequency, and other marks behind them."""
+    axis = levels_axis(label, [line.y for line in levels])
+    marks = (*shaded_bands(tree), *behind, *levels)
+    return Panel(frequency_axis(*frequency_range(tree)), axis, marks, height=4.4)
 
 
 def main_last(laws: Iterable[str]) -> list[str]:

@@ -30,6 +30,8 @@ COLOURS = {
     "#e07f2d": "#ffb066",
     "#b58a00": "#f5e05f",
 }
+HATCHES = ("", "/", "\\", "x", ".", "-")
+"""Of bars beside each other, for those who do not see colours."""
 SEQUENCE = tuple(COLOURS)[-6:]
 
 

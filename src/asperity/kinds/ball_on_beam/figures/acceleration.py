@@ -6,24 +6,24 @@ from itertools import cycle
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from xarray import DataTree
 
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_LEVEL, ACCELERATION_REFERENCE
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_PSD as PSD
+from asperity.reporting.chart import Chart, Dashes, Line
 from asperity.reporting.data import laws, missing, of_law, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import (
     DRAWN,
-    draw_laws,
-    finish_spectrum,
+    laws_panel,
     narrow_level,
     shaded_words,
+    spectrum_panel,
 )
-from asperity.reporting.style import new_figure, sequence, styled
+from asperity.reporting.style import sequence
 from asperity.schema.spectra import FREQUENCY
 
-_DASHES = ("-", (0, (6, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (3, 1.5)), (0, (1.5, 1.5)), "-")
+_DASHES: tuple[Dashes, ...] = ((), (6, 1.5), (6, 1.5, 1.5, 1.5), (3, 1.5), (1.5, 1.5))
 _AXIS = "acceleration PSD / dB re (1 µm/s²)²/Hz"
 
 
@@ -56,19 +56,17 @@ def sensors_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), lines)
 
 
-@styled()
-def sensors_figure(tree: DataTree, data: Data) -> Figure:
+def sensors_chart(tree: DataTree, data: Data) -> Chart:
     """Power spectral densities of the acceleration at all sensors, by the main law."""
-    figure = new_figure(4.2)
-    axes = figure.subplots()
-    reference = ACCELERATION_REFERENCE**2
-    spectra = [narrow_level(tree, psd.values, reference) for psd in data.lines.values()]
-    looks = zip(data.lines, spectra, sequence(len(spectra)), cycle(_DASHES), strict=False)
-    for label, spectrum, colour, dashes in looks:
-        axes.plot(*spectrum, color=colour, linestyle=dashes, label=label)
-    finish_spectrum(axes, tree, spectra)
-    axes.set_ylabel(_AXIS)
-    return figure
+    levels = {
+        label: narrow_level(tree, psd.values, ACCELERATION_REFERENCE**2) for label, psd in data.lines.items()
+    }
+    looks = zip(sequence(len(levels)), cycle(_DASHES), strict=False)
+    drawn = [
+        Line(*level, label, colour, dashes)
+        for (label, level), (colour, dashes) in zip(levels.items(), looks, strict=True)
+    ]
+    return Chart((spectrum_panel(tree, drawn, _AXIS),))
 
 
 def _middle_sensor(tree: DataTree) -> int:
@@ -83,14 +81,9 @@ def laws_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), lines)
 
 
-@styled()
-def laws_figure(tree: DataTree, data: Data) -> Figure:
+def laws_chart(tree: DataTree, data: Data) -> Chart:
     """Power spectral densities of the acceleration at one sensor, by all laws."""
-    figure = new_figure(4.2)
-    axes = figure.subplots()
-    draw_laws(axes, tree, data.lines, ACCELERATION_REFERENCE**2)
-    axes.set_ylabel(_AXIS)
-    return figure
+    return Chart((laws_panel(tree, data.lines, _AXIS, ACCELERATION_REFERENCE**2),))
 
 
 def _sensors_caption(tree: DataTree) -> str:
@@ -110,7 +103,7 @@ ACCELERATION = (
         "Acceleration at the sensors",
         (PSD, FREQUENCY),
         sensors_data,
-        sensors_figure,
+        sensors_chart,
         _sensors_caption,
     ),
     Part(
@@ -118,7 +111,7 @@ ACCELERATION = (
         "Acceleration by law",
         (PSD, FREQUENCY),
         laws_data,
-        laws_figure,
+        laws_chart,
         _laws_caption,
     ),
 )

@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from xarray import DataTree
 
 from asperity.kinds.bodies.schema import (
@@ -19,27 +17,20 @@ from asperity.kinds.bodies.schema import (
     STATIC_LOAD,
     SUM_PSD,
 )
+from asperity.reporting.axes import band_axis, levels_axis
+from asperity.reporting.chart import Chart, Line, Panel, Rules
 from asperity.reporting.data import engineering, laws, of_law, present, values
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import (
     DRAWN,
-    finish_spectrum,
     frequency_range,
     narrow_level,
     product_series,
-    shade_bands,
+    shaded_bands,
     shaded_words,
+    spectrum_panel,
 )
-from asperity.reporting.style import (
-    INK,
-    MUTED,
-    band_axis,
-    legend_above,
-    level_limits,
-    new_figure,
-    sequence,
-    styled,
-)
+from asperity.reporting.style import INK, MUTED, sequence
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FREQUENCY
 from asperity.spectra import energy_sum
@@ -71,22 +62,16 @@ def contact_levels_data(tree: DataTree) -> Data:
     return Data(series(tree, BAND, "band centre"), lines)
 
 
-@styled()
-def contact_levels_figure(tree: DataTree, data: Data) -> Figure:
+def contact_levels_chart(tree: DataTree, data: Data) -> Chart:
     """One-third-octave levels of the force of each contact."""
-    figure = new_figure(4.2)
-    axes = figure.subplots()
-    shown = _shown(tree)
-    for contact, colour in zip(shown, sequence(len(shown)), strict=True):
-        line = data.lines[contact]
-        axes.plot(data.at, line.values, color=colour, marker="o", markeredgewidth=0, label=line.name)
-    axes.plot(data.at, data.lines[MEAN].values, color=INK, linewidth=2.0, label=f"{MEAN} of all")
-    level_limits(axes, [data.lines[MEAN].values, *(data.lines[i].values for i in shown)], 100.0, 10.0)
-    band_axis(axes, data.at)
-    shade_bands(axes, tree)
-    legend_above(axes)
-    axes.set_ylabel("contact force level / dB re 1 N")
-    return figure
+    shown = [data.lines[contact] for contact in _shown(tree)]
+    levels = [
+        Line(data.at, line.values, line.name, colour, marker="o")
+        for line, colour in zip(shown, sequence(len(shown)), strict=True)
+    ]
+    levels.append(Line(data.at, data.lines[MEAN].values, f"{MEAN} of all", INK, width=2.0))
+    axis = levels_axis("contact force level / dB re 1 N", [line.y for line in levels], span=100.0)
+    return Chart((Panel(band_axis(data.at), axis, (*shaded_bands(tree), *levels), height=4.2),))
 
 
 def _levels_caption(tree: DataTree) -> str:
@@ -107,30 +92,23 @@ def sum_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), lines)
 
 
-@styled()
-def sum_figure(tree: DataTree, data: Data) -> Figure:
+def sum_chart(tree: DataTree, data: Data) -> Chart:
     """The sum of all contact forces against the sum of their powers."""
-    figure = new_figure(4.2)
-    axes = figure.subplots()
-    spectra = []
-    for name, look in (("apart", {"color": MUTED, "linestyle": (0, (4, 2))}), ("sum", {"color": INK})):
-        line = data.lines[name]
-        spectra.append(narrow_level(tree, line.values, 1.0))
-        axes.plot(*spectra[-1], label=line.name, **look)
-    finish_spectrum(axes, tree, spectra)
-    mark_tones(axes, tree)
-    axes.set_ylabel("force PSD / dB re 1 N²/Hz")
-    return figure
+    looks: dict[str, dict[str, Any]] = {"apart": {"colour": MUTED, "dashes": (4, 2)}, "sum": {}}
+    levels = [
+        Line(*narrow_level(tree, data.lines[name].values, 1.0), data.lines[name].name, **look)
+        for name, look in looks.items()
+    ]
+    return Chart((spectrum_panel(tree, levels, "force PSD / dB re 1 N²/Hz", tone_rules(tree)),))
 
 
-def mark_tones(axes: Axes, tree: DataTree) -> None:
-    """Mark the multiples of the frequency at which contacts pass a place, while they stand apart."""
+def tone_rules(tree: DataTree) -> list[Rules]:
+    """Multiples of the frequency at which contacts pass a place, while they stand apart."""
     if not present(tree, PASSING_FREQUENCY):
-        return
+        return []
     low, high = frequency_range(tree)
     tones = values(tree, PASSING_FREQUENCY)
-    for tone in tones[(tones > low) & (tones < high)][:10]:
-        axes.axvline(tone, color=MUTED, linewidth=0.6, linestyle=(0, (1, 2)))
+    return [Rules(tones[(tones > low) & (tones < high)][:10], dashes=(1, 2), width=0.6)]
 
 
 def tones_words(tree: DataTree) -> str:
@@ -175,7 +153,7 @@ CONTACTS = (
         "Force of each contact",
         (FORCE_LEVELS, BAND, CONTACT, OFFSET),
         contact_levels_data,
-        contact_levels_figure,
+        contact_levels_chart,
         _levels_caption,
     ),
     Part(
@@ -183,7 +161,7 @@ CONTACTS = (
         "Contacts together",
         (SUM_PSD, FORCE_PSDS, FREQUENCY, CONTACT),
         sum_data,
-        sum_figure,
+        sum_chart,
         _sum_caption,
         worth=lambda tree: len(values(tree, CONTACT)) > 1,
     ),

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from matplotlib.figure import Figure
 from xarray import DataTree
 
-from asperity.kinds.bodies.figures.contacts import mark_tones, tones_words
+from asperity.kinds.bodies.figures.contacts import tone_rules, tones_words
 from asperity.kinds.bodies.schema import BODY_ACCELERATION_PSD, BODY_REFERENCE, SPECTRA_DEGREE
+from asperity.reporting.chart import Chart, Line
 from asperity.reporting.data import laws, of_law, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import DRAWN, finish_spectrum, narrow_level, shaded_words
-from asperity.reporting.style import new_figure, sequence, styled
+from asperity.reporting.spectrum_figures import DRAWN, narrow_level, shaded_words, spectrum_panel
+from asperity.reporting.style import sequence
 from asperity.schema.spectra import FREQUENCY
 
 MOST_LINES = 6
@@ -41,19 +41,15 @@ def motion_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), lines)
 
 
-@styled()
-def motion_figure(tree: DataTree, data: Data) -> Figure:
+def motion_chart(tree: DataTree, data: Data) -> Chart:
     """Acceleration of the bodies over frequency."""
-    figure = new_figure(4.2)
-    axes = figure.subplots()
-    shown = _shown(degree_names(tree))
-    spectra = [narrow_level(tree, data.lines[index].values, BODY_REFERENCE**2) for index in shown]
-    for index, spectrum, colour in zip(shown, spectra, sequence(len(shown)), strict=True):
-        axes.plot(*spectrum, color=colour, label=data.lines[index].name)
-    finish_spectrum(axes, tree, spectra)
-    mark_tones(axes, tree)
-    axes.set_ylabel("acceleration PSD / dB re (1 µm/s²)²/Hz")
-    return figure
+    shown = [data.lines[index] for index in _shown(degree_names(tree))]
+    levels = [
+        Line(*narrow_level(tree, line.values, BODY_REFERENCE**2), line.name, colour)
+        for line, colour in zip(shown, sequence(len(shown)), strict=True)
+    ]
+    label = "acceleration PSD / dB re (1 µm/s²)²/Hz"
+    return Chart((spectrum_panel(tree, levels, label, tone_rules(tree)),))
 
 
 def _caption(tree: DataTree) -> str:
@@ -76,7 +72,7 @@ MOTION = (
         "Acceleration of the bodies",
         (BODY_ACCELERATION_PSD, FREQUENCY),
         motion_data,
-        motion_figure,
+        motion_chart,
         _caption,
     ),
 )

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.kinds.wheel_on_rail.figures.marks import draw_sleeper_tones, draw_split, pinned_pinned_split
+from asperity.kinds.wheel_on_rail.figures.marks import pinned_pinned_split, sleeper_tones, split_rules
+from asperity.reporting.axes import levels_axis, linear_frequency_axis
+from asperity.reporting.chart import Chart, Line, Panel
 from asperity.reporting.data import engineering, laws, number, of_law, present, values
 from asperity.reporting.law_entries import law_style
 from asperity.reporting.part import Data, Part, Series, by_law, series
@@ -21,11 +20,12 @@ from asperity.reporting.spectrum_figures import (
     REFERENCE_STYLE,
     Spectrum,
     force_bands,
-    shade_bands,
+    main_last,
+    shaded_bands,
     shaded_words,
 )
-from asperity.reporting.style import decibels, legend_above, level_limits, new_figure, styled
-from asperity.reporting.time_figures import bars_words, cut_off, forces_data, forces_figure
+from asperity.reporting.style import decibels
+from asperity.reporting.time_figures import bars_words, cut_off, forces_chart, forces_data
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.schema.spectra import BAND, FORCE_PSD, FREQUENCY
 
@@ -72,23 +72,19 @@ def force_psd_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), lines)
 
 
-@styled()
-def force_psd_figure(tree: DataTree, data: Data) -> Figure:
+def force_psd_chart(tree: DataTree, data: Data) -> Chart:
     """Power spectral densities of the contact force on a linear frequency axis, with the track's marks."""
-    figure = new_figure(4.6)
-    axes = figure.subplots()
-    high = values(tree, BAND if present(tree, BAND) else FREQUENCY)[-1]
+    high = float(values(tree, BAND if present(tree, BAND) else FREQUENCY)[-1])
     drawn = {key: _thinned(data.at, psd.values, high) for key, psd in data.lines.items()}
     reference, main = drawn.pop(REFERENCE, None), next(iter(drawn))
-    for law, spectrum in drawn.items():
-        axes.plot(*spectrum, label=law, **law_style(tree, law, main) | _thin(law, main))
-    if reference is not None:
-        axes.plot(*reference, **REFERENCE_STYLE)
-    axes.set_xlim(0, high)
-    level_limits(axes, [level for _, level in drawn.values()])
-    shade_bands(axes, tree)
-    _finish(axes, tree)
-    return figure
+    lines = [
+        Line(*drawn[law], label=law, **law_style(tree, law, main) | _thin(law, main))
+        for law in main_last(drawn)
+    ]
+    lines += [] if reference is None else [Line(*reference, **REFERENCE_STYLE)]
+    axis = levels_axis("contact force PSD / dB re 1 N²/Hz", [level for _, level in drawn.values()])
+    behind = (*shaded_bands(tree), *sleeper_tones(tree, 0.0, high), *split_rules(tree, 0.0, high))
+    return Chart((Panel(linear_frequency_axis(high), axis, (*behind, *lines), height=4.6),))
 
 
 def _lines_per_point(frequency: NDArray[np.float64]) -> int:
@@ -105,16 +101,7 @@ def _thinned(frequency: NDArray[np.float64], psd: NDArray[np.float64], high: flo
 
 
 def _thin(law: str, main: str) -> dict[str, float]:
-    return {"linewidth": 1.5 if law == main else 0.9}  # hundreds of lines side by side
-
-
-def _finish(axes: Axes, tree: DataTree) -> None:
-    axes.xaxis.set_major_locator(MultipleLocator(500))
-    axes.set_xlabel("frequency / Hz")
-    axes.set_ylabel("contact force PSD / dB re 1 N²/Hz")
-    draw_sleeper_tones(axes, tree)
-    draw_split(axes, tree)
-    legend_above(axes)
+    return {"width": 1.5 if law == main else 0.9}  # hundreds of lines side by side
 
 
 def _psd_caption(tree: DataTree) -> str:
@@ -146,7 +133,7 @@ FORCE_PEAK = Part(
     "Contact force around its largest value",
     (CONTACT_FORCE, TIME),
     peak_data,
-    forces_figure,
+    forces_chart,
     _peak_caption,
 )
 FORCE_SPECTRUM = Part(
@@ -154,7 +141,7 @@ FORCE_SPECTRUM = Part(
     "Contact force against frequency",
     (FORCE_PSD, FREQUENCY),
     force_psd_data,
-    force_psd_figure,
+    force_psd_chart,
     _psd_caption,
 )
 FORCE_BANDS = force_bands(schema.LINEAR_REFERENCE_LEVEL)

@@ -2,35 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
+from asperity.reporting.axes import EDGE, band_axis
+from asperity.reporting.chart import Axis, Boxes, Chart, Line, Panel, Rules
 from asperity.reporting.data import engineering, number, stored_variable, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
-from asperity.reporting.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    frequency_axis,
-    legend_above,
-    new_figure,
-    styled,
-)
+from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION
 
 BAND, FORCE, RAIL = schema.TRACK_BAND, schema.LOSS_FACTOR_FORCE_ERROR, schema.LOSS_FACTOR_RAIL_ERROR
 CONSTANT, STIFFNESS, LOSS = schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR
 _COLOURS = (BLUE, VERMILLION, GREEN)
-_DOTS = (0, (1.5, 1.5))
-EDGE = 10**0.05
-"""From the centre of a one-third octave to its upper edge."""
+_DASHES = ((), (6, 1.5), (3, 1.5))
+_DOTS = (1.5, 1.5)
 
 
 def _layers(tree: DataTree) -> list[str]:
@@ -54,44 +40,35 @@ def loss_data(tree: DataTree) -> Data:
     return Data(band, lines)
 
 
-@styled()
-def loss_figure(tree: DataTree, data: Data) -> Figure:
+def loss_chart(tree: DataTree, data: Data) -> Chart:
     """Errors of force and receptance per one-third octave; stiffness and loss factor of each part."""
-    figure = new_figure(6.6)
-    errors, stiffness, loss = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 1, 1])
-    bands = data.at
-    _draw_errors(errors, data)
-    for colour, layer in zip(_COLOURS, _layers(tree), strict=False):
-        stiffness.plot(bands, data.lines[STIFFNESS, layer].values, color=colour, label=layer)
-        loss.plot(bands, data.lines[LOSS, layer].values, color=colour)
-        constant = data.lines[CONSTANT, layer].values[0]
-        loss.axhline(constant, color=colour, linestyle=_DOTS, linewidth=1.0)
-    stiffness.axhline(1, color=MUTED, linestyle=_DOTS, linewidth=1.0)
-    stiffness.set_ylabel("stiffness / nominal")
-    loss.set_ylabel("loss factor")
-    for axes in (stiffness, loss):
-        axes.set_yscale("log")
-        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        axes.yaxis.set_minor_formatter(NullFormatter())
-    frequency_axis(loss, bands[0] / EDGE, bands[-1] * EDGE, "one-third octave band / Hz")
-    for axes in (errors, stiffness):
-        axes.tick_params(labelbottom=False)
-        legend_above(axes)
-    return figure
+    bands = band_axis(data.at)
+    stiffness: list[Line | Rules] = [Rules(np.ones(1), "y", dashes=_DOTS, width=1.0)]
+    loss: list[Line | Rules] = []
+    for colour, dashes, layer in zip(_COLOURS, _DASHES, _layers(tree), strict=False):
+        stiffness.append(Line(data.at, data.lines[STIFFNESS, layer].values, layer, colour, dashes))
+        loss.append(Line(data.at, data.lines[LOSS, layer].values, layer, colour, dashes))
+        constant = data.lines[CONSTANT, layer].values[:1]
+        loss.append(Rules(constant, "y", colour=colour, dashes=_DOTS, width=1.0))
+    return Chart(
+        (
+            Panel(bands, Axis("error / dB"), _errors(data), height=2.4),
+            Panel(bands, Axis("stiffness / nominal", log=True), tuple(stiffness), height=1.9),
+            Panel(bands, Axis("loss factor", log=True), tuple(loss), height=1.9),
+        )
+    )
 
 
-def _draw_errors(axes: Axes, data: Data) -> None:
-    bands = data.at
-    axes.bar(
-        bands / EDGE, data.lines[FORCE].values, (EDGE - 1 / EDGE) * bands, align="edge",
-        color=_COLOURS[0], linewidth=0, label="contact force",
-    )  # fmt: skip
-    if RAIL in data.lines:
-        look: dict[str, Any] = {"color": MUTED, "linestyle": (0, (6, 1.5)), "linewidth": 1.2}
-        axes.plot(bands, data.lines[RAIL].values, label="receptance of the rail", **look)
-    axes.axhline(0, color=INK, linewidth=0.8)
-    axes.set_ylabel("error / dB")
+def _errors(data: Data) -> tuple[Boxes | Line | Rules, ...]:
+    bands, error = data.at, data.lines[FORCE].values
+    low, high = np.fmin(error, 0.0), np.fmax(error, 0.0)
+    bars = Boxes(bands / EDGE, bands * EDGE, low, high, "contact force", _COLOURS[0], hatch="/")
+    of_rail = [
+        Line(bands, data.lines[entry].values, "receptance of the rail", MUTED, (6, 1.5), 1.2)
+        for entry in (RAIL,)
+        if entry in data.lines
+    ]
+    return bars, *of_rail, Rules(np.zeros(1), "y", colour=INK, dashes=(), width=0.8)
 
 
 def _loss_caption(tree: DataTree) -> str:
@@ -118,6 +95,6 @@ LOSS_FACTORS = Part(
     "Loss factors in time",
     (BAND, FORCE, CONSTANT, STIFFNESS, LOSS),
     loss_data,
-    loss_figure,
+    loss_chart,
     _loss_caption,
 )

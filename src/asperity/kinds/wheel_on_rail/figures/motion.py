@@ -6,33 +6,27 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.force import around_peak
-from asperity.kinds.wheel_on_rail.figures.marks import draw_marks, draw_sleepers, natural_frequencies
+from asperity.kinds.wheel_on_rail.figures.marks import natural_frequencies, natural_rules, sleeper_times
+from asperity.reporting import chart
+from asperity.reporting.axes import levels_axis
+from asperity.reporting.chart import Axis, Chart, Line, Panel, Rules
 from asperity.reporting.data import laws, number, of_law, present, stored_variable, values
 from asperity.reporting.law_entries import baselines_among, law_style, pulling
 from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.reporting.spectrum_figures import (
     DRAWN,
     frequency_range,
+    main_last,
     narrow_level,
-    shade_bands,
     shaded_words,
+    spectrum_panel,
 )
-from asperity.reporting.style import (
-    INK,
-    frequency_axis,
-    legend_above,
-    level_limits,
-    new_figure,
-    styled,
-)
+from asperity.reporting.style import INK
 from asperity.reporting.time_figures import beyond_limits, main_limits, time_unit
 from asperity.schema import Entry
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, RELATIVE_DISPLACEMENT, SPEED, TIME
@@ -75,25 +69,23 @@ def _motions(data: Data) -> dict[Entry, dict[str, NDArray[np.float64]]]:
     return {entry: motions for entry in MOTIONS if (motions := data.of(entry))}
 
 
-@styled()
-def displacement_figure(tree: DataTree, data: Data) -> Figure:
+def displacement_chart(tree: DataTree, data: Data) -> Chart:
     """Displacement of rail and wheel at the contact and their approach, all laws, over a piece of the run."""
-    found, time = _motions(data), data.at
-    figure = new_figure(0.6 + 1.55 * len(found))
-    panels = figure.subplots(len(found), 1, sharex=True, squeeze=False)[:, 0]
-    unit, symbol = time_unit(time[-1])
-    for axes, (entry, motions) in zip(panels, found.items(), strict=True):
+    unit, symbol = time_unit(data.at[-1])
+    time = Axis(f"time / {symbol}", data.at[0] / unit, data.at[-1] / unit, linked=chart.TIME)
+    sleepers = sleeper_times(tree, data.at[0], data.at[-1], unit)
+    panels = []
+    for entry, motions in _motions(data).items():
         name, size, length = MOTIONS[entry]
-        for law, motion in motions.items():
-            axes.plot(time / unit, motion / size, label=law, **law_style(tree, law, next(iter(motions))))
+        main = next(iter(motions))
+        lines = [
+            Line(data.at / unit, motions[law] / size, law, **law_style(tree, law, main))
+            for law in main_last(motions)
+        ]
         low, high = main_limits(motions, pulling(tree))
-        axes.set_ylim(high / size, low / size)  # downwards
-        axes.set_ylabel(f"{name} / {length}")
-        draw_sleepers(axes, tree, time[0], time[-1], unit)
-    panels[0].set_xlim(time[0] / unit, time[-1] / unit)
-    panels[-1].set_xlabel(f"time / {symbol}")
-    legend_above(panels[0])
-    return figure
+        downwards = Axis(f"{name} / {length}", high / size, low / size)
+        panels.append(Panel(time, downwards, (*sleepers, *lines), height=1.75))
+    return Chart(tuple(panels))
 
 
 def _displaced_beyond(tree: DataTree) -> str:
@@ -124,13 +116,6 @@ def point_labels(tree: DataTree) -> list[str]:
         name = ", mid-span" if abs(place - 0.5) < 0.02 else name
         found.append(f"x = {point:.4g} m{name}")
     return found
-
-
-def _name(axes: Axes, label: str) -> None:
-    """Write the name of a panel into its upper right corner."""
-    axes.annotate(
-        label, (0.99, 0.96), xycoords="axes fraction", va="top", ha="right", fontsize=9, fontweight="bold"
-    )
 
 
 def _points(tree: DataTree, entry: Entry) -> list[int]:
@@ -175,33 +160,27 @@ def velocity_data(tree: DataTree) -> Data:
     return Data(Series("time", TIME.units, time[part]), _of_points(tree, VELOCITY, part))
 
 
-@styled()
-def velocity_figure(tree: DataTree, data: Data) -> Figure:
+def velocity_chart(tree: DataTree, data: Data) -> Chart:
     """Velocity of the rail at the passed points, around the passing, by the main law and by a linear one."""
-    drawn = _points(tree, VELOCITY)[:POINTS]
-    figure = new_figure(0.6 + 1.7 * len(drawn))
-    panels = figure.subplots(len(drawn), 1, squeeze=False)[:, 0]
-    names, main = _main_and_linear(tree), laws(tree, VELOCITY)[0]
-    labels, whole = point_labels(tree), values(tree, TIME)
-    for axes, point in zip(panels, drawn, strict=True):
+    label = "time since the wheel passed / ms" if number(tree, SPEED) else "time / ms"
+    panels = []
+    for point in _points(tree, VELOCITY)[:POINTS]:
         part, passing = _around_passing(tree, point)
-        shown = np.isin(data.at, whole[part])
-        time = data.at[shown] - (passing or 0.0)
-        for law in names:
-            style = law_style(tree, law, main) | {"linewidth": 1.0, "linestyle": "-"}
-            axes.plot(time * 1e3, data.lines[law, point].values[shown] * 1e3, label=law, **style)
-        if passing is not None:
-            axes.axvline(0, color=INK, linewidth=0.8, linestyle=":")
-        axes.set_xlim(time[0] * 1e3, time[-1] * 1e3)
-        axes.yaxis.set_major_locator(MaxNLocator(5))
-        axes.set_ylabel("velocity / (mm/s)")
-        _name(axes, labels[point])
-    panels[-1].set_xlabel("time since the wheel passed / ms" if number(tree, SPEED) else "time / ms")
-    handles, texts = panels[0].get_legend_handles_labels()
-    panels[0].legend(
-        handles[::-1], texts[::-1], loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=2, handlelength=2.6
-    )
-    return figure
+        shown = np.isin(data.at, values(tree, TIME)[part])
+        time = (data.at[shown] - (passing or 0.0)) * 1e3
+        lines = [
+            Line(time, data.lines[law, point].values[shown] * 1e3, law, **_thin(tree, law))
+            for law in _main_and_linear(tree)
+        ]
+        passed = [] if passing is None else [Rules(np.zeros(1), colour=INK)]
+        axes = Axis(label, time[0], time[-1], linked="passing"), Axis("velocity / (mm/s)")
+        panels.append(Panel(*axes, (*passed, *lines), point_labels(tree)[point], height=1.9))
+    return Chart(tuple(panels))
+
+
+def _thin(tree: DataTree, law: str) -> dict[str, Any]:
+    """Look of a line that swings fast: dashes would not be seen."""
+    return law_style(tree, law, "") | {"width": 1.0, "dashes": ()}
 
 
 def _velocity_caption(tree: DataTree) -> str:
@@ -222,34 +201,26 @@ def velocity_psd_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), _of_points(tree, VELOCITY_PSD, slice(None)))
 
 
-@styled()
-def velocity_psd_figure(tree: DataTree, data: Data) -> Figure:
+def velocity_psd_chart(tree: DataTree, data: Data) -> Chart:
     """Power spectral densities of the rail's velocity at the passed points, all laws, a panel per point."""
-    drawn = _points(tree, VELOCITY_PSD)[:POINTS]
-    names = laws(tree, VELOCITY_PSD)
-    figure = new_figure(0.7 + 2.6 * len(drawn))
-    panels = figure.subplots(len(drawn), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-    labels = point_labels(tree)
-    levels: list[NDArray[np.float64]] = []
-    for axes, point in zip(panels, drawn, strict=True):
-        for law in names:
-            psd = data.lines[law, point].values
-            frequency, level = narrow_level(tree, psd, schema.VELOCITY_REFERENCE**2)
-            axes.plot(frequency, level, label=law, **law_style(tree, law, names[0]))
-            levels.append(level)
-        axes.set_ylabel("velocity PSD / dB re (1 nm/s)²/Hz", fontsize=8.5)
-        _name(axes, labels[point])
-    frequency_axis(panels[-1], *frequency_range(tree))
-    level_limits(panels[0], levels)
-    for axes in panels:
-        shade_bands(axes, tree, labelled=axes is panels[0])
-        draw_marks(axes, natural_frequencies(tree), labelled=False)
-    legend_above(panels[0], columns=5)
-    return figure
+    names, drawn = laws(tree, VELOCITY_PSD), _points(tree, VELOCITY_PSD)[:POINTS]
+    levels = {
+        (law, point): narrow_level(tree, data.lines[law, point].values, schema.VELOCITY_REFERENCE**2)
+        for law in names
+        for point in drawn
+    }
+    axis = levels_axis("velocity PSD / dB re (1 nm/s)²/Hz", [level for _, level in levels.values()])
+    marks = natural_rules(tree, *frequency_range(tree), named=False)
+    panels = []
+    for point in drawn:
+        lines = [Line(*levels[law, point], law, **law_style(tree, law, names[0])) for law in main_last(names)]
+        panel = spectrum_panel(tree, lines, axis.label, marks)
+        panels.append(replace(panel, y=axis, title=point_labels(tree)[point], height=2.8))
+    return Chart(tuple(panels))
 
 
 def _velocity_psd_caption(tree: DataTree) -> str:
-    named = ", ".join(f"{mark.label} {mark.frequency:.0f} Hz" for mark in natural_frequencies(tree))
+    named = ", ".join(f"{label} {f:.0f} Hz" for label, f in natural_frequencies(tree).items())
     dotted = f" Dotted: {named}." if named else ""
     return f"Velocity of the rail at fixed points over the whole run, {DRAWN}.{dotted}{shaded_words(tree)}"
 
@@ -260,7 +231,7 @@ MOTION = (
         "Wheel and rail at the contact",
         (TIME,),
         displacement_data,
-        displacement_figure,
+        displacement_chart,
         _displacement_caption,
         tuple(MOTIONS),
     ),
@@ -269,7 +240,7 @@ MOTION = (
         "Rail velocity where the wheel passes",
         (VELOCITY, TIME, schema.ROLLING_POINT),
         velocity_data,
-        velocity_figure,
+        velocity_chart,
         _velocity_caption,
     ),
     Part(
@@ -277,7 +248,7 @@ MOTION = (
         "Rail velocity against frequency",
         (VELOCITY_PSD, FREQUENCY, schema.ROLLING_POINT),
         velocity_psd_data,
-        velocity_psd_figure,
+        velocity_psd_chart,
         _velocity_psd_caption,
     ),
 )

@@ -2,38 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import cycle
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
+from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis, words_axis
+from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Note, Panel
 from asperity.reporting.data import doubtful, laws, of_law, stored_variable
 from asperity.reporting.headline import HeadlineNumber
 from asperity.reporting.law_entries import baselines_among, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import doubtful_words, product_series
-from asperity.reporting.style import (
-    INK,
-    MUTED,
-    band_axis,
-    legend_above,
-    level_limits,
-    new_figure,
-    shade_doubtful,
-    styled,
-)
+from asperity.reporting.spectrum_figures import doubtful_words, main_last, product_series
+from asperity.reporting.style import HATCHES, INK, MUTED
 from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
 from asperity.schema import Entry
 from asperity.spectra import a_weighting
 
 POWER, POWER_A, BAND = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A, schema.NOISE_BAND
 PRODUCT = schema.NOISE_BAND_TIME_PRODUCT
-_SHARES = {"track": (0, (1.5, 1.5)), "wheel": (0, (6, 1.5, 1.5, 1.5))}
+_SHARES: dict[str, Dashes] = {"track": (1.5, 1.5), "wheel": (6, 1.5, 1.5, 1.5)}
 
 
 def sources(tree: DataTree, entry: Entry) -> list[str]:
@@ -61,32 +53,25 @@ def sound_power_data(tree: DataTree) -> Data:
     return Data(band, lines)
 
 
-@styled()
-def sound_power_figure(tree: DataTree, data: Data) -> Figure:
+def sound_power_chart(tree: DataTree, data: Data) -> Chart:
     """A-weighted sound power per one-third octave: the total by each law, track and wheel of linear."""
-    figure = new_figure(4.4)
-    axes = figure.subplots()
     names, found, bands = laws(tree, POWER), sources(tree, POWER), data.at
     whole, weighting = "total" if "total" in found else found[-1], data.lines["A"].values
-    levels = []
-    for law in names:
-        level = data.lines[law, whole].values + weighting
-        axes.plot(
-            bands, level, label=f"{whole}, {law}", marker=law_entry(tree, law).marker, markeredgewidth=0,
-            **law_style(tree, law, names[0]),
-        )  # fmt: skip
-        levels.append(level)
+    lines = [
+        Line(
+            bands, data.lines[law, whole].values + weighting, f"{whole}, {law}",
+            marker=law_entry(tree, law).marker, **law_style(tree, law, names[0]),
+        )
+        for law in main_last(names)
+    ]  # fmt: skip
+    axis = levels_axis("sound power level / dB(A) re 1 pW", [line.y for line in lines], span=60.0)
     share = _share_law(tree)
     for source, dashes in _SHARES.items():
         if (share, source) in data.lines:
             level = data.lines[share, source].values + weighting
-            axes.plot(bands, level, color=MUTED, linestyle=dashes, label=f"{source}, {share}", linewidth=1.2)
-    level_limits(axes, levels, span=60.0)
-    band_axis(axes, bands)
-    shade_doubtful(axes, bands, doubtful(tree, PRODUCT))
-    axes.set_ylabel("sound power level / dB(A) re 1 pW")
-    legend_above(axes, columns=6)
-    return figure
+            lines.append(Line(bands, level, f"{source}, {share}", MUTED, dashes, 1.2))
+    marks = (*doubtful_boxes(bands, doubtful(tree, PRODUCT)), *lines)
+    return Chart((Panel(band_axis(bands), axis, marks, height=4.4),))
 
 
 def _band_caption(tree: DataTree) -> str:
@@ -110,40 +95,28 @@ def total_data(tree: DataTree) -> Data:
     return Data(None, lines)
 
 
-@styled()
-def total_figure(tree: DataTree, data: Data) -> Figure:
+def total_chart(tree: DataTree, data: Data) -> Chart:
     """A-weighted sound power as bars, by source and law."""
     names, found = laws(tree, POWER_A), sources(tree, POWER_A)
-    figure = new_figure(0.7 + len(found) * (0.3 + 0.2 * len(names)))
-    axes = figure.subplots()
     levels = np.array([[data.lines[law, source].values[0] for source in found] for law in names])
-    base = 5 * np.floor((np.nanmin(levels) - 5) / 5)
+    lowest, top = float(np.nanmin(levels)), float(np.nanmax(levels))
+    base = 5 * np.floor((lowest - 5) / 5)
     thickness = 0.82 / len(names)
-    for row, (law, level) in enumerate(zip(names, levels, strict=True)):
-        places = np.arange(len(found)) + (row - (len(names) - 1) / 2) * thickness
-        axes.barh(
-            places, level - base, 0.86 * thickness, left=base, label=law, linewidth=0,
-            color=law_entry(tree, law).colour,
-        )  # fmt: skip
-        _write(axes, level, places)
-    axes.set_yticks(range(len(found)), found)
-    axes.invert_yaxis()
-    axes.grid(visible=False, axis="y")
-    top = float(np.nanmax(levels))
-    axes.set_xlim(base, top + 0.07 * (top - base))  # room for the numbers
-    axes.xaxis.set_major_locator(MultipleLocator(5))
-    axes.set_xlabel("A-weighted sound power level / dB(A) re 1 pW")
-    legend_above(axes)
-    return figure
-
-
-def _write(axes: Axes, levels: NDArray[np.float64], places: NDArray[np.floating]) -> None:
-    for level, place in zip(levels, places, strict=True):
-        if np.isfinite(level):
-            axes.annotate(
-                f"{level:.1f}", (level, place), xytext=(4, 0), textcoords="offset points", va="center",
-                fontsize=8, color=INK,
-            )  # fmt: skip
+    marks: list[Boxes | Note] = []
+    for row, (law, level, hatch) in enumerate(zip(names, levels, cycle(HATCHES), strict=False)):
+        known = np.isfinite(level)
+        at = (np.arange(len(found)) + (row - (len(names) - 1) / 2) * thickness)[known]
+        edges = np.full(len(at), base), level[known], at - 0.43 * thickness, at + 0.43 * thickness
+        marks.append(Boxes(*edges, law, law_entry(tree, law).colour, hatch=hatch, law=law))
+        marks += [
+            Note(f" {y:.1f}", y, x, colour=INK)
+            for x, y in zip(at.tolist(), level[known].tolist(), strict=True)
+        ]
+    across = words_axis(found)
+    downwards = replace(across, low=across.high, high=across.low)
+    along = Axis("A-weighted sound power level / dB(A) re 1 pW", base, top + 0.07 * (top - base))
+    height = 0.7 + len(found) * (0.3 + 0.2 * len(names))
+    return Chart((Panel(along, downwards, tuple(marks), height=height),))
 
 
 def sound_power_table(tree: DataTree) -> ReportTable | None:
@@ -199,7 +172,7 @@ NOISE = (
         "A-weighted sound power by CNOSSOS-EU",
         (POWER_A,),
         total_data,
-        total_figure,
+        total_chart,
         lambda _: (
             "Sum of the A-weighted bands below. The axis does not start at zero: compare the ends of the "
             "bars, not their lengths."
@@ -210,7 +183,7 @@ NOISE = (
         "Sound power by CNOSSOS-EU in one-third octaves",
         (POWER, BAND),
         sound_power_data,
-        sound_power_figure,
+        sound_power_chart,
         _band_caption,
     ),
 )

@@ -5,32 +5,25 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
+from asperity.reporting.axes import levels_axis
+from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Note, Panel, Rules
 from asperity.reporting.data import laws, number, stored_variable, values
 from asperity.reporting.law_entries import law_style
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.style import (
-    GRID,
-    INK,
-    MUTED,
-    legend_above,
-    level_limits,
-    new_figure,
-    styled,
-)
+from asperity.reporting.spectrum_figures import main_last
+from asperity.reporting.style import GRID, INK, MUTED
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 
 LEVEL = schema.PASS_BY_LEVEL
 SPAN = 30.0
 """dB below the maximum that are drawn."""
-DASHES: dict[str, Any] = {
-    "rail": (0, (1.5, 1.5)),
-    "sleepers": (0, (4.0, 1.5)),
-    "wheel": (0, (6.0, 1.5, 1.5, 1.5)),
+DASHES: dict[str, Dashes] = {
+    "rail": (1.5, 1.5),
+    "sleepers": (4.0, 1.5),
+    "wheel": (6.0, 1.5, 1.5, 1.5),
 }
 NUMBERS = {
     "L_pAFmax / dB(A)": schema.PASS_BY_MAXIMUM_LEVEL,
@@ -61,43 +54,35 @@ def pass_by_data(tree: DataTree) -> Data:
     return Data(series(tree, schema.PASS_BY_TIME, "time"), lines)
 
 
-@styled()
-def pass_by_figure(tree: DataTree, data: Data) -> Figure:
+def pass_by_chart(tree: DataTree, data: Data) -> Chart:
     """Level over time: the total by each law, the parts of the main law, and when axles pass."""
-    figure = new_figure(4.2)
-    axes = figure.subplots()
     names, (*parts, whole) = laws(tree, LEVEL), passing_radiators(tree)
     main = names[0]
-    totals = {law: data.lines[law, whole].values for law in names}
-    for law, level in totals.items():
-        axes.plot(data.at, level, label=f"{whole}, {law}", **law_style(tree, law, main))
-    for part in parts:
-        look = {"color": MUTED, "linestyle": DASHES[part], "linewidth": 1.2}
-        axes.plot(data.at, data.lines[main, part].values, label=f"{part}, {main}", **look)
-    axes.set_xlim(data.at[0], data.at[-1])
-    level_limits(axes, list(totals.values()), span=SPAN, step=5.0)
-    _draw_train(axes, tree)
-    axes.set_xlabel("time since the first axle was opposite / s")
-    axes.set_ylabel("sound pressure level, F / dB(A) re 20 µPa")
-    legend_above(axes, columns=5)
-    return figure
+    totals = [
+        Line(data.at, data.lines[law, whole].values, f"{whole}, {law}", **law_style(tree, law, main))
+        for law in main_last(names)
+    ]
+    of_parts = [
+        Line(data.at, data.lines[main, part].values, f"{part}, {main}", MUTED, DASHES[part], 1.2)
+        for part in parts
+    ]
+    label = "sound pressure level, F / dB(A) re 20 µPa"
+    axis = levels_axis(label, [line.y for line in totals], span=SPAN, step=5.0)
+    time = Axis("time since the first axle was opposite / s", data.at[0], data.at[-1])
+    return Chart((Panel(time, axis, (*_train(tree), *totals, *of_parts), height=4.2),))
 
 
-def _draw_train(axes: Axes, tree: DataTree) -> None:
-    """Ticks along the bottom where axles are opposite, and the pass-by time behind the lines."""
-    at = values(tree, schema.AXLE_TIME, "axle")
-    (ticks,) = axes.plot(
-        at, np.full(len(at), 0.025), "|", transform=axes.get_xaxis_transform(), color=INK, markersize=9,
-        markeredgewidth=1.4, clip_on=False, zorder=5, label="_axles",
-    )  # fmt: skip
-    ticks.set_in_layout(False)
+def _train(tree: DataTree) -> list[Boxes | Note | Rules]:
+    """Short rules where axles are opposite, and the pass-by time behind the lines."""
+    axles = values(tree, schema.AXLE_TIME, "axle")
+    passing = Rules(axles, colour=INK, dashes=(), width=1.4, short=True)
     front, rear = number(tree, schema.FRONT_TIME), number(tree, schema.REAR_TIME)
-    if front is not None and rear is not None:
-        axes.axvspan(front, rear, color=GRID, alpha=0.6, linewidth=0, zorder=0)
-        axes.text(
-            0.5 * (front + rear), 0.06, f"Tp = {rear - front:.2f} s", transform=axes.get_xaxis_transform(),
-            ha="center", fontsize=8.5, color=MUTED,
-        )  # fmt: skip
+    if front is None or rear is None:
+        return [passing]
+    edges = (np.array([edge]) for edge in (front, rear, -np.inf, np.inf))
+    middle = 0.5 * (front + rear)
+    named = Note(f"Tp = {rear - front:.2f} s", middle, 0.06, y_share=True, align="center")
+    return [Boxes(*edges, colour=GRID, opacity=0.6), named, passing]
 
 
 def pass_by_caption(tree: DataTree) -> str:
@@ -144,6 +129,6 @@ PASS_BY_PART = Part(
     "Level beside the track",
     (LEVEL, schema.PASS_BY_TIME, schema.AXLE_TIME),
     pass_by_data,
-    pass_by_figure,
+    pass_by_chart,
     pass_by_caption,
 )

@@ -5,28 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.noise import sound_power_change, sources, told_level
+from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis
+from asperity.reporting.chart import Chart, Line, Panel
 from asperity.reporting.data import doubtful, laws, of_law, stored_variable, values
 from asperity.reporting.headline import HeadlineNumber
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
-from asperity.reporting.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    band_axis,
-    legend_above,
-    level_limits,
-    new_figure,
-    shade_doubtful,
-    styled,
-)
+from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION
 from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum
@@ -34,15 +23,15 @@ from asperity.spectra import a_weighting, energy_sum
 POWER, POWER_A = schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A
 STANDARD, STANDARD_A = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A
 _LOOKS: dict[str, Any] = {
-    "rail": {"color": VERMILLION, "marker": "o"},
-    "sleepers": {"color": GREEN, "marker": "s"},
-    "wheel": {"color": BLUE, "marker": "^"},
-    "total": {"color": INK, "linewidth": 1.8},
+    "rail": {"colour": VERMILLION, "marker": "o"},
+    "sleepers": {"colour": GREEN, "marker": "s"},
+    "wheel": {"colour": BLUE, "marker": "^"},
+    "total": {"colour": INK, "width": 1.8},
 }
 _STANDARD_LOOKS: dict[str, Any] = {
-    "track": {"linestyle": (0, (1.5, 1.5))},
-    "wheel": {"linestyle": (0, (6, 1.5, 1.5, 1.5))},
-    "total": {"linestyle": (0, (5, 2)), "linewidth": 1.6},
+    "track": {"dashes": (1.5, 1.5)},
+    "wheel": {"dashes": (6, 1.5, 1.5, 1.5)},
+    "total": {"dashes": (5, 2), "width": 1.6},
 }
 _COMPUTED = "computed"
 
@@ -82,28 +71,21 @@ def radiated_data(tree: DataTree) -> Data:
     return Data(band, lines)
 
 
-@styled()
-def radiated_figure(tree: DataTree, data: Data) -> Figure:
+def radiated_chart(tree: DataTree, data: Data) -> Chart:
     """A-weighted sound power of the main law per one-third octave, by what radiates, beside CNOSSOS-EU."""
-    figure = new_figure(4.4)
-    axes = figure.subplots()
-    main, weighting, levels = laws(tree, POWER)[0], data.lines["A"].values, []
-    for name in radiators(tree):
-        if (main, name) in data.lines:
-            level = data.lines[main, name].values + weighting
-            axes.plot(data.at, level, label=name, markeredgewidth=0, **_LOOKS.get(name, {}))
-            levels.append(level)
+    main, weighting = laws(tree, POWER)[0], data.lines["A"].values
+    lines = [
+        Line(data.at, data.lines[main, name].values + weighting, name, **_LOOKS.get(name, {}))
+        for name in radiators(tree)
+        if (main, name) in data.lines
+    ]
     for name, look in _STANDARD_LOOKS.items():
         if ("standard", main, name) in data.lines:
             level = data.lines["standard", main, name].values + weighting
-            axes.plot(data.at, level, label=f"{name}, CNOSSOS-EU", color=MUTED, **look)
-            levels.append(level)
-    level_limits(axes, levels, span=60.0)
-    band_axis(axes, data.at)
-    shade_doubtful(axes, data.at, doubtful(tree, BAND_TIME_PRODUCT))
-    axes.set_ylabel("sound power level / dB(A) re 1 pW")
-    legend_above(axes, columns=4)
-    return figure
+            lines.append(Line(data.at, level, f"{name}, CNOSSOS-EU", MUTED, **look))
+    axis = levels_axis("sound power level / dB(A) re 1 pW", [line.y for line in lines], span=60.0)
+    marks = (*doubtful_boxes(data.at, doubtful(tree, BAND_TIME_PRODUCT)), *lines)
+    return Chart((Panel(band_axis(data.at), axis, marks, height=4.4),))
 
 
 def _caption(tree: DataTree) -> str:
@@ -164,6 +146,6 @@ RADIATED = Part(
     "Sound power from vibration in one-third octaves",
     (POWER, BAND),
     radiated_data,
-    radiated_figure,
+    radiated_chart,
     _caption,
 )

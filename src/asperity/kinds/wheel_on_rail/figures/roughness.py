@@ -2,37 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
+from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis
+from asperity.reporting.chart import Axis, Chart, Dashes, Line, Note, Panel, Rules, Second
 from asperity.reporting.data import doubtful, engineering, nominal_band, number, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
-from asperity.reporting.style import (
-    BLUE,
-    INK,
-    MUTED,
-    VERMILLION,
-    level_limits,
-    new_figure,
-    shade_doubtful,
-    styled,
-)
+from asperity.reporting.style import BLUE, INK, MUTED, VERMILLION
 from asperity.schema.contact import HERTZ_RADIUS
 from asperity.schema.rolling import SPEED
 
 ROUGHNESS, BAND, PRODUCT = schema.ROUGHNESS_LEVEL, schema.SURFACE_BAND, schema.SURFACE_BAND_LENGTH_PRODUCT
 SPAN = 60.0
 """Levels, dB, that are drawn below the highest: a texture without waves leaves rounding errors."""
-_LOOK = {
-    "rail": (BLUE, "-", "o"),
-    "wheel": (VERMILLION, (0, (6, 1.5)), "s"),
-    "combined": (INK, (0, (1.5, 1.5)), ""),
+_LOOK: dict[str, tuple[str, Dashes, float, str]] = {
+    "rail": (BLUE, (), 1.4, "o"),
+    "wheel": (VERMILLION, (6, 1.5), 1.4, "s"),
+    "combined": (INK, (1.5, 1.5), 1.8, ""),
 }
 
 
@@ -63,42 +55,28 @@ def _drawn(data: Data) -> tuple[NDArray[np.bool_], dict[str, NDArray[np.float64]
     return kept, {name: level[kept] for name, level in drawn.items()}
 
 
-@styled()
-def roughness_figure(tree: DataTree, data: Data) -> Figure:
+def roughness_chart(tree: DataTree, data: Data) -> Chart:
     """Roughness levels per one-third octave of wavelength, long waves on the left."""
-    figure = new_figure(4.2)
-    axes = figure.subplots()
     kept, levels = _drawn(data)
     wavelength = data.at[kept]
-    for name, level in levels.items():
-        colour, dashes, marker = _LOOK.get(name, (MUTED, "-", "^"))
-        thick = 1.8 if name == "combined" else 1.4
-        axes.plot(
-            wavelength, level, color=colour, linestyle=dashes, marker=marker, label=name, linewidth=thick
-        )
-    level_limits(axes, levels.values(), span=100.0, step=5.0)
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.1 * (high - low))  # room for a note
-    axes.set_ylabel("roughness level / dB re 1 µm")
-    _wavelength_axis(axes, wavelength)
+    lines = [
+        Line(wavelength, level, name, *_LOOK.get(name, (MUTED, (), 1.4, "^")))
+        for name, level in levels.items()
+    ]
+    axis = levels_axis("roughness level / dB re 1 µm", [line.y for line in lines], span=100.0, step=5.0)
+    along = _wavelength_axis(tree, np.sort(wavelength))
+    marks = (*doubtful_boxes(wavelength, doubtful(tree, PRODUCT)[kept]), *_contact(tree, wavelength), *lines)
+    return Chart((Panel(along, axis, marks, height=4.2),))
+
+
+def _wavelength_axis(tree: DataTree, wavelength: NDArray[np.float64]) -> Axis:
+    """Bands of wavelength, named in mm, long waves on the left, and the frequency opposite."""
+    axis = band_axis(wavelength, "wavelength / mm", _millimetres)
     speed = number(tree, SPEED)
+    frequency = None
     if speed:
-        _frequency_on_top(axes, wavelength, speed)
-    _mark_contact(axes, tree)
-    shade_doubtful(axes, wavelength, doubtful(tree, PRODUCT)[kept])
-    axes.legend(loc="best")
-    return figure
-
-
-def _wavelength_axis(axes: Axes, wavelength: NDArray[np.float64]) -> None:
-    edge = 10**0.05
-    axes.set_xscale("log")
-    axes.set_xlim(wavelength.max() * edge, wavelength.min() / edge)
-    axes.xaxis.set_major_locator(FixedLocator(wavelength.tolist()))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda w, _: _millimetres(w)))
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.tick_params(axis="x", labelrotation=90)
-    axes.set_xlabel("wavelength / mm")
+        frequency = Second(f"frequency v/λ / Hz, at v = {speed:.3g} m/s", speed, inverse=True)
+    return replace(axis, low=axis.high, high=axis.low, second=frequency)
 
 
 def _millimetres(wavelength: float) -> str:
@@ -106,29 +84,13 @@ def _millimetres(wavelength: float) -> str:
     return f"{float(nominal_band(wavelength)) * 1e3:g}" if wavelength < 900 else f"{1e3 * wavelength:g}"
 
 
-def _frequency_on_top(axes: Axes, wavelength: NDArray[np.float64], speed: float) -> None:
-    top = axes.twiny()
-    top.set_xscale("log")
-    top.set_xlim(axes.get_xlim())
-    top.grid(visible=False)
-    octaves = 1000 * 10 ** (np.arange(-30, 22, 3) / 10)
-    shown = [f for f in octaves if wavelength.min() <= speed / f <= wavelength.max()]
-    top.xaxis.set_major_locator(FixedLocator([speed / f for f in shown]))
-    top.xaxis.set_major_formatter(FuncFormatter(lambda w, _: nominal_band(speed / w)))
-    top.xaxis.set_minor_locator(NullLocator())
-    top.set_xlabel(f"frequency v/λ / Hz, at v = {speed:.3g} m/s")
-
-
-def _mark_contact(axes: Axes, tree: DataTree) -> None:
-    radius = number(tree, HERTZ_RADIUS)
-    if not radius or not axes.get_xlim()[1] < 2 * radius < axes.get_xlim()[0]:
-        return
-    axes.axvline(2 * radius, color=INK, linewidth=0.9, linestyle=":")
-    axes.annotate(
-        f"length of the contact, 2a = {engineering(2 * radius, 'm')}", (2 * radius, 0.97),
-        xycoords=axes.get_xaxis_transform(), xytext=(-5, 0), textcoords="offset points",
-        va="top", ha="right", fontsize=8.5, color=MUTED,
-    )  # fmt: skip
+def _contact(tree: DataTree, wavelength: NDArray[np.float64]) -> list[Rules | Note]:
+    """The length of the contact, where it is among the wavelengths."""
+    length = 2 * (number(tree, HERTZ_RADIUS) or 0.0)
+    if not wavelength.min() < length < wavelength.max():
+        return []
+    words = f"length of the contact, 2a = {engineering(length, 'm')}"
+    return [Rules(np.array([length]), colour=INK), Note(words, length, 0.97, y_share=True, align="right")]
 
 
 def _caption(tree: DataTree) -> str:
@@ -146,6 +108,6 @@ ROUGHNESS_LEVELS = Part(
     "Roughness of rail and wheel",
     (ROUGHNESS, BAND),
     roughness_data,
-    roughness_figure,
+    roughness_chart,
     _caption,
 )

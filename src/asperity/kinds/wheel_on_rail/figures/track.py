@@ -2,49 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, LogLocator, NullFormatter
 from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.kinds.wheel_on_rail.figures.marks import draw_marks, natural_frequencies
+from asperity.kinds.wheel_on_rail.figures.marks import natural_rules
+from asperity.reporting.axes import frequency_axis
+from asperity.reporting.chart import Axis, Chart, Dashes, Line, Panel, Rules
 from asperity.reporting.data import engineering, number, plain, present, stated, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
-from asperity.reporting.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    frequency_axis,
-    legend_above,
-    new_figure,
-    power_axis,
-    sequence,
-    side_by_side,
-    styled,
-)
+from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION, sequence
+from asperity.schema import Entry
 
 FREQUENCY = schema.TRACK_FREQUENCY
-_RECEPTANCES = {
-    schema.RECEPTANCE_MIDSPAN: ("rail, mid-span", BLUE, "-"),
-    schema.RECEPTANCE_SUPPORT: ("rail, over a sleeper", VERMILLION, (0, (6, 1.5))),
-    schema.WHEEL_RECEPTANCE: ("wheel", GREEN, (0, (6, 1.5, 1.5, 1.5))),
-    schema.CONTACT_RECEPTANCE: ("contact spring", MUTED, (0, (1.5, 1.5))),
+_RECEPTANCES: dict[Entry, tuple[str, str, Dashes]] = {
+    schema.RECEPTANCE_MIDSPAN: ("rail, mid-span", BLUE, ()),
+    schema.RECEPTANCE_SUPPORT: ("rail, over a sleeper", VERMILLION, (6, 1.5)),
+    schema.WHEEL_RECEPTANCE: ("wheel", GREEN, (6, 1.5, 1.5, 1.5)),
+    schema.CONTACT_RECEPTANCE: ("contact spring", MUTED, (1.5, 1.5)),
 }
 _PHASES = {
     schema.RECEPTANCE_MIDSPAN: schema.RECEPTANCE_MIDSPAN_PHASE,
     schema.RECEPTANCE_SUPPORT: schema.RECEPTANCE_SUPPORT_PHASE,
 }
-_RATES = {
-    schema.DECAY_RATE: ("eigenvalue", BLUE, "-", 1.6),
-    schema.DECAY_RATE_EN15461: ("EN 15461, sum over distances", VERMILLION, (0, (6, 1.5)), 1.2),
-    schema.DECAY_RATE_LIMIT: ("lower limit, ISO 3095", INK, (0, (4, 2)), 1.4),
+_RATES: dict[Entry, tuple[str, str, Dashes, float]] = {
+    schema.DECAY_RATE: ("eigenvalue", BLUE, (), 1.6),
+    schema.DECAY_RATE_EN15461: ("EN 15461, sum over distances", VERMILLION, (6, 1.5), 1.2),
+    schema.DECAY_RATE_LIMIT: ("lower limit, ISO 3095", INK, (4, 2), 1.4),
 }
 KERNELS = 6
 """Start positions of the moving kernel that are drawn, at most."""
@@ -60,40 +48,29 @@ def receptance_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), present_series(tree, named))
 
 
-@styled()
-def receptance_figure(tree: DataTree, data: Data) -> Figure:
+def receptance_chart(tree: DataTree, data: Data) -> Chart:
     """Magnitude of the receptances, and below it their phase."""
-    phases = {entry: phase for entry, phase in _PHASES.items() if phase in data.lines}
-    figure = new_figure(6.2 if phases else 4.2)
-    rows = [1.9, 1] if phases else [1.9]
-    panels = figure.subplots(len(rows), 1, sharex=True, squeeze=False, height_ratios=rows)[:, 0]
-    frequency = data.at
-    for entry, (label, colour, dashes) in _RECEPTANCES.items():
-        look = {"color": colour, "linestyle": dashes}
+    magnitudes, phases = [], []
+    for entry, look in _RECEPTANCES.items():
         if entry in data.lines:
-            panels[0].plot(frequency, data.lines[entry].values, label=label, **look)
-        if entry in phases:
-            degrees = np.degrees(data.lines[phases[entry]].values)
-            panels[-1].plot(frequency, (degrees + 180) % 360 - 180, **look)
-    panels[0].set_yscale("log")
-    power_axis(panels[0].yaxis)
-    _decades(panels[0])
-    panels[0].set_ylabel("|receptance| / (m/N)")
+            magnitudes.append(Line(data.at, data.lines[entry].values, *look))
+        if _PHASES.get(entry) in data.lines:
+            degrees = np.degrees(data.lines[_PHASES[entry]].values)
+            phases.append(Line(data.at, (degrees + 180) % 360 - 180, *look))
+    along, ends = _along(data)
+    size = Axis("|receptance| / (m/N)", log=True)
+    panels = [Panel(along, size, (*natural_rules(tree, *ends), *magnitudes), height=4.0)]
     if phases:
-        panels[1].set_ylabel("phase / °")
-        panels[1].set_ylim(-190, 190)
-        panels[1].yaxis.set_major_locator(FixedLocator([-180, -90, 0, 90, 180]))
-    frequency_axis(panels[-1], frequency[frequency > 0][0], frequency[-1])
-    for axes in panels:
-        draw_marks(axes, natural_frequencies(tree), labelled=axes is panels[0])
-    legend_above(panels[0])
-    return figure
+        turns = tuple((degrees, f"{degrees:g}") for degrees in (-180.0, -90.0, 0.0, 90.0, 180.0))
+        phase = Axis("phase / °", -190.0, 190.0, ticks=turns)
+        panels.append(Panel(along, phase, (*natural_rules(tree, *ends, named=False), *phases), height=2.2))
+    return Chart(tuple(panels))
 
 
-def _decades(axes: Axes) -> None:
-    low, high = axes.get_ylim()
-    decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
-    axes.yaxis.set_major_locator(FixedLocator(decades.tolist()))
+def _along(data: Data) -> tuple[Axis, tuple[float, float]]:
+    """Axis of all positive frequencies, and its ends."""
+    ends = float(data.at[data.at > 0][0]), float(data.at[-1])
+    return frequency_axis(*ends), ends
 
 
 def _receptance_caption(tree: DataTree) -> str:
@@ -117,28 +94,15 @@ def decay_data(tree: DataTree) -> Data:
     return Data(series(tree, FREQUENCY), present_series(tree, {entry: entry.name for entry in _RATES}))
 
 
-@styled()
-def decay_figure(tree: DataTree, data: Data) -> Figure:
+def decay_chart(tree: DataTree, data: Data) -> Chart:
     """Decay rate along the rail against frequency, with the limit that tests of vehicles ask for."""
-    figure = new_figure(3.9)
-    axes = figure.subplots()
-    frequency = data.at
-    for entry, (label, colour, dashes, width) in _RATES.items():
-        if entry in data.lines:
-            rate = data.lines[entry].values
-            rate = np.where(rate > 0, rate, np.nan)
-            axes.plot(frequency, rate, color=colour, linestyle=dashes, linewidth=width, label=label)
-    axes.set_yscale("log")
-    low, high = axes.get_ylim()
-    axes.set_ylim(max(low, 1e-2 * min(1.0, high)), high)
-    axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
-    axes.yaxis.set_minor_formatter(NullFormatter())
-    axes.set_ylabel("decay rate / (dB/m)")
-    frequency_axis(axes, frequency[frequency > 0][0], frequency[-1])
-    draw_marks(axes, natural_frequencies(tree))
-    legend_above(axes)
-    return figure
+    rates = {entry: data.lines[entry].values for entry in _RATES if entry in data.lines}
+    lines = [Line(data.at, np.where(rate > 0, rate, np.nan), *_RATES[entry]) for entry, rate in rates.items()]
+    lowest, highest = (end([end(line.y) for line in lines]) for end in (np.nanmin, np.nanmax))
+    low = max(lowest / 1.3, 1e-2 * min(1.0, highest))
+    along, ends = _along(data)
+    rate = Axis("decay rate / (dB/m)", low, 1.3 * highest, log=True)
+    return Chart((Panel(along, rate, (*natural_rules(tree, *ends), *lines), height=3.9),))
 
 
 def _decay_caption(tree: DataTree) -> str:
@@ -176,25 +140,30 @@ def kernel_data(tree: DataTree) -> Data:
     return Data(series(tree, schema.LAG), lines)
 
 
-@styled()
-def kernel_figure(tree: DataTree, data: Data) -> Figure:
+def kernel_chart(tree: DataTree, data: Data) -> Chart:
     """Response under the load to an impulse at some start positions: at first, and until it is quiet."""
-    figure, panels = side_by_side(3.9, (1, 1.25))
-    lag = data.at
-    quiet = _until_quiet(lag, data.field.T)
-    for axes, end in zip(panels, (min(6e-3, quiet), quiet), strict=True):
-        shown = lag <= end
-        for (start, line), colour in zip(data.lines.items(), sequence(len(data.lines)), strict=True):
-            kernel = line.values[shown] * 1e6
-            axes.plot(lag[shown] * 1e3, kernel, color=colour, label=f"{start:.2f} m", linewidth=1.2)
-        axes.axhline(0, color=MUTED, linewidth=0.8)
-        axes.set_xlim(0, 1e3 * end)
-        axes.set_xlabel("time since the impulse / ms")
-    panels[0].set_ylabel("moving kernel / (µm/(N s))")
-    panels[0].set_title("the first milliseconds")
-    panels[1].set_title("until it stays below 1 % of its largest value")
-    panels[1].legend(title="start, from a sleeper", loc="upper right", title_fontsize=8.5)
-    return figure
+    quiet = _until_quiet(data.at, data.field.T)
+    return Chart(
+        (
+            _kernel_panel(data, min(6e-3, quiet), "the first milliseconds"),
+            replace(
+                _kernel_panel(data, quiet, "until it stays below 1 % of its largest value"),
+                beside=True,
+                share=1.25,
+            ),
+        )
+    )
+
+
+def _kernel_panel(data: Data, end: float, title: str) -> Panel:
+    shown = data.at <= end
+    lines = [
+        Line(data.at[shown] * 1e3, line.values[shown] * 1e6, f"start {start:.2f} m", colour, width=1.2)
+        for (start, line), colour in zip(data.lines.items(), sequence(len(data.lines)), strict=True)
+    ]
+    time = Axis("time since the impulse / ms", 0.0, 1e3 * end)
+    zero = Rules(np.zeros(1), "y", dashes=(), width=0.8)
+    return Panel(time, Axis("moving kernel / (µm/(N s))"), (zero, *lines), title, height=3.9)
 
 
 def _kernel_caption(tree: DataTree) -> str:
@@ -206,7 +175,8 @@ def _kernel_caption(tree: DataTree) -> str:
         used = f" The run used {poles:.0f} common poles instead{fitted}."
     return (
         "Displacement of the rail, positive downwards, at the place that the wheel has reached a time after "
-        f"an impulse of 1 N s at the start position: the rail seen from the moving wheel.{used}"
+        "an impulse of 1 N s at the start position, counted from a sleeper: the rail seen from the moving "
+        f"wheel.{used}"
     )
 
 
@@ -216,7 +186,7 @@ TRACK = (
         "Receptance of rail, wheel and contact",
         (FREQUENCY,),
         receptance_data,
-        receptance_figure,
+        receptance_chart,
         _receptance_caption,
         tuple(_RECEPTANCES),
     ),
@@ -225,7 +195,7 @@ TRACK = (
         "Decay rate of the track",
         (FREQUENCY,),
         decay_data,
-        decay_figure,
+        decay_chart,
         _decay_caption,
         (schema.DECAY_RATE, schema.DECAY_RATE_EN15461),
     ),
@@ -234,7 +204,7 @@ TRACK = (
         "Response of the rail under the moving wheel",
         (schema.MOVING_KERNEL, schema.START_POSITION, schema.LAG),
         kernel_data,
-        kernel_figure,
+        kernel_chart,
         _kernel_caption,
     ),
 )
