@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from xarray import DataTree
 from asperity.reporting.chart import Axis, Dashes, Line, Mark, Note, Panel, Shape
 from asperity.reporting.data import engineering, number, present, values
 from asperity.reporting.part import Data, Series
-from asperity.reporting.style import BLUE, GRID, INK
+from asperity.reporting.style import BLUE, GRID, INK, MUTED, VERMILLION
 from asperity.reporting.texture import length_unit
 from asperity.schema import contact
 from asperity.schema.rolling import POSITION
@@ -43,6 +43,38 @@ def _side(cells: np.ndarray) -> float:
 def length_of(data: Data, name: str) -> float | None:
     """A length of a scene, m, if it is known."""
     return float(data.lines[name].values[0]) if name in data.lines else None
+
+
+def lengths_of(data: Data, word: str) -> list[float]:
+    """Lengths of a scene whose names begin with a word, m."""
+    return [float(line.values[0]) for name, line in data.lines.items() if str(name).startswith(word)]
+
+
+def rolled(data: Data) -> tuple[float, float]:
+    """Where the record begins and ends, m."""
+    begin, end = (length_of(data, f"record {word} at x") or 0.0 for word in ("begins", "ends"))
+    return begin, end
+
+
+def path_line(begin: float, end: float) -> Line:
+    """Draw what is rolled over."""
+    return Line(np.array([begin, end]), np.zeros(2), colour=VERMILLION, width=2.5)
+
+
+def places(x: Sequence[float], y: float) -> Line:
+    """Draw triangles where something is recorded."""
+    return Line(np.array(x), np.full(len(x), y), width=0.0, marker="^")
+
+
+def rolling_body(x: float, radius: float, unit: float, speed: float | None, inside: float) -> list[Mark]:
+    """Draw a ball or wheel that stands at `x`, its radius, and its speed in m/s; lengths in `unit` m."""
+    spoke = Line(np.array([x, x + 0.8 * radius]), np.array([radius, 1.6 * radius]), colour=MUTED, width=0.9)
+    name = Note(f"R = {engineering(radius * unit, 'm', 2)}", x, 0.8 * radius, align="center", colour=INK)
+    body = [*oval(x, radius, radius, radius, inside=inside), spoke, name]
+    if speed is None:
+        return body
+    ahead = Note(f"{speed:.3g} m/s", x + 1.42 * radius, radius, colour=INK)
+    return [*body, *arrow(x + 1.1 * radius, x + 1.4 * radius, radius), ahead]
 
 
 def patch_panel(data: Data, **place: Any) -> Panel:

@@ -12,7 +12,6 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.force import around_peak
 from asperity.kinds.wheel_on_rail.figures.marks import natural_frequencies, natural_rules, sleeper_times
-from asperity.reporting import chart
 from asperity.reporting.axes import levels_axis
 from asperity.reporting.chart import Axis, Chart, Line, Panel, Rules
 from asperity.reporting.data import laws, number, of_law, present, stored_variable, values
@@ -27,7 +26,7 @@ from asperity.reporting.spectrum_figures import (
     spectrum_panel,
 )
 from asperity.reporting.style import INK
-from asperity.reporting.time_figures import beyond_limits, main_limits, time_unit
+from asperity.reporting.time_figures import beyond_limits, main_limits, time_axis
 from asperity.schema import Entry
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, RELATIVE_DISPLACEMENT, SPEED, TIME
 from asperity.schema.spectra import FREQUENCY
@@ -71,8 +70,7 @@ def _motions(data: Data) -> dict[Entry, dict[str, NDArray[np.float64]]]:
 
 def displacement_chart(tree: DataTree, data: Data) -> Chart:
     """Displacement of rail and wheel at the contact and their approach, all laws, over a piece of the run."""
-    unit, symbol = time_unit(data.at[-1])
-    time = Axis(f"time / {symbol}", data.at[0] / unit, data.at[-1] / unit, linked=chart.TIME)
+    time, unit = time_axis(tree, data.at)
     sleepers = sleeper_times(tree, data.at[0], data.at[-1], unit)
     panels = []
     for entry, motions in _motions(data).items():
