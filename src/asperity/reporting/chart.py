@@ -169,7 +169,8 @@ class Chart:
     panels: tuple[Panel, ...]
     # where a reader may want to go: by name, stretches of x (n, 2); a button shows one after the other
     places: Mapping[str, Numbers] = field(default_factory=lambda: MappingProxyType({}))
-    drawing: bool = False  # no diagram: drawn once, as it is, and not zoomed
+    # no diagram: drawn once, as it is, and not zoomed; an axis without a label is not drawn
+    drawing: bool = False
 
     @property
     def laws(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""How far the axes of a panel reach, where they do not say so themselves: as far as its marks."""
+"""Where things stand in a chart: its panels in rows, and how far the axes of a panel reach."""
 
 from __future__ import annotations
 
@@ -6,14 +6,25 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from asperity.reporting.chart import Area, Boxes, Field, Line, Mark, Numbers, Panel, Shape
+from asperity.reporting.chart import Area, Boxes, Chart, Field, Line, Mark, Numbers, Panel, Shape
 
 MARGIN = 0.04
 """Share of the height of a panel that is left free above and below its marks."""
 
 
+def rows_of(chart: Chart) -> list[list[Panel]]:
+    """Panels of a chart that stand in one row."""
+    rows: list[list[Panel]] = []
+    for panel in chart.panels:
+        if panel.beside and rows:
+            rows[-1].append(panel)
+        else:
+            rows.append([panel])
+    return rows
+
+
 def limits(panel: Panel, way: str) -> tuple[float, float]:
-    """Ends of an axis of a panel, ``"x"`` or ``"y"``."""
+    """Ends of an axis of a panel, ``"x"`` or ``"y"``; as far as its marks reach where it does not say so."""
     axis = panel.x if way == "x" else panel.y
     if axis.low is not None and axis.high is not None:
         return axis.low, axis.high

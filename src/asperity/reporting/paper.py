@@ -32,7 +32,7 @@ from asperity.reporting.chart import (
     Shape,
 )
 from asperity.reporting.data import engineering, power_of_ten
-from asperity.reporting.extent import limits
+from asperity.reporting.extent import limits, rows_of
 from asperity.reporting.style import GRID, INK, MUTED, WIDE
 
 RC: dict[Any, Any] = {
@@ -100,6 +100,8 @@ def draw(chart: Chart, title: str = "") -> Figure:
         named: set[tuple[str, str]] = set()
         for number, row in enumerate(rows):
             _draw_row(figure, grid[number], row, named)
+        if chart.drawing:
+            _spare(figure, chart)
         if title:
             figure.suptitle(title, x=0.01, ha="left", fontweight="bold", fontsize=10)
     return figure
@@ -112,15 +114,17 @@ def save(figure: Figure, file: BinaryIO, format: str) -> None:
         figure.savefig(file, format=format, dpi=DOTS, metadata=UNDATED[format])
 
 
-def rows_of(chart: Chart) -> list[list[Panel]]:
-    """Panels of a chart that stand in one row."""
-    rows: list[list[Panel]] = []
-    for panel in chart.panels:
-        if panel.beside and rows:
-            rows[-1].append(panel)
-        else:
-            rows.append([panel])
-    return rows
+def _spare(figure: Figure, chart: Chart) -> None:
+    """Leave out what a drawing does not need: grids, and axes without a name."""
+    for axes, panel in zip(figure.axes, chart.panels, strict=True):
+        axes.grid(visible=False)
+        axes.spines[["right", "top"]].set_visible(False)
+        if not panel.x.label:
+            axes.spines["bottom"].set_visible(False)
+            axes.set_xticks([])
+        if not panel.y.label:
+            axes.spines["left"].set_visible(False)
+            axes.set_yticks([])
 
 
 def _draw_row(figure: Figure, place: SubplotSpec, row: list[Panel], named: set[tuple[str, str]]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,6 +35,13 @@ COLOURS = {
 HATCHES = ("", "/", "\\", "x", ".", "-")
 """Of bars beside each other, for those who do not see colours."""
 SEQUENCE = tuple(COLOURS)[-6:]
+
+
+def colour_variables(dark: bool, colours: Mapping[str, str] = COLOURS) -> str:
+    """CSS declarations of colours, by their places in the table: of their own values, or for dark screens."""
+    return "".join(
+        f"--c{index}:{other if dark else colour};" for index, (colour, other) in enumerate(colours.items())
+    )
 
 
 def sequence(count: int) -> list[str]:
