@@ -46,6 +46,16 @@ def wavenumber_axis(low: float, high: float) -> Axis:
     return Axis(label, float(low), float(high), log=True, second=second, linked="wavenumber")
 
 
+def log_axis(label: str, values: Sequence[Numbers], lowest: float = 0.0) -> Axis:
+    """Logarithmic axis that holds all positive values, at least `lowest`, between two of 1, 2, 5, 10, …"""
+    found = np.concatenate([each[each > 0] for each in values])
+    if found.size == 0:
+        return Axis(label, 1.0, 10.0, log=True)
+    low, high = max(found.min(), min(lowest, found.max())), found.max()
+    steps = np.outer(10.0 ** np.arange(np.floor(np.log10(low)), np.log10(high) + 1), [1, 2, 5, 10]).ravel()
+    return Axis(label, float(steps[steps <= low].max()), float(steps[steps >= high].min()), log=True)
+
+
 def words_axis(words: Sequence[str], label: str = "") -> Axis:
     """Axis with a place, 0, 1, 2, …, for each word."""
     ticks = tuple((float(n), word) for n, word in enumerate(words))

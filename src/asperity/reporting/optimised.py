@@ -33,9 +33,9 @@ class TextureBands:
 def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mapping[str, str]) -> Chart:
     """The texture above, and below what is heard of it in each band; colours by law."""
     edges = bands.wavelength / EDGE, bands.wavelength * EDGE
-    bounded = np.isfinite(bands.lowest) & np.isfinite(bands.highest)
-    box = (each[bounded] for each in (*edges, bands.lowest, bands.highest))
-    texture: list[Boxes | Line] = [Boxes(*box, label="allowed", colour=MUTED, opacity=0.15)]
+    bounds = np.stack([*edges, bands.lowest, bands.highest])
+    left, right, low, high = bounds[:, np.isfinite(bounds).all(axis=0)]
+    texture: list[Boxes | Line] = [Boxes(left, right, low, high, "allowed", MUTED, 0.15)]
     response = []
     for name, dashes in _DASHES.items():
         texture.append(Line(*_steps(*edges, bands.levels[name]), name, INK, dashes))
@@ -59,7 +59,7 @@ def _wavelengths(bands: TextureBands) -> Axis:
     """Bands by wavelength, long waves on the left, and opposite the frequency at which they are passed."""
     axis = band_axis(np.sort(bands.wavelength), "one-third octave of wavelength", nominal_length)
     speed = float(np.median(bands.wavelength * bands.frequency))
-    second = Second("frequency at which it is passed / Hz", speed, inverse=True)
+    second = Second("frequency at which it is passed", speed, inverse=True, unit="Hz")
     return replace(axis, low=axis.high, high=axis.low, second=second, linked="wavelength")
 
 

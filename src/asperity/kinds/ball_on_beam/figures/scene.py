@@ -65,15 +65,17 @@ def _beam(tree: DataTree, data: Data) -> Panel:
 
 
 def _supports(support: str, length: float, height: float) -> list[Mark]:
-    size, marks = 0.018 * length, []
+    size = 0.018 * length
+    marks: list[Mark] = []
     for x, outward in ((0.0, -1.0), (length, 1.0)):
         if support == "simply-supported":
             foot = np.array([x, x - size, x + size]), -height - 1.5 * size * np.array([0, 1, 1])
             marks.append(Shape(*foot, width=0.9))
         elif support == "clamped":
-            edges = sorted((x, x + outward * size)), (-height - size, size)
-            box = (np.array([edge]) for pair in edges for edge in pair)
-            marks.append(Boxes(*box, colour=GRID, hatch="/", edge=INK))
+            left, right, low, high = (
+                np.array([edge]) for edge in (*sorted((x, x + outward * size)), -height - size, size)
+            )
+            marks.append(Boxes(left, right, low, high, colour=GRID, hatch="/", edge=INK))
     return marks
 
 

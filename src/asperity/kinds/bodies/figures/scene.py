@@ -53,10 +53,10 @@ def _path(data: Data) -> Panel:
     marks.append(places(sensors, -0.045 * span))
     if contacts:
         marks += arrow(contacts[-1] + 1.6 * drawn, contacts[-1] + 5 * drawn, drawn, MUTED)
-    x = Axis("x / m", -0.04 * span, 1.04 * span)
-    y = Axis("", -0.08 * span, max(3.0 * drawn, 0.1 * span), ticks=((0.0, "0"),))
+    along = Axis("x / m", -0.04 * span, 1.04 * span)
+    up = Axis("", -0.08 * span, max(3.0 * drawn, 0.1 * span), ticks=((0.0, "0"),))
     return Panel(
-        x, y, tuple(marks), "all contacts where the record begins", height=3.4, equal=True, share=2.2
+        along, up, tuple(marks), "all contacts where the record begins", height=3.4, equal=True, share=2.2
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.reporting.axes import EDGE, band_axis
+from asperity.reporting.axes import EDGE, band_axis, log_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Line, Panel, Rules
 from asperity.reporting.data import engineering, number, stored_variable, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
@@ -43,18 +43,23 @@ def loss_data(tree: DataTree) -> Data:
 def loss_chart(tree: DataTree, data: Data) -> Chart:
     """Errors of force and receptance per one-third octave; stiffness and loss factor of each part."""
     bands = band_axis(data.at)
-    stiffness: list[Line | Rules] = [Rules(np.ones(1), "y", dashes=_DOTS, width=1.0)]
-    loss: list[Line | Rules] = []
-    for colour, dashes, layer in zip(_COLOURS, _DASHES, _layers(tree), strict=False):
-        stiffness.append(Line(data.at, data.lines[STIFFNESS, layer].values, layer, colour, dashes))
-        loss.append(Line(data.at, data.lines[LOSS, layer].values, layer, colour, dashes))
-        constant = data.lines[CONSTANT, layer].values[:1]
-        loss.append(Rules(constant, "y", colour=colour, dashes=_DOTS, width=1.0))
+    looks = dict(zip(_layers(tree), zip(_COLOURS, _DASHES, strict=True), strict=False))
+    nominal = Rules(np.ones(1), "y", dashes=_DOTS, width=1.0)
+    constants = [
+        Rules(data.lines[CONSTANT, layer].values[:1], "y", colour=colour, dashes=_DOTS, width=1.0)
+        for layer, (colour, _) in looks.items()
+    ]
+    stiffness, loss = (
+        [Line(data.at, data.lines[entry, layer].values, layer, *look) for layer, look in looks.items()]
+        for entry in (STIFFNESS, LOSS)
+    )
+    times = log_axis("stiffness / nominal", [nominal.at, *(line.y for line in stiffness)])
+    factor = log_axis("loss factor", [mark.at for mark in constants] + [line.y for line in loss])
     return Chart(
         (
             Panel(bands, Axis("error / dB"), _errors(data), height=2.4),
-            Panel(bands, Axis("stiffness / nominal", log=True), tuple(stiffness), height=1.9),
-            Panel(bands, Axis("loss factor", log=True), tuple(loss), height=1.9),
+            Panel(bands, times, (nominal, *stiffness), height=1.9),
+            Panel(bands, factor, (*constants, *loss), height=1.9),
         )
     )
 

@@ -24,14 +24,10 @@ def natural_frequencies(tree: DataTree) -> dict[str, float]:
     return dict(sorted(found.items(), key=lambda item: item[1]))
 
 
-def natural_rules(
-    tree: DataTree, low: float, high: float, named: bool = True, height: float = 0.03
-) -> list[Rules | Note]:
-    """Natural frequencies between two others, their names written along them from the share `height`."""
+def natural_rules(tree: DataTree, low: float, high: float, named: bool = True) -> list[Rules | Note]:
+    """Natural frequencies between two others, their names written along them."""
     inside = {label: f for label, f in natural_frequencies(tree).items() if low < f < high}
-    names = [
-        Note(f"{label}, {f:.0f} Hz", f, height, y_share=True, upright=True) for label, f in inside.items()
-    ]
+    names = [Note(f"{label}, {f:.0f} Hz", f, 0.03, y_share=True, upright=True) for label, f in inside.items()]
     return [Rules(np.array(list(inside.values()))), *(names if named else [])]
 
 

@@ -79,10 +79,11 @@ def _train(tree: DataTree) -> list[Boxes | Note | Rules]:
     front, rear = number(tree, schema.FRONT_TIME), number(tree, schema.REAR_TIME)
     if front is None or rear is None:
         return [passing]
-    edges = (np.array([edge]) for edge in (front, rear, -np.inf, np.inf))
+    whole = np.array([np.inf])
+    shade = Boxes(np.array([front]), np.array([rear]), -whole, whole, colour=GRID, opacity=0.6)
     middle = 0.5 * (front + rear)
     named = Note(f"Tp = {rear - front:.2f} s", middle, 0.06, y_share=True, align="center")
-    return [Boxes(*edges, colour=GRID, opacity=0.6), named, passing]
+    return [shade, named, passing]
 
 
 def pass_by_caption(tree: DataTree) -> str:

@@ -75,7 +75,7 @@ def _wavelength_axis(tree: DataTree, wavelength: NDArray[np.float64]) -> Axis:
     speed = number(tree, SPEED)
     frequency = None
     if speed:
-        frequency = Second(f"frequency v/λ / Hz, at v = {speed:.3g} m/s", speed, inverse=True)
+        frequency = Second(f"frequency v/λ, at v = {speed:.3g} m/s", speed, inverse=True, unit="Hz")
     return replace(axis, low=axis.high, high=axis.low, second=frequency)
 
 

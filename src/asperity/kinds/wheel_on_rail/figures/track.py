@@ -11,7 +11,7 @@ from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.marks import natural_rules
-from asperity.reporting.axes import frequency_axis
+from asperity.reporting.axes import frequency_axis, log_axis
 from asperity.reporting.chart import Axis, Chart, Dashes, Line, Panel, Rules
 from asperity.reporting.data import engineering, number, plain, present, stated, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
@@ -98,11 +98,9 @@ def decay_chart(tree: DataTree, data: Data) -> Chart:
     """Decay rate along the rail against frequency, with the limit that tests of vehicles ask for."""
     rates = {entry: data.lines[entry].values for entry in _RATES if entry in data.lines}
     lines = [Line(data.at, np.where(rate > 0, rate, np.nan), *_RATES[entry]) for entry, rate in rates.items()]
-    lowest, highest = (end([end(line.y) for line in lines]) for end in (np.nanmin, np.nanmax))
-    low = max(lowest / 1.3, 1e-2 * min(1.0, highest))
     along, ends = _along(data)
-    rate = Axis("decay rate / (dB/m)", low, 1.3 * highest, log=True)
-    return Chart((Panel(along, rate, (*natural_rules(tree, *ends), *lines), height=3.9),))
+    axis = log_axis("decay rate / (dB/m)", [line.y for line in lines], lowest=0.01)
+    return Chart((Panel(along, axis, (*natural_rules(tree, *ends), *lines), height=3.9),))
 
 
 def _decay_caption(tree: DataTree) -> str:
