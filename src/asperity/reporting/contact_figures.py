@@ -2,33 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.reporting.chart import Area, Axis, Boxes, Chart, Dashes, Line, Mark, Panel, Rules, Second
 from asperity.reporting.data import engineering, force_unit, laws, number, present, values
 from asperity.reporting.filter_figures import FILTER
 from asperity.reporting.law_entries import law_entry
 from asperity.reporting.part import Data, Part, Series, field, present_series, series
-from asperity.reporting.style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    side_by_side,
-    styled,
-)
-from asperity.reporting.texture import draw_map, length_unit
+from asperity.reporting.scene import CORNERS
+from asperity.reporting.style import BLUE, GREEN, INK
+from asperity.reporting.texture import length_unit, map_panel
 from asperity.schema import Entry, contact
 from asperity.schema.rolling import CONTACT_FORCE
 
 CURVE_POINTS = 200
 """Points of a closed form."""
+PAPER = "#f6f6f6"
+"""Behind pressure, on a dark page too: its colours run from light to black."""
+MICRO, MEGA = 1e-6, 1e6
+HERTZ: Dashes = (4.0, 2.0)
 
 
 def _centre(axis: NDArray[np.float64]) -> float:
@@ -40,31 +37,24 @@ def pressure_data(tree: DataTree) -> Data:
     return field(tree, contact.PRESSURE, contact.PX, contact.PY, "p")
 
 
-@styled()
-def pressure_figure(tree: DataTree, data: Data) -> Figure:
+def pressure_chart(tree: DataTree, data: Data) -> Chart:
     """Pressure and, if known, gap at the working load, with the outline of Hertz's contact."""
-    with_gap = present(tree, contact.GAP)
-    figure, panels = side_by_side(4.1, (1, 1))
     x, y, pressure = data.at, values(tree, contact.PY), data.field
-    unit = length_unit(np.ptp(x))
     symbol, size = ("GPa", 1e9) if pressure.max() >= 2e9 else ("MPa", 1e6)
     loaded = np.where(pressure > 0, pressure, np.nan) / size
-    image = draw_map(panels[0], x, y, loaded, unit, cmap="inferno_r", vmin=0)
-    figure.colorbar(image, ax=panels[0], label=f"pressure / {symbol}", shrink=0.9)
-    panels[0].set_title("pressure")
-    panels[0].set_facecolor("#f6f6f6")  # on a dark page too: the colours run from light to black
-    semi_axes = _semi_axes(tree)
-    if with_gap:
-        gap = values(tree, contact.GAP, "px", "py")
-        height, height_symbol = length_unit(float(np.nanmax(gap)) or 1e-6)
-        image = draw_map(panels[1], x, y, gap / height, unit, cmap="cividis", vmin=0)
-        figure.colorbar(image, ax=panels[1], label=f"gap / {height_symbol}", shrink=0.9)
-        panels[1].set_title("gap")
-    else:
-        _pressure_section(panels[1], x, y, pressure / size, unit, symbol)
-    for axes in panels[: 2 if with_gap else 1]:
-        _ellipse(axes, x, y, semi_axes, unit)
-    return figure
+    outline, label = _outline(tree, x, y), f"pressure / {symbol}"
+    whole = (np.array([-np.inf]), np.array([np.inf]))
+    scale = (label, 0.0, float(np.nanmax(pressure)) / size)
+    above = map_panel(x, y, loaded, scale, *outline, colours="inferno_r", title="pressure", height=4.1)
+    above = replace(above, marks=(Boxes(*whole, *whole, colour=PAPER), *above.marks))
+    if not present(tree, contact.GAP):
+        return Chart((above, _pressure_section(x, y, pressure / size, label)))
+    gap = values(tree, contact.GAP, "px", "py")
+    height, height_symbol = length_unit(float(np.nanmax(gap)) or 1e-6)
+    scale = (f"gap / {height_symbol}", 0.0, float(np.nanmax(gap)) / height)
+    return Chart(
+        (above, map_panel(x, y, gap / height, scale, *outline, title="gap", height=4.1, beside=True))
+    )
 
 
 def _semi_axes(tree: DataTree) -> tuple[float, float] | None:
@@ -73,38 +63,28 @@ def _semi_axes(tree: DataTree) -> tuple[float, float] | None:
     return (along, across or along) if along else None
 
 
-def _ellipse(
-    axes: Axes,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    semi_axes: tuple[float, float] | None,
-    unit: tuple[float, str],
-) -> None:
+def _outline(tree: DataTree, x: NDArray[np.float64], y: NDArray[np.float64]) -> list[Line]:
+    """Outline of Hertz's contact, black on white: it crosses all colours of a map."""
+    semi_axes, (size, _) = _semi_axes(tree), length_unit(np.ptp(x))
     if semi_axes is None:
-        return
-    centre = (_centre(x) / unit[0], _centre(y) / unit[0])
-    size = [2 * semi_axis / unit[0] for semi_axis in semi_axes]
-    for colour, width, dashes in (("white", 2.6, "-"), ("black", 1.1, (0, (4, 2)))):
-        axes.add_patch(
-            Ellipse(centre, *size, fill=False, edgecolor=colour, linewidth=width, linestyle=dashes)
-        )
+        return []
+    angle = np.linspace(0.0, 2 * np.pi, CORNERS + 1)
+    along = (_centre(x) + semi_axes[0] * np.cos(angle)) / size
+    across = (_centre(y) + semi_axes[1] * np.sin(angle)) / size
+    white = Line(along, across, colour="#ffffff", width=2.6)
+    return [white, replace(white, colour="#000000", dashes=HERTZ, width=1.1)]
 
 
 def _pressure_section(
-    axes: Axes,
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    pressure: NDArray[np.float64],
-    unit: tuple[float, str],
-    symbol: str,
-) -> None:
-    middle = int(np.argmin(np.abs(y - _centre(y))))
-    axes.fill_between(x / unit[0], pressure[:, middle], color=BLUE, linewidth=0.5, step="mid")
-    axes.set_xlim(x[0] / unit[0], x[-1] / unit[0])
-    axes.set_ylim(bottom=0)
-    axes.set_xlabel(f"x / {unit[1]} (rolling direction →)")
-    axes.set_ylabel(f"pressure / {symbol}")
-    axes.set_title("along the middle")
+    x: NDArray[np.float64], y: NDArray[np.float64], pressure: NDArray[np.float64], label: str
+) -> Panel:
+    """Pressure along the middle, a bar for each cell."""
+    size, symbol = length_unit(np.ptp(x))
+    middle = pressure[:, int(np.argmin(np.abs(y - _centre(y))))]
+    at, half = x / size, (x[1] - x[0]) / size / 2
+    bars = Boxes(at - half, at + half, np.zeros(at.shape), middle, colour=BLUE)
+    along = Axis(f"x / {symbol} (rolling direction →)", at[0], at[-1])
+    return Panel(along, Axis(label, 0.0), (bars,), title="along the middle", height=4.1, beside=True)
 
 
 def _pressure_caption(tree: DataTree) -> str:
@@ -152,73 +132,72 @@ def loading_data(tree: DataTree) -> Data:
     return Data(approach, lines)
 
 
-@styled()
-def loading_figure(tree: DataTree, data: Data) -> Figure:
+def loading_chart(tree: DataTree, data: Data) -> Chart:
     """Contact force and contact stiffness against the approach, with their spread and Hertz's."""
-    figure, panels = side_by_side(4.2, (1, 1))
-    rough = bool(contact.FORCE_STD in data.lines and np.nanmax(data.lines[contact.FORCE_STD].values) > 0)
+    rough = contact.FORCE_STD in data.lines and np.nanmax(data.lines[contact.FORCE_STD].values) > 0
     size, symbol = force_unit(float(np.nanmax(data.lines[contact.FORCE].values)))
     force = "rough, mean ± standard deviation" if rough else "smooth bodies (Hertz)"
     secant = "k_c = F/r, mean ± standard deviation" if rough else "F/r, smooth bodies (Hertz)"
-    solid, dotted = {"color": BLUE, "linestyle": "-"}, {"color": GREEN, "linestyle": (0, (1.5, 1.5))}
-    _curve(panels[0], data, contact.FORCE, contact.FORCE_STD, size, label=force, **solid)
-    _hertz(panels[0], tree, data.at, 1.5, size)
-    panels[0].set_ylabel(f"contact force F / {symbol}")
-    _curve(panels[1], data, contact.STIFFNESS, contact.STIFFNESS_STD, 1e6, label=secant, **solid)
-    _curve(panels[1], data, contact.TANGENT_STIFFNESS, None, 1e6, label="tangent dF/dδ", **dotted)
-    _hertz(panels[1], tree, data.at, 0.5, 1e6)
-    panels[1].set_ylabel("stiffness / (MN/m)")
-    for axes in panels:
-        _approach_axis(axes, tree, data.at)
-        axes.set_ylim(bottom=0)
-        axes.legend(loc="upper left")
-    return figure
-
-
-def _curve(axes: Axes, data: Data, mean: Entry, spread: Entry | None, size: float, **look: Any) -> None:
-    """Draw a curve, with dots where its states are few, and what it varies by."""
-    if mean not in data.lines:
-        return
-    approach, level = data.at * 1e6, data.lines[mean].values / size
-    marker = "o" if spread and len(approach) <= 40 else ""
-    axes.plot(approach, level, marker=marker, zorder=3, **look)
-    if spread in data.lines:
-        reach = data.lines[spread].values / size
-        axes.fill_between(
-            approach, level - reach, level + reach, color=look["color"], alpha=0.25, linewidth=0
+    forces = [
+        *_curve(data, contact.FORCE, size, force, BLUE, spread=contact.FORCE_STD),
+        *_hertz(tree, data.at, 1.5, size),
+    ]
+    stiffnesses = [
+        *_curve(data, contact.STIFFNESS, MEGA, secant, BLUE, spread=contact.STIFFNESS_STD),
+        *_curve(data, contact.TANGENT_STIFFNESS, MEGA, "tangent dF/dδ", GREEN, (1.5, 1.5)),
+        *_hertz(tree, data.at, 0.5, MEGA),
+    ]
+    axis, load = _approach_axis(tree, data.at), _working_load(tree, data.at)
+    return Chart(
+        (
+            Panel(axis, Axis(f"contact force F / {symbol}", 0.0), (*load, *forces), height=4.2),
+            Panel(axis, Axis("stiffness / (MN/m)", 0.0), (*load, *stiffnesses), height=4.2, beside=True),
         )
-
-
-def _hertz(axes: Axes, tree: DataTree, approach: NDArray[np.float64], power: float, size: float) -> None:
-    """Draw Hertz's closed form K δ^power from where the smooth bodies touch: there is none below."""
-    constant = number(tree, contact.HERTZ_CONSTANT)
-    if constant is None or approach.max() <= 0:
-        return
-    closed = np.linspace(0.0, approach.max(), CURVE_POINTS)
-    axes.plot(
-        closed * 1e6,
-        constant * closed**power / size,
-        color=INK,
-        linestyle=(0, (4, 2)),
-        label="Hertz",
-        zorder=3,
     )
 
 
-def _approach_axis(axes: Axes, tree: DataTree, approach: NDArray[np.float64]) -> None:
-    low, high = 1e6 * approach.min(), 1e6 * approach.max()
-    margin = 0.02 * (high - low or 1.0)
-    axes.set_xlim(low - margin, high + margin)
-    axes.set_xlabel("approach δ / µm (closing →)")
-    datum = number(tree, contact.DATUM)
-    if datum is not None:
-        top = axes.twiny()
-        top.set_xlim(*(edge + 1e6 * datum for edge in axes.get_xlim()))
-        top.grid(visible=False)
-        top.set_xlabel("state r = δ + d₀ / µm")
+def _curve(
+    data: Data,
+    mean: Entry,
+    size: float,
+    label: str,
+    colour: str,
+    dashes: Dashes = (),
+    spread: Entry | None = None,
+) -> list[Mark]:
+    """Draw a curve, with dots where its states are few, and what it varies by."""
+    if mean not in data.lines:
+        return []
+    approach, level = data.at / MICRO, data.lines[mean].values / size
+    marker = "o" if spread and len(approach) <= 40 else ""
+    line = Line(approach, level, label, colour, dashes, marker=marker)
+    if spread not in data.lines:
+        return [line]
+    reach = data.lines[spread].values / size
+    return [Area(approach, level - reach, level + reach, colour=colour), line]
+
+
+def _hertz(tree: DataTree, approach: NDArray[np.float64], power: float, size: float) -> list[Mark]:
+    """Draw Hertz's closed form K δ^power from where the smooth bodies touch: there is none below."""
+    constant = number(tree, contact.HERTZ_CONSTANT)
+    if constant is None or approach.max() <= 0:
+        return []
+    closed = np.linspace(0.0, approach.max(), CURVE_POINTS)
+    return [Line(closed / MICRO, constant * closed**power / size, "Hertz", INK, HERTZ)]
+
+
+def _approach_axis(tree: DataTree, approach: NDArray[np.float64]) -> Axis:
+    low, high = approach.min() / MICRO, approach.max() / MICRO
+    margin, datum = 0.02 * (high - low or 1.0), number(tree, contact.DATUM)
+    state = None if datum is None else Second("state r = δ + d₀ / µm", offset=datum / MICRO)
+    return Axis("approach δ / µm (closing →)", low - margin, high + margin, second=state, linked="approach")
+
+
+def _working_load(tree: DataTree, approach: NDArray[np.float64]) -> list[Mark]:
     working = number(tree, contact.WORKING_APPROACH)
-    if working is not None and low <= 1e6 * working <= high:
-        axes.axvline(1e6 * working, color=MUTED, linewidth=0.9, linestyle=":", label="working load")
+    if working is None or not approach.min() <= working <= approach.max():
+        return []
+    return [Rules(np.array([working / MICRO]), label="working load")]
 
 
 def _force_caption(tree: DataTree) -> str:
@@ -266,7 +245,7 @@ CONTACT = (
         "Pressure at the working load",
         (contact.PRESSURE, contact.PX, contact.PY),
         pressure_data,
-        pressure_figure,
+        pressure_chart,
         _pressure_caption,
     ),
     Part(
@@ -274,7 +253,7 @@ CONTACT = (
         "Contact force and stiffness",
         (contact.FORCE, contact.APPROACH),
         loading_data,
-        loading_figure,
+        loading_chart,
         _force_caption,
     ),
     *FILTER,

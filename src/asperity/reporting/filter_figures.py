@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.reporting.axes import shade, stretches, wavenumber_axis
+from asperity.reporting.chart import Area, Axis, Chart, Line, Mark, Panel, Rules
 from asperity.reporting.data import number, plain, present, stored_variable, values
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.style import INK, MUTED, new_figure, sequence, styled, wavenumber_axis
+from asperity.reporting.style import MUTED, sequence
 from asperity.schema import Entry, contact
 
 FLOOR = -40.0  # dB, lowest level of a drawn filter
 MOST_FILTERS, MOST_PRINTED = 5, 3
 LEAST_COHERENCE = 0.25  # of a signed estimate that is drawn in full
-_DOT = 1.006  # length of a line that is drawn as a dot, as a ratio of wavenumbers
-_RAW: dict[str, Any] = {"linewidth": 2.0, "solid_capstyle": "round", "snap": False}
-_APPLIED: dict[str, Any] = {"linewidth": 1.1}
-_THEORY: dict[str, Any] = {"linewidth": 0.8, "linestyle": (0, (4, 2))}
+_APPLIED: dict[str, Any] = {"width": 1.1}
+_THEORY: dict[str, Any] = {"width": 0.8, "dashes": (5.0, 2.5)}
+_THEORY_TOLD = "; dashed: sin q / q"
 
 
 def filter_data(tree: DataTree) -> Data:
@@ -60,105 +60,86 @@ def _drawn_filters(tree: DataTree, data: Data, entry: Entry, most: int = MOST_FI
     return filled[picks].tolist()
 
 
-@styled()
-def filter_figure(tree: DataTree, data: Data) -> Figure:
+def filter_chart(tree: DataTree, data: Data) -> Chart:
     """Contact filters of several approaches: magnitude, and below it the signed estimate."""
-    signed = present(tree, contact.FILTER_SIGNED)
     rows = _drawn_filters(tree, data, contact.FILTER)
-    figure = new_figure(7.4 if signed else 4.4)
-    panels = figure.subplots(2 if signed else 1, 1, squeeze=False, height_ratios=(3, 2)[: 1 + signed])[:, 0]
-    _magnitudes(panels[0], tree, data, contact.FILTERS, rows)
-    if signed:
-        _signed(panels[1], tree, data, rows)
-        panels[0].set_xlabel("")  # the panels share their axes: name each quantity once
-        figure.axes[-1].set_xlabel("")
-    return figure
+    magnitudes = _magnitudes(tree, data, contact.FILTERS, rows)
+    if not present(tree, contact.FILTER_SIGNED):
+        return Chart((magnitudes,))
+    upper, lower = replace(magnitudes.x, label=""), replace(magnitudes.x, second=None)  # each is named once
+    return Chart((replace(magnitudes, x=upper), _signed(tree, data, rows, lower)))
 
 
-@styled()
-def printed_filter_figure(tree: DataTree, data: Data) -> Figure:
+def printed_filter_chart(tree: DataTree, data: Data) -> Chart:
     """The same filters, normalised as printed."""
-    figure = new_figure(4.4)
     rows = _drawn_filters(tree, data, contact.PRINTED_FILTER, MOST_PRINTED)
-    _magnitudes(figure.subplots(), tree, data, contact.PRINTED_FILTERS, rows)
-    return figure
+    return Chart((_magnitudes(tree, data, contact.PRINTED_FILTERS, rows),))
 
 
-def _magnitudes(axes: Axes, tree: DataTree, data: Data, entries: tuple[Entry, ...], rows: list[int]) -> None:
+def _magnitudes(tree: DataTree, data: Data, entries: tuple[Entry, ...], rows: list[int]) -> Panel:
     """A filter as estimated (dots), as fitted (wide) and as applied (thin), and what theory says (dashed)."""
-    wavenumber, approach, excited = data.at, values(tree, contact.APPROACH), _excited(tree)
+    approach, excited = values(tree, contact.APPROACH), _excited(tree)
     fitted, raw, applied, spread = (data.of(entry) for entry in entries)
     theory = _theory(tree)
+    marks: list[Mark] = []
     for row, colour in zip(rows, sequence(len(rows)), strict=True):
-        level = np.where(excited, _level(fitted[row]), np.nan)
-        label = f"δ = {plain(approach[row] * 1e6)} µm"
-        if row not in applied:
-            axes.plot(wavenumber, level, color=colour, label=label, linewidth=1.7)
-        else:
-            axes.plot(wavenumber, level, color=colour, label=label, linewidth=4.5, alpha=0.35)
-            axes.plot(wavenumber, np.where(excited, _level(applied[row]), np.nan), color=colour, **_APPLIED)
-        if row in raw:
-            axes.plot(*_dots(wavenumber, _level(raw[row])), color=colour, **_RAW)
         if row in spread:
-            edges = (_level(fitted[row] - spread[row]), _level(fitted[row] + spread[row]))
-            clear = excited & (fitted[row] > spread[row])
-            axes.fill_between(wavenumber, *edges, where=clear, color=colour, alpha=0.09, linewidth=0)
-        if theory is not None:
-            lobe = np.logical_and.accumulate(theory[row] > 0)  # beyond it the lobes of all states would cross
-            main_lobe = np.where(lobe, _level(theory[row]), np.nan)
-            axes.plot(wavenumber, main_lobe, color=colour, **_THEORY)
-    axes.set_ylim(FLOOR, 5)
-    axes.set_ylabel("|H| / dB")
-    axes.set_title("magnitude")
-    kinds = (
-        (raw, "ratio", {"linestyle": "", "marker": "."}),
-        (applied, "applied", _APPLIED),
-        (theory, "sin q / q", _THEORY),
+            edges = (fitted[row] - spread[row], fitted[row] + spread[row])
+            clear = excited & (edges[0] > 0)
+            low, high = (np.where(clear, _level(edge), np.nan) for edge in edges)
+            marks.append(Area(data.at, low, high, colour=colour, opacity=0.09))
+        wide = {"width": 4.5, "opacity": 0.35} if row in applied else {"width": 1.7}
+        drawn: list[tuple[NDArray[np.float64], NDArray[np.bool_], dict[str, Any]]] = [
+            (fitted[row], excited, {"label": f"δ = {plain(approach[row] * 1e6)} µm", **wide})
+        ]
+        if row in applied:
+            drawn.append((applied[row], excited, _APPLIED))
+        if row in raw:
+            drawn.append((raw[row], np.isfinite(raw[row]), {"marker": ".", "width": 0.0}))
+        if theory is not None:  # beyond the main lobe those of all states would cross
+            drawn.append((theory[row], np.logical_and.accumulate(theory[row] > 0), _THEORY))
+        marks += [
+            Line(data.at, np.where(shown, _level(ratio), np.nan), colour=colour, **look)
+            for ratio, shown, look in drawn
+        ]
+    told = "magnitude" + ("; dots: ratio; wide: fit; thin: as applied" if applied else "")
+    return _over_wavenumbers(
+        data.at,
+        excited,
+        Axis("|H| / dB", FLOOR, 5.0),
+        marks,
+        title=told + _THEORY_TOLD * (theory is not None),
+        height=4.4,
     )
-    for found, label, style in kinds:
-        if found is not None and len(found):
-            axes.plot([], [], color=INK, label=label, **style)
-    axes.legend(loc="lower left", ncols=2)
-    _over_wavenumbers(axes, wavenumber, excited)
 
 
-def _dots(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Dots as one broken line, a tenth of the size of as many markers."""
-    gap = np.full(x.shape, np.nan)
-    return np.stack([x / _DOT, x * _DOT, gap], axis=1).ravel(), np.stack([y, y, gap], axis=1).ravel()
-
-
-def _signed(axes: Axes, tree: DataTree, data: Data, rows: list[int]) -> None:
+def _signed(tree: DataTree, data: Data, rows: list[int], axis: Axis) -> Panel:
     """The signed estimate, faint where it explains little of the force."""
-    wavenumber, excited, theory = data.at, _excited(tree), _theory(tree)
+    excited, theory = _excited(tree), _theory(tree)
     estimate, coherence = (data.of(entry) for entry in (contact.FILTER_SIGNED, contact.FILTER_COHERENCE))
+    marks: list[Mark] = [Rules(np.zeros(1), "y", dashes=())]
     for row, colour in zip(rows, sequence(len(rows)), strict=True):
-        signed = estimate.get(row, np.full(len(wavenumber), np.nan))
-        known = excited & (coherence.get(row, np.ones(len(wavenumber))) >= LEAST_COHERENCE)
-        axes.plot(wavenumber, np.where(excited, signed, np.nan), color=colour, linewidth=0.8, alpha=0.4)
-        axes.plot(wavenumber, np.where(known, signed, np.nan), color=colour, linewidth=1.7)
+        signed = estimate.get(row, np.full(data.at.shape, np.nan))
+        known = excited & (coherence.get(row, np.ones(data.at.shape)) >= LEAST_COHERENCE)
+        faint = Line(data.at, np.where(excited, signed, np.nan), colour=colour, width=0.8, opacity=0.4)
+        marks += [faint, Line(data.at, np.where(known, signed, np.nan), colour=colour, width=1.7)]
         if theory is not None:
-            axes.plot(wavenumber, theory[row], color=colour, **_THEORY)
-    axes.axhline(0, color=MUTED, linewidth=0.8)
-    axes.set_ylim(-0.5, 1.15)
-    axes.set_ylabel("H (signed)")
-    axes.set_title("signed estimate" + ("; dashed: sin q / q" if theory is not None else ""))
-    _over_wavenumbers(axes, wavenumber, excited)
-
-
-def _over_wavenumbers(axes: Axes, wavenumber: NDArray[np.float64], excited: NDArray[np.bool_]) -> None:
-    positive = wavenumber[wavenumber > 0]
-    wavenumber_axis(axes, positive[0], positive[-1])
-    axes.fill_between(
-        wavenumber,
-        0,
-        1,
-        where=~excited,
-        transform=axes.get_xaxis_transform(),
-        color=MUTED,
-        alpha=0.12,
-        linewidth=0,
+            marks.append(Line(data.at, theory[row], colour=colour, **_THEORY))
+    title = "signed estimate" + _THEORY_TOLD * (theory is not None)
+    panel = _over_wavenumbers(
+        data.at, excited, Axis("H (signed)", -0.5, 1.15), marks, title=title, height=3.0
     )
+    return replace(panel, x=axis)
+
+
+def _over_wavenumbers(
+    wavenumber: NDArray[np.float64], excited: NDArray[np.bool_], y: Axis, marks: list[Mark], **place: Any
+) -> Panel:
+    """Panel over wavenumbers above zero, shaded where the texture excites nothing."""
+    positive = wavenumber[wavenumber > 0]
+    ends = np.maximum(wavenumber, positive[0])[stretches(~excited)]
+    lacking = [shade(ends[:, 0], ends[:, 1], MUTED, opacity=0.12)] if len(ends) else []
+    return Panel(wavenumber_axis(positive[0], positive[-1]), y, (*lacking, *marks), **place)
 
 
 def _excited(tree: DataTree) -> NDArray[np.bool_]:
@@ -231,7 +212,7 @@ FILTER = (
         "Contact filter",
         (contact.FILTER, contact.WAVENUMBER, contact.APPROACH),
         filter_data,
-        filter_figure,
+        filter_chart,
         _filter_caption,
     ),
     Part(
@@ -239,7 +220,7 @@ FILTER = (
         "Contact filter as printed",
         (contact.PRINTED_FILTER, contact.WAVENUMBER, contact.APPROACH),
         printed_filter_data,
-        printed_filter_figure,
+        printed_filter_chart,
         _printed_filter_caption,
     ),
 )

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataTree
 
+from asperity.reporting.chart import Axis, Chart, Line, Panel
 from asperity.reporting.data import engineering, number, present, stored_variable, values
 from asperity.reporting.part import Data, Part, present_series, series
-from asperity.reporting.style import BLUE, MUTED, new_figure, styled
+from asperity.reporting.style import BLUE, MUTED
 from asperity.reporting.tables import Cell, ReportTable, in_percent, text_cell
-from asperity.reporting.texture import length_unit
+from asperity.reporting.texture import SECOND_DASHES, length_unit
 from asperity.schema import contact, surface
 
 STRETCH = 10.0
@@ -25,22 +25,18 @@ def heights_data(tree: DataTree) -> Data:
     return Data(series(tree, surface.DISTANCE), present_series(tree, named))
 
 
-@styled()
-def heights_figure(tree: DataTree, data: Data) -> Figure:
+def heights_chart(tree: DataTree, data: Data) -> Chart:
     """The line before and after, where it was lowered most."""
     before, after = (data.lines[entry].values for entry in (surface.LINE_UNTOUCHED, surface.LINE))
     drawn = _most_lowered(tree, data.at, before - after)
     x, before, after = data.at[drawn], before[drawn], after[drawn]
-    along, height = length_unit(float(np.ptp(x))), length_unit(float(np.ptp(before)))
-    figure = new_figure(2.9)
-    axes = figure.subplots()
-    axes.plot(x / along[0], before / height[0], color=MUTED, linewidth=0.9, label="before running-in")
-    axes.plot(x / along[0], after / height[0], color=BLUE, linewidth=1.3, label="after")
-    axes.set_xlim(x[0] / along[0], x[-1] / along[0])
-    axes.set_xlabel(f"distance along the path / {along[1]}")
-    axes.set_ylabel(f"height / {height[1]} (out of the material ↑)")
-    axes.legend(loc="best")
-    return figure
+    (along, unit), (height, symbol) = length_unit(float(np.ptp(x))), length_unit(float(np.ptp(before)))
+    lines = (
+        Line(x / along, before / height, "before running-in", MUTED, SECOND_DASHES, 0.9),
+        Line(x / along, after / height, "after", BLUE),
+    )
+    distance = Axis(f"distance along the path / {unit}", x[0] / along, x[-1] / along)
+    return Chart((Panel(distance, Axis(f"height / {symbol} (out of the material ↑)"), lines, height=2.9),))
 
 
 def _most_lowered(tree: DataTree, x: NDArray[np.float64], lowering: NDArray[np.float64]) -> slice:
@@ -69,7 +65,7 @@ HEIGHTS = Part(
     "Surface before and after running-in",
     (surface.LINE_UNTOUCHED, surface.LINE, surface.DISTANCE),
     heights_data,
-    heights_figure,
+    heights_chart,
     _caption,
     worth=_has_marks,
 )
