@@ -58,6 +58,7 @@ sphinx_gallery_conf = {
     "show_memory": False,
     "write_computation_times": False,
     "capture_repr": (),
+    "thumbnail_size": (640, 400),
     "min_reported_time": 1,
     "within_subsection_order": "FileNameSortKey",
     "remove_config_comments": True,

@@ -1,0 +1,52 @@
+"""The picture of a report that README and documentation show, of the case in README's first lines.
+
+    python benchmarks/report_picture.py     # docs/report.png and, for dark screens, docs/report_dark.png
+
+It needs Chromium and Playwright (``pip install ".[test]"``).
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from io import BytesIO
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+ROOT = Path(__file__).parents[1]
+PICTURES = {"light": ROOT / "docs/report.png", "dark": ROOT / "docs/report_dark.png"}
+VIEW = {"width": 1000, "height": 1150}
+COLOURS = 96
+"""As many as a page needs; they make a picture a quarter as large."""
+
+
+def written_page(folder: Path) -> Path:
+    """Run README's first lines in a folder, and find the page that they write."""
+    lines = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert lines is not None
+    subprocess.run([sys.executable, "-c", lines[1]], cwd=folder, check=True)
+    return folder / "page/report.html"
+
+
+def main() -> None:
+    """Make both pictures."""
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        page = written_page(Path(folder))
+        chromium = shutil.which("chromium") or shutil.which("google-chrome")
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        for scheme, file in PICTURES.items():
+            tab = browser.new_page(viewport=VIEW, color_scheme=scheme, device_scale_factor=1.5)
+            tab.goto(page.as_uri(), wait_until="load")
+            tab.wait_for_timeout(1000)  # until charts are drawn
+            taken = Image.open(BytesIO(tab.screenshot())).convert("RGB")
+            taken.quantize(COLOURS, dither=Image.Dither.NONE).save(file, optimize=True)
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
