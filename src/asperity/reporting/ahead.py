@@ -10,10 +10,11 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from asperity.reporting.data import Looks, noted
-from asperity.reporting.page import Picture, page_template, picture
+from asperity.reporting.page import Picture, picture
 from asperity.reporting.part import Part
 from asperity.reporting.style import frequency_axis, legend_above, new_figure, styled
 from asperity.reporting.svg import drawing_of
+from asperity.reporting.templates import page_template
 
 
 class DrawnAhead(NamedTuple):

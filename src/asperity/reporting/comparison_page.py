@@ -17,10 +17,11 @@ from asperity.reporting.comparison_figures import contact_figure, levels_figure
 from asperity.reporting.comparison_table import KIND, listed_keys, summary, sure
 from asperity.reporting.data import engineering, json_attribute, json_list, nominal_band, stated
 from asperity.reporting.law_entries import law_colours, law_style
-from asperity.reporting.page import Picture, page_template
+from asperity.reporting.page import Picture
 from asperity.reporting.style import narrow_page
 from asperity.reporting.svg import colour_variables, drawing_of, share_styles
 from asperity.reporting.tables import Cell, ReportTable, in_percent, signed, text_cell
+from asperity.reporting.templates import page_template
 from asperity.schema import provenance, rolling
 
 OFF, FAR = 1.0, 3.0

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 from xarray import DataTree
 
@@ -25,6 +22,7 @@ from asperity.reporting.part import Part
 from asperity.reporting.style import narrow_page
 from asperity.reporting.svg import colour_variables, drawing_of, share_styles
 from asperity.reporting.tables import ReportTable
+from asperity.reporting.templates import page_template
 from asperity.schema import provenance
 
 
@@ -135,28 +133,6 @@ def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[
         table, dot, key = str(parameter.get("key", "")).rpartition(".")
         groups.setdefault(table if dot else "", []).append(parameter | {"short": key})
     return list(groups.items())
-
-
-_UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
-
-
-@cache
-def page_template(name: str) -> Template:
-    """A template of this package, which writes text of others so that it is seen and does nothing."""
-    environment = Environment(
-        loader=PackageLoader("asperity.reporting", ""),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["unbroken"] = _unbroken
-    return environment.get_template(name)
-
-
-def _unbroken(text: str) -> str:
-    """Keep numbers and their units on one line."""
-    return re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
 
 
 def page(tree: DataTree, chapters: Sequence[Chapter], drawn: Sequence[PageSection]) -> str:
