@@ -49,7 +49,7 @@ def pressure_chart(tree: DataTree, data: Data) -> Chart:
     above = replace(above, marks=(Boxes(*whole, *whole, colour=PAPER), *above.marks))
     if not present(tree, contact.GAP):
         return Chart((above, _pressure_section(x, y, pressure / size, label)))
-    gap = values(tree, contact.GAP, "px", "py")
+    gap = np.maximum(values(tree, contact.GAP, "px", "py"), 0.0)  # but for rounding it is
     height, height_symbol = length_unit(float(np.nanmax(gap)) or 1e-6)
     scale = (f"gap / {height_symbol}", 0.0, float(np.nanmax(gap)) / height)
     return Chart(

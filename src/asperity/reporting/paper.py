@@ -328,7 +328,7 @@ def _draw_field(axes: Axes, mark: Field) -> None:
     """Draw numbers as colours, with their scale."""
     image = axes.imshow(
         mark.values.T, origin="lower", extent=(*mark.x, *mark.y), aspect="auto", cmap=mark.colours,
-        vmin=mark.low, vmax=mark.high,
+        vmin=mark.low, vmax=mark.high, zorder=0.3,
     )  # fmt: skip
     below, above = bool(np.nanmin(mark.values) < mark.low), bool(np.nanmax(mark.values) > mark.high)
     extend = {(True, True): "both", (True, False): "min", (False, True): "max"}.get((below, above), "neither")

@@ -22,8 +22,8 @@ from asperity.reporting.tables import Cell, ReportTable
 
 MOST = 300_000
 """Numbers of the lines of a chart; longer ones are shown by the extremes of stretches of them."""
-PIXELS, SHADES = 320, 1022
-"""Of a field: along each side, and from the lowest number to the highest."""
+PIXELS, SHADES = (800, 320), 1022
+"""Of a field: along x and along y, and from the lowest number to the highest."""
 COLUMNS = 12
 """Of a table of numbers; fields have more."""
 COLOURED = ("colour", "fill", "edge")
@@ -59,7 +59,8 @@ def _thinned(chart: Chart) -> Chart:
 def _thinner(mark: Mark, steps: int) -> Mark:
     """Every n-th cell of a field; of a long line the extremes of stretches of twice as many `steps`."""
     if isinstance(mark, Field):
-        every = tuple(slice(None, None, -(-size // PIXELS)) for size in mark.values.shape)
+        sizes = zip(mark.values.shape, PIXELS, strict=True)
+        every = tuple(slice(None, None, -(-size // most)) for size, most in sizes)
         return replace(mark, values=mark.values[every])
     if not isinstance(mark, Line) or steps <= 1 or mark.y.size <= LONG:
         return mark

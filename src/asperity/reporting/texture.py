@@ -18,7 +18,6 @@ from asperity.schema.contact import HERTZ_RADIUS
 
 SLENDER = 2.5  # times longer than wide: such a map gets the whole width
 STRETCHES = 1200  # of the envelope of a long line
-PIXELS = 320  # along each side of a drawn map; denser maps show every n-th point
 SECOND_DASHES: Dashes = (5.0, 1.5)
 
 
@@ -40,15 +39,13 @@ def map_panel(
     colours: str = "cividis",
     **place: Any,
 ) -> Panel:
-    """Numbers (nx, ny) from above, x to the right and y up, in the unit of x, thinned to what can be seen.
+    """Numbers (nx, ny) from above, x to the right and y up, in the unit of x.
 
     `scale` is the label of their colours, and the lowest and highest number that these tell apart.
     """
     size, symbol = length_unit(np.ptp(x))
-    most = (PIXELS if equal else 3 * PIXELS, PIXELS)
-    skip_x, skip_y = (max(1, -(-n // limit)) for n, limit in zip(numbers.shape, most, strict=True))
     edges_x, edges_y = (_edges(each, size) for each in (x, y))
-    shown = Field(edges_x, edges_y, numbers[::skip_x, ::skip_y], *scale, colours)
+    shown = Field(edges_x, edges_y, numbers, *scale, colours)
     along = Axis(f"x / {symbol} (rolling direction →)", *edges_x)
     return Panel(along, Axis(f"y / {symbol}", *edges_y), (shown, *marks), equal=equal, **place)
 
