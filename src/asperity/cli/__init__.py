@@ -43,7 +43,7 @@ _EXAMPLES = (
 _SECTIONS = {
     "Begin": ("demo", "new", "surface"),
     "Compute": ("check", "run", "study", "optimise"),
-    "Look, listen and compare": ("serve", "compare", "listen", "cite"),
+    "Look, listen and compare": ("serve", "figures", "compare", "listen", "cite"),
     "Around it": ("cache", "completion"),
 }
 
@@ -416,6 +416,45 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> d
     from asperity.cli.comparing import compare_into
 
     return compare_into(runs, directory, laws)
+
+
+@main.command(
+    document=True,
+    short_help="Draw the figures of a run to files, for a paper.",
+    examples=[
+        ("asperity figures runs/case", "all of them, as SVG, into runs/case/figures"),
+        ("asperity figures runs/case --format pdf force_bands scene", "two, by the names of their CSV files"),
+        (
+            "asperity figures runs/case 'contact force levels' -o paper",
+            "by its title, or the beginning of it",
+        ),
+    ],
+)
+@click.argument("run", type=PATH)
+@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option(
+    "--format",
+    type=click.Choice(["svg", "pdf", "png"]),
+    default="svg",
+    show_default=True,
+    help="Of the files; words stay words in SVG and PDF.",
+)
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    type=PATH,
+    metavar="FOLDER",
+    help="Folder of the figures. [default: figures, beside the run]",
+)
+def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | None) -> dict[str, Any]:
+    """Draw the figures of a RUN (run.nc, or its folder) to files: all of them, or those with a NAME.
+
+    A name is that of a CSV file, which holds the numbers of the figure, or its title in the report.
+    """
+    from asperity.cli.picturing import figures_into
+
+    return figures_into(run, directory, format, names)
 
 
 @main.command(

@@ -18,7 +18,6 @@ from asperity.units import quantity
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from asperity.cli.surface_spectra import Spectra
@@ -113,7 +112,7 @@ def _inspect_first(
         say(part)
     spectra = spectra_of(first)
     octaves, told = _against_limit([first] if isinstance(first, Profile) else [])
-    drawn = draw(first, title, picture, spectra, octaves)
+    drawn = _draw(first, title, picture, spectra, octaves)
     say(f"Picture: {drawn.resolve()}")
     return told | {
         "statistics": [_documented(item) for item in found],
@@ -202,7 +201,8 @@ def _inspect_lines(
     import numpy as np
 
     from asperity.cli.surface_spectra import spectra_of_lines
-    from asperity.reporting.texture import lines_picture
+    from asperity.reporting.figure_files import write_chart
+    from asperity.reporting.surface_charts import lines_chart
     from asperity.surfaces.statistics import line_statistics
 
     say(f"{title}: {described_lines(lines)}")
@@ -216,8 +216,8 @@ def _inspect_lines(
         say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning} ({spread})")
     spectra = spectra_of_lines(levelled)
     octaves, roughness = _against_limit(levelled)
-    figure = lines_picture([line.heights for line in levelled], lines[0].spacing, title, spectra, octaves)
-    drawn = _saved(figure, picture)
+    chart = lines_chart([line.heights for line in levelled], lines[0].spacing, spectra, octaves)
+    drawn = write_chart(chart, title, picture)
     say(f"Picture: {drawn.resolve()}")
     return roughness | {
         "statistics": [_documented(item) | {"lowest": low, "highest": high} for item, low, high in found],
@@ -355,7 +355,7 @@ def homogeneity_of(surface: HeightMap | Profile) -> tuple[dict[str, Any] | None,
     return numbers, line
 
 
-def draw(
+def _draw(
     surface: HeightMap | Profile,
     title: str,
     picture: Path,
@@ -363,14 +363,9 @@ def draw(
     octaves: ThirdOctaves | None = None,
 ) -> Path:
     """Draw a levelled surface and its spectra to a PNG, PDF or SVG file."""
-    from asperity.reporting.texture import surface_picture
+    from asperity.reporting.figure_files import write_chart
+    from asperity.reporting.surface_charts import surface_chart
     from asperity.surfaces.heightmap import HeightMap
 
     spacing = surface.spacing if isinstance(surface, HeightMap) else (surface.spacing, surface.spacing)
-    return _saved(surface_picture(surface.heights, spacing, title, spectra, octaves), picture)
-
-
-def _saved(figure: Figure, picture: Path) -> Path:
-    return atomic_write(
-        picture, lambda file: figure.savefig(file, format=picture.suffix[1:].lower(), dpi=150)
-    )
+    return write_chart(surface_chart(surface.heights, spacing, spectra, octaves), title, picture)

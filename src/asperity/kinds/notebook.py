@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 from xarray import DataTree
 
-from asperity.arguments import nearest, shown
-from asperity.errors import InputError
 from asperity.reporting.data import present, stated
 from asperity.schema import provenance
 from asperity.schema.rolling import CONTACT_FORCE, TIME
@@ -36,8 +34,9 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         Parameters
         ----------
         name : str, optional
-            A figure of the report by the name of its file, as ``"force_bands"``; by default the force of the
-            main law in time beside the force levels of all laws.
+            A figure of the report by the name of its file, as ``"force_bands"``, or by its title or the
+            beginning of it, as ``"contact force levels"``; by default the force of the main law in time
+            beside the force levels of all laws.
 
         Returns
         -------
@@ -47,7 +46,7 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         Raises
         ------
         InputError
-            If the result has no such figure; the message lists those that it has.
+            If the result has no such figure; the message lists those that it has, and the nearest.
 
         Examples
         --------
@@ -58,15 +57,14 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         'one-third octave band / Hz'
         """
         from asperity.kinds.report import parts_of
-        from asperity.reporting.notebook_view import overview_figure
+        from asperity.reporting.figure_files import chosen_parts
+        from asperity.reporting.notebook_view import overview_chart
+        from asperity.reporting.paper import draw
 
-        parts = {part.name: part for part in parts_of(self)}
         if name is None and present(self, CONTACT_FORCE, TIME):
-            return overview_figure(self)
-        if name not in parts:
-            allowed = f"a figure of this result: {', '.join(parts) or 'it has none'}"
-            raise InputError("name of the figure", shown(name), allowed, nearest(name, list(parts)))
-        return parts[name].draw(self)
+            return draw(overview_chart(self))
+        (part,) = chosen_parts(parts_of(self), [name])
+        return draw(part.laid_out(self))
 
     def _repr_html_(self) -> str:
         tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]

@@ -11,6 +11,7 @@ from xarray import DataTree
 from asperity.arguments import shown
 from asperity.errors import InputError
 from asperity.files import atomic_write
+from asperity.reporting.chart import Chart
 from asperity.reporting.part import Part
 
 FORMATS = ("svg", "pdf", "png")
@@ -58,10 +59,12 @@ def _nearest(parts: Sequence[Part], asked: str) -> list[Part]:
 
 def write_figures(tree: DataTree, parts: Sequence[Part], folder: Path, format: str) -> list[Path]:
     """Draw figures of a result to files of a folder, each under its name."""
-    from asperity.reporting.paper import draw, save  # matplotlib, which nothing else needs
+    return [write_chart(part.laid_out(tree), "", folder / f"{part.name}.{format}") for part in parts]
 
-    def write(part: Part) -> Path:
-        figure = draw(part.laid_out(tree))
-        return atomic_write(folder / f"{part.name}.{format}", lambda file: save(figure, file, format))
 
-    return [write(part) for part in parts]
+def write_chart(chart: Chart, title: str, path: Path) -> Path:
+    """Draw a chart to a file, whose ending says in which format."""
+    from asperity.reporting.paper import draw, save_figure  # matplotlib, which nothing else needs
+
+    figure = draw(chart, title)
+    return atomic_write(path, lambda file: save_figure(figure, file, path.suffix[1:].lower()))

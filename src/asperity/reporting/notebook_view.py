@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import base64
-import io
 from html import escape
 
 import numpy as np
-from matplotlib.figure import Figure
 from xarray import DataTree
 
+from asperity.reporting.axes import band_axis, levels_axis
+from asperity.reporting.chart import Area, Axis, Chart, Line, Mark, Panel
 from asperity.reporting.data import engineering, force_unit, json_list, laws, of_law, present, stated, values
 from asperity.reporting.law_entries import law_entry, law_style
-from asperity.reporting.style import ShownFigure, band_axis, envelope, styled
+from asperity.reporting.style import envelope
 from asperity.reporting.time_figures import main_limits, time_unit
 from asperity.schema import provenance
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, LONGEST_LOSS, TIME
@@ -20,7 +20,6 @@ from asperity.schema.spectra import BAND, FORCE_LEVEL
 
 COLUMNS = 350
 """Stretches in which a long force is drawn by its extremes."""
-SIZE = (8.4, 2.5)  # inch
 
 
 def notebook_view(tree: DataTree, data: str) -> str:
@@ -69,37 +68,34 @@ def _time(seconds: float) -> str:
 
 
 def _picture(tree: DataTree) -> str:
-    image = io.BytesIO()
-    overview_figure(tree).savefig(image, format="png", dpi=110)
-    data = base64.b64encode(image.getvalue()).decode()
+    from asperity.reporting.paper import draw
+
+    data = base64.b64encode(draw(overview_chart(tree))._repr_png_()).decode()
     main = escape(laws(tree, CONTACT_FORCE)[0])
-    return f'<img alt="contact force of {main}" src="data:image/png;base64,{data}">'
+    return f'<img alt="contact force of {main}" width="700" src="data:image/png;base64,{data}">'
 
 
-@styled()
-def overview_figure(tree: DataTree) -> Figure:
+def overview_chart(tree: DataTree) -> Chart:
     """Force of the main law in time, and the force levels of all laws."""
-    figure = ShownFigure(figsize=SIZE, layout="constrained")
-    history, *levels = figure.subplots(1, 2 if present(tree, FORCE_LEVEL) else 1, squeeze=False)[0]
-    names = laws(tree, CONTACT_FORCE)
-    main, time = names[0], values(tree, TIME, "time")
-    size, unit = force_unit(float(np.nanmax(np.abs(of_law(tree, CONTACT_FORCE, main, "time")))))
-    force = of_law(tree, CONTACT_FORCE, main, "time") / size
+    main = laws(tree, CONTACT_FORCE)[0]
+    time, force = values(tree, TIME, "time"), of_law(tree, CONTACT_FORCE, main, "time")
+    size, unit = force_unit(float(np.nanmax(np.abs(force))))
     second, symbol = time_unit(float(time[-1] - time[0]))
-    starts, low, high = envelope(force, COLUMNS)
+    starts, low, high = envelope(force / size, COLUMNS)
     colour = law_entry(tree, main).colour
+    shown: Mark = Line(time / second, force / size, colour=colour, width=1.0)
     if len(starts) < len(force):
-        history.fill_between(time[starts] / second, low, high, color=colour, linewidth=0.4)
-    else:
-        history.plot(time / second, force, color=colour, linewidth=1.0)
-    history.set(xlabel=f"time / {symbol}", ylabel=f"contact force / {unit}", title=main)
-    history.set_ylim(*main_limits({main: force}, ()))
-    for axes in levels:
-        band = values(tree, BAND, "band")
-        for law in laws(tree, FORCE_LEVEL):
-            level = of_law(tree, FORCE_LEVEL, law, "band")
-            axes.plot(band, level, label=law, **law_style(tree, law, main))
-        band_axis(axes, band)
-        axes.set(ylabel="force level / dB re 1 N")
-        axes.legend(fontsize=7, ncols=2 if len(names) > 4 else 1)
-    return figure
+        shown = Area(time[starts] / second, low, high, colour=colour, opacity=1.0)
+    ends = main_limits({main: force / size}, ())
+    history = Panel(
+        Axis(f"time / {symbol}"), Axis(f"contact force / {unit}", *ends), (shown,), main, height=3.0
+    )
+    return Chart((history, *([_levels_panel(tree, main)] if present(tree, FORCE_LEVEL) else [])))
+
+
+def _levels_panel(tree: DataTree, main: str) -> Panel:
+    band = values(tree, BAND, "band")
+    levels = {law: of_law(tree, FORCE_LEVEL, law, "band") for law in laws(tree, FORCE_LEVEL)}
+    lines = [Line(band, level, law, **law_style(tree, law, main)) for law, level in levels.items()]
+    axis = levels_axis("force level / dB re 1 N", list(levels.values()))
+    return Panel(band_axis(band), axis, tuple(lines), height=3.0, beside=True)

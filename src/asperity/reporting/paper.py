@@ -86,7 +86,7 @@ class ShownFigure(Figure):
 
     def _repr_png_(self) -> bytes:
         image = io.BytesIO()
-        save(self, image, "png")
+        save_figure(self, image, "png")
         return image.getvalue()
 
 
@@ -107,7 +107,7 @@ def draw(chart: Chart, title: str = "") -> Figure:
     return figure
 
 
-def save(figure: Figure, file: BinaryIO, format: str) -> None:
+def save_figure(figure: Figure, file: BinaryIO, format: str) -> None:
     """Write a figure to an open file, the same for the same numbers."""
     with rc_context(RC), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "constrained_layout not applied", UserWarning)
