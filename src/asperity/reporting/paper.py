@@ -90,7 +90,7 @@ class ShownFigure(Figure):
         return image.getvalue()
 
 
-def draw(chart: Chart, title: str = "") -> Figure:
+def draw(chart: Chart, title: str = "") -> ShownFigure:
     """Draw a chart on white ground, in the width of the page, its panels beneath each other in rows."""
     with rc_context(RC):
         rows = rows_of(chart)
@@ -100,6 +100,9 @@ def draw(chart: Chart, title: str = "") -> Figure:
         named: set[tuple[str, str]] = set()
         for number, row in enumerate(rows):
             _draw_row(figure, grid[number], row, named)
+            if len(row) == 1 and number + 1 < len(rows) and _goes_on(row[0], *rows[number + 1]):
+                figure.axes[-1].tick_params(axis="x", labelbottom=False)
+                figure.axes[-1].set_xlabel("")
         if chart.drawing:
             _spare(figure, chart)
         if title:
@@ -112,6 +115,12 @@ def save_figure(figure: Figure, file: BinaryIO, format: str) -> None:
     with rc_context(RC), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "constrained_layout not applied", UserWarning)
         figure.savefig(file, format=format, dpi=DOTS, metadata=UNDATED[format])
+
+
+def _goes_on(panel: Panel, below: Panel, *beside: Panel) -> bool:
+    """Whether the panel below has the same axis, which then need not be named twice."""
+    same = (panel.x.label, panel.x.ticks) == (below.x.label, below.x.ticks)
+    return same and limits(panel, "x") == limits(below, "x") and not (below.title or beside)
 
 
 def _spare(figure: Figure, chart: Chart) -> None:
@@ -142,7 +151,7 @@ def _draw_panel(axes: Axes, panel: Panel, width: float, named: set[tuple[str, st
     _draw_axis(axes, "x", panel.x, x, width)
     _draw_axis(axes, "y", panel.y, y, panel.height)
     for order, mark in enumerate(panel.marks):
-        _draw_mark(axes, mark, x, y, 2 + order / len(panel.marks))
+        _draw_mark(axes, mark, x, y, width, 2 + order / len(panel.marks))
     axes.set(xlim=x, ylim=y)
     if panel.equal:
         axes.set_aspect("equal")
@@ -223,8 +232,10 @@ def _draw_second(
         side.set_major_formatter(FuncFormatter(lambda value, _: engineering(value, second.unit, digits)))
 
 
-def _draw_mark(axes: Axes, mark: Mark, x: tuple[float, float], y: tuple[float, float], order: float) -> None:
-    """Draw a mark in a panel that reaches from end to end of `x` and `y`."""
+def _draw_mark(
+    axes: Axes, mark: Mark, x: tuple[float, float], y: tuple[float, float], width: float, order: float
+) -> None:
+    """Draw a mark in a panel of a width in inches that reaches from end to end of `x` and `y`."""
     match mark:
         case Line():
             axes.plot(
@@ -245,7 +256,7 @@ def _draw_mark(axes: Axes, mark: Mark, x: tuple[float, float], y: tuple[float, f
         case Note():
             _write_note(axes, mark, x, y)
         case Field():
-            _draw_field(axes, mark)
+            _draw_field(axes, mark, width)
         case Shape():
             axes.add_patch(
                 Polygon(
@@ -321,10 +332,11 @@ def _write_note(axes: Axes, note: Note, x: tuple[float, float], y: tuple[float, 
         fontsize=8.5,
         color=note.colour,
         zorder=4,
+        bbox={"facecolor": "white", "alpha": 0.6, "edgecolor": "none", "pad": 0.5},
     )
 
 
-def _draw_field(axes: Axes, mark: Field) -> None:
+def _draw_field(axes: Axes, mark: Field, width: float) -> None:
     """Draw numbers as colours, with their scale."""
     image = axes.imshow(
         mark.values.T, origin="lower", extent=(*mark.x, *mark.y), aspect="auto", cmap=mark.colours,
@@ -332,7 +344,8 @@ def _draw_field(axes: Axes, mark: Field) -> None:
     )  # fmt: skip
     below, above = bool(np.nanmin(mark.values) < mark.low), bool(np.nanmax(mark.values) > mark.high)
     extend = {(True, True): "both", (True, False): "min", (False, True): "max"}.get((below, above), "neither")
-    axes.figure.colorbar(image, ax=axes, label=mark.label, extend=extend, pad=0.01, shrink=0.95)
+    beside = axes.inset_axes((1.0 + 0.1 / width, 0.0, 0.13 / width, 1.0))
+    axes.figure.colorbar(image, cax=beside, label=mark.label, extend=extend)
 
 
 def _legend(axes: Axes, width: float, above: float, named: set[tuple[str, str]]) -> float:
