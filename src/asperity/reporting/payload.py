@@ -27,6 +27,7 @@ PIXELS, SHADES = (800, 320), 1022
 COLUMNS = 12
 """Of a table of numbers; fields have more."""
 COLOURED = ("colour", "fill", "edge")
+SCRIPTS = ("numbers", "ticks", "marks", "panel", "figures")
 
 
 def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str]) -> str:
@@ -114,11 +115,11 @@ def _nowhere(mark: Mark) -> bool:
 @cache
 def chart_script() -> str:
     """The script of a page: the library that draws axes, with its licence, and what draws charts with it."""
-    library = files("asperity.reporting") / "uplot"
-    code = (library / "uPlot.iife.min.js").read_text(encoding="utf-8").partition("\n")[2]
-    licence = (library / "LICENSE").read_text(encoding="utf-8")
-    own = (files("asperity.reporting") / "chart.js").read_text(encoding="utf-8")
-    return f"/*! uPlot 1.6.32\n{licence}\n*/\n{code}\n{own}"
+    package = files("asperity.reporting")
+    library = (package / "uplot" / "uPlot.iife.min.js").read_text(encoding="utf-8").partition("\n")[2]
+    licence = (package / "uplot" / "LICENSE").read_text(encoding="utf-8")
+    own = ((package / "charts" / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS)
+    return f"/*! uPlot 1.6.32\n{licence}\n*/\n{library}\n(() => {{\n\"use strict\";\n{''.join(own)}}})();\n"
 
 
 @cache
@@ -126,7 +127,7 @@ def chart_style() -> str:
     """Styles of charts, and those that the library needs."""
     package = files("asperity.reporting")
     library = (package / "uplot" / "uPlot.min.css").read_text(encoding="utf-8")
-    return f"{library}\n{(package / 'chart.css').read_text(encoding='utf-8')}"
+    return f"{library}\n{(package / 'charts' / 'charts.css').read_text(encoding='utf-8')}"
 
 
 def script_digest() -> str:
