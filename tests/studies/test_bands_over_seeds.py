@@ -8,7 +8,9 @@ import xarray
 
 import asperity
 from asperity.errors import InputError
-from asperity.reporting.ensemble import ensemble_figure
+from asperity.reporting.chart import Area, Line
+from asperity.reporting.ensemble import ensemble_chart
+from asperity.reporting.style import INK
 from small_cases import COARSE
 
 CASE = COARSE | {
@@ -93,14 +95,13 @@ def test_the_band_of_a_study_covers_fresh_seeds_as_often_as_it_claims(study):
     assert 1.0 < float(width.min()) < float(width.max()) < 20.0
 
 
-def test_the_figure_shows_mean_and_band_with_what_they_mean(study):
+def test_the_figure_shows_mean_and_band(study):
     found = asperity.prediction_band(study)
-    figure = ensemble_figure(found, {"hertz": "#0067a5"})
-    (axes,) = figure.axes
-    drawn = {line.get_label(): line.get_ydata() for line in axes.lines if len(line.get_xdata()) > 2}
-    np.testing.assert_allclose(drawn["linear"], found["force_level"].sel(law="linear"))
-    assert len(axes.collections) >= 2
-    told = figure.get_supxlabel().replace("\n", " ")
-    assert told == found.attrs["meaning"]
-    assert "mean over 30 values of seed" in told
-    assert "it holds the value of one more seed with a probability of 80 %" in told
+    (panel,) = ensemble_chart(found, {"hertz": {"colour": "#0067a5", "law": "hertz"}}).panels
+    lines = {mark.label: mark for mark in panel.marks if isinstance(mark, Line)}
+    np.testing.assert_allclose(lines["linear"].y, found["force_level"].sel(law="linear"))
+    areas = [mark for mark in panel.marks if isinstance(mark, Area)]
+    assert [(area.colour, area.law) for area in areas] == [("#0067a5", "hertz"), (INK, "")]
+    np.testing.assert_allclose(areas[0].high, found["force_level_high"].sel(law="hertz"))
+    assert "mean over 30 values of seed" in found.attrs["meaning"]
+    assert "it holds the value of one more seed with a probability of 80 %" in found.attrs["meaning"]

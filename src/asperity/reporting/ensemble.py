@@ -2,56 +2,52 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping
 from itertools import product
+from typing import Any
 
 import xarray
-from matplotlib.figure import Figure
 
-from asperity.reporting.style import INK, MUTED, band_axis, new_figure, shade_doubtful, styled
+from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis
+from asperity.reporting.chart import Area, Chart, Line, Mark, Panel
 from asperity.reporting.typed import typed_words
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import say_little
 
 MOST_PANELS = 6
 """Members of other keys that are drawn; the CSV file has all of them."""
-LETTERS = 150
-"""In a line of the caption."""
+_ENDS = ("", "_low", "_high")
 
 
-@styled()
-def ensemble_figure(bands: xarray.Dataset, colours: Mapping[str, str]) -> Figure:
-    """Draw the force level of each law, mean and band, a panel for each value of the other keys.
+def ensemble_chart(bands: xarray.Dataset, looks: Mapping[str, Mapping[str, Any]]) -> Chart:
+    """Force level of each law, mean and band, a panel for each value of the other keys.
 
-    The dataset is from `asperity.prediction_band`; colours by law.
+    The dataset is from `asperity.prediction_band`, whose ``meaning`` is the caption; looks of lines by law.
     """
-    name, law, band = FORCE_LEVEL.name, LAW.name, BAND.name
-    others = [str(dim) for dim in bands[name].dims if dim not in (law, band)]
+    others = [str(dim) for dim in bands[FORCE_LEVEL.name].dims if dim not in (LAW.name, BAND.name)]
     places = list(product(*(range(bands.sizes[dim]) for dim in others)))[:MOST_PANELS]
-    figure = new_figure(1.2 + 3.2 * len(places))
-    figure.set_facecolor("white")  # it goes to a file of its own
-    panels = figure.subplots(len(places), 1, squeeze=False)[:, 0]
-    for axes, place in zip(panels, places, strict=True):
-        here = bands.isel(dict(zip(others, place, strict=True)))
-        centre = here[band].values
-        for each in map(str, here[law].values):
-            mean, low, high = (here[f"{name}{end}"].sel({law: each}).values for end in ("", "_low", "_high"))
-            colour = colours.get(each, INK)
-            axes.fill_between(centre, low, high, color=colour, alpha=0.2, linewidth=0)
-            axes.plot(centre, mean, color=colour, label=each, marker="o", markersize=3)
-        band_axis(axes, centre)
-        if BAND_TIME_PRODUCT.name in here:
-            little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
-            shade_doubtful(axes, centre, little.values)
-        axes.set_ylabel("contact force level / dB re 1 N")
-        axes.set_title(", ".join(_valued(here[dim]) for dim in others))
-    panels[0].legend(ncols=3)
-    told = "\n".join(textwrap.wrap(str(bands.attrs["meaning"]), LETTERS))
-    figure.supxlabel(told, fontsize=8, color=MUTED, x=0.01, ha="left")
-    return figure
+    return Chart(
+        tuple(_panel(bands.isel(dict(zip(others, at, strict=True))), others, looks) for at in places)
+    )
 
 
-def _valued(key: xarray.DataArray) -> str:
-    """A swept key with its value and unit, as it was typed."""
-    return f"{key.name} = {typed_words(key.expand_dims('place'))[0]}"
+def _panel(here: xarray.Dataset, keys: list[str], looks: Mapping[str, Mapping[str, Any]]) -> Panel:
+    """Levels of one value of each of the other keys."""
+    centre = here[BAND.name].values
+    marks: list[Mark] = []
+    if BAND_TIME_PRODUCT.name in here:
+        little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
+        marks += doubtful_boxes(centre, little.values)
+    drawn = []
+    for law in map(str, here[LAW.name].values):
+        mean, low, high = (here[f"{FORCE_LEVEL.name}{end}"].sel({LAW.name: law}).values for end in _ENDS)
+        look = dict(looks.get(law, {}))
+        shade = {key: look[key] for key in ("colour", "law") if key in look}
+        marks += [
+            Area(centre, low, high, opacity=0.2, **shade),
+            Line(centre, mean, law, **{"marker": "o"} | look),
+        ]
+        drawn += [low, high]
+    axis = levels_axis("contact force level / dB re 1 N", drawn, span=100.0)
+    title = ", ".join(f"{here[key].name} = {typed_words(here[key].expand_dims('place'))[0]}" for key in keys)
+    return Panel(band_axis(centre), axis, tuple(marks), title=title, height=3.2)
