@@ -85,9 +85,10 @@ def test_importing_laws_and_cases_compiles_nothing():
 
 def test_every_law_has_its_module_its_colour_and_its_row_in_the_readme():
     readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    colours = [laws.spec_of(name).look.colour for name in laws.names() if "-" not in name]
-    assert len(set(colours)) == len(colours)
-    assert set(colours) <= set(COLOURS)  # each with a value for dark screens that people chose
+    looks = [laws.spec_of(name).look for name in laws.names()]
+    for told in zip(*((look.colour, look.dashes, look.marker) for look in looks), strict=True):
+        assert len(set(told)) == len(told)
+    assert {look.colour for look in looks} <= set(COLOURS)  # each with a dark one that people chose
     table = readme[readme.index("| law | contact force") : readme.index("How far each law")]
     for name in laws.names():
         base, _, variant = name.partition("-")

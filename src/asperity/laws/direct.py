@@ -238,5 +238,5 @@ LAW = LawSpec(
     frozenset({Need.SURFACE}),
     solved_every_step=True,
     role=Role.REFERENCE,
-    look=Look("#1c2126", "-", "v"),
+    look=Look("#1c2126", (0, (16, 2)), "v"),
 )

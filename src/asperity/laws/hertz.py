@@ -72,5 +72,12 @@ LAW = LawSpec(
     "Smooth bodies: Hertzian contact.",
     _build,
     look=Look("#2a93c4", (0, (1.5, 1.5)), "P"),
-    variants=(Variant("filtered", "Here with the filtered line texture.", frozenset({Need.FILTER})),),
+    variants=(
+        Variant(
+            "filtered",
+            "Here with the filtered line texture.",
+            frozenset({Need.FILTER}),
+            look=Look("#2c3e91", (0, (1.5, 1.5, 4, 1.5)), "*"),
+        ),
+    ),
 )

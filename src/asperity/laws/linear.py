@@ -83,6 +83,12 @@ LAW = LawSpec(
     role=Role.BARE,
     look=Look("#96700a", (0, (3, 1.5)), "X"),
     variants=(
-        Variant("filtered", "Here with the filtered line texture.", frozenset({Need.FILTER}), Role.PRACTICE),
+        Variant(
+            "filtered",
+            "Here with the filtered line texture.",
+            frozenset({Need.FILTER}),
+            Role.PRACTICE,
+            Look("#6b3e12", (0, (8, 1.5, 1, 1.5)), "p"),
+        ),
     ),
 )

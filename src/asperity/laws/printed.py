@@ -85,5 +85,12 @@ LAW = LawSpec(
     frozenset({Need.SAMPLES, Need.DATUM, Need.FILTER}),
     normalise="low-wavenumber",
     look=Look("#a8458f", (0, (6, 1.5, 1.5, 1.5)), "^"),
-    variants=(Variant("unfiltered", "Here without the filter.", frozenset({Need.SAMPLES, Need.DATUM})),),
+    variants=(
+        Variant(
+            "unfiltered",
+            "Here without the filter.",
+            frozenset({Need.SAMPLES, Need.DATUM}),
+            look=Look("#6750b8", (0, (6, 1.5, 1.5, 1.5, 1.5, 1.5)), ">"),
+        ),
+    ),
 )

@@ -65,5 +65,12 @@ LAW = LawSpec(
     _build,
     frozenset({Need.SAMPLES, Need.FILTER}),
     look=Look("#c8500a", (0, (6, 1.5)), "s"),
-    variants=(Variant("unfiltered", "Here without the filter.", frozenset({Need.SAMPLES})),),
+    variants=(
+        Variant(
+            "unfiltered",
+            "Here without the filter.",
+            frozenset({Need.SAMPLES}),
+            look=Look("#b01b3c", (0, (3, 1.5, 3, 1.5, 1, 1.5)), "d"),
+        ),
+    ),
 )

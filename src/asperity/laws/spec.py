@@ -113,12 +113,15 @@ class Variant:
         All that the variant needs.
     role : Role, optional
         What it is to the others.
+    look : Look, optional
+        How it is drawn; else in the colour of the law, with dashes of variants.
     """
 
     suffix: str
     meaning: str
     needs: frozenset[Need]
     role: Role | None = None
+    look: Look | None = None
 
 
 @dataclass(frozen=True)
@@ -201,7 +204,7 @@ class LawSpec:
             meaning=f"{self.meaning} {variant.meaning}",
             needs=variant.needs,
             role=variant.role,
-            look=replace(self.look, dashes=VARIANT_DASHES),
+            look=variant.look or replace(self.look, dashes=VARIANT_DASHES),
             variants=(),
         )
 

@@ -65,5 +65,5 @@ LAW = LawSpec(
     _build,
     frozenset({Need.SAMPLES, Need.SCAN}),
     role=Role.STAND_IN,
-    look=Look("#00805c", "-", "D"),
+    look=Look("#00805c", (0, (10, 1.5, 4, 1.5)), "D"),
 )

@@ -5,14 +5,14 @@ from __future__ import annotations
 import colorsys
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from xarray import DataTree
 
 from asperity.reporting.chart import Dashes
 from asperity.reporting.data import json_list, present
-from asperity.reporting.style import COLOURS
+from asperity.reporting.style import COLOURS, LAW_COLOURS
 from asperity.schema import Entry, provenance
 from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES
 
@@ -36,8 +36,15 @@ class LawEntry:
 
 
 def law_entries(tree: DataTree) -> dict[str, LawEntry]:
-    """Laws that the result describes, by name, in the order of the case."""
-    return {entry.name: entry for entry in map(_read, json_list(tree, provenance.LAWS))}
+    """Laws that the result describes, by name, in the order of the case; no two have the same colour."""
+    entries = list(map(_read, json_list(tree, provenance.LAWS)))
+    taken: set[str] = set()
+    spare = iter([colour for colour in LAW_COLOURS if colour not in {entry.colour for entry in entries}])
+    for n, entry in enumerate(entries):
+        if entry.colour in taken:
+            entries[n] = replace(entry, colour=next(spare, entry.colour))
+        taken.add(entry.colour)
+    return {entry.name: entry for entry in entries}
 
 
 def _read(entry: dict[str, Any]) -> LawEntry:

@@ -17,6 +17,10 @@ COLOURS = {
     INK: "#e8eaed",
     MUTED: "#a3adb7",
     GRID: "#333a42",
+    "#6b3e12": "#d6a074",  # brown
+    "#2c3e91": "#8f9dff",  # navy
+    "#b01b3c": "#ff7d90",  # crimson
+    "#6750b8": "#b9a8ff",  # violet
     BLUE: "#58b0f0",
     VERMILLION: "#ff8b4d",
     "#a8458f": "#e58fcf",  # purple
@@ -34,7 +38,7 @@ COLOURS = {
 }
 HATCHES = ("", "/", "\\", "x", ".", "-")
 """Of bars beside each other, for those who do not see colours."""
-SEQUENCE = tuple(COLOURS)[-6:]
+LAW_COLOURS, SEQUENCE = tuple(COLOURS)[3:-6], tuple(COLOURS)[-6:]
 
 
 def colour_variables(dark: bool, colours: Mapping[str, str] = COLOURS) -> str:
