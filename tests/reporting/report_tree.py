@@ -351,3 +351,23 @@ def report_tree(laws=None, steps=100_000, time_step=1e-5, seed=7):
             "/spectra": spectra(rng, laws, steps * time_step),
         }
     )
+
+
+def with_force(*series):
+    """Tree whose laws, the first of them the main one, have these forces."""
+    tree = report_tree(["areal", "shifted", "linear"][: len(series)], steps=len(series[0]))
+    force, share = np.array(series), [float((each <= 0).mean()) for each in series]
+    rolling = tree["rolling"].to_dataset()
+    tree["rolling"] = rolling.assign(
+        contact_force=(("law", "time"), force), contact_loss_share=("law", share)
+    )
+    return tree
+
+
+def uncertain(share, laws=("areal", "table", "linear-filtered", "linear")):
+    """Tree in which B T reaches ten after a share of the bands."""
+    tree = report_tree(list(laws), steps=1000)
+    bands = tree["spectra"].sizes["band"]
+    product = 10.0 * 10 ** ((np.arange(bands) - share * bands) / 10)
+    tree["spectra"]["band_time_product"].values[:] = product
+    return tree, product < 10.0

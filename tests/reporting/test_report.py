@@ -12,9 +12,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.text import Text
 from report_reading import HOSTILE, Reader, read_csv
-from report_tree import DATUM, LAWS, LOAD, report_tree
+from report_tree import DATUM, LAWS, LOAD, report_tree, uncertain, with_force
 
 from asperity.convergence.group import sentence
 from asperity.errors import ComputationError
@@ -27,11 +26,10 @@ from asperity.reporting.headline import headline
 from asperity.reporting.history import script
 from asperity.reporting.lights import lights
 from asperity.reporting.literature import literature
-from asperity.reporting.style import COLOURS, envelope, smooth_on_log_axis
+from asperity.reporting.style import envelope, smooth_on_log_axis
 from asperity.reporting.svg import tight
 from asperity.reporting.tables import practice_table, reference_table
 from asperity.reporting.texture import lines_picture, surface_picture
-from asperity.reporting.time_figures import piece
 from asperity.reporting.uncertainty import uncertainty_table
 
 PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.parts]
@@ -185,16 +183,6 @@ def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
     assert {name for name in Reader(text).all("id") if name in {part.name for part in PARTS}} == drawn
 
 
-@pytest.mark.parametrize("laws", [["linear"], ["areal", "hertz-filtered", "linear-filtered"]])
-def test_any_set_of_laws(laws):
-    tree = report_tree(laws, steps=500)
-    for part in (part for chapter in BALL_ON_BEAM[3:] for part in chapter.parts):
-        labels = [text.get_text() for text in part.draw(tree).findobj(Text)]
-        assert part.name == "acceleration_sensors" or all(
-            any(law in label for label in labels) for law in laws
-        )
-
-
 def test_no_table_of_differences_without_a_reference_law():
     assert reference_table(small()) is None
 
@@ -206,36 +194,6 @@ def test_missing_numbers_are_empty_fields(folder):
     for head, values in table.items():
         known = excited if head.startswith("filter_raw") else np.ones_like(excited)
         assert np.array_equal(np.isfinite(values), known), head
-
-
-def drawn_lines(part, tree):
-    return [line.get_ydata() for axes in part.draw(tree).axes for line in axes.get_lines()]
-
-
-def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
-    part = next(part for part in PARTS if part.name == "contact_filter")
-    contact = tree["contact"].to_dataset()
-    excited = contact["filter_excited"].values > 0
-    lines, row = drawn_lines(part, tree), 4  # the state nearest the working load
-    for name in ("filter_raw", "filter", "filter_applied"):
-        level = 20 * np.log10(contact[name].values[row])
-        shown = excited & (level > -40)
-        drawn = [y[::3] if len(y) == 3 * len(level) else y for y in lines]  # dots are short lines
-        assert any(len(y) == len(level) and np.allclose(y[shown], level[shown]) for y in drawn), name
-    beyond = [y[~excited] for y in lines if len(y) == len(excited)]
-    theory = [y for y in beyond if np.isfinite(y).any()]
-    assert len(theory) == 5  # sin q/q in the lower panel alone goes on where the texture excites nothing
-    assert "grey: waves that the texture lacks" in part.caption(tree)
-
-
-def test_signed_estimate_is_faint_where_force_and_line_have_little_in_common(tree):
-    part = next(part for part in PARTS if part.name == "contact_filter")
-    contact = tree["contact"].to_dataset()
-    known = (contact["filter_coherence"].values[4] >= 0.25) & (contact["filter_excited"].values > 0)
-    full = np.where(known, contact["filter_signed"].values[4], np.nan)
-    assert any(
-        y.shape == full.shape and np.array_equal(y, full, equal_nan=True) for y in drawn_lines(part, tree)
-    )
 
 
 def test_caption_says_what_printed_owes_to_its_datum(tree):
@@ -268,84 +226,10 @@ def test_differences_to_the_reference_law_are_printed(tree, text):
         assert float(shown.strip("()").replace("−", "-")) == pytest.approx(value, abs=0.051)
 
 
-def test_laws_keep_their_colours_in_all_figures(text):
-    for law in LAWS:
-        colour = f"var(--c{list(COLOURS).index(spec_of(law).look.colour)})"
-        looks = set(re.findall(rf"^\.(s\d+){{.*{re.escape(colour)}", text, re.MULTILINE))
-        for name in ("force_psd", "force_bands", "acceleration_laws", "force_piece", "force_envelope"):
-            figure = text[text.index(f'<figure id="{name}"') :]
-            assert looks & set(re.findall('class="(s[0-9]+)"', figure[: figure.index("</figure>")]))
-
-
-def test_short_piece_holds_the_longest_loss_of_contact():
-    tree = report_tree(["areal"], steps=5000)
-    rolling = tree["rolling"].to_dataset()
-    force = np.full((1, 5000), 5.0)
-    force[0, 100:110], force[0, 4000:4300] = 0.0, 0.0
-    share = rolling["contact_loss_share"].copy(data=[0.062])
-    tree["rolling"] = rolling.assign(contact_force=(("law", "time"), force), contact_loss_share=share)
-    part = piece(tree)
-    assert part.start < 4000
-    assert part.stop > 4300
-
-
 def test_page_that_cannot_be_written_is_a_computation_error(tmp_path):
     (tmp_path / "occupied").write_text("a file")
     with pytest.raises(ComputationError, match="could not be written"):
         report(contact_only(), tmp_path / "occupied")
-
-
-def test_hertz_is_drawn_in_closed_form_and_not_below_its_touch():
-    part = next(part for part in PARTS if part.name == "contact_force")
-    tree = small()
-    constant = tree["contact"].attrs["hertz_constant"]
-    for axes, power, unit in zip(part.draw(tree).axes, (1.5, 0.5), (1.0, 1e6), strict=False):
-        line = next(line for line in axes.lines if line.get_label() == "Hertz")
-        approach, drawn = line.get_data()
-        assert approach[0] == 0.0
-        assert len(approach) > 10 * tree["contact"].sizes["approach"]
-        assert np.allclose(drawn, constant * (approach * 1e-6) ** power / unit)
-
-
-def with_force(*series):
-    """Tree whose laws, the first of them the main one, have these forces."""
-    tree = report_tree(["areal", "shifted", "linear"][: len(series)], steps=len(series[0]))
-    force, share = np.array(series), [float((each <= 0).mean()) for each in series]
-    rolling = tree["rolling"].to_dataset()
-    tree["rolling"] = rolling.assign(
-        contact_force=(("law", "time"), force), contact_loss_share=("law", share)
-    )
-    return tree
-
-
-@pytest.mark.parametrize("name", ["force_piece", "force_envelope"])
-def test_a_wild_law_does_not_flatten_the_main_one(name):
-    part = next(part for part in PARTS if part.name == name)
-    wave = np.sin(np.arange(1000) * 0.1)
-    tree = with_force(60 + 10 * wave, 60 + 30 * wave, 60 + 400 * wave)
-    low, high = part.draw(tree).axes[0].get_ylim()
-    assert high - low < 2.2 * 20.0
-    assert low < 50.0 < 70.0 < high
-    caption = part.caption(tree)
-    assert "beyond it: shifted (30.0 N to 90.0 N)" in caption
-    assert ("linear (−340 N to 460 N)" in caption) == (name == "force_piece")  # elsewhere on its own axis
-
-
-def test_an_axis_that_suits_all_says_nothing():
-    part = next(part for part in PARTS if part.name == "force_piece")
-    wave = np.sin(np.arange(1000) * 0.1)
-    assert "beyond" not in part.caption(with_force(60 + 10 * wave, 60 + 12 * wave, 60 + 9 * wave))
-    flying = with_force(np.maximum(5 + 10 * wave, 0.0), 5 + 4 * wave)
-    assert part.draw(flying).axes[0].get_ylim()[0] < 0.0  # zero is where contact is lost
-
-
-def test_no_contact_is_drawn_where_there_is_any():
-    part = next(part for part in PARTS if part.name == "force_piece")
-    wave = np.sin(np.arange(1000) * 0.1)
-    calm, flying = with_force(60 + wave), with_force(np.maximum(wave, 0.0))
-    assert (len(part.draw(calm).axes), len(part.draw(flying).axes)) == (1, 2)
-    assert "Bars below" not in part.caption(calm)
-    assert "Bars below" in part.caption(flying)
 
 
 def test_the_page_is_made_for_paper(text, tree):
@@ -371,30 +255,11 @@ def test_the_datum_is_written_in_one_way(text, tree):
     assert not re.search(r"\bd_?0\b", "".join(Reader(text).text))
 
 
-def test_the_line_of_the_path_is_drawn_and_written_from_end_to_end(folder, tree):
+def test_the_line_of_the_path_is_written_from_end_to_end(folder, tree):
     table = read_csv(folder / "texture_path.csv")
     line = tree["surface/line"].values
     assert table["x [m]"][-1] > 0.99 * float(tree["surface/distance"][-1])
     assert (table["lowest z [m]"].min(), table["highest z [m]"].max()) == (line.min(), line.max())
-
-
-def test_heights_of_the_whole_path_are_drawn_beside_the_sample():
-    part = next(part for part in PARTS if part.name == "texture_sample")
-    tree = small()
-    surface = tree["surface"].to_dataset()
-    tree["surface"] = surface.assign_coords(path_height=20 * surface["path_height"])
-    histogram = part.draw(tree).axes[1]
-    assert "path, whole" in [text.get_text() for text in histogram.get_legend().get_texts()]
-    assert histogram.get_xlim()[0] < -9.0  # µm; no height of the sample is as low
-
-
-def test_maps_that_lines_were_laid_out_as_say_so():
-    tree = small()
-    tree["surface"].attrs["across"] = "lines"
-    for name in ("texture_sample", "texture_path"):
-        part = next(part for part in PARTS if part.name == name)
-        titles = [axes.get_title(loc="left") for axes in part.draw(tree).axes]
-        assert any(title.endswith("as laid out between lines") for title in titles)
 
 
 @pytest.mark.parametrize("lengths", [[400, 400, 300], [3000] * 10])
@@ -491,45 +356,6 @@ def test_smoothing_for_the_eye_keeps_level_and_sparse_lines():
 # --- bands that say little
 
 
-def uncertain(share, laws=("areal", "table", "linear-filtered", "linear")):
-    """Tree in which B T reaches ten after a share of the bands."""
-    tree = report_tree(list(laws), steps=1000)
-    bands = tree["spectra"].sizes["band"]
-    product = 10.0 * 10 ** ((np.arange(bands) - share * bands) / 10)
-    tree["spectra"]["band_time_product"].values[:] = product
-    return tree, product < 10.0
-
-
-def test_bands_that_say_little_are_shaded():
-    part = next(part for part in PARTS if part.name == "force_bands")
-    tree, little = uncertain(0.4)
-    edge = tree["spectra/band"].values[little].max() * 10**0.05
-    for name in ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws"):
-        part = next(part for part in PARTS if part.name == name)
-        figure = part.draw(tree)
-        for axes in figure.axes:
-            shaded = [patch.get_x() + patch.get_width() for patch in axes.patches]
-            assert shaded == pytest.approx([edge], rel=1e-6), name
-        assert any(text.get_text() == "says little" for text in figure.findobj(Text))
-        assert "B T is below 10" in part.caption(tree)
-    enough, _ = uncertain(0.0)
-    assert not part.draw(enough).axes[0].patches
-    assert "B T" not in part.caption(enough)
-
-
-def test_bands_that_hold_the_start_are_shaded():
-    tree, little = uncertain(0.4)
-    held = np.where(np.arange(little.size) == np.flatnonzero(little)[-1] + 3, 0.3, 0.1)
-    tree["spectra"]["start_share"] = xr.Variable("band", held)
-    for name in ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws"):
-        part = next(part for part in PARTS if part.name == name)
-        first, second = part.draw(tree).axes[0].patches
-        centre = tree["spectra/band"].values[held > 0.2]
-        assert second.get_x() < centre < second.get_x() + second.get_width()
-        assert first.get_x() + first.get_width() < second.get_x()
-        assert "low by more than 1 dB" in part.caption(tree)
-
-
 def test_bands_that_say_little_are_marked_in_the_table_and_not_summed_up():
     tree, little = uncertain(0.4)
     table = reference_table(tree)
@@ -552,22 +378,6 @@ def test_bands_that_say_little_are_marked_in_the_csv_file(tmp_path):
     table = read_csv(write_columns(part.columns(tree), tmp_path / "force_bands.csv"))
     assert np.array_equal(table["level says something [1]"] == 0.0, little)
     assert np.array_equal(table["B T [1]"], tree["spectra/band_time_product"].values)
-
-
-# --- the linear laws that all others are compared with
-
-
-def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
-    part = next(part for part in PARTS if part.name == "force_bands")
-    labels = [axes.get_ylabel() for axes in part.draw(tree).axes]
-    assert labels[1:] == ["level − linear-filtered / dB", "level − linear / dB"]
-    columns = list(part.columns(tree))
-    assert columns.index("areal minus linear-filtered [dB]") < columns.index("areal minus linear [dB]")
-    spectra = tree["spectra"].to_dataset()
-    for law in ("linear-filtered", "linear"):
-        expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
-        np.testing.assert_allclose(part.columns(tree)[f"areal minus {law} [dB]"], expected)
-    assert "minus that of linear-filtered and that of linear" in part.caption(tree)
 
 
 # --- the range of validity

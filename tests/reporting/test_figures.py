@@ -1,0 +1,257 @@
+"""Figures that all kinds share, as charts: what is drawn, how far axes reach, what is shaded and said."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from report_tree import LAWS, report_tree, uncertain, with_force
+
+from asperity.kinds.ball_on_beam.chapters import CHAPTERS
+from asperity.laws import spec_of
+from asperity.reporting.chart import Boxes, Field, Line, Note, Rules
+from asperity.reporting.data import missing
+from asperity.reporting.law_entries import law_entries
+from asperity.reporting.time_figures import piece
+from asperity.schema import contact
+
+PARTS = {part.name: part for chapter in CHAPTERS for part in chapter.parts}
+SPECTRA = ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws")
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return report_tree()
+
+
+def small():
+    return report_tree(["areal", "linear"], steps=1000)
+
+
+def panels(name, tree):
+    return PARTS[name].laid_out(tree).panels
+
+
+def marks(name, tree, kind=Line):
+    return [mark for panel in panels(name, tree) for mark in panel.marks if isinstance(mark, kind)]
+
+
+# --- laws
+
+
+@pytest.mark.parametrize("laws", [["linear"], ["areal", "hertz-filtered", "linear-filtered"]])
+def test_any_set_of_laws(laws):
+    tree = report_tree(laws, steps=500)
+    for part in (part for chapter in CHAPTERS[3:] for part in chapter.parts):
+        if part.name != "acceleration_sensors":
+            chart = part.laid_out(tree)
+            assert set(chart.laws) == set(laws)
+            labels = {mark.label for panel in chart.panels for mark in panel.marks if isinstance(mark, Line)}
+            assert set(laws) <= labels
+
+
+def test_laws_keep_their_colours_in_all_figures(tree):
+    for name in ("force_psd", "force_bands", "acceleration_laws", "force_piece", "force_envelope"):
+        drawn = {line.law: line.colour for line in marks(name, tree) if line.law}
+        assert drawn == {law: spec_of(law).look.colour for law in LAWS}, name
+
+
+def test_no_two_laws_of_a_result_have_one_colour():
+    gold = {"colour": "#96700a", "dashes": "-"}
+    taken = [{"name": "a", **gold}, {"name": "b", **gold}, {"name": "c", "colour": "#6b3e12"}]
+    tree = xr.DataTree.from_dict({"scenario": xr.Dataset(attrs={"laws": json.dumps(taken)})})
+    a, b, c = law_entries(tree).values()
+    assert (a.colour, c.colour) == ("#96700a", "#6b3e12")
+    assert b.colour not in {a.colour, c.colour}
+
+
+# --- the force in time
+
+
+def test_short_piece_holds_the_longest_loss_of_contact():
+    tree = report_tree(["areal"], steps=5000)
+    rolling = tree["rolling"].to_dataset()
+    force = np.full((1, 5000), 5.0)
+    force[0, 100:110], force[0, 4000:4300] = 0.0, 0.0
+    share = rolling["contact_loss_share"].copy(data=[0.062])
+    tree["rolling"] = rolling.assign(contact_force=(("law", "time"), force), contact_loss_share=share)
+    part = piece(tree)
+    assert part.start < 4000
+    assert part.stop > 4300
+
+
+WAVE = np.sin(np.arange(1000) * 0.1)
+
+
+@pytest.mark.parametrize("name", ["force_piece", "force_envelope"])
+def test_a_wild_law_does_not_flatten_the_main_one(name):
+    tree = with_force(60 + 10 * WAVE, 60 + 30 * WAVE, 60 + 400 * WAVE)
+    axis = panels(name, tree)[0].y
+    assert axis.high - axis.low < 2.2 * 20.0
+    assert axis.low < 50.0 < 70.0 < axis.high
+    assert [line.opacity for line in marks(name, tree)] == [0.5, 0.5, 1.0]  # the main law is drawn last
+    caption = PARTS[name].caption(tree)
+    assert "beyond it: shifted (30.0 N to 90.0 N), linear (−340 N to 460 N)" in caption
+
+
+def test_an_axis_that_suits_all_says_nothing():
+    caption = PARTS["force_piece"].caption
+    assert "beyond" not in caption(with_force(60 + 10 * WAVE, 60 + 12 * WAVE, 60 + 9 * WAVE))
+    flying = with_force(np.maximum(5 + 10 * WAVE, 0.0), 5 + 4 * WAVE)
+    assert panels("force_piece", flying)[0].y.low < 0.0  # zero is where contact is lost
+
+
+def test_loss_of_contact_is_drawn_where_there_is_any():
+    force = np.full(1000, 5.0)
+    force[[0, 1, 700, 999]] = 0.0
+    tree = with_force(force, force, 5 * WAVE)
+    chart = PARTS["force_envelope"].laid_out(tree)
+    time = 1e3 * tree["rolling/time"].values
+    whole, below = chart.panels
+    areal, shifted = (mark for mark in below.marks if isinstance(mark, Boxes))  # linear pulls
+    assert (areal.law, shifted.law) == ("areal", "shifted")
+    assert [word for _, word in below.x.ticks or below.y.ticks] == ["areal", "shifted", "linear"]
+    half = (time[1] - time[0]) / 2
+    np.testing.assert_allclose(areal.left, time[[0, 700, 999]] - half)
+    np.testing.assert_allclose(areal.right, time[[1, 700, 999]] + half)
+    (shaded,) = (mark for mark in whole.marks if isinstance(mark, Boxes))
+    assert (shaded.law, shaded.left.tolist()) == ("areal", areal.left.tolist())
+    first, last = chart.places["next loss of contact"].T
+    assert len(first) == 3
+    assert first[1] < time[700] < last[1]
+    assert "Bars below: no contact (F ≤ 0); linear cannot lose it." in PARTS["force_envelope"].caption(tree)
+    calm = with_force(60 + WAVE)
+    assert len(panels("force_piece", calm)) == 1
+    assert list(PARTS["force_envelope"].laid_out(calm).places) == ["largest force"]
+    assert "Bars below" not in PARTS["force_piece"].caption(calm)
+
+
+def test_the_whole_run_is_there_step_by_step(tree):
+    lines = marks("force_envelope", tree)
+    force = tree["rolling/contact_force"]
+    for line in lines:
+        np.testing.assert_array_equal(line.y, force.sel(law=line.law).values)
+    largest = PARTS["force_envelope"].laid_out(tree).places["largest force"]
+    peak = float(tree["rolling/time"][int(force[0].values.argmax())])  # s
+    assert largest[0, 0] < peak < largest[0, 1]
+
+
+# --- the contact
+
+
+def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
+    held, row = tree["contact"].to_dataset(), 4  # the state nearest the working load
+    excited = held["filter_excited"].values > 0
+    lines = marks("contact_filter", tree)
+    for name in ("filter_raw", "filter", "filter_applied"):
+        level = 20 * np.log10(held[name].values[row])
+        shown = excited & (level > -40)
+        assert any(np.allclose(line.y[shown], level[shown]) for line in lines), name
+    beyond = [line for line in lines if np.isfinite(line.y[~excited]).any()]
+    assert len(beyond) == 5  # sin q/q in the lower panel alone goes on where the texture excites nothing
+    assert all(line.dashes for line in beyond)
+    assert len(marks("contact_filter", tree, Boxes)) == 2  # in both panels
+    assert "grey: waves that the texture lacks" in PARTS["contact_filter"].caption(tree)
+
+
+def test_signed_estimate_is_faint_where_force_and_line_have_little_in_common(tree):
+    held = tree["contact"].to_dataset()
+    known = (held["filter_coherence"].values[4] >= 0.25) & (held["filter_excited"].values > 0)
+    full = np.where(known, held["filter_signed"].values[4], np.nan)
+    assert any(np.array_equal(line.y, full, equal_nan=True) for line in marks("contact_filter", tree))
+
+
+def test_hertz_is_drawn_in_closed_form_and_not_below_its_touch():
+    tree = small()
+    constant = tree["contact"].attrs["hertz_constant"]
+    for panel, power, unit in zip(panels("contact_force", tree), (1.5, 0.5), (1.0, 1e6), strict=True):
+        (line,) = (mark for mark in panel.marks if isinstance(mark, Line) and mark.label == "Hertz")
+        assert line.x[0] == 0.0
+        assert len(line.x) > 10 * tree["contact"].sizes["approach"]
+        assert np.allclose(line.y, constant * (line.x * 1e-6) ** power / unit)
+
+
+def test_gaps_are_told_in_plain_words(tree):
+    entry = contact.FILTER
+    held = entry.variable(tree["contact/filter"].values)
+    gaps = xr.DataTree.from_dict({"contact": xr.Dataset({entry.name: held})})
+    told = "Gaps in the contact filter, fitted magnitude: the samples do not touch in these states, or have"
+    assert missing(gaps, entry).startswith(told)
+    assert missing(xr.DataTree(), entry) == ""
+
+
+# --- the texture
+
+
+def test_heights_of_the_whole_path_are_drawn_beside_the_sample():
+    tree = small()
+    surface = tree["surface"].to_dataset()
+    tree["surface"] = surface.assign_coords(path_height=20 * surface["path_height"])
+    lines = {line.label: line for line in marks("texture_sample", tree)}
+    assert lines["path, whole"].x.min() < -9.0  # µm; no height of the sample is as low
+    assert lines["path, whole"].x.min() < lines["sample"].x.min()
+
+
+def test_colours_of_a_map_leave_out_one_in_a_thousand():
+    tree = small()
+    heights = tree["surface"]["sample_heights"].values
+    usual = np.ptp(np.percentile(heights, [0.1, 99.9]))
+    heights[0, 0] = 1e3 * heights.max()  # a spike
+    (field,) = marks("texture_sample", tree, Field)
+    shown = (field.high - field.low) / field.values.max()
+    assert shown < 2 * usual / heights.max()
+
+
+def test_maps_that_lines_were_laid_out_as_say_so():
+    tree = small()
+    tree["surface"].attrs["across"] = "lines"
+    for name in ("texture_sample", "texture_path"):
+        assert any(panel.title.endswith("as laid out between lines") for panel in panels(name, tree))
+
+
+# --- bands that say little
+
+
+def test_bands_that_say_little_are_shaded():
+    tree, little = uncertain(0.4)
+    edge = tree["spectra/band"].values[little].max() * 10**0.05
+    for name in SPECTRA:
+        for panel in panels(name, tree):
+            (shaded,) = (mark for mark in panel.marks if isinstance(mark, Boxes))
+            assert shaded.right == pytest.approx([edge], rel=1e-6), name
+        assert any(note.text == "says little" for note in marks(name, tree, Note))
+        assert "B T is below 10" in PARTS[name].caption(tree)
+    enough, _ = uncertain(0.0)
+    assert not marks("force_bands", enough, Boxes)
+    assert "B T" not in PARTS["force_bands"].caption(enough)
+
+
+def test_bands_that_hold_the_start_are_shaded():
+    tree, little = uncertain(0.4)
+    held = np.where(np.arange(little.size) == np.flatnonzero(little)[-1] + 3, 0.3, 0.1)
+    tree["spectra"]["start_share"] = xr.Variable("band", held)
+    (centre,) = tree["spectra/band"].values[held > 0.2]
+    for name in SPECTRA:
+        shaded = marks(name, tree, Boxes)[0]
+        assert shaded.right[0] < shaded.left[1] < centre < shaded.right[1]
+        assert "low by more than 1 dB" in PARTS[name].caption(tree)
+
+
+# --- the linear laws that all others are compared with
+
+
+def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
+    part = PARTS["force_bands"]
+    labels = [panel.y.label for panel in panels("force_bands", tree)]
+    assert labels[1:] == ["level − linear-filtered / dB", "level − linear / dB"]
+    assert len(marks("force_bands", tree, Rules)) == 2  # zero
+    columns = part.columns(tree)
+    names = list(columns)
+    assert names.index("areal minus linear-filtered [dB]") < names.index("areal minus linear [dB]")
+    spectra = tree["spectra"].to_dataset()
+    for law in ("linear-filtered", "linear"):
+        expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
+        np.testing.assert_allclose(columns[f"areal minus {law} [dB]"], expected)
+    assert "minus that of linear-filtered and that of linear" in part.caption(tree)
