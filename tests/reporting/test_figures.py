@@ -121,7 +121,8 @@ def test_loss_of_contact_is_drawn_where_there_is_any():
     first, last = chart.places["next loss of contact"].T
     assert len(first) == 3
     assert first[1] < time[700] < last[1]
-    assert "Bars below: no contact (F ≤ 0); linear cannot lose it." in PARTS["force_envelope"].caption(tree)
+    told = "Bars below: no contact (F ≤ 0), shaded above where the main law has none; linear cannot lose it."
+    assert told in PARTS["force_envelope"].caption(tree)
     calm = with_force(60 + WAVE)
     assert len(panels("force_piece", calm)) == 1
     assert list(PARTS["force_envelope"].laid_out(calm).places) == ["largest force"]
@@ -153,7 +154,7 @@ def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
     assert len(beyond) == 5  # sin q/q in the lower panel alone goes on where the texture excites nothing
     assert all(line.dashes for line in beyond)
     assert len(marks("contact_filter", tree, Boxes)) == 2  # in both panels
-    assert "grey: waves that the texture lacks" in PARTS["contact_filter"].caption(tree)
+    assert "Grey: waves that the texture lacks" in PARTS["contact_filter"].caption(tree)
 
 
 def test_signed_estimate_is_faint_where_force_and_line_have_little_in_common(tree):

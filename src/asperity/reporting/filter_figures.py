@@ -160,28 +160,27 @@ def _level(ratio: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _filter_caption(tree: DataTree) -> str:
     parts = [
-        "Contact filter per approach against the wavenumber in rolling direction (cycles per metre), "
-        f"wavelength along the top; cut off at {plain(FLOOR)} dB"
+        "Contact filter per approach against the wavenumber in rolling direction, in cycles per metre; cut "
+        f"off at {plain(FLOOR)} dB"
     ]
     if present(tree, contact.FILTER_RAW):
         parts.append(
-            "dots: ratio of the scanned force to a point force on the lines (Eq. 2.6, power of all strips); "
-            "wide: the fit to it; thin: what the taps of the filtered laws apply; shaded: standard deviation "
-            "of the strips"
+            "Dots: ratio of the scanned force to a point force on the lines (Eq. 2.6, power of all strips); "
+            "wide: the fit to it; thin: what the filtered laws apply; shaded: standard deviation of strips"
         )
     if _theory(tree) is not None:
         parts.append(
-            "dashed: sin q / q, q = ka, the closed form of small roughness, uniform across, on Hertz's "
+            "Dashed: sin q / q, q = ka, the closed form of small roughness, uniform across, on Hertz's "
             "contact of radius a; it is negative beyond q = π, which a magnitude cannot show"
         )
     if present(tree, contact.FILTER_SIGNED):
         parts.append(
-            "signed: the force regressed on the mean line under the patch, faint where the two have less "
+            "Signed: the force regressed on the mean line under the patch, faint where the two have less "
             f"than {100 * LEAST_COHERENCE:.0f} % of their power in common"
         )
     if not _excited(tree).all():
-        parts.append("grey: waves that the texture lacks, where the filter is held")
-    return f"{'; '.join(parts)}. {_normalised(tree, contact.FILTER)}".strip()
+        parts.append("Grey: waves that the texture lacks, where the filter is held")
+    return f"{'. '.join(parts)}. {_normalised(tree, contact.FILTER)}".strip()
 
 
 def _normalised(tree: DataTree, entry: Entry) -> str:

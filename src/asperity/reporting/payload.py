@@ -119,7 +119,7 @@ def chart_script() -> str:
     library = (package / "uplot" / "uPlot.iife.min.js").read_text(encoding="utf-8").partition("\n")[2]
     licence = (package / "uplot" / "LICENSE").read_text(encoding="utf-8")
     own = ((package / "charts" / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS)
-    return f"/*! uPlot 1.6.32\n{licence}\n*/\n{library}\n(() => {{\n\"use strict\";\n{''.join(own)}}})();\n"
+    return f'/*! uPlot 1.6.32\n{licence}\n*/\n{library}\n(() => {{\n"use strict";\n{"".join(own)}}})();\n'
 
 
 @cache

@@ -237,19 +237,20 @@ def _contact_length(tree: DataTree) -> list[Mark]:
 
 
 def _sample_caption(tree: DataTree) -> str:
-    missing = number(tree, surface.MISSING_SHARE) or 0.0
-    source = stated(tree, surface.SOURCE) or "not stated"
+    missing = number(tree, surface.MISSING_SHARE)
+    gaps = f"; {100 * missing:.3g} % of its points had no height" if missing else ""
     return (
-        f"Source: {source}; {100 * missing:.3g} % of its points had no height. Heights are positive out of "
-        "the material; the colours leave out 0.1 % of the points at either end."
+        f"Source: {stated(tree, surface.SOURCE) or 'not stated'}{gaps}. Heights are positive out of the "
+        "material; the colours leave out 0.1 % of the points at either end."
     )
 
 
 def _path_caption(tree: DataTree) -> str:
     above = ", and the piece seen from above" if present(tree, surface.PATH_HEIGHTS) else ""
+    stretches = min(STRETCHES, len(values(tree, surface.LINE)))
     return (
-        "Heights of the path, positive out of the material. The CSV file holds the envelope of its "
-        f"middle line; run.nc has every point of it{above}."
+        "Heights of the path, positive out of the material, at every point of its middle line. The CSV file "
+        f"holds the lowest and the highest in each of {stretches} stretches; run.nc has every point{above}."
     )
 
 

@@ -203,20 +203,20 @@ def _piece_caption(tree: DataTree) -> str:
 
 def bars_words(tree: DataTree, data: Data) -> str:
     """Sentence about the bars below the forces of a piece, where there are any."""
-    if not any(lost(tree, law, force.values).any() for law, force in data.lines.items()):
+    flown = [law for law, force in data.lines.items() if lost(tree, law, force.values).any()]
+    if not flown:
         return ""
+    shaded = ", shaded above where the main law has none" if next(iter(data.lines)) in flown else ""
     held = " and ".join(law for law in data.lines if law_entry(tree, law).may_pull)
-    return " Bars below: no contact (F ≤ 0)" + (f"; {held} cannot lose it." if held else ".")
+    return f" Bars below: no contact (F ≤ 0){shaded}" + (f"; {held} cannot lose it." if held else ".")
 
 
 def _whole_caption(tree: DataTree) -> str:
     whole = forces_data(tree, slice(None))
-    shaded = " Shaded: the main law has lost contact." if _main_flight(tree).any() else ""
     return (
         "Every time step; compression positive. Where steps lie too close to draw, a line spans lowest and "
-        f"highest force.{shaded}{bars_words(tree, whole)}{cut_off(tree, whole)} The CSV file holds the "
-        f"lowest and the highest force in each of {min(COLUMNS, len(whole.at))} stretches, run.nc every time "
-        "step."
+        f"highest force.{bars_words(tree, whole)}{cut_off(tree, whole)} The CSV file holds lowest and "
+        f"highest force in each of {min(COLUMNS, len(whole.at))} stretches, run.nc every time step."
     )
 
 
