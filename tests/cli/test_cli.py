@@ -106,6 +106,40 @@ def test_a_run_is_written_as_sounds(ran):
     assert "received 'drums'; allowed: acceleration" in refused
 
 
+def test_figures_of_a_run_are_drawn_when_asked(ran):
+    folder, _ = ran
+    told = call("figures", str(folder / "run.nc"), "scene", "contact force levels", "--format", "pdf").stdout
+    files = [folder / "figures" / f"{name}.pdf" for name in ("scene", "force_bands")]
+    assert [file.read_bytes()[:4] for file in files] == [b"%PDF"] * 2
+    assert "scene.pdf, force_bands.pdf" in " ".join(told.split())
+    call("figures", str(folder), "-o", "all")
+    numbers = {path.stem for path in folder.glob("*.csv")}
+    assert {path.name for path in Path("all").iterdir()} == {f"{name}.svg" for name in numbers}
+
+
+def test_wrong_figures_and_folders_are_told_and_leave_nothing(ran):
+    folder, _ = ran
+    refused = call("figures", str(folder), "scene", "force_band", "-o", "new", code=2).stderr
+    assert 'Nearest: "force_bands" (Contact force levels in one-third octaves)' in " ".join(refused.split())
+    assert not Path("new").exists()
+    Path("taken").write_text("a file")
+    refused = call("figures", str(folder), "-o", "taken", code=2).stderr
+    assert "folder of the figures: received taken" in refused
+    assert "Choose another folder with -o." in refused
+
+
+def test_a_run_and_its_report_need_no_matplotlib(own_folder):
+    Path("small.toml").write_text(SMALL)
+    script = (
+        "import sys\nfrom asperity.cli import main\n"
+        "try: main(['run', 'small.toml', '-o', 'out'])\nexcept SystemExit as end: assert not end.code\n"
+        "print('matplotlib' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert Path("out/report.html").exists()
+    assert done.stdout.splitlines()[-1] == "False"
+
+
 def test_runs_are_compared(ran):
     """A page and a table, and what they say in short; with itself a run has no differences."""
     folder, _ = ran

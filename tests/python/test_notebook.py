@@ -48,7 +48,12 @@ def test_a_result_draws_its_figures_by_name(result):
     bands = result.plot("force_bands")
     assert bands._repr_png_()[:4] == b"\x89PNG"
     assert "one-third octave" in bands.axes[-1].get_xlabel()
-    with pytest.raises(InputError, match=r"received 'force_band'; allowed: .*force_bands.* Did you mean"):
+    by_title = result.plot("contact force levels")
+    for drawn, line in zip(by_title.axes[0].lines, bands.axes[0].lines, strict=True):
+        np.testing.assert_array_equal(drawn.get_xydata(), line.get_xydata())
+    with pytest.raises(
+        InputError, match=r"received 'force_band'; allowed: .*force_bands.* Nearest: .force_bands"
+    ):
         result.plot("force_band")
     with pytest.raises(InputError, match="it has none"):
         Result().plot()

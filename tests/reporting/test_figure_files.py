@@ -1,0 +1,260 @@
+"""Figures as files: what matplotlib draws of a chart, what a drawing is as SVG, which figures are meant."""
+
+import re
+from io import BytesIO
+
+import numpy as np
+import pytest
+from xarray import DataTree
+
+from asperity.errors import InputError
+from asperity.reporting.axes import frequency_axis, wavenumber_axis, words_axis
+from asperity.reporting.chart import (
+    Area,
+    Axis,
+    Boxes,
+    Chart,
+    Field,
+    Line,
+    Note,
+    Panel,
+    Rules,
+    Second,
+    Shape,
+)
+from asperity.reporting.drawing import svg_of
+from asperity.reporting.figure_files import chosen_parts, write_chart, write_figures
+from asperity.reporting.paper import draw, save_figure
+from asperity.reporting.part import Data, Part
+from asperity.reporting.style import BLUE, COLOURS, INK
+from asperity.reporting.surface_charts import lines_chart, surface_chart
+from asperity.reporting.texture import height_scale
+
+X = np.array([0.0, 1.0, 2.0])
+Y = np.array([1.0, np.nan, 4.0])
+ONE, TWO = np.array([0.5]), np.array([1.5])
+ALL = np.array([np.inf])
+
+
+def axes_of(*marks, x=Axis("x / m", 0.0, 2.0), y=Axis("y / N", -5.0, 5.0), **place):  # noqa: B008
+    return draw(Chart((Panel(x, y, marks, **place),))).axes[0]
+
+
+def corners(boxes):
+    (axes_boxes,) = axes_of(boxes).collections
+    return [path.vertices[:4].tolist() for path in axes_boxes.get_paths()]
+
+
+@pytest.mark.parametrize(
+    ("mark", "drawn", "expected"),
+    [
+        (Line(X, Y, "force", BLUE, (3.0, 1.0)), lambda a: a.lines[0].get_xydata(), np.column_stack([X, Y])),
+        (Line(X, Y, marker="^", width=0), lambda a: a.lines[0].get_linestyle() == "None", True),
+        (Area(X, X - 1, X + 1), lambda a: a.collections[0].get_datalim(a.transData).bounds, (0, -1, 2, 4)),
+        (
+            Boxes(ONE, TWO, -ONE, ONE, hatch="/"),
+            lambda a: a.collections[0].get_paths()[0].vertices[:4],
+            [[0.5, -0.5], [0.5, 0.5], [1.5, 0.5], [1.5, -0.5]],
+        ),
+        (
+            Boxes(ONE, ALL, -ALL, ALL),
+            lambda a: a.collections[0].get_paths()[0].vertices[:4],
+            [[0.5, -5], [0.5, 5], [2, 5], [2, -5]],
+        ),
+        (
+            Rules(np.array([0.5, 1.0])),
+            lambda a: [s[:, 0].tolist() for s in a.collections[0].get_segments()],
+            [[0.5, 0.5], [1, 1]],
+        ),
+        (
+            Rules(ONE, "y", short=True),
+            lambda a: a.collections[0].get_segments()[0],
+            [[0.0, 0.5], [0.04, 0.5]],
+        ),
+        (Note("here", 1.0, 0.5, y_share=True), lambda a: a.texts[0].xy, (1.0, 0.5)),
+        (
+            Field((0, 2), (0, 1), np.arange(6.0).reshape(3, 2), "h / m", 0, 5),
+            lambda a: a.images[0].get_array(),
+            [[0, 2, 4], [1, 3, 5]],
+        ),
+        (
+            Shape(X, Y[[0, 2, 0]], fill=BLUE),
+            lambda a: a.patches[0].get_xy()[:3],
+            np.column_stack([X, [1, 4, 1]]),
+        ),
+    ],
+    ids=lambda value: type(value).__name__ if not callable(value) else "",
+)
+def test_numbers_of_a_mark_arrive(mark, drawn, expected):
+    np.testing.assert_array_equal(np.ma.filled(drawn(axes_of(mark)), np.nan), expected)
+
+
+def ticks(axes, way="x"):
+    axes.figure.draw_without_rendering()
+    side = getattr(axes, f"{way}axis")
+    low, high = sorted(side.get_view_interval())
+    inside = (label for label in side.get_ticklabels() if low <= label.get_position()[way == "y"] <= high)
+    return [label.get_text() for label in inside]
+
+
+@pytest.mark.parametrize(
+    ("axis", "named"),
+    [
+        (frequency_axis(20, 1200), ["31.5", "63", "125", "250", "500", "1k"]),
+        (wavenumber_axis(10, 1e4), ["10¹", "10²", "10³", "10⁴"]),
+        (Axis("loss factor", 0.01, 0.6, log=True), ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5"]),
+        (words_axis(["areal", "linear"]), ["areal", "linear"]),
+        (
+            Axis("down", 1.0, -1.0),
+            ["−1.00", "−0.75", "−0.50", "−0.25", "0.00", "0.25", "0.50", "0.75", "1.00"],
+        ),
+    ],
+    ids=["frequency", "decades", "few decades", "words", "turned round"],
+)
+def test_an_axis_names_its_ticks(axis, named):
+    axes = axes_of(Line(np.array([1.0]), np.array([1.0])), x=axis)
+    assert sorted(ticks(axes)) == sorted(named)
+    assert (axis.low, axis.high) == axes.get_xlim()
+
+
+def test_an_axis_opposite_shows_what_it_is_scaled_to():
+    top = axes_of(x=wavenumber_axis(10, 1e4)).child_axes[0]
+    assert ticks(top)[:4] == ["100 µm", "200 µm", "500 µm", "1 mm"]
+    state = Axis("approach", 0.0, 4.0, second=Second("state", offset=1.0))
+    opposite = axes_of(x=state).child_axes[0]
+    assert ticks(opposite)[0] == "1.0"
+    assert opposite.get_xlim() == (1.0, 5.0)
+
+
+def test_axes_reach_as_far_as_the_marks_and_panels_share_a_legend():
+    line = Line(X, Y, "areal", BLUE)
+    free = Panel(Axis("x"), Axis("y"), (line, Boxes(ONE, TWO, -ALL, ALL)))
+    upper, lower = draw(Chart((free, free))).axes
+    assert upper.get_xlim() == (0.0, 2.0)
+    assert upper.get_ylim() == pytest.approx((0.88, 4.12))
+    assert [text.get_text() for text in upper.get_legend().get_texts()] == ["areal"]
+    assert lower.get_legend() is None
+    assert (upper.get_xlabel(), lower.get_xlabel()) == ("", "x")  # one axis, named once
+
+
+def test_the_same_numbers_make_the_same_file():
+    def drawn(format):
+        file = BytesIO()
+        save_figure(
+            draw(Chart((Panel(Axis("x"), Axis("y"), (Line(X, Y, "a & <b>"),)),)), "title"), file, format
+        )
+        return file.getvalue()
+
+    for format, begin in (("svg", b"<?xml"), ("pdf", b"%PDF"), ("png", b"\x89PNG")):
+        assert drawn(format) == drawn(format)
+        assert drawn(format).startswith(begin)
+    assert b"a &amp; &lt;b&gt;" in drawn("svg")  # words stay words
+
+
+@pytest.mark.parametrize(
+    ("heights", "spacing"),
+    [
+        (np.random.default_rng(1).normal(0, 1e-6, (80, 60)), (1e-6, 2e-6)),
+        (np.random.default_rng(1).normal(0, 1e-6, 5000), (1e-6, 1e-6)),
+        (np.zeros((8, 8)), (1e-6, 1e-6)),
+        (np.where(np.eye(40) > 0, np.nan, np.arange(40) * 1e-9), (1e-6, 1e-6)),
+    ],
+    ids=["map", "line", "flat", "missing"],
+)
+def test_a_surface_is_drawn(heights, spacing, tmp_path):
+    chart = surface_chart(heights, spacing)
+    assert write_chart(chart, "<b>", tmp_path / "s.png").stat().st_size > 10_000
+    reached = chart.panels[2].marks[0].y[[0, -1]] * height_scale(heights)[0]  # by none, and by all
+    assert reached == pytest.approx([np.nanmax(heights), np.nanmin(heights)])
+
+
+def test_lines_stand_below_each_other(tmp_path):
+    rng = np.random.default_rng(0)
+    lines = [rng.normal(0, 1e-5, n) for n in (400, 400, 300)]
+    lines[0][5:9] = np.nan
+    chart = lines_chart(lines, 1e-3)
+    assert [name for _, name in chart.panels[0].y.ticks] == ["1", "2", "3"]
+    assert write_chart(chart, "lines", tmp_path / "lines.PNG").read_bytes()[:4] == b"\x89PNG"
+
+
+SIDE = Panel(
+    Axis("x / m", 0.0, 10.0),
+    Axis("", 0.0, 2.0),
+    (
+        Shape(np.array([0.0, 10.0, 10.0, 0.0]), np.array([0.0, 0.0, 0.5, 0.5]), fill=BLUE),
+        Boxes(ONE, TWO, ONE, TWO, hatch="/", edge=INK),
+        Line(X, X, marker="^", dashes=(2.0, 1.0)),
+        Rules(ONE),
+        Note("1 m/s", 5.0, 1.0),
+        Note("<R = 2 m>", 5.0, 1.0),
+    ),
+    title="from the side",
+    equal=True,
+    height=2.0,
+)
+
+
+def test_a_drawing_is_svg_in_the_colours_of_the_page():
+    told = svg_of(Chart((SIDE,), drawing=True), 'a "scene"', COLOURS)
+    assert told.count('role="img" aria-label="a &quot;scene&quot;"') == 2  # for a wide page and a phone
+    used = set(re.findall(r'(?:fill|stroke)="([^"]+)"', told))
+    assert used <= {"none", *(f"var(--c{n})" for n in range(len(COLOURS)))}
+    assert f"var(--c{list(COLOURS).index(BLUE)})" in used
+    assert "&lt;R = 2 m&gt;" in told
+    wide = told.partition("drawing narrow")[0]
+    heights = {text: float(y) for y, text in re.findall(r'<text [^>]*y="([\d.]+)"[^>]*>([^<]+)<', wide)}
+    assert abs(heights["1 m/s"] - heights["&lt;R = 2 m&gt;"]) >= 9.0  # a word moves out of the way of another
+    left, foot = re.findall(r'd="M([\d.]+) ([\d.]+)L', wide)[0]
+    width = float(re.findall(r'viewBox="0 0 ([\d.]+)', wide)[0])
+    assert 0 < float(left) < width
+    assert re.search(rf"M{left} {foot}h[\d.]+", wide)  # the axis stands at the foot
+
+
+def part(name, title):
+    panel = Panel(Axis("x"), Axis("y"), (Line(X, Y),))
+    return Part(name, title, (), lambda _: Data(None, {}), lambda _, __: Chart((panel,)), lambda _: "")
+
+
+PARTS = [
+    part("force_bands", "Contact force levels in one-third octaves"),
+    part("force_psd", "Contact force against frequency"),
+    part("scene", "The scene, to scale"),
+]
+
+
+@pytest.mark.parametrize(
+    ("names", "found"),
+    [
+        ([], ["force_bands", "force_psd", "scene"]),
+        (["scene", "force_psd", "scene"], ["scene", "force_psd"]),
+        (["the scene, to SCALE"], ["scene"]),
+        (["contact force levels"], ["force_bands"]),
+    ],
+)
+def test_figures_are_found_by_name_and_title(names, found):
+    assert [part.name for part in chosen_parts(PARTS, names)] == found
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("force_band", r"received 'force_band'.* scene\. Nearest: \"force_bands\" \(Contact force levels"),
+        ("contact force", r"Nearest: \"force_bands\" .*, \"force_psd\""),  # both begin so
+        ("xyz", r"allowed: a figure of this result, by name or title: force_bands, force_psd, scene\.$"),
+        (None, "received None"),
+    ],
+)
+def test_a_wrong_name_is_told_with_the_nearest(name, message):
+    with pytest.raises(InputError, match=message):
+        chosen_parts(PARTS, [name])
+
+
+def test_a_result_without_figures_says_so():
+    with pytest.raises(InputError, match="it has none"):
+        chosen_parts([], ["force"])
+
+
+def test_figures_are_files_under_their_names(tmp_path):
+    files = write_figures(DataTree(), PARTS[:2], tmp_path, "pdf")
+    assert files == [tmp_path / "force_bands.pdf", tmp_path / "force_psd.pdf"]
+    assert all(file.read_bytes().startswith(b"%PDF") for file in files)
