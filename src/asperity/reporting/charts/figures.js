@@ -25,14 +25,13 @@ function figureOf(element, chart, get, light) {
   const hidden = new Set(), spans = new Map();
   let active, visible = false, colours = {};
   area.replaceChildren();
+  const onPaper = (name) => (name.startsWith("--") ? light[name.slice(3)] ?? "#ffffff" : name);
   const colour = (name) => {
-    if (!name.startsWith("--")) return name;
-    const number = name.startsWith("--c") ? light[Number(name.slice(3))] : undefined;
-    if (paper) return number ?? "#ffffff";
-    return (colours[name] ??= getComputedStyle(document.documentElement).getPropertyValue(name).trim() || number || "#ffffff");
+    if (paper || !name.startsWith("--")) return onPaper(name);
+    return (colours[name] ??= getComputedStyle(document.documentElement).getPropertyValue(name).trim() || onPaper(name));
   };
   const figure = {
-    element, left: 0,
+    element, onPaper, left: 0,
     shows: (mark) => !(mark.law && off.has(mark.law)) && !(mark.label && hidden.has(keyOf(mark))),
     all: (panel) => { panel.span.y = null; zoomTo(panel, null); },
     select, draw, forget: () => { colours = {}; },
@@ -48,8 +47,7 @@ function figureOf(element, chart, get, light) {
     const box = make("div", { className: "panel" });
     const names = make("div", { className: "names" }, box);
     if (told.title) make("strong", { textContent: told.title }, names);
-    const label = [told.y.label, ""][Number(inWords(told.y) && !told.y.label)];
-    make("span", { textContent: label }, names);
+    make("span", { textContent: told.y.label }, names);
     const field = told.marks.find((mark) => mark.kind === "field");
     const beside = [told.x.second && `above: ${told.x.second.label}`, told.y.second && `right: ${told.y.second.label}`, field && `colours: ${field.label}`];
     make("span", { className: "beside", textContent: beside.filter(Boolean).join("; ") }, names);
@@ -323,8 +321,7 @@ function figureOf(element, chart, get, light) {
       const view = { ctx: swatch.getContext("2d"), left: 0, top: 0, right: 30 * unit, bottom: 12 * unit, unit, colour, lowest: 0, highest: 30 };
       Object.assign(view, { x: (at) => at * unit, y: (at) => at * unit });
       const { mark } = swatch, box = { left: [4], right: [26], low: [1], high: [11] };
-      if (mark.kind === "line") drawMark(view, { ...mark, x: [1, 15, 29], y: [6, 6, 6], marker: "", ordered: false });
-      if (mark.kind === "line" && mark.marker) drawMarker(view, mark.marker, 15 * unit, 6 * unit);
+      if (mark.kind === "line") for (const x of [[1, 29], [15]]) drawMark(view, { ...mark, x, y: [6, 6], marker: x.length > 1 ? "" : mark.marker });
       if (mark.kind === "area") drawMark(view, { ...mark, kind: "boxes", ...box });
       if (mark.kind === "boxes") drawMark(view, { ...mark, ...box });
       if (mark.kind === "rules") drawMark(view, { ...mark, along: "y", at: [6], short: false });
@@ -346,10 +343,13 @@ function figureOf(element, chart, get, light) {
         read(panel, [(ends[0] + ends[1]) / 2, isField(panel) ? middleOf(panel) : null], true);
       });
     }
-    const shifted = [button("◂", "shift to lower values", () => shift(-0.5)), button("▸", "shift to higher values", () => shift(0.5))];
+    const shifted = [
+      button("all", "show all", () => { for (const panel of panels) { panel.span.y = null; zoomTo(panel, null); } }),
+      button("◂", "shift to lower values", () => shift(-0.5)),
+      button("▸", "shift to higher values", () => shift(0.5)),
+    ];
     button("−", "zoom out", () => zoom(2));
     button("+", "zoom in", () => zoom(0.5));
-    shifted.push(button("all", "show all", () => { for (const panel of panels) { panel.span.y = null; zoomTo(panel, null); } }));
     const update = () => {
       const zoomed = spans.size > 0 || panels.some((panel) => panel.span.y);
       for (const each of shifted) each.style.visibility = zoomed ? "" : "hidden";

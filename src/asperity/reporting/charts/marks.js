@@ -165,10 +165,10 @@ function drawBoxes(view, mark) {
 }
 
 function hatching({ ctx, unit, colour }, mark) {  // in the colour of the paper over a full colour, else in its own
-  const size = Math.round(7 * unit), tile = Object.assign(document.createElement("canvas"), { width: size, height: size });
+  const size = Math.round(8 * unit), tile = Object.assign(document.createElement("canvas"), { width: size, height: size });
   const pen = tile.getContext("2d");
   pen.strokeStyle = pen.fillStyle = (mark.opacity ?? 1) > 0.5 ? colour("--paper") : colour(mark.colour);
-  pen.lineWidth = 1.3 * unit;
+  pen.lineWidth = unit;
   const strokes = { "/": [[0, size, size, 0]], "\\": [[0, 0, size, size]], x: [[0, size, size, 0], [0, 0, size, size]], "-": [[0, size / 2, size, size / 2]] };
   for (const [a, b, c, d] of strokes[mark.hatch] ?? []) {
     for (const shift of a === c || b === d ? [0] : [-size, 0, size]) {  // so that corners meet

@@ -134,7 +134,8 @@ function plotOf(panel, outer, height, colour, k) {
   if (told.x.second) axes.push(plotAxis(panel, "x", 0, size, colour, k, true));
   if (told.y.second) axes.push(plotAxis(panel, "y", 1, size, colour, k, true));
   const drawn = (front) => (plot) => {
-    const view = viewOf(plot, uPlot.pxRatio * k, colour), { ctx } = view;
+    const light = panel.marks.some((mark) => mark.colours === "inferno_r");  // its ground is light on a dark page, too
+    const view = viewOf(plot, uPlot.pxRatio * k, light ? panel.figure.onPaper : colour), { ctx } = view;
     ctx.save();
     ctx.beginPath();
     ctx.rect(view.left, view.top, view.right - view.left, view.bottom - view.top);
@@ -144,8 +145,10 @@ function plotOf(panel, outer, height, colour, k) {
     if (front) drawNotes(view, shown.filter((mark) => mark.kind === "note"));
     ctx.restore();
     if (front) for (const mark of shown) if (mark.kind === "field") drawScale(view, mark);
+    const { style } = ctx.canvas.parentElement;  // on paper drawn larger, and seen in its size: sharp
+    for (const side of ["width", "height"]) style[side] = `${plot[side] / k}px`;
   };
-  const plot = new uPlot({
+  return new uPlot({
     width: Math.round((size.width + size.left + size.right) * k), height: Math.round((size.height + size.top + size.bottom) * k),
     padding: [told.x.second ? 4 * k : size.top * k, told.y.second ? 4 * k : padding, 0, 0],
     legend: { show: false },
@@ -154,11 +157,6 @@ function plotOf(panel, outer, height, colour, k) {
     scales: { x: scale("x"), y: scale("y") }, axes, series: [{}, { show: false }],
     hooks: { drawClear: [drawn(false)], draw: [drawn(true)], setSelect: [() => panel.figure.select(panel)] },
   }, [ascending(panel.seen("x")), [null, null]], panel.host);
-  if (k !== 1) {  // drawn larger, and seen in its size: sharp on paper
-    const wrap = plot.root.querySelector(".u-wrap");
-    for (const side of ["width", "height"]) wrap.style[side] = `${parseFloat(wrap.style[side]) / k}px`;
-  }
-  return plot;
 }
 
 function drawScale(view, mark) {  // of the colours of a field, beside it
@@ -180,6 +178,7 @@ function drawScale(view, mark) {  // of the colours of a field, beside it
   const { at, names } = linearTicks(mark.low, mark.high, height / unit / 40);
   ctx.font = `${Math.round(12 * unit)}px ${FONT}`;
   ctx.textBaseline = "middle";
+  ctx.textAlign = "left";
   ctx.fillStyle = ctx.strokeStyle = view.colour("--c0");
   ctx.lineWidth = unit;
   at.forEach((value, n) => {

@@ -19,10 +19,10 @@ function logTicks(low, high, most) {
     for (let digit = 1; digit < 10; digit++) {
       const at = Number(`${digit}e${power}`);
       if (at < low * (1 - 1e-9) || at > high * (1 + 1e-9)) continue;
-      if (mantissas.includes(digit) && power % every === 0) all.push(at); else if (decades <= 7 && every === 1) minor.push(at);
+      if (mantissas.includes(digit) && power % every === 0) all.push(at); else if (decades <= 5 && every === 1) minor.push(at);
     }
   }
-  const plain = low >= 1e-4 && high <= 2e5;
+  const plain = decades < 2.5 && low >= 1e-3 && high <= 1e5;
   const names = all.map((at) => {
     const power = Math.floor(Math.log10(at) + 1e-9), digit = Math.round(at / 10 ** power);
     return plain ? written(at) : (digit === 1 ? "" : `${digit}·`) + `10${raised(power)}`;
