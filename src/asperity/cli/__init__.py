@@ -264,8 +264,8 @@ def study(
     """Compute a case for every combination of the values of some keys, into one table.
 
     Writes study.csv and study.nc: band levels, dB(A), peak force and lost contact of every law, the sound of
-    a wheel, what running-in changed, swept keys in the units you typed; a figure for each swept key; and with
-    several seeds their mean and scatter.
+    a wheel, what running-in changed, swept keys in the units you typed; study.html with a figure for each
+    swept key; and with several seeds their mean and scatter.
 
     'asperity new study' writes a commented study; with --vary, a case needs none. Members that are finished
     are kept: the same command goes on where it was, and tries members again that failed.

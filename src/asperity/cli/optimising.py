@@ -1,8 +1,7 @@
-"""Optimise a texture into a folder: its case, its bands as table and figure, and both runs."""
+"""Optimise a texture into a folder: its case, its bands as table and on a page, and both runs."""
 
 from __future__ import annotations
 
-import io
 import json
 from contextlib import suppress
 from pathlib import Path
@@ -22,13 +21,16 @@ from asperity.laws import spec_of
 from asperity.optimising.definition import Assignment, load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
-from asperity.reporting.optimised import TextureBands, optimised_figure
+from asperity.reporting.chart_table import chart_tables
+from asperity.reporting.figures_page import figures_page
+from asperity.reporting.optimised import TextureBands, optimised_chart
+from asperity.reporting.templates import PageFigure
 from asperity.results import save
 from asperity.store import content_key
 from asperity.terminal import say
 
-TEXTURE, CASE, TABLE, FIGURE, TRIALS = (
-    "texture.csv", "case.toml", "bands.csv", "bands.png", "trials.csv",
+TEXTURE, CASE, TABLE, PAGE, TRIALS = (
+    "texture.csv", "case.toml", "bands.csv", "bands.html", "trials.csv",
 )  # fmt: skip
 
 
@@ -52,10 +54,10 @@ def optimise_into(
             write_bytes(new / CASE, f"{_mark(asked, text)}{text}".encode())
     say(found.sentence)
     say(f"Case:    {(directory / CASE).resolve()}")
-    say(f"Figure:  {(directory / FIGURE).resolve()}, and as numbers {TABLE}")
+    say(f"Page:    {(directory / PAGE).resolve()}, and as numbers {TABLE}")
     say(f"Runs:    {(directory / 'before').resolve()}, {(directory / 'after').resolve()}")
     titles, columns = _table(texture_bands(found), found.measure.units)
-    written = {"case": CASE, "texture": TEXTURE, "table": TABLE, "figure": FIGURE, "trials": TRIALS}
+    written = {"case": CASE, "texture": TEXTURE, "table": TABLE, "page": PAGE, "trials": TRIALS}
     written |= {name: f"{name}/run.nc" for name in ("before", "after")}
     return {
         "summary": found.sentence,
@@ -95,17 +97,17 @@ def _refuse_another(asked: str, case: Path) -> None:
 
 
 def _write(found: Optimised, directory: Path, *, report: bool) -> None:
-    """Write the texture found as tables and a figure, and the runs before and after it."""
+    """Write the texture found as tables and on a page, and the runs before and after it."""
     bands = texture_bands(found)
     rows = zip(found.after.wavelength.tolist(), found.after.levels.tolist(), strict=True)
     write_csv(directory / TEXTURE, ["wavelength (m)", "level (dB re 1 um)"], [list(row) for row in rows])
     write_csv(directory / TABLE, *_table(bands, found.measure.units))
     write_csv(directory / TRIALS, *_trials(found))
-    _draw(found, bands, directory / FIGURE)
     for name, tree in (("before", found.result_before), ("after", found.result_after)):
         save(tree, directory / name / "run.nc")
         if report:
             reports.write_page(tree, directory / name / "report.html")
+    _write_page(found, bands, directory / PAGE, report=report)
 
 
 def texture_bands(found: Optimised) -> TextureBands:
@@ -160,9 +162,14 @@ def _trials(found: Optimised) -> tuple[list[str], list[list[object]]]:
     return heading, rows
 
 
-def _draw(found: Optimised, bands: TextureBands, path: Path) -> None:
+def _write_page(found: Optimised, bands: TextureBands, path: Path, *, report: bool) -> None:
     colours = {law: str(spec_of(law).entry()["colour"]) for law in bands.heard}
-    image = io.BytesIO()
-    figure = optimised_figure(bands, found.measure.meaning, found.measure.units, colours)
-    figure.savefig(image, format="png", dpi=150)
-    write_bytes(path, image.getvalue())
+    chart = optimised_chart(bands, found.measure.meaning, found.measure.units, colours)
+    caption = (
+        "Above, the texture before and after, and what it was allowed to be; below, what is heard of it."
+    )
+    figure = PageFigure("bands", "Texture and response in bands", caption, chart, chart_tables(chart), TABLE)
+    files = {"texture (CSV)": TEXTURE, "case": CASE, "trials (CSV)": TRIALS}
+    if report:
+        files |= {f"report {name}": f"{name}/report.html" for name in ("before", "after")}
+    write_bytes(path, figures_page("Optimised texture", found.sentence, [figure], files).encode())

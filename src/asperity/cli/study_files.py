@@ -1,8 +1,7 @@
-"""What a study writes beside its table: means over seeds, a figure for each swept key, an ensemble's band."""
+"""What a study writes beside its table: means over seeds, an ensemble's band, a page of figures."""
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,15 +12,19 @@ import xarray
 from asperity.comma_separated import write_csv
 from asperity.files import lasting, write_bytes
 from asperity.laws import spec_of
-from asperity.reporting.ensemble import ensemble_figure
-from asperity.reporting.study_figures import key_figure
+from asperity.reporting.chart_table import chart_tables
+from asperity.reporting.ensemble import ensemble_chart
+from asperity.reporting.figures_page import figures_page
+from asperity.reporting.law_entries import line_style, read_entry
+from asperity.reporting.study_figures import key_caption, key_chart
+from asperity.reporting.templates import PageFigure
 from asperity.studies.columns import columns_of, long_columns
 from asperity.studies.ensemble import FEWEST, SCATTER, prediction_band
 from asperity.terminal import say
 
 SEED = "seed"
 """The key by which members differ by chance alone."""
-NOT_ALWAYS = ("study_mean.csv", "study-*.png", "ensemble.csv", "ensemble.png")
+NOT_ALWAYS = ("study_mean.csv", "ensemble.csv", "study.html")
 """What not every study writes: that of an earlier one goes."""
 
 
@@ -36,47 +39,70 @@ def write_mean(means: xarray.Dataset | None, directory: Path) -> dict[str, Path]
     return {"mean": path}
 
 
-def write_figures(
-    table: xarray.Dataset, means: xarray.Dataset | None, names: Sequence[str], directory: Path
+def write_ensemble(bands: xarray.Dataset | None, directory: Path) -> dict[str, Path]:
+    """Write mean and band over the seeds of a study, if it sweeps enough of them."""
+    if bands is None:
+        return {}
+    file = directory / "ensemble.csv"
+    swept = [str(name) for name in bands["force_level"].dims if name not in ("law", "band")]
+    write_csv(file, *long_columns(bands, [*swept, "law", "band"]))
+    say(f"Seeds:   {lasting(file).resolve()}")
+    say(str(bands.attrs["meaning"]))
+    return {"ensemble": file}
+
+
+def band_over_seeds(table: xarray.Dataset) -> xarray.Dataset | None:
+    """Mean and band of levels over the seeds of a study, if it sweeps enough of them."""
+    return prediction_band(table) if table.sizes.get(SEED, 0) >= FEWEST else None
+
+
+def write_page(
+    table: xarray.Dataset,
+    means: xarray.Dataset | None,
+    bands: xarray.Dataset | None,
+    names: Sequence[str],
+    directory: Path,
 ) -> dict[str, Path]:
-    """Draw a figure of quantities by name for each swept key that is more than chance."""
-    looks = {law: _look(law) for law in map(str, table["law"].values)}
+    """Write figures on a page: of quantities by name over each swept key, and of the band over seeds."""
+    looks = {law: line_style(read_entry(spec_of(law).entry()), 1.6) for law in map(str, table["law"].values)}
+    figures = _key_figures(table, means, names, looks)
+    if bands is not None:
+        chart = ensemble_chart(bands, looks)
+        caption = str(bands.attrs["meaning"])
+        figures.append(PageFigure("ensemble", "Contact force over the seeds", caption, chart))
+    if not figures:
+        return {}
+    swept = " × ".join(f"{table.sizes[name]} {name}" for name in json.loads(table.attrs["sweep"]))
+    done, count = int(table["completed"].sum()), table["completed"].size
+    summary = swept if done == count else f"{swept}; {done} of {count} members completed"
+    held = {
+        "table (CSV)": "study.csv",
+        "means over seeds (CSV)": "study_mean.csv",
+        "band over seeds (CSV)": "ensemble.csv",
+        "results (netCDF)": "study.nc",
+    }
+    files = {what: file for what, file in held.items() if (directory / file).exists()}
+    path = directory / "study.html"
+    write_bytes(path, figures_page("Study", summary, figures, files).encode())
+    say(f"Page:    {lasting(path).resolve()}")
+    return {"page": path}
+
+
+def _key_figures(
+    table: xarray.Dataset,
+    means: xarray.Dataset | None,
+    names: Sequence[str],
+    looks: dict[str, dict[str, Any]],
+) -> list[PageFigure]:
+    """A figure for each swept key that is more than chance."""
     shown, scatter = table, None
     if means is not None:
         held = [str(name) for name in means.data_vars if str(name).endswith(SCATTER)]
         shown = means.drop_vars(held)
         scatter = means[held].rename({name: name.removesuffix(SCATTER) for name in held})
-    files = {}
-    for key in json.loads(table.attrs["sweep"]):
-        if key in shown.dims and shown.sizes[key] > 1:
-            image = io.BytesIO()
-            key_figure(shown, scatter, key, looks, names).savefig(image, format="png", dpi=150)
-            files[f"figure {key}"] = write_bytes(directory / f"study-{key}.png", image.getvalue())
-            say(f"Figure:  {lasting(files[f'figure {key}']).resolve()}")
-    return files
-
-
-def _look(law: str) -> dict[str, Any]:
-    entry = spec_of(law).entry()
-    return {"color": entry["colour"], "linestyle": _dashes(entry["dashes"])}
-
-
-def _dashes(dashes: Any) -> Any:
-    return dashes if isinstance(dashes, str) else (dashes[0], tuple(dashes[1]))
-
-
-def write_ensemble(table: xarray.Dataset, directory: Path) -> dict[str, Path]:
-    """Write mean and band over the seeds of a study, if it sweeps them, as CSV and as a figure."""
-    files = [directory / name for name in ("ensemble.csv", "ensemble.png")]
-    if table.sizes.get(SEED, 0) < FEWEST:
-        return {}
-    bands = prediction_band(table)
-    colours = {str(law): str(_look(str(law))["color"]) for law in bands["law"].values}
-    swept = [name for name in json.loads(table.attrs["sweep"]) if name != SEED]
-    write_csv(files[0], *long_columns(bands, [*swept, "law", "band"]))
-    image = io.BytesIO()
-    ensemble_figure(bands, colours).savefig(image, format="png", dpi=150)
-    write_bytes(files[1], image.getvalue())
-    say(f"Seeds:   {lasting(files[1]).resolve()}, and as numbers {files[0].name}")
-    say(str(bands.attrs["meaning"]))
-    return {"ensemble": files[0], "ensemble figure": files[1]}
+    swept = [key for key in json.loads(table.attrs["sweep"]) if shown.sizes.get(key, 0) > 1]
+    charts = {key: key_chart(shown, scatter, key, looks, names) for key in swept}
+    return [
+        PageFigure(f"key-{key}", f"Over {key}", key_caption(shown, scatter, key), chart, chart_tables(chart))
+        for key, chart in charts.items()
+    ]

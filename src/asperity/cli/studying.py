@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import shown
-from asperity.cli.study_files import NOT_ALWAYS, SEED, write_ensemble, write_figures, write_mean
+from asperity.cli.study_files import (
+    NOT_ALWAYS,
+    SEED,
+    band_over_seeds,
+    write_ensemble,
+    write_mean,
+    write_page,
+)
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
 from asperity.files import alone_in, discard, lasting, refuse_unwritable, together
@@ -90,8 +97,9 @@ def _study_alone(
         files["table"] = write_csv(new / "study.csv", *columns_of(table))
         say(f"Results: {lasting(files['results']).resolve()}")
         say(f"Table:   {lasting(files['table']).resolve()}")
-        files |= write_mean(means, new) | write_figures(table, means, asked or usual_in_figures(kind), new)
-        files |= write_ensemble(table, new)
+        bands = band_over_seeds(table)
+        files |= write_mean(means, new) | write_ensemble(bands, new)
+        files |= write_page(table, means, bands, asked or usual_in_figures(kind), new)
         for file in (each for pattern in NOT_ALWAYS for each in directory.glob(pattern)):
             if not (new / file.name).exists():
                 discard(file)

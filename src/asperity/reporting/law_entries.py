@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import colorsys
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,8 +36,13 @@ class LawEntry:
 
 
 def law_entries(tree: DataTree) -> dict[str, LawEntry]:
-    """Laws that the result describes, by name, in the order of the case; no two have the same colour."""
-    entries = list(map(_read, json_list(tree, provenance.LAWS)))
+    """Laws that the result describes, by name, in the order of the case."""
+    return read_entries(json_list(tree, provenance.LAWS))
+
+
+def read_entries(told: Iterable[Mapping[str, Any]]) -> dict[str, LawEntry]:
+    """Laws by name with what of them can be drawn; no two have the same colour."""
+    entries = list(map(_read, told))
     taken: set[str] = set()
     spare = iter([colour for colour in LAW_COLOURS if colour not in {entry.colour for entry in entries}])
     for n, entry in enumerate(entries):
@@ -47,7 +52,7 @@ def law_entries(tree: DataTree) -> dict[str, LawEntry]:
     return {entry.name: entry for entry in entries}
 
 
-def _read(entry: dict[str, Any]) -> LawEntry:
+def _read(entry: Mapping[str, Any]) -> LawEntry:
     """An entry with what of it can be drawn."""
     usual, name = LawEntry(""), str(entry.get("name", ""))
     colour, dashes, marker = (entry.get(key) for key in ("colour", "dashes", "marker"))
@@ -86,13 +91,21 @@ def law_entry(tree: DataTree, law: str) -> LawEntry:
 
 def law_style(tree: DataTree, law: str, main: str) -> dict[str, Any]:
     """Look of a line of a law, as `chart.Line` takes it; the main law is drawn thicker."""
-    entry = law_entry(tree, law)
-    return {"colour": entry.colour, "dashes": entry.dashes, "width": 2.2 if law == main else 1.25, "law": law}
+    return line_style(law_entry(tree, law), 2.2 if law == main else 1.25)
+
+
+def line_style(entry: LawEntry, width: float) -> dict[str, Any]:
+    """Look of a line, as `chart.Line` takes it."""
+    return {"colour": entry.colour, "dashes": entry.dashes, "width": width, "law": entry.name}
 
 
 def law_colours(tree: DataTree) -> dict[str, str]:
     """All colours of a page, light and dark: those of the style, and those of laws that bring their own."""
-    colours = (entry.colour for entry in law_entries(tree).values())
+    return page_colours(entry.colour for entry in law_entries(tree).values())
+
+
+def page_colours(colours: Iterable[str]) -> dict[str, str]:
+    """Colours of the style and others, light and dark."""
     return COLOURS | {colour: _on_dark(colour) for colour in colours if colour not in COLOURS}
 
 

@@ -204,7 +204,12 @@ def _key_axis(key: xarray.DataArray) -> Axis:
         return words_axis(typed_values(key), str(key.name))
     x, unit = _places(key), typed_unit(key)
     label = f"{key.name} / {unit}" if unit not in ("", "1") else str(key.name)
-    return Axis(label, log=bool(x.min() > 0 and x.max() / x.min() > SPREAD), linked=str(key.name))
+    low, high = float(x.min()), float(x.max())
+    if low > 0 and high / low > SPREAD:
+        room = (high / low) ** 0.04
+        return Axis(label, low / room, high * room, log=True, linked=str(key.name))
+    room = 0.04 * (high - low)
+    return Axis(label, low - room, high + room, linked=str(key.name))
 
 
 def _bands(table: xarray.Dataset, key: str) -> Panel:
