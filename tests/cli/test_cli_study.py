@@ -3,6 +3,7 @@
 import csv
 import errno
 import json
+import re
 import shutil
 from pathlib import Path
 from unittest.mock import Mock
@@ -89,7 +90,9 @@ def test_mean_and_band_over_the_seeds_are_written(computed):
     mean, low, high = map(float, rows[0][3:6])
     assert mean == pytest.approx(float(levels[:, 0, 0, 0].mean()))
     assert low < mean < high
-    assert (folder / "out" / "ensemble.png").read_bytes().startswith(b"\x89PNG")
+    page = (folder / "out" / "study.html").read_text(encoding="utf-8")
+    assert '<figure id="ensemble" class="chart">' in page
+    assert 'href="ensemble.csv"' in page
     assert "prediction interval; it holds the value of one more seed with a" in " ".join(
         outcome.stdout.split()
     )
@@ -185,9 +188,10 @@ def test_swept_keys_stand_in_the_units_that_were_typed_and_have_a_figure_each():
     with xr.open_dataset("out/study.nc", engine="h5netcdf") as table:
         assert table["speed"].values.tolist() == pytest.approx([1.0, 2.0])
         assert table["speed"].attrs["units"] == "m/s"
-    figures = sorted(path.name for path in Path("out").glob("*.png"))
-    assert figures == ["study-ball.load.png", "study-speed.png"]  # of one seed there is nothing to draw
-    assert all(Path("out", name).read_bytes().startswith(b"\x89PNG") for name in figures)
+    page = Path("out/study.html").read_text(encoding="utf-8")
+    figures = re.findall('<figure id="(.*?)" class="chart">', page)
+    assert figures == ["key-speed", "key-ball.load"]  # of one seed there is nothing to draw
+    assert '<td class="number">3.6</td>' in page  # without a script its numbers are read
     assert not Path("out/study_mean.csv").exists()
 
 

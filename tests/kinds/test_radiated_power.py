@@ -17,6 +17,7 @@ from asperity.kinds.wheel_on_rail.figures.radiated import (
 from asperity.kinds.wheel_on_rail.radiated import RADIATORS, rail_section, silent_wheel
 from asperity.radiation.along import squared_point_mobility
 from asperity.radiation.sleeper import SleeperTop
+from asperity.reporting.chart import Line
 from asperity.spectra import HALF_BAND, band_energies, psd
 
 CASE = {
@@ -197,10 +198,12 @@ def test_the_report_shows_it_beside_cnossos(run, ringing):
     found = data.lines["standard", "linear", "track"].values
     np.testing.assert_allclose(found[np.isfinite(found)], standard[0])
     assert data.at[np.isfinite(found)] == pytest.approx(band)
-    labels = [line.get_label() for line in RADIATED.plot(tree, data).axes[0].lines]
+    labels, own = (
+        [mark.label for mark in RADIATED.laid_out(found).panels[0].marks if isinstance(mark, Line)]
+        for found in (tree, ringing[1])
+    )
     assert labels[:3] == ["rail", "sleepers", "total"]
-    own = RADIATED.plot(ringing[1], RADIATED.collect(ringing[1]))
-    assert "wheel" in [line.get_label() for line in own.axes[0].lines]
+    assert "wheel" in own
     table = radiated_table(tree)
     assert table.head[1:5] == ["rail / dB(A)", "sleepers / dB(A)", "wheel / dB(A)", "total / dB(A)"]
     assert (

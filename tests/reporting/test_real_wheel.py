@@ -7,7 +7,6 @@ import re
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
 from report_reading import HOSTILE, Reader, read_csv
 
 from asperity.cli.studying import _show
@@ -19,7 +18,8 @@ from asperity.kinds.wheel_on_rail.figures.motion import point_labels
 from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
 from asperity.laws import spec_of
 from asperity.reporting.chapter import UNCERTAINTY
-from asperity.reporting.study_figures import key_figure
+from asperity.reporting.chart import Boxes, Line, Note, Rules
+from asperity.reporting.study_figures import key_chart
 from asperity.studies.columns import columns_of
 from asperity.studies.kept import kept, names_kept
 from asperity.studies.shown import chosen, usual, usual_in_figures
@@ -37,15 +37,18 @@ def folder(reports):
     return reports["wheel-on-rail"]
 
 
-def lines_at(axes):
-    """Places of the vertical lines of a panel."""
-    found = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
-    return [x[0] for x in found if x[0] == x[1]]
+def marks_of(tree, name, kind, panel=0):
+    """Marks of a kind in a panel of a figure."""
+    return [mark for mark in panels_of(tree, name)[panel].marks if isinstance(mark, kind)]
 
 
-def ticks_of(axes):
-    (ticks,) = [line.get_xdata() for line in axes.lines if line.get_label() == "_ticks"]
-    return ticks
+def panels_of(tree, name):
+    return PARTS[name].laid_out(tree).panels
+
+
+def rules_of(tree, name, *, short=False, panel=0):
+    """Places of the rules of a panel, short or long."""
+    return [at for mark in marks_of(tree, name, Rules, panel) if mark.short == short for at in mark.at]
 
 
 def test_kind_of_case_chooses_the_chapters(real_runs, tree):
@@ -85,12 +88,11 @@ def test_numbers_survive_the_csv_files_to_the_last_bit(tree, folder):
 def test_force_spectrum_carries_the_marks_of_the_track(tree):
     speed, sleepers = tree["rolling"].attrs["speed"], tree["track"].attrs["sleeper_spacing"]
     pinned = tree["track"].attrs["pinned_pinned_frequency"]
-    axes = PARTS["force_psd"].draw(tree).axes[0]
     split = [pinned - speed / sleepers / 2, pinned + speed / sleepers / 2]
-    assert lines_at(axes) == pytest.approx(split)
-    tones = ticks_of(axes)
+    assert rules_of(tree, "force_psd") == pytest.approx(split)
+    tones = rules_of(tree, "force_psd", short=True)
     assert tones == pytest.approx(speed / sleepers * np.arange(1, len(tones) + 1))
-    assert axes.get_xlim()[1] - tones[-1] < speed / sleepers
+    assert panels_of(tree, "force_psd")[0].x.high - tones[-1] < speed / sleepers
     caption = PARTS["force_psd"].caption(tree)
     assert f"every {speed / sleepers:.1f} Hz" in caption
     assert f"{split[0]:.0f} and {split[1]:.0f} Hz" in caption
@@ -100,16 +102,16 @@ def test_force_spectrum_carries_the_marks_of_the_track(tree):
 def test_track_frequencies_are_marked_and_named(tree, name):
     named = {"antiresonance": "anti-resonance", "cut_on": "cut-on", "pinned_pinned": "pinned–pinned"}
     marks = {tree["track"].attrs[f"{key}_frequency"]: label for key, label in named.items()}
-    figure = PARTS[name].draw(tree)
-    assert lines_at(figure.axes[0])[-3:] == sorted(marks)
-    labels = [label.get_text() for label in figure.findobj(Text)]
-    assert {f"{label}, {frequency:.0f} Hz" for frequency, label in marks.items()} <= set(labels)
+    assert rules_of(tree, name) == sorted(marks)
+    assert {note.text for note in marks_of(tree, name, Note)} == {
+        f"{label}, {frequency:.0f} Hz" for frequency, label in marks.items()
+    }
 
 
 def test_sleepers_are_marked_where_the_wheel_passes_them(tree):
     rolling, sleepers = tree["rolling"].to_dataset(), tree["track"].attrs["sleeper_spacing"]
-    for axes in PARTS["displacement"].draw(tree).axes:
-        seconds = 1e-3 * ticks_of(axes)  # drawn in ms
+    for panel in range(len(panels_of(tree, "displacement"))):
+        seconds = 1e-3 * np.array(rules_of(tree, "displacement", short=True, panel=panel))  # drawn in ms
         places = np.interp(seconds, rolling["time"].values, rolling["position"].values) / sleepers
         assert len(places) >= 3
         assert places == pytest.approx(np.round(places), abs=1e-6)
@@ -143,23 +145,27 @@ def test_the_standard_stands_beside_the_laws(tree):
 
 
 def test_bars_end_at_their_levels(tree):
-    axes = PARTS["sound_power"].draw(tree).axes[0]
-    levels = tree["spectra"].to_dataset()["sound_power_level_a"].values
-    assert [bar.get_x() + bar.get_width() for bar in axes.patches] == pytest.approx(levels.ravel())
+    levels = tree["spectra"].to_dataset()["sound_power_level_a"]
+    bars = marks_of(tree, "sound_power", Boxes)
+    for law, own in zip(levels["law"].values, bars, strict=True):
+        assert own.law == own.label == law
+        assert own.right.tolist() == levels.sel(law=law).values.tolist()
+    assert len({(own.colour, own.hatch) for own in bars}) == len(bars)
 
 
 def test_contact_of_wheel_and_rail_is_outlined_by_its_ellipse(tree):
     along, across = (tree["contact"].attrs[f"hertz_radius{end}"] for end in ("", "_across"))
-    axes = PARTS["contact_pressure"].draw(tree).axes[0]
-    for outline in axes.patches:
-        assert (outline.get_width(), outline.get_height()) == pytest.approx((2e3 * along, 2e3 * across))
-    assert len(axes.patches) == 2  # dark on light: seen on every colour
+    outlines = marks_of(tree, "contact_pressure", Line)
+    for outline in outlines:
+        sides = np.ptp(outline.x), np.ptp(outline.y)
+        assert sides == pytest.approx((2e3 * along, 2e3 * across), rel=1e-3)
+    assert len(outlines) == 2  # dark on light: seen on every colour
     assert "dashed ellipse" in PARTS["contact_pressure"].caption(tree)
 
 
 def test_large_forces_are_shown_in_kilonewtons(tree):
     for name in ("force_envelope", "force_peak", "contact_force"):
-        assert any(axes.get_ylabel().endswith("/ kN") for axes in PARTS[name].draw(tree).axes)
+        assert any(panel.y.label.endswith("/ kN") for panel in panels_of(tree, name))
 
 
 def of_laws(tree, *laws):
@@ -175,8 +181,7 @@ def of_laws(tree, *laws):
 def test_any_set_of_laws(tree, laws):
     tree = of_laws(tree, *laws)
     for name in ("force_envelope", "force_peak", "force_psd", "force_bands", "sound_power", "displacement"):
-        labels = [label.get_text() for label in PARTS[name].draw(tree).findobj(Text)]
-        assert all(any(law in label for label in labels) for law in laws)
+        assert set(PARTS[name].laid_out(tree).laws) == set(laws)
     assert sound_power_table(tree) is not None
 
 
@@ -204,10 +209,10 @@ def test_spectra_are_shaded_where_their_bands_say_little(tree):
     tree = tree.copy(deep=True)
     tree["spectra/band_time_product"].values[:] = 100.0
     for name in ("force_psd", "rail_velocity_psd"):
-        assert not any(axes.patches for axes in PARTS[name].draw(tree).axes)
+        assert not marks_of(tree, name, Boxes)
     tree["spectra/band_time_product"].values[:6] = 9.9
     for name in ("force_psd", "rail_velocity_psd"):
-        assert all(len(axes.patches) == 1 for axes in PARTS[name].draw(tree).axes)
+        assert all(len(marks_of(tree, name, Boxes, n)) == 1 for n in range(len(panels_of(tree, name))))
         assert "B T is below 10" in PARTS[name].caption(tree)
 
 
@@ -217,10 +222,9 @@ def test_bands_without_roughness_are_not_drawn(tree):
     level[:] = np.linspace(20.0, 0.0, level.shape[1])
     level[:, :5] = -130.0
     level[1, 12] = -100.0
-    axes = PARTS["roughness"].draw(tree).axes[0]
-    rail, wheel = (next(x for x in axes.lines if x.get_label() == name) for name in ("rail", "wheel"))
-    assert np.array_equal(rail.get_ydata(), level[0, 5:])
-    assert np.isnan(wheel.get_ydata()[7])
+    lines = {line.label: line.y for line in marks_of(tree, "roughness", Line)}
+    assert np.array_equal(lines["rail"], level[0, 5:])
+    assert np.isnan(lines["wheel"][7])
     assert len(PARTS["roughness"].columns(tree)["wavelength [m]"]) == level.shape[1]
 
 
@@ -229,10 +233,9 @@ def test_drawn_force_spectrum_keeps_the_power(tree):
     lines = 5.0 * np.arange(1, 1 + spectra.sizes["frequency"])
     tree = tree.copy()
     tree["spectra"] = spectra.assign_coords(frequency=lines)
-    axes = PARTS["force_psd"].draw(tree).axes[0]
-    line = next(line for line in axes.lines if line.get_label() == "areal")
-    drawn = np.mean(10 ** (line.get_ydata() / 10))
-    count = 4 * len(line.get_xdata())  # lines 5 Hz apart, drawn every 20 Hz
+    (line,) = [line for line in marks_of(tree, "force_psd", Line) if line.label == "areal"]
+    drawn = np.mean(10 ** (line.y / 10))
+    count = 4 * len(line.x)  # lines 5 Hz apart, drawn every 20 Hz
     assert count > 40
     assert drawn == pytest.approx(spectra["force_psd"].sel(law="areal").values[:count].mean())
 
@@ -257,7 +260,7 @@ def test_bars_of_lost_contact_are_drawn_where_it_is_lost(tree, flat):
         force[max(peak - 40, 0) : peak - 5] = 0.0
     rolling["contact_loss_share"][0] = 0.02 * flat
     tree["rolling"] = rolling
-    assert len(part.draw(tree).axes) == 1 + flat
+    assert len(part.laid_out(tree).panels) == 1 + flat
     assert ("Bars below" in part.caption(tree)) == flat
 
 
@@ -292,18 +295,16 @@ def test_bands_that_say_little_are_shaded_and_in_the_csv_file(tree, name, variab
     part, tree = PARTS[name], tree.copy(deep=True)
     product = tree[f"spectra/{variable}"].values
     product[:] = 100.0
-    assert not part.draw(tree).axes[0].patches
+    assert not marks_of(tree, name, Boxes)
     product[:4] = 9.9
-    assert len(part.draw(tree).axes[0].patches) == 1
+    assert len(marks_of(tree, name, Boxes)) == 1
     assert "Shaded" in part.caption(tree)
     columns = part.columns(tree)
     assert columns["level says something [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
 
 
 def test_motion_is_compared_with_practice(tree):
-    drawn = PARTS["rail_velocity"].draw(tree).axes[0]
-    assert {line.get_label() for line in drawn.lines} >= {"areal", "linear-filtered"}
-    assert "linear" not in {line.get_label() for line in drawn.lines}
+    assert {line.label for line in marks_of(tree, "rail_velocity", Line)} == {"areal", "linear-filtered"}
 
 
 def test_the_passage_follows_from_the_sound_power(tree):
@@ -315,9 +316,7 @@ def test_the_passage_follows_from_the_sound_power(tree):
 
 
 def test_axles_are_marked_where_they_pass(tree, folder):
-    axes = PARTS["pass_by_level"].draw(tree).axes[0]
-    (marks,) = [line.get_xdata() for line in axes.lines if line.get_label() == "_axles"]
-    assert list(marks) == [0.0]
+    assert rules_of(tree, "pass_by_level", short=True) == [0.0]
     table = read_csv(folder / "pass_by_level.csv")
     level = tree["pass_by/pass_by_level"].sel(law="areal", radiator="total").values
     assert np.array_equal(table["total, areal [dB(A) re 20 µPa]"], level)
@@ -346,16 +345,15 @@ def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(stud
 def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(study):
     table = study[1]
     assert not table["contact_loss_share"].values.any()
-    figure = key_figure(table, None, "speed", {}, usual_in_figures("wheel-on-rail"))
-    labels = {axes.get_ylabel().replace("\n", " ") for axes in figure.axes}
-    assert "sound power level from the vibration itself / dB(A) re 1 pW" in labels
-    assert "L_pAFmax / dB(A) re 20 µPa" in labels
-    assert not any("without contact" in label for label in labels)
-    (sound,) = [axes for axes in figure.axes if "sound power" in axes.get_ylabel()]
+    chart = key_chart(table, None, "speed", {}, usual_in_figures("wheel-on-rail"))
+    panels = {panel.title: panel for panel in chart.panels}
+    assert panels["L_pAFmax, areal"].y.label == "dB(A) re 20 µPa"
+    assert not any("without contact" in title for title in panels)
+    sound = panels["sound power level from the vibration itself, areal"]
     power = table["radiated_power_level_a"].isel(law=0)
-    for line in sound.lines:
-        np.testing.assert_array_equal(line.get_ydata(), power.sel(radiator=line.get_label()))
-    assert [line.get_label() for line in sound.lines] == ["rail", "sleepers", "total"]  # the wheel is rigid
+    for line in sound.marks:
+        np.testing.assert_array_equal(line.y, power.sel(radiator=line.label))
+    assert [line.label for line in sound.marks] == ["rail", "sleepers", "total"]  # the wheel is rigid
 
 
 def test_what_a_study_of_wheels_may_be_asked_to_show_is_what_it_keeps(tree):
