@@ -64,7 +64,7 @@ def write_page(
     directory: Path,
 ) -> dict[str, Path]:
     """Write figures on a page: of quantities by name over each swept key, and of the band over seeds."""
-    looks = {law: line_style(read_entry(spec_of(law).entry()), 1.6) for law in map(str, table["law"].values)}
+    looks = {str(law): _look(str(law)) for law in table["law"].values}
     figures = _key_figures(table, means, names, looks)
     if bands is not None:
         chart = ensemble_chart(bands, looks)
@@ -86,6 +86,11 @@ def write_page(
     write_bytes(path, figures_page("Study", summary, figures, files).encode())
     say(f"Page:    {lasting(path).resolve()}")
     return {"page": path}
+
+
+def _look(law: str) -> dict[str, Any]:
+    entry = read_entry(spec_of(law).entry())
+    return line_style(entry, 1.6) | {"marker": entry.marker}
 
 
 def _key_figures(

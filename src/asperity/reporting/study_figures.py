@@ -13,7 +13,7 @@ import xarray
 
 from asperity.reporting.axes import band_axis, doubtful_boxes, words_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Line, Mark, Numbers, Panel
-from asperity.reporting.style import INK, sequence
+from asperity.reporting.style import INK, told_apart
 from asperity.reporting.typed import typed_unit, typed_values, typed_words
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import say_little
@@ -137,10 +137,9 @@ def _lines(
     own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
     if not others and own:
         found = [word for word in table[own[0]].values if held.sel({**law, own[0]: word}).notnull().any()]
-        colours = sequence(len(found))
         return [
-            ({**law, own[0]: word}, {"colour": colour, "label": str(word)})
-            for word, colour in zip(found, colours, strict=True)
+            ({**law, own[0]: word}, {**look, "label": str(word)})
+            for word, look in zip(found, told_apart(len(found)), strict=True)
         ]
     if not others:
         laws = [str(name) for name in table[LAW.name].values] if law else []
@@ -149,10 +148,10 @@ def _lines(
     here = law | {dim: table[dim].values[-1] for dim in own}
     places = list(product(*(range(table.sizes[name]) for name in others)))[:MOST_LINES]
     lines = []
-    for place, colour in zip(places, sequence(len(places)), strict=True):
+    for place, look in zip(places, told_apart(len(places)), strict=True):
         at = {name: table[name].values[n] for name, n in zip(others, place, strict=True)}
         words = [f"{name} {typed_words(table[name])[n]}" for name, n in zip(others, place, strict=True)]
-        lines.append(({**here, **at}, {"colour": colour, "label": ", ".join(words)}))
+        lines.append(({**here, **at}, {**look, "label": ", ".join(words)}))
     return lines
 
 
@@ -182,8 +181,8 @@ def _over_key(
     place = _places(key)
     order = np.argsort(place)
     x, y = place[order], np.asarray(found.values, dtype=float)[order]
-    joined = {**look, "width": 0.0} if _is_words(key) else look  # nothing lies between words
-    line = Line(x, y, marker="o", **joined)
+    apart = {"width": 0.0} if _is_words(key) else {}  # nothing lies between words
+    line = Line(x, y, **{"marker": "o", **look, **apart})
     if reach is None or not np.isfinite(reach.values).any():
         return [line]
     by = reach.values[order]
@@ -222,9 +221,9 @@ def _bands(table: xarray.Dataset, key: str) -> Panel:
     if BAND_TIME_PRODUCT.name in here:
         little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
         marks += doubtful_boxes(band, little.any([dim for dim in little.dims if dim != BAND.name]).values)
-    for at, colour in zip(shown, sequence(len(shown)), strict=True):
+    for at, look in zip(shown, told_apart(len(shown)), strict=True):
         level = here[FORCE_LEVEL.name].isel({key: at}).values
-        marks.append(Line(band, level, words[at], colour, marker="o"))
+        marks.append(Line(band, level, words[at], marker="o", **look))
     first = "".join(f", {name} {typed_words(table[name])[0]}" for name in others)
     axis = Axis("force level / dB re 1 N")
     return Panel(band_axis(band), axis, tuple(marks), f"{_main(table)}{first}", height=3.2)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import cycle
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +40,8 @@ COLOURS = {
 }
 HATCHES = ("", "/", "\\", "x", ".", "-")
 """Of bars beside each other, for those who do not see colours."""
+DASHES = ((), (6, 1.5), (6, 1.5, 1.5, 1.5), (3, 1.5), (1.5, 1.5), (9, 1.5, 1.5, 1.5, 1.5, 1.5))
+"""Of lines of a sequence, for the same."""
 LAW_COLOURS, SEQUENCE = tuple(COLOURS)[3:-6], tuple(COLOURS)[-6:]
 
 
@@ -52,6 +56,12 @@ def sequence(count: int) -> list[str]:
     """`count` colours from low to high; repeats nothing up to six."""
     picks = np.linspace(0, len(SEQUENCE) - 1, max(count, 1)).round().astype(int)
     return [SEQUENCE[pick] for pick in picks]
+
+
+def told_apart(count: int) -> list[dict[str, Any]]:
+    """Looks of `count` lines from low to high, by colour and by dashes."""
+    looks = zip(sequence(count), cycle(DASHES), strict=False)
+    return [{"colour": colour, "dashes": dashes} for colour, dashes in looks]
 
 
 def decibels(power: NDArray[np.float64], reference: float = 1.0) -> NDArray[np.float64]:

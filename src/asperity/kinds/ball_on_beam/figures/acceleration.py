@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from xarray import DataTree
 
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_LEVEL, ACCELERATION_REFERENCE
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_PSD as PSD
-from asperity.reporting.chart import Chart, Dashes, Line
+from asperity.reporting.chart import Chart, Line
 from asperity.reporting.data import laws, missing, of_law, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import (
@@ -20,10 +19,9 @@ from asperity.reporting.spectrum_figures import (
     shaded_words,
     spectrum_panel,
 )
-from asperity.reporting.style import sequence
+from asperity.reporting.style import told_apart
 from asperity.schema.spectra import FREQUENCY
 
-_DASHES: tuple[Dashes, ...] = ((), (6, 1.5), (6, 1.5, 1.5, 1.5), (3, 1.5), (1.5, 1.5))
 _AXIS = "acceleration PSD / dB re (1 µm/s²)²/Hz"
 
 
@@ -61,11 +59,8 @@ def sensors_chart(tree: DataTree, data: Data) -> Chart:
     levels = {
         label: narrow_level(tree, psd.values, ACCELERATION_REFERENCE**2) for label, psd in data.lines.items()
     }
-    looks = zip(sequence(len(levels)), cycle(_DASHES), strict=False)
-    drawn = [
-        Line(*level, label, colour, dashes)
-        for (label, level), (colour, dashes) in zip(levels.items(), looks, strict=True)
-    ]
+    looks = told_apart(len(levels))
+    drawn = [Line(*levels[label], label, **look) for label, look in zip(levels, looks, strict=True)]
     return Chart((spectrum_panel(tree, drawn, _AXIS),))
 
 

@@ -12,7 +12,7 @@ from asperity.reporting.chart import Chart, Line
 from asperity.reporting.data import laws, of_law, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import DRAWN, narrow_level, shaded_words, spectrum_panel
-from asperity.reporting.style import sequence
+from asperity.reporting.style import told_apart
 from asperity.schema.spectra import FREQUENCY
 
 MOST_LINES = 6
@@ -45,8 +45,8 @@ def motion_chart(tree: DataTree, data: Data) -> Chart:
     """Acceleration of the bodies over frequency."""
     shown = [data.lines[index] for index in _shown(degree_names(tree))]
     levels = [
-        Line(*narrow_level(tree, line.values, BODY_REFERENCE**2), line.name, colour)
-        for line, colour in zip(shown, sequence(len(shown)), strict=True)
+        Line(*narrow_level(tree, line.values, BODY_REFERENCE**2), line.name, **look)
+        for line, look in zip(shown, told_apart(len(shown)), strict=True)
     ]
     label = "acceleration PSD / dB re (1 µm/s²)²/Hz"
     return Chart((spectrum_panel(tree, levels, label, tone_rules(tree)),))
