@@ -23,6 +23,7 @@ from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
 from asperity.reporting.chart_table import chart_tables
 from asperity.reporting.figures_page import figures_page
+from asperity.reporting.law_entries import read_entries
 from asperity.reporting.optimised import TextureBands, optimised_chart
 from asperity.reporting.templates import PageFigure
 from asperity.results import save
@@ -163,7 +164,8 @@ def _trials(found: Optimised) -> tuple[list[str], list[list[object]]]:
 
 
 def _write_page(found: Optimised, bands: TextureBands, path: Path, *, report: bool) -> None:
-    colours = {law: str(spec_of(law).entry()["colour"]) for law in bands.heard}
+    laws = read_entries(spec_of(law).entry() for law in bands.heard)
+    colours = {name: law.colour for name, law in laws.items()}
     chart = optimised_chart(bands, found.measure.meaning, found.measure.units, colours)
     caption = (
         "Above, the texture before and after, and what it was allowed to be; below, what is heard of it."

@@ -15,7 +15,7 @@ from asperity.laws import spec_of
 from asperity.reporting.chart_table import chart_tables
 from asperity.reporting.ensemble import ensemble_chart
 from asperity.reporting.figures_page import figures_page
-from asperity.reporting.law_entries import line_style, read_entry
+from asperity.reporting.law_entries import line_style, read_entries
 from asperity.reporting.study_figures import key_caption, key_chart
 from asperity.reporting.templates import PageFigure
 from asperity.studies.columns import columns_of, long_columns
@@ -64,7 +64,8 @@ def write_page(
     directory: Path,
 ) -> dict[str, Path]:
     """Write figures on a page: of quantities by name over each swept key, and of the band over seeds."""
-    looks = {str(law): _look(str(law)) for law in table["law"].values}
+    laws = read_entries(spec_of(str(law)).entry() for law in table["law"].values)
+    looks = {name: line_style(law, 1.6) | {"marker": law.marker} for name, law in laws.items()}
     figures = _key_figures(table, means, names, looks)
     if bands is not None:
         chart = ensemble_chart(bands, looks)
@@ -86,11 +87,6 @@ def write_page(
     write_bytes(path, figures_page("Study", summary, figures, files).encode())
     say(f"Page:    {lasting(path).resolve()}")
     return {"page": path}
-
-
-def _look(law: str) -> dict[str, Any]:
-    entry = read_entry(spec_of(law).entry())
-    return line_style(entry, 1.6) | {"marker": entry.marker}
 
 
 def _key_figures(
