@@ -109,7 +109,10 @@ class TestBallOnBeam:
         assert len(passes.rows) == run_in["contact"].sizes["running_in_pass"]
         assert "the next is elastic" in passes.note
         assert HEIGHTS.drawable(run_in)
-        assert len(HEIGHTS.draw(run_in).axes[0].lines) == 2
+        assert [line.label for line in HEIGHTS.laid_out(run_in).panels[0].marks] == [
+            "before running-in",
+            "after",
+        ]
         assert list(HEIGHTS.columns(run_in)) == [
             "distance [m]", "before running-in [m]", "after running-in [m]",
         ]  # fmt: skip
