@@ -116,6 +116,7 @@ class Note:
     align: str = "left"  # words begin ("left") or end ("right") at the place, or have it in their "center"
     upright: bool = False  # written along y
     colour: str = MUTED
+    law: str = ""
 
 
 @dataclass(frozen=True, eq=False)

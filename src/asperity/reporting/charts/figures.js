@@ -198,12 +198,14 @@ function figureOf(element, chart, get, light) {
     plot.over.addEventListener("mousemove", move);
     plot.over.addEventListener("mouseleave", () => { for (const each of figures) each.linked(null); });
   }
-  function xName(panel, x) {  // the name of a band or a word, else the number
-    const { x: axis } = panel.told, tick = (axis.ticks ?? []).find(([at]) => Math.abs(scaled(axis, at) - scaled(axis, x)) < (axis.log ? 0.045 : 0.5));
-    if (tick && (inWords(axis) || panel.bands)) return tick[1];
-    const pixel = Math.abs(panel.seen("x")[1] - panel.seen("x")[0]) / 1000;
-    const digits = axis.log ? 4 : within(Math.ceil(Math.log10(Math.abs(x || 1) / pixel)), 2, 9);
-    return `${written(x, digits)} ${unitOf(axis.label)}`.trim();
+  function xName({ told: { x: axis }, seen }, x) {  // a band or a word by its name, else the number
+    const [low, high] = seen("x").map((end) => scaled(axis, end)), unit = unitOf(axis.label);
+    if (axis.ticks && !axis.minor) {
+      const off = ([at]) => Math.abs(scaled(axis, at) - scaled(axis, x)), [, name] = axis.ticks.reduce((a, b) => (off(b) < off(a) ? b : a));
+      return unit ? name.replace(/k?$/, (kilo) => ` ${kilo}${unit}`) : name;
+    }
+    const pixel = Math.abs(high - low) / 1000, digits = axis.log ? 4 : within(Math.ceil(Math.log10(Math.abs(x || 1) / pixel)), 2, 9);
+    return `${written(x, digits)} ${unit}`.trim();
   }
   function read(panel, at, spoken) {
     panel.at = at;

@@ -113,7 +113,7 @@ function measured(panel, width, height) {
   const top = told.x.second ? 26 : 9;
   const left = Math.max(panel.figure.left, longest(sides("y", height - bottom - top).names) + 13);
   const bar = panel.marks.find((mark) => mark.kind === "field");
-  const right = bar ? 36 + longest(linearTicks(bar.low, bar.high, height / 40).names)
+  const right = bar ? 36 + longest(scaleTicks(bar, height).names)
     : told.y.second ? longest(sides("y", height, true).names) + 13 : 16;
   let inner = { width: width - left - right, height: height - top - bottom };
   if (told.equal) {
@@ -159,6 +159,8 @@ function plotOf(panel, outer, height, colour, k) {
   }, [ascending(panel.seen("x")), [null, null]], panel.host);
 }
 
+const scaleTicks = (field, height) => linearTicks(field.low, field.high, Math.max(height / 40, 2.5));
+
 function drawScale(view, mark) {  // of the colours of a field, beside it
   const { ctx, unit } = view, left = view.right + 10 * unit, width = 12 * unit, height = view.bottom - view.top;
   const shades = shadesOf(mark.colours ?? "cividis"), numbers = mark.values.numbers;
@@ -175,7 +177,7 @@ function drawScale(view, mark) {  // of the colours of a field, beside it
   };
   if (numbers.some((number) => number > mark.high)) beyond(view.top, -7 * unit, shades[255]);
   if (numbers.some((number) => number < mark.low)) beyond(view.bottom, 7 * unit, shades[0]);
-  const { at, names } = linearTicks(mark.low, mark.high, height / unit / 40);
+  const { at, names } = scaleTicks(mark, height / unit);
   ctx.font = `${Math.round(12 * unit)}px ${FONT}`;
   ctx.textBaseline = "middle";
   ctx.textAlign = "left";

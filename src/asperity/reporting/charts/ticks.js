@@ -14,7 +14,8 @@ function logTicks(low, high, most) {
   const decades = Math.log10(high / low);
   if (decades < 0.7) return linearTicks(low, high, most);
   const first = Math.floor(Math.log10(low)), all = [], minor = [];
-  const every = Math.ceil(decades / Math.max(most, 1)), mantissas = 3 * decades <= most ? [1, 2, 5] : [1];
+  const plain = low >= 1e-3 && high <= 1e5, every = Math.ceil(decades / Math.max(most, 1));
+  const mantissas = 3 * decades <= most && (plain || decades < 2) ? [1, 2, 5] : [1];
   for (let power = first; power <= Math.log10(high); power++) {
     for (let digit = 1; digit < 10; digit++) {
       const at = Number(`${digit}e${power}`);
@@ -22,10 +23,9 @@ function logTicks(low, high, most) {
       if (mantissas.includes(digit) && power % every === 0) all.push(at); else if (decades <= 5 && every === 1) minor.push(at);
     }
   }
-  const plain = decades < 2.5 && low >= 1e-3 && high <= 1e5;
   const names = all.map((at) => {
     const power = Math.floor(Math.log10(at) + 1e-9), digit = Math.round(at / 10 ** power);
-    return plain ? written(at) : (digit === 1 ? "" : `${digit}·`) + `10${raised(power)}`;
+    return plain && (mantissas.length > 1 || decades < 2.5) ? written(at) : (digit === 1 ? "" : `${digit}·`) + `10${raised(power)}`;
   });
   return { at: all, names, minor };
 }

@@ -109,7 +109,7 @@ def total_chart(tree: DataTree, data: Data) -> Chart:
         edges = np.full(len(at), base), level[known], at - 0.43 * thickness, at + 0.43 * thickness
         marks.append(Boxes(*edges, law, law_entry(tree, law).colour, hatch=hatch, law=law))
         marks += [
-            Note(f"{y:.1f}", y, x, colour=INK)
+            Note(f"{y:.1f}", y, x, colour=INK, law=law)
             for x, y in zip(at.tolist(), level[known].tolist(), strict=True)
         ]
     across = words_axis(found)
