@@ -4,7 +4,6 @@ import io
 import os
 import signal
 import tempfile
-from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -17,7 +16,6 @@ _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_er
 os.environ["ASPERITY_CACHE"] = _cache.name
 
 from asperity import results  # noqa: E402
-from asperity.kinds.report_process import ReportProcess  # noqa: E402
 
 
 def pytest_configure():
@@ -30,16 +28,6 @@ def pytest_configure():
 
 def pytest_unconfigure():
     _cache.cleanup()
-
-
-@pytest.fixture(autouse=True)
-def reported_alone(monkeypatch):
-    """Runs of tests are short, and processors busy: a second process takes longer to start than to draw."""
-
-    def alone(wanted=True):
-        return nullcontext(ReportProcess() if wanted else None)
-
-    monkeypatch.setattr("asperity.kinds.report_process.report_process", alone)
 
 
 @pytest.fixture(autouse=True)

@@ -20,7 +20,6 @@ WRITERS = {
     "apart.py",  # answers to the process that asked
     "desk.py",
     "jobs.py",
-    "report_process.py",  # read what such processes answer
     "__main__.py",  # before anything can be imported
 }
 

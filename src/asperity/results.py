@@ -188,7 +188,7 @@ def serve_result(path: str, whole: bool, answers: BinaryIO) -> None:
     def groups(found: Any) -> Iterator[Group]:
         variables = found.variables if whole else {}
         held = {name: (each.dimensions, _values(each), dict(each.attrs)) for name, each in variables.items()}
-        yield found.name, dict(found.attrs), held, []
+        yield found.name, dict(found.attrs), held
         for group in found.groups.values() if whole else ():
             yield from groups(group)
 

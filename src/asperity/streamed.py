@@ -15,27 +15,15 @@ if TYPE_CHECKING:
     import xarray
 
 
-Group = tuple[str, Mapping[Any, Any], Mapping[str, tuple[Any, NDArray[Any], Mapping[Any, Any]]], list[str]]
-"""Path and attributes of a group, its variables by name, each with dimensions, values and attributes, and
-names of those that are coordinates."""
-
-
-def send_result(tree: xarray.DataTree, to: BinaryIO) -> None:
-    """Send a result."""
-    send_groups((_group_of(node) for node in tree.subtree), to)
-
-
-def _group_of(node: xarray.DataTree) -> Group:
-    found = node.to_dataset(inherit=False)
-    variables = {str(name): (each.dims, each.values, each.attrs) for name, each in found.variables.items()}
-    return node.path, node.attrs, variables, [str(name) for name in found.coords]
+Group = tuple[str, Mapping[Any, Any], Mapping[str, tuple[Any, NDArray[Any], Mapping[Any, Any]]]]
+"""Path and attributes of a group, and its variables by name, each with dimensions, values and attributes."""
 
 
 def send_groups(groups: Iterable[Group], to: BinaryIO) -> None:
     """Send groups of variables: a line that says what is in them, then the bytes of the variables."""
     told: list[dict[str, Any]] = []
     values: list[NDArray[Any]] = []
-    for path, attributes, variables, coordinates in groups:
+    for path, attributes, variables in groups:
         held = {name: _plain(array) for name, (_, array, _) in variables.items()}
         values += held.values()
         told.append(
@@ -46,7 +34,6 @@ def send_groups(groups: Iterable[Group], to: BinaryIO) -> None:
                     [name, variables[name][0], array.dtype.str, array.shape, variables[name][2]]
                     for name, array in held.items()
                 ],
-                "coordinates": coordinates,
             }
         )
     to.write(json.dumps(told, default=lambda value: value.tolist()).encode() + b"\n")
@@ -56,7 +43,7 @@ def send_groups(groups: Iterable[Group], to: BinaryIO) -> None:
 
 
 def receive_result(source: BinaryIO) -> xarray.DataTree | None:
-    """Receive what `send_result` or `send_groups` sent; None at the end of all."""
+    """Receive what `send_groups` sent; None at the end of all."""
     import xarray
 
     line, found = source.readline(), {}
@@ -67,8 +54,7 @@ def receive_result(source: BinaryIO) -> xarray.DataTree | None:
             name: xarray.Variable(dims, _array(source, np.dtype(kind), shape), attributes)
             for name, dims, kind, shape, attributes in group["variables"]
         }
-        data = xarray.Dataset(variables, attrs=group["attributes"])
-        found[group["path"]] = data.set_coords(group["coordinates"])
+        found[group["path"]] = xarray.Dataset(variables, attrs=group["attributes"])
     return xarray.DataTree.from_dict(found)
 
 

@@ -83,19 +83,13 @@ def demo(directory: Path, again: bool, overwrite: bool) -> None:
 
     A steel ball rolls over a rough steel beam: texture, contact, force, vibration and six contact laws.
     """
-    from asperity.kinds.report_process import report_process
+    from asperity.cli.running import run_into, told_of_earlier
+    from asperity.kinds.cases import demo_case
 
     if not again and os.path.lexists(directory / "run.nc"):
-        from asperity.cli.running import told_of_earlier
-        from asperity.kinds.cases import demo_case
-
         if told_of_earlier(demo_case(), directory, report=True):
             return
-    with report_process() as reporter:
-        from asperity.cli.running import run_into
-        from asperity.kinds.cases import demo_case
-
-        run_into(demo_case(), directory, reporter, overwrite=overwrite)
+    run_into(demo_case(), directory, overwrite=overwrite)
 
 
 @main.command(
@@ -193,21 +187,15 @@ def run(
     Finished pieces of work are kept: a run that was interrupted goes on where it was. One that is finished
     says so, as long as case, files and program are the same.
     """
-    from asperity.kinds.report_process import report_process
+    from asperity.cli.running import run_into, told_of_earlier
+    from asperity.kinds.cases import load_case
 
     target = directory or Path("runs") / case.stem
-    words: dict[str, Any] = {"source": str(case), "converge": converge}
+    words: dict[str, Any] = {"report": report, "source": str(case), "converge": converge}
     if not again and os.path.lexists(target / "run.nc"):
-        from asperity.cli.running import told_of_earlier
-        from asperity.kinds.cases import load_case
-
-        if found := told_of_earlier(load_case(case), target, report=report, **words):
+        if found := told_of_earlier(load_case(case), target, **words):
             return found
-    with report_process(wanted=report) as reporter:
-        from asperity.cli.running import run_into
-        from asperity.kinds.cases import load_case
-
-        return run_into(load_case(case), target, reporter, overwrite=overwrite, **words)
+    return run_into(load_case(case), target, overwrite=overwrite, **words)
 
 
 @main.command(

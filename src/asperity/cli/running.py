@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +27,6 @@ from asperity.terminal import detail, remark, say
 if TYPE_CHECKING:
     from xarray import DataTree
 
-    from asperity.kinds.report_process import ReportProcess
     from asperity.scenarios.preparing import PreparedCase
 
 PAGE = "report.html"
@@ -38,8 +36,8 @@ READING = "reading and laying out the case"
 def run_into(
     case: Case,
     directory: Path,
-    reporter: ReportProcess | None,
     *,
+    report: bool = True,
     source: str = "case",
     overwrite: bool = False,
     converge: bool = False,
@@ -52,8 +50,8 @@ def run_into(
         The case.
     directory : Path
         Where ``run.nc``, ``report.html`` and the CSVs go.
-    reporter : ReportProcess, optional
-        What writes the page and the CSVs; without it they are not written.
+    report : bool
+        Whether the page and the CSVs are written.
     source : str
         Name of the case, for messages.
     overwrite : bool
@@ -69,8 +67,8 @@ def run_into(
     _refuse_full(case, directory)
     with alone_in(directory):
         refuse_folder(case, directory, overwrite=overwrite)
-        tree = _run_alone(case, directory, source, reporter, converge=converge)
-    return _told(tree, source, _files(directory, report=reporter is not None), computed=True)
+        tree = _run_alone(case, directory, source, report=report, converge=converge)
+    return _told(tree, source, _files(directory, report=report), computed=True)
 
 
 def told_of_earlier(
@@ -97,9 +95,7 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
     return prepared
 
 
-def _run_alone(
-    case: Case, directory: Path, source: str, reporter: ReportProcess | None, *, converge: bool
-) -> DataTree:
+def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> DataTree:
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.cli.planning import announce_scan
     from asperity.store import Store
@@ -113,18 +109,17 @@ def _run_alone(
         spare_pint()
         with progress_bar() as progress:
             announce_scan(prepared, progress)
-            ahead = None if reporter is None else reporter.ahead
-            tree: DataTree = run(replace(prepared, ahead=ahead), progress=progress)
+            tree: DataTree = run(prepared, progress=progress)
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name
     _warn(tree)
-    _write(tree, directory, reporter)
+    _write(tree, directory, report=report)
     if converge:
         from asperity.convergence.running import with_convergence
 
         with progress_bar() as progress:
             tree = with_convergence(prepared, tree, progress)
-        _write(tree, directory, reporter)
+        _write(tree, directory, report=report)
     _say_time(before)
     store = Store()
     remove_left_overs(store.root)
@@ -201,25 +196,19 @@ def _files(directory: Path, *, report: bool) -> dict[str, Path]:
     return {"Results": directory / "run.nc"} | ({"Report": directory / PAGE} if report else {})
 
 
-def _write(tree: DataTree, directory: Path, reporter: ReportProcess | None) -> None:
+def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
     """Write a result, and its report if it is wanted, in place of earlier ones.
 
     What an earlier report has beyond this one goes: it would not belong to the run beside it.
     """
+    from asperity.kinds.report import names_of_reports, write_page
     from asperity.results import save
 
-    path, page = directory / "run.nc", directory / PAGE
     with together(directory, last=PAGE) as new:
-        earlier: list[str] = []
-        if reporter is not None:
-            earlier = reporter.write(tree, new / PAGE, lambda: save(tree, new / path.name))
-        else:
-            save(tree, new / path.name)
-            if page.exists():
-                from asperity.kinds.report import names_of_reports
-
-                earlier = names_of_reports()
-        for name in earlier if page.exists() else []:
+        save(tree, new / "run.nc")
+        if report:
+            write_page(tree, new / PAGE)
+        for name in names_of_reports() if (directory / PAGE).exists() else []:
             if not (new / name).exists():
                 discard(directory / name)
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from contextvars import ContextVar
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -23,49 +21,9 @@ from asperity.units import quantity
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
-Looks = dict[Entry | Attribute, Any]
-"""What was looked at in a result, and what was found: a variable, the value of an attribute, or None."""
-_LOOKS: ContextVar[Looks | None] = ContextVar("looks", default=None)
-
-
-@contextmanager
-def noted() -> Iterator[Looks]:
-    """Note what is looked at in a result while the ``with`` statement runs."""
-    looks: Looks = {}
-    before = _LOOKS.set(looks)
-    try:
-        yield looks
-    finally:
-        _LOOKS.reset(before)
-
-
-def holds(tree: DataTree, looks: Looks) -> bool:
-    """Whether another result says the same wherever one was looked at."""
-    for asked, found in looks.items():
-        if isinstance(asked, Attribute):
-            if not np.array_equal(stated(tree, asked), found):
-                return False
-            continue
-        here = stored_variable(tree, asked)
-        if not (found is here if found is None or here is None else found.identical(here)):
-            return False
-    return True
-
-
-def _note(asked: Entry | Attribute, found: Any) -> Any:
-    looks = _LOOKS.get()
-    if looks is not None:
-        looks[asked] = found
-    return found
-
 
 def stored_variable(tree: DataTree, entry: Entry) -> DataArray | None:
     """Variable of an entry, or None if it is missing or holds no finite number."""
-    found: DataArray | None = _note(entry, _stored(tree, entry))
-    return found
-
-
-def _stored(tree: DataTree, entry: Entry) -> DataArray | None:
     if entry.group not in tree.children or entry.name not in tree[entry.group].variables:
         return None
     values: DataArray = tree.children[entry.group].dataset[entry.name]
@@ -104,7 +62,7 @@ def stated(tree: DataTree, attribute: Attribute) -> Any:
     """Value of an attribute, or None."""
     known = not attribute.group or attribute.group in tree.children
     node = tree[attribute.group] if known and attribute.group else tree
-    return _note(attribute, node.attrs.get(attribute.name) if known else None)
+    return node.attrs.get(attribute.name) if known else None
 
 
 def number(tree: DataTree, attribute: Attribute) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
@@ -26,8 +26,6 @@ from asperity.scenarios.textures import Textures
 from asperity.store import Store
 
 if TYPE_CHECKING:
-    import xarray
-
     from asperity.scenarios.preparing import PreparedCase
 
 
@@ -75,7 +73,6 @@ class Chain(Generic[R]):
     running_in: RunInCase | None  # what passes before did to the textures; None where there were none
     seconds: dict[str, float]  # wall time of each part, s
     workshop: Workshop  # to build its laws in
-    known: Mapping[str, xarray.Dataset]  # groups of the result that were laid out before anything rolled
 
     @property
     def laws(self) -> dict[str, Law]:
@@ -129,12 +126,11 @@ def reduce_and_roll(
     progress: Progress,
     watch: Stopwatch,
     further: Sequence[Further] = (),
-    known: Callable[[Chain[Any]], Mapping[str, xarray.Dataset]] = lambda _: {},
 ) -> Chain[R]:
     """Run the textures in where a case asks for it, reduce the samples, build its laws and roll each.
 
     `roll` rolls a law, and beside it the same law of each `further` contact. The store keeps finished scans;
-    the stopwatch books the wall time. `known` lays out what else of the result is known before that.
+    the stopwatch books the wall time.
     """
     case, textures, shape, ran = prepared.case, prepared.textures, prepared.shape, None
     if case.contact.running_in is not None:
@@ -151,16 +147,11 @@ def reduce_and_roll(
     others = [_of_contact(workshop, contact) for contact in further]
     runs: dict[str, R] = {}
     anew = replace(workshop)  # without the textures that it will make
-    chain = Chain(case, textures, shape, reduction, runs, None, ran, watch.seconds, anew, {})
-    if prepared.ahead is not None:
-        from asperity.scenarios.known import told_ahead
-
-        chain = told_ahead(chain, prepared.ahead, known(chain))
-        watch.lap("statistics")
     for name in case.laws:
         runs[name] = roll(workshop.build(name), *(other.build(name) for other in others))
         watch.lap(f"law {name}")
-    return replace(chain, scan=workshop.scan if Need.SCAN in needs_of(case.laws) else None)
+    scan = workshop.scan if Need.SCAN in needs_of(case.laws) else None
+    return Chain(case, textures, shape, reduction, runs, scan, ran, watch.seconds, anew)
 
 
 def _of_contact(workshop: Workshop, contact: Further) -> Workshop:

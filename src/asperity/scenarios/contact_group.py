@@ -28,19 +28,17 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
 
     With the findings that hold the contact to the range of its laws.
     """
-    group = chain.known.get("/contact")
-    group = contact_before(chain) if group is None else group
     facts: dict[Attribute, Any] = {
         contact.VALIDITY: json.dumps([_row(finding) for finding in found], ensure_ascii=False)
     }
     if chain.reduction is not None:
         asked = [_asked(answer) for answer in answers(chain)]
         facts[contact.POPULATION] = json.dumps(asked, ensure_ascii=False)
-    return group.assign_attrs(attributes(facts))
+    return _reduced(chain).assign_attrs(attributes(facts))
 
 
-def contact_before(chain: Chain[Any]) -> xarray.Dataset:
-    """Lay out all of it that is known before anything has rolled."""
+def _reduced(chain: Chain[Any]) -> xarray.Dataset:
+    """What does not depend on what has rolled."""
     shape, reduction = chain.shape, chain.reduction
     facts: dict[Attribute, Any] = {
         contact.HERTZ_RADIUS: shape.semi_axes[0],

@@ -25,9 +25,6 @@ from asperity.store import Store
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 from asperity.units import written
 
-if TYPE_CHECKING:
-    import xarray
-
 T = TypeVar("T")
 
 STEEPEST = 1.0
@@ -55,8 +52,6 @@ class PreparedCase:
     caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
     seconds: float  # that it took
     processor: float  # time, s
-    # takes what is known of the result before anything rolls
-    ahead: Callable[[xarray.DataTree], None] | None = None
 
 
 def prepare_of_kind(case: Case, kind: Kind, source: str = "case") -> PreparedCase:

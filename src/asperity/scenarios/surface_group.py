@@ -39,8 +39,6 @@ def surface_group(chain: Chain[Any], *, brief: bool = False) -> xarray.Dataset:
 
     And, if not in brief, of the whole path distribution, spectrum and statistics.
     """
-    if not brief and "/surface" in chain.known:
-        return chain.known["/surface"]
     textures, dx = chain.textures, chain.shape.spacing[0]
     laid_out: dict[Entry, Any] = {}
     statistics: list[dict[str, Any]] = []

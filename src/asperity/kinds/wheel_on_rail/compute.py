@@ -24,8 +24,6 @@ from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
 if TYPE_CHECKING:
-    from xarray import Dataset
-
     from asperity.scenarios.preparing import PreparedCase
 
 
@@ -71,12 +69,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             checkpoint=checkpoint_of(law, prepared, store, told_after=("noise",)),
         )
 
-    def known(chain: Chain[WheelRolling]) -> dict[str, Dataset]:
-        from asperity.kinds.wheel_on_rail.track_group import track_group
-
-        return {"/track": track_group(Computed(case, chain, wheel, track, kernel, rail))}
-
-    chain = reduce_and_roll(prepared, roll_law, store, progress, watch, known=known)
+    chain = reduce_and_roll(prepared, roll_law, store, progress, watch)
     points = passed_points(kernel, list(chain.runs.values()), case.point_positions, progress)
     watch.lap("passed points")
     return Computed(case, chain, wheel, track, kernel, rail, points)

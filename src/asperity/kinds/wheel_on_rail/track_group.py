@@ -27,8 +27,6 @@ def track_group(computed: Computed) -> xarray.Dataset:
 
     None of it depends on what has rolled.
     """
-    if "/track" in computed.chain.known:
-        return computed.chain.known["/track"]
     track, case = computed.track, computed.case
     frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
     half = 0.5 * track.sleeper_spacing
