@@ -86,9 +86,9 @@ def demo(directory: Path, again: bool, overwrite: bool) -> None:
     from asperity.cli.running import run_into, told_of_earlier
     from asperity.kinds.cases import demo_case
 
-    if not again and os.path.lexists(directory / "run.nc"):
-        if told_of_earlier(demo_case(), directory, report=True):
-            return
+    there = not again and os.path.lexists(directory / "run.nc")
+    if there and told_of_earlier(demo_case(), directory, report=True):
+        return
     run_into(demo_case(), directory, overwrite=overwrite)
 
 
@@ -192,9 +192,9 @@ def run(
 
     target = directory or Path("runs") / case.stem
     words: dict[str, Any] = {"report": report, "source": str(case), "converge": converge}
-    if not again and os.path.lexists(target / "run.nc"):
-        if found := told_of_earlier(load_case(case), target, **words):
-            return found
+    there = not again and os.path.lexists(target / "run.nc")
+    if there and (found := told_of_earlier(load_case(case), target, **words)):
+        return found
     return run_into(load_case(case), target, overwrite=overwrite, **words)
 
 

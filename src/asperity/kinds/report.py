@@ -1,27 +1,25 @@
-"""The report of a run of any kind: a page, and its figures as drawings and as numbers."""
+"""The report of a run of any kind: a page, and the numbers of its figures."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 
 from xarray import DataTree
 
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
-from asperity.forked import in_processes
 from asperity.kinds import KINDS
-from asperity.printable import printable
-from asperity.reporting.ahead import DrawnAhead
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.csv_files import write_columns
-from asperity.reporting.data import holds, stated
-from asperity.reporting.page import Picture, drawable_parts, page, picture, sections
+from asperity.reporting.data import stated
+from asperity.reporting.figure_files import figure_format, write_figures
+from asperity.reporting.page import drawable_parts, page
 from asperity.reporting.part import Part
 from asperity.schema.provenance import KIND
+
+PAGE, SUMMARY = "report.html", "summary.html"
 
 
 def chapters_of(tree: DataTree) -> tuple[Chapter, ...]:
@@ -39,14 +37,13 @@ def parts_of(tree: DataTree) -> list[Part]:
     return drawable_parts(tree, chapters_of(tree))
 
 
-def page_of(tree: DataTree) -> str:
+def page_of(tree: DataTree, *, summary: bool = False) -> str:
     """The whole page of a run, see `asperity.reporting.page.page`."""
-    chapters = chapters_of(tree)
-    return page(tree, chapters, sections(tree, chapters))
+    return page(tree, chapters_of(tree), summary=summary)
 
 
-def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
-    """Write the report of a run: one page, and of each figure its drawing (SVG) and its numbers (CSV).
+def report(result: DataTree, path: str | os.PathLike[str], figures: str | None = None) -> Path:
+    """Write the report of a run: one page, and the numbers (CSV) of each of its figures.
 
     Parameters
     ----------
@@ -55,6 +52,8 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     path : path
         Folder that receives ``report.html`` and the files of the figures, or the page itself, ``….html``,
         beside which these are written. Folders are made where they are missing.
+    figures : str, optional
+        ``"svg"``, ``"pdf"`` or ``"png"``, to have each figure as a file, too.
 
     Returns
     -------
@@ -64,7 +63,7 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
     Raises
     ------
     InputError
-        If `result` is none, or `path` is no path.
+        If `result` is none, `path` is no path, or `figures` no format.
     ComputationError
         If a file cannot be written.
 
@@ -79,45 +78,29 @@ def report(result: DataTree, path: str | os.PathLike[str]) -> Path:
         raise InputError("result", shown(result), "what asperity.run or asperity.open_result returned")
     target = file_path("report", path, "the path of a folder, or of a page that ends in .html")
     if target.suffix.lower() != ".html":
-        target /= "report.html"
+        target /= PAGE
+    format = None if figures is None else figure_format("figures", figures)
     with together(target.parent, last=target.name) as new:
+        if format is not None:
+            write_figures(result, parts_of(result), new, format)
         write_page(result, new / target.name)
     return target
 
 
-def draw_all(
-    result: DataTree, processes: int = 1, ahead: Mapping[str, DrawnAhead] = MappingProxyType({})
-) -> dict[str, Picture]:
-    """Draw all figures of a result, by name, in so many processes, but for those that were drawn ahead."""
-    parts = parts_of(result)
-    drawn = {part.name: ahead[part.name] for part in parts if part.name in ahead}
-    kept = {name: early.picture for name, early in drawn.items() if holds(result, early.looks)}
-    # motion, with panels one above the other, takes longest: it should not be what is waited for at the end
-    left = [part for part in reversed(parts) if part.name not in kept]
-    found = in_processes(lambda part: picture(result, part).laid_out(), left, processes)
-    return kept | {laid_out["name"]: Picture.read(laid_out) for laid_out in found}
+def write_page(result: DataTree, target: Path) -> Path:
+    """Write the page of a result and, beside it, the numbers of its figures."""
+    collected = {part.name: part.collect(result) for part in parts_of(result)}
+    for name, data in collected.items():
+        write_columns(data.columns, target.parent / f"{name}.csv")
+    return write_bytes(target, page(result, chapters_of(result), collected).encode())
 
 
-def write_page(
-    result: DataTree, target: Path, drawn: Mapping[str, Picture] | None = None, processes: int = 1
-) -> Path:
-    """Write the page of a result and, beside it, the drawings and numbers of its figures."""
-    found = draw_all(result, processes) if drawn is None else drawn
-
-    def write_files(part: Part) -> None:
-        _write(target.parent / f"{part.name}.svg", found[part.name].file)
-        write_columns(part.columns(result), target.parent / f"{part.name}.csv")
-
-    in_processes(write_files, parts_of(result), processes)
-    chapters = chapters_of(result)
-    return _write(target, page(result, chapters, sections(result, chapters, found)))
-
-
-def _write(path: Path, text: str) -> Path:
-    return write_bytes(path, printable(text, lines=True).encode())
+def write_summary(result: DataTree, target: Path) -> Path:
+    """Write a summary of a result, on one sheet of paper."""
+    return write_bytes(target, page_of(result, summary=True).encode())
 
 
 def names_of_reports() -> list[str]:
-    """Names of all files that a report of any kind may have."""
+    """Names of all files that a report of any kind may have, or that of an earlier version."""
     parts = (part for kind in KINDS.values() for chapter in kind.chapters for part in chapter.parts)
-    return ["report.html", *(f"{part.name}.{ending}" for part in parts for ending in ("csv", "svg"))]
+    return [PAGE, *(f"{part.name}.{ending}" for part in parts for ending in ("csv", "svg"))]

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from xarray import DataTree
 
 from asperity.reporting import convergence
-from asperity.reporting.contact_figures import CONTACT as CONTACT_PARTS
-from asperity.reporting.headline import HeadlineNumber
+from asperity.reporting.contact_figures import LOADING, PRESSURE
+from asperity.reporting.filter_figures import FILTER
+from asperity.reporting.headline import Answers
 from asperity.reporting.part import Part
 from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
-from asperity.reporting.tables import ReportTable, population_table
+from asperity.reporting.tables import ReportTable, population_table, practice_table, reference_table
 from asperity.reporting.uncertainty import uncertainty_table
 
 
@@ -24,16 +25,14 @@ class Chapter:
     title: str
     parts: tuple[Part, ...]
     tables: tuple[Callable[[DataTree], ReportTable | None], ...] = ()
-    # a number for the top of the page, in place of the change of the force level
-    headline: Callable[[DataTree], HeadlineNumber | None] | None = None
+    answers: Callable[[DataTree], Answers | None] | None = None  # what the top of the page says of it
+    summary: tuple[Part, ...] = ()  # figures of which a summary shows the first that can be drawn
 
 
 CONTACT = Chapter(
-    "contact",
-    "Contact",
-    (*CONTACT_PARTS, HEIGHTS),
-    (population_table, condition_table, passes_table),
+    "contact", "Contact", (PRESSURE, HEIGHTS), (population_table, condition_table, passes_table)
 )
+LAWS = Chapter("laws", "How the contact laws work", (LOADING, *FILTER), (practice_table, reference_table))
 UNCERTAINTY = Chapter(
     "uncertainty",
     "Uncertainty",

@@ -11,7 +11,6 @@ from xarray import DataTree
 
 from asperity.reporting.chart import Area, Axis, Boxes, Chart, Dashes, Line, Mark, Panel, Rules, Second
 from asperity.reporting.data import engineering, force_unit, laws, number, present, values
-from asperity.reporting.filter_figures import FILTER
 from asperity.reporting.law_entries import law_entry
 from asperity.reporting.part import Data, Part, Series, field, present_series, series
 from asperity.reporting.scene import CORNERS
@@ -239,22 +238,19 @@ def _datum_sensitivity(tree: DataTree) -> str:
     )
 
 
-CONTACT = (
-    Part(
-        "contact_pressure",
-        "Pressure at the working load",
-        (contact.PRESSURE, contact.PX, contact.PY),
-        pressure_data,
-        pressure_chart,
-        _pressure_caption,
-    ),
-    Part(
-        "contact_force",
-        "Contact force and stiffness",
-        (contact.FORCE, contact.APPROACH),
-        loading_data,
-        loading_chart,
-        _force_caption,
-    ),
-    *FILTER,
+PRESSURE = Part(
+    "contact_pressure",
+    "Pressure at the working load",
+    (contact.PRESSURE, contact.PX, contact.PY),
+    pressure_data,
+    pressure_chart,
+    _pressure_caption,
+)
+LOADING = Part(
+    "contact_force",
+    "Contact force and stiffness",
+    (contact.FORCE, contact.APPROACH),
+    loading_data,
+    loading_chart,
+    _force_caption,
 )

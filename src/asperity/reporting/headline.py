@@ -1,4 +1,4 @@
-"""The three numbers that a report begins with: of the force, of its losses, and over linear contact."""
+"""What a report says first: the answers of its chapters."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import doubtful, engineering, laws, of_law, present, values
-from asperity.reporting.law_entries import differences, law_entry
-from asperity.reporting.tables import in_percent, signed
+from asperity.reporting.data import engineering, laws, of_law, present
+from asperity.reporting.law_entries import law_entry
+from asperity.reporting.tables import ReportTable, in_percent
 from asperity.schema import rolling
-from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL
-from asperity.spectra import energy_sum, nominal_frequency
+from asperity.spectra import nominal_frequency
 
 LOW, HIGH = 90.0, 5500.0
 """Frequencies between which the band centres lie that laws are compared in, Hz: 100 Hz to 5 kHz."""
+MOST = 0.5
+"""Share of the energy that deciding bands hold."""
 
 
 @dataclass(frozen=True)
@@ -28,23 +29,31 @@ class HeadlineNumber:
     note: str
 
 
-def headline(tree: DataTree, own: HeadlineNumber | None = None) -> list[HeadlineNumber]:
-    """Numbers of the main law; `own`, of the kind of case, takes the place of the change of force level."""
+@dataclass(frozen=True)
+class Answers:
+    """What a chapter says at the top of the page."""
+
+    lead: str = ""  # a sentence: what decides
+    more: str = ""  # sentences beside it
+    numbers: tuple[HeadlineNumber, ...] = ()
+    tables: tuple[ReportTable, ...] = ()
+
+
+def force_answers(tree: DataTree) -> Answers | None:
+    """Force of the main law, and its losses of contact."""
     if not present(tree, rolling.CONTACT_FORCE):
-        return []
+        return None
     main = laws(tree, rolling.CONTACT_FORCE)[0]
     force = of_law(tree, rolling.CONTACT_FORCE, main, "time")
-    found = [_dynamic(main, force), _loss(tree, main), own or _over_practice(tree, main)]
-    return [number for number in found if number is not None]
+    lost = _loss(tree, main)
+    return Answers(numbers=(_dynamic(force), *([lost] if lost else [])))
 
 
-def _dynamic(main: str, force: NDArray[np.float64]) -> HeadlineNumber:
+def _dynamic(force: NDArray[np.float64]) -> HeadlineNumber:
     mean, rms = float(np.nanmean(force)), float(np.nanstd(force))
-    share = f"{in_percent(rms / mean)} of its mean of {engineering(mean, 'N')}" if mean > 0 else ""
+    share = f"{in_percent(rms / mean)} of its mean of {engineering(mean, 'N')}; " if mean > 0 else ""
     top = engineering(float(np.nanmax(force)), "N")
-    return HeadlineNumber(
-        "contact force varies by, rms", engineering(rms, "N"), f"{share}; at most {top} ({main})"
-    )
+    return HeadlineNumber("contact force varies by, rms", engineering(rms, "N"), f"{share}at most {top}")
 
 
 def _loss(tree: DataTree, main: str) -> HeadlineNumber | None:
@@ -54,38 +63,29 @@ def _loss(tree: DataTree, main: str) -> HeadlineNumber | None:
         return HeadlineNumber("time without contact", "–", f"{main} cannot lose it: its force may pull")
     share = float(of_law(tree, rolling.CONTACT_LOSS_SHARE, main))
     if not share:
-        return HeadlineNumber("time without contact", "0 %", f"contact is never lost ({main})")
+        return HeadlineNumber("time without contact", "0 %", "contact is never lost")
     told = []
     if present(tree, rolling.CONTACT_LOSS_EVENTS):
         count = int(of_law(tree, rolling.CONTACT_LOSS_EVENTS, main))
         told.append(f"lost {'once' if count == 1 else f'{count} times'}")
     if present(tree, rolling.LONGEST_LOSS):
         told.append(f"longest {engineering(float(of_law(tree, rolling.LONGEST_LOSS, main)), 's')}")
-    return HeadlineNumber("time without contact", in_percent(share), f"{', '.join(told)} ({main})".strip())
+    return HeadlineNumber("time without contact", in_percent(share), ", ".join(told))
 
 
-def told_bands(tree: DataTree) -> NDArray[np.bool_]:
-    """Bands that laws are compared in: from 100 Hz to 5 kHz, averaged enough to say something."""
-    band = values(tree, BAND)
-    return (band > LOW) & (band < HIGH) & ~doubtful(tree, BAND_TIME_PRODUCT)
+def deciding_bands(bands: NDArray[np.float64], level: NDArray[np.float64]) -> str:
+    """The fewest one-third octaves (b,), Hz, that hold half the energy of levels (b,), dB, in words."""
+    energy = np.nan_to_num(10.0 ** (level / 10.0))
+    loudest = np.argsort(-energy, kind="stable")
+    held = np.cumsum(energy[loudest])
+    kept = np.sort(loudest[: 1 + int(np.searchsorted(held, MOST * held[-1]))])
+    runs = np.split(kept, np.flatnonzero(np.diff(kept) > 1) + 1)
+    ends = [
+        list(dict.fromkeys(nominal_frequency(float(bands[i])) for i in (run[0], run[-1]))) for run in runs
+    ]
+    return _listed([" to ".join(each) for each in ends])
 
 
-def _over_practice(tree: DataTree, main: str) -> HeadlineNumber | None:
-    """Change of the level of all compared bands together over the linear law of practice, and its range."""
-    others = {entry: law for entry, law in differences(tree).items() if law != main}
-    if not others or not present(tree, BAND):
-        return None
-    entry, law = next(iter(others.items()))
-    name = f"contact force level over {law}"
-    change = of_law(tree, entry, main, "band")
-    told = told_bands(tree) & np.isfinite(change)
-    if not told.any():
-        return HeadlineNumber(name, "–", "the record is too short to compare its one-third octaves")
-    level = of_law(tree, FORCE_LEVEL, main, "band")[told]
-    whole = float(energy_sum(level) - energy_sum(level - change[told]))
-    bands = values(tree, BAND)[told]
-    ends = [int(find(change[told])) for find in (np.argmin, np.argmax)]
-    low, high = (f"{signed(change[told][i])} dB ({nominal_frequency(float(bands[i]))})" for i in ends)
-    return HeadlineNumber(
-        name, f"{signed(whole)} dB", f"of all bands together; single ones {low} to {high} ({main})"
-    )
+def _listed(words: list[str]) -> str:
+    """Words as a sentence lists them."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

@@ -1,8 +1,8 @@
-"""A light for each validity check: what was compared with which limit, in a word, a shape and a colour."""
+"""A light for each validity check and warning: what was compared with which limit, and how it ended."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,16 +21,25 @@ _LOOKS = {
     OUT: ("out", "■"),
     UNKNOWN: ("none", "○"),
 }
+_ORDER = (OUT, WARNING, NOTE, UNKNOWN, IN_RANGE)
+_JUDGED = {
+    OUT: "Out of range",
+    WARNING: "To be read with care",
+    NOTE: "Valid",
+    IN_RANGE: "Valid",
+    UNKNOWN: "Not checked",
+}
 
 
 @dataclass(frozen=True)
 class Light:
-    """A check: the quantity, its number, the limit that this is compared with, and how it ended."""
+    """A check or a warning: what it is about, its number, the limit of this, and how it ended."""
 
     quantity: str
     value: str
     limit: str
     state: str  # one of the words above
+    meaning: str = ""  # of being outside, and what to do
 
     @property
     def look(self) -> str:
@@ -44,30 +53,49 @@ class Light:
 
 
 def lights(tree: DataTree) -> list[Light]:
-    """All checks of a run, those that failed first."""
-    order = [OUT, WARNING, NOTE, UNKNOWN, IN_RANGE]
-    found = [*_findings(tree), *_expected(tree), *_settings(tree)]
-    return sorted(found, key=lambda light: order.index(light.state))
+    """All checks and warnings of a run, those that failed first."""
+    checks = [*_findings(tree), *_expected(tree), *_settings(tree)]
+    found = [*_warnings(tree, checks), *checks]
+    return sorted(found, key=lambda light: _ORDER.index(light.state))
 
 
-def counted(found: list[Light]) -> str:
-    """Say how many checks ended how, as ``"8 of 9 checks in range, 1 warning"``."""
+def validity(found: Sequence[Light]) -> Light:
+    """All checks and warnings in one light, whose quantity is a sentence."""
     states = [light.state for light in found]
-    checked = len(states) - states.count(UNKNOWN)
-    told = [f"{states.count(IN_RANGE)} of {checked} checks in range"]
-    words = {OUT: "{} out of range", WARNING: "{} warning{s}", NOTE: "{} note{s}", UNKNOWN: "{} not checked"}
-    for state, text in words.items():
-        if count := states.count(state):
-            told.append(text.format(count, s="" if count == 1 else "s"))
-    return ", ".join(told)
+    counts = {state: states.count(state) for state in _ORDER}
+    worst = next((state for state in (OUT, WARNING, NOTE, IN_RANGE, UNKNOWN) if counts[state]), UNKNOWN)
+    told = [
+        _counted(state, counts[state], len(states) - counts[UNKNOWN]) for state in _ORDER if counts[state]
+    ]
+    return Light(f"{_JUDGED[worst]}: {', '.join(told) or 'nothing was stored with this run'}.", "", "", worst)
+
+
+def _counted(state: str, count: int, checked: int) -> str:
+    """Say how many checks ended so, of those that were made."""
+    if state == IN_RANGE:
+        share = f"all {count}" if count == checked else f"{count} of {checked}"
+        return f"{share} checks in range" if checked > 1 else "the one check in range"
+    return f"{count} {state}{'s' if count > 1 and state in (NOTE, WARNING) else ''}"
 
 
 def _findings(tree: DataTree) -> Iterator[Light]:
     for entry in json_list(tree, contact.VALIDITY):
-        quantity, value, limit, grade = (
-            str(entry.get(key, "")) for key in ("quantity", "value", "limit", "grade")
+        quantity, value, limit, grade, meaning, remedy = (
+            str(entry.get(key, "")) for key in ("quantity", "value", "limit", "grade", "meaning", "remedy")
         )
-        yield Light(quantity, value, limit, grade if grade in _LOOKS else IN_RANGE)
+        outside = grade in _LOOKS
+        state = grade if outside else IN_RANGE
+        yield Light(quantity, value, limit, state, f"{meaning} {remedy}".strip() if outside else "")
+
+
+def _warnings(tree: DataTree, checks: Sequence[Light]) -> Iterator[Light]:
+    """Warnings on the physics, but for those that a check says as well."""
+    for warning in json_list(tree, provenance.WARNINGS):
+        message, grade = str(warning.get("message", "")), str(warning.get("grade", WARNING))
+        if any(check.value and message.startswith(f"{check.quantity}: {check.value}") for check in checks):
+            continue
+        times = f"{count} times" if (count := warning.get("count", 1)) != 1 else ""
+        yield Light(message[:1].upper() + message[1:], times, "", grade if grade in _LOOKS else WARNING)
 
 
 def _expected(tree: DataTree) -> Iterator[Light]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
 from typing import Any
 
 from markupsafe import Markup
@@ -11,42 +13,30 @@ from xarray import DataTree
 
 from asperity.printable import printable
 from asperity.reporting.chapter import Chapter
+from asperity.reporting.chart import Chart
 from asperity.reporting.convergence import setting_names
 from asperity.reporting.data import json_list, missing, stated
-from asperity.reporting.headline import headline
-from asperity.reporting.history import as_json, script, script_digest, script_style
+from asperity.reporting.drawing import svg_of
+from asperity.reporting.headline import Answers
 from asperity.reporting.law_entries import law_colours, law_entries
-from asperity.reporting.lights import counted, lights
-from asperity.reporting.literature import literature
-from asperity.reporting.part import Part
-from asperity.reporting.style import narrow_page
-from asperity.reporting.svg import colour_variables, drawing_of, share_styles
+from asperity.reporting.lights import lights, validity
+from asperity.reporting.literature import literature, origins
+from asperity.reporting.part import Data, Part
+from asperity.reporting.payload import (
+    chart_script,
+    chart_style,
+    charts_json,
+    digest_of,
+    numbers_table,
+    script_digest,
+)
+from asperity.reporting.style import colour_variables
 from asperity.reporting.tables import ReportTable
-from asperity.reporting.templates import page_template
+from asperity.reporting.templates import PageFigure, page_template
 from asperity.schema import provenance
 
-
-@dataclass(frozen=True)
-class Picture:
-    """A figure ready for the page: its SVG elements, for a wide and a narrow page, heading and caption."""
-
-    name: str
-    title: str
-    caption: str
-    svg: Markup
-    narrow: Markup  # empty where a browser draws the figure itself
-    file: str  # the wide drawing as a document of its own
-    live: str = ""  # what a browser draws in its place, where it does
-
-    def laid_out(self) -> dict[str, str]:
-        """As text, for another process."""
-        return {name: str(text) for name, text in vars(self).items()}
-
-    @classmethod
-    def read(cls, laid_out: Mapping[str, str]) -> Picture:
-        """What was laid out, of this version of the program."""
-        markup: dict[str, Any] = {name: Markup(laid_out[name]) for name in ("svg", "narrow", "live")}
-        return cls(**{**laid_out, **markup})
+SUMMARY_FIGURES = 3
+"""That a summary shows, of the last chapters that have one."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +45,7 @@ class PageSection:
 
     name: str
     title: str
-    blocks: list[Picture | ReportTable]
+    blocks: list[PageFigure | ReportTable]
 
 
 def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
@@ -63,54 +53,60 @@ def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
     return [part for chapter in chapters for part in chapter.parts if part.drawable(tree)]
 
 
-def picture(tree: DataTree, part: Part) -> Picture:
-    """Draw a figure for a wide and for a narrow page."""
-    data, colours = part.collect(tree), law_colours(tree)
-    drawn = drawing_of(part.plot(tree, data), part.name)
-    shown = {
-        "svg": Markup(drawn.for_page(part.title, colours)),
-        "narrow": Markup(),
-        "live": Markup(as_json(part.live(tree))) if part.live else Markup(),
-    }
-    if part.live is None:
-        with narrow_page():
-            narrow = drawing_of(part.plot(tree, data), f"{part.name}-narrow")
-        shown["narrow"] = Markup(narrow.for_page(part.title, colours))
+def summary_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
+    """Figures of a summary: one of each of the last chapters that name any."""
+    firsts = (next((part for part in chapter.summary if part.drawable(tree)), None) for chapter in chapters)
+    return [part for part in firsts if part is not None][-SUMMARY_FIGURES:]
+
+
+def page_figure(tree: DataTree, part: Part, data: Data, colours: Mapping[str, str]) -> PageFigure:
+    """A figure of the page, from numbers that were collected."""
+    chart = part.chart(tree, data)
     lost = missing(tree, *part.needs, *part.any_of)
-    caption = f"{part.caption(tree)} {lost}".strip()
-    return Picture(part.name, part.title, caption, file=drawn.for_file(part.title), **shown)
+    return PageFigure(
+        part.name,
+        part.title,
+        f"{part.caption(tree)} {lost}".strip(),
+        chart,
+        [] if chart.drawing else [numbers_table(data)],
+        f"{part.name}.csv",
+        Markup(svg_of(chart, part.title, colours)) if chart.drawing else None,
+    )
 
 
-def sections(
-    tree: DataTree, chapters: Sequence[Chapter], drawn: Mapping[str, Picture] | None = None
-) -> list[PageSection]:
-    """Chapters of the page, with figures drawn before, by name, or now; one without any data is left out."""
-    found = []
+def sections(tree: DataTree, chapters: Sequence[Chapter], collected: Mapping[str, Data]) -> list[PageSection]:
+    """Chapters of the page, with numbers that were collected; one without any data is left out."""
+    found, colours = [], law_colours(tree)
     for chapter in chapters:
         parts = [part for part in chapter.parts if part.drawable(tree)]
-        figures = [picture(tree, part) if drawn is None else drawn[part.name] for part in parts]
+        figures = [page_figure(tree, part, collected[part.name], colours) for part in parts]
         tables = (table for make in chapter.tables if (table := make(tree)))
-        blocks: list[Picture | ReportTable] = [*figures, *tables]
+        blocks: list[PageFigure | ReportTable] = [*figures, *tables]
         if blocks:
             found.append(PageSection(chapter.name, chapter.title, blocks))
     return found
 
 
-_GRADES = {"out of range": ("out", "out of range"), "warning": ("", "warnings"), "note": ("note", "notes")}
-"""Look and plural of the grades of warnings, the gravest first."""
+def charts_of(drawn: Iterable[PageSection]) -> dict[str, Chart]:
+    """What the script of a page draws, by the names of its figures."""
+    blocks = (block for section in drawn for block in section.blocks)
+    return {block.name: block.chart for block in blocks if isinstance(block, PageFigure)}
 
 
-def _warnings(tree: DataTree) -> list[dict[str, Any]]:
-    """Warnings on the physics with their grade and its look."""
-    graded = [{"grade": "warning", **warning} for warning in json_list(tree, provenance.WARNINGS)]
-    return [warning | {"look": _GRADES.get(warning["grade"], ("", ""))[0]} for warning in graded]
+def answers_of(tree: DataTree, chapters: Sequence[Chapter]) -> Answers:
+    """What the chapters say first, together; what no chapter says is the verdict of the run."""
+    found = [told for chapter in chapters if chapter.answers and (told := chapter.answers(tree))]
+    lead = next((each.lead for each in found if each.lead), "")
+    return Answers(
+        lead or _verdict(tree).partition(". ")[0],
+        " ".join(each.more for each in found if each.more),
+        tuple(number for each in found for number in each.numbers),
+        tuple(table for each in found for table in each.tables),
+    )
 
 
-def _graded(warnings: list[dict[str, Any]]) -> str:
-    """Say how many warnings there are of each grade, as ``"1 out of range, 2 warnings"``."""
-    counts = {grade: sum(w["grade"] == grade for w in warnings) for grade in _GRADES}
-    named = [f"{n} {grade if n == 1 else _GRADES[grade][1]}" for grade, n in counts.items() if n]
-    return ", ".join(named) or f"{len(warnings)} warnings"
+def _verdict(tree: DataTree) -> str:
+    return str(stated(tree, provenance.VERDICT) or "")
 
 
 def _law_key(tree: DataTree) -> list[dict[str, str]]:
@@ -120,7 +116,7 @@ def _law_key(tree: DataTree) -> list[dict[str, str]]:
             "name": law.name,
             "meaning": law.meaning,
             "colour": f"var(--c{numbers[law.colour]})",
-            "dashes": "" if isinstance(law.dashes, str) else " ".join(f"{2 * d:g}" for d in law.dashes[1]),
+            "dashes": " ".join(f"{2 * length:g}" for length in law.dashes),
         }
         for law in law_entries(tree).values()
     ]
@@ -135,20 +131,38 @@ def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[
     return list(groups.items())
 
 
-def page(tree: DataTree, chapters: Sequence[Chapter], drawn: Sequence[PageSection]) -> str:
-    """The whole page of a result, with what `sections` drew of it, as one self-contained HTML text.
+@cache
+def _button() -> str:
+    """Script that prints the summary."""
+    return (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
+
+
+def page(
+    tree: DataTree,
+    chapters: Sequence[Chapter],
+    collected: Mapping[str, Data] | None = None,
+    *,
+    summary: bool = False,
+) -> str:
+    """The whole page of a result, as one self-contained HTML text, or a summary of it on one sheet of paper.
 
     Styles, figures and the script are inside; nothing is loaded from elsewhere, and no other script may run.
+    Numbers of the figures, by name, are `collected` unless they were before.
     """
+    on_sheet = summary_parts(tree, chapters)
+    shown = [Chapter("summary", "", tuple(on_sheet))] if summary else chapters
+    if collected is None:
+        collected = {part.name: part.collect(tree) for part in drawable_parts(tree, shown)}
+    drawn, checks, colours = sections(tree, shown, collected), lights(tree), law_colours(tree)
     kind, parameters = stated(tree, provenance.KIND), json_list(tree, provenance.PARAMETERS)
-    warnings, checks, colours = _warnings(tree), lights(tree), law_colours(tree)
-    own = next((found for c in chapters if c.headline and (found := c.headline(tree))), None)
     text = page_template("report.html.jinja").render(
         title=stated(tree, provenance.TITLE) or kind or "Rolling contact",
+        summary=summary,
+        on_sheet={part.name for part in on_sheet},
+        answers=answers_of(tree, chapters),
         verdict=_verdict(tree),
-        numbers=headline(tree, own),
+        validity=validity(checks),
         lights=checks,
-        counted=counted(checks),
         version=stated(tree, provenance.ASPERITY_VERSION) or "unknown",
         created=stated(tree, provenance.CREATED) or "",
         seed="" if (seed := stated(tree, provenance.SEED)) is None else seed,
@@ -156,24 +170,20 @@ def page(tree: DataTree, chapters: Sequence[Chapter], drawn: Sequence[PageSectio
         converged=bool(setting_names(tree)),
         kind=kind or "",
         literature=literature(tree),
-        warnings=warnings,
-        graded=_graded(warnings),
+        origins=origins(tree),
         case_groups=_case_groups(parameters),
         changed=_case_groups([p for p in parameters if not p.get("is_default", True)]),
         count=len(parameters),
         numerics=json_list(tree, provenance.NUMERICS),
         laws=_law_key(tree),
         sections=drawn,
-        script=Markup(script()),
-        script_style=Markup(script_style()),
+        charts=Markup(charts_json(charts_of(drawn), colours)),
+        script=Markup(chart_script()),
+        script_style=Markup(chart_style()),
         digest=script_digest(),
+        button=Markup(_button()),
+        button_digest=digest_of(_button()),
         light=Markup(colour_variables(dark=False, colours=colours)),
         dark=Markup(colour_variables(dark=True, colours=colours)),
     )
-    return share_styles(printable(text, lines=True))
-
-
-def _verdict(tree: DataTree) -> tuple[str, str]:
-    """The first sentence of the verdict, and the others."""
-    first, _, rest = str(stated(tree, provenance.VERDICT) or "").partition(". ")
-    return (f"{first}.", rest) if rest else (first, "")
+    return printable(text, lines=True)

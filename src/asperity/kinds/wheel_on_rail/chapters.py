@@ -2,40 +2,54 @@
 
 from __future__ import annotations
 
+from asperity.kinds.wheel_on_rail.answers import noise_answers, pass_by_answers
 from asperity.kinds.wheel_on_rail.figures.force import FORCE_BANDS, FORCE_PEAK, FORCE_SPECTRUM
 from asperity.kinds.wheel_on_rail.figures.loss_factors import LOSS_FACTORS
 from asperity.kinds.wheel_on_rail.figures.motion import MOTION
 from asperity.kinds.wheel_on_rail.figures.noise import NOISE, sound_power_table
 from asperity.kinds.wheel_on_rail.figures.pass_by import PASS_BY_PART, pass_by_table
-from asperity.kinds.wheel_on_rail.figures.radiated import RADIATED, noise_headline, radiated_table
+from asperity.kinds.wheel_on_rail.figures.radiated import RADIATED, radiated_table
 from asperity.kinds.wheel_on_rail.figures.roughness import ROUGHNESS_LEVELS
 from asperity.kinds.wheel_on_rail.figures.scene import TRACK_SCENE
 from asperity.kinds.wheel_on_rail.figures.track import TRACK
-from asperity.reporting.chapter import CONTACT, Chapter
+from asperity.reporting.chapter import CONTACT, LAWS, Chapter
+from asperity.reporting.headline import force_answers
 from asperity.reporting.tables import (
     homogeneity_table,
     loss_table,
-    practice_table,
-    reference_table,
     statistics_table,
 )
 from asperity.reporting.texture import TEXTURE
 from asperity.reporting.time_figures import FORCE_ENVELOPE
 
 CHAPTERS = (
-    Chapter("setup", "Scene", (TRACK_SCENE,)),
-    Chapter("texture", "Texture", (ROUGHNESS_LEVELS, *TEXTURE), (statistics_table, homogeneity_table)),
-    Chapter("track", "Track and wheel", (*TRACK, LOSS_FACTORS)),
-    CONTACT,
+    Chapter(
+        "noise",
+        "Rolling noise",
+        (RADIATED, *NOISE),
+        (radiated_table, sound_power_table),
+        noise_answers,
+        (RADIATED, *NOISE[::-1]),
+    ),
+    Chapter("pass_by", "Pass-by", (PASS_BY_PART,), (pass_by_table,), pass_by_answers, (PASS_BY_PART,)),
     Chapter(
         "force",
         "Contact force",
         (FORCE_ENVELOPE, FORCE_PEAK, FORCE_SPECTRUM, FORCE_BANDS),
-        (practice_table, reference_table, loss_table),
+        (loss_table,),
+        force_answers,
+        (FORCE_BANDS,),
     ),
+    Chapter("setup", "Scene", (TRACK_SCENE,)),
     Chapter(
-        "noise", "Rolling noise", (RADIATED, *NOISE), (radiated_table, sound_power_table), noise_headline
+        "texture",
+        "Texture",
+        (ROUGHNESS_LEVELS, *TEXTURE),
+        (statistics_table, homogeneity_table),
+        summary=(ROUGHNESS_LEVELS,),
     ),
-    Chapter("pass_by", "Pass-by", (PASS_BY_PART,), (pass_by_table,)),
+    Chapter("track", "Track and wheel", (*TRACK, LOSS_FACTORS)),
     Chapter("motion", "Motion", MOTION),
+    CONTACT,
+    LAWS,
 )

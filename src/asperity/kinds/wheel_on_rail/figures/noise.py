@@ -14,7 +14,6 @@ from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis, words_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Note, Panel
 from asperity.reporting.data import doubtful, laws, of_law, stored_variable
-from asperity.reporting.headline import HeadlineNumber
 from asperity.reporting.law_entries import baselines_among, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, main_last, product_series
@@ -120,45 +119,32 @@ def total_chart(tree: DataTree, data: Data) -> Chart:
 
 
 def sound_power_table(tree: DataTree) -> ReportTable | None:
-    """A-weighted sound power per law and source, and its differences to the linear laws."""
+    """A-weighted sound power per law and source, and of all together its differences to the linear laws."""
     names, radiating = laws(tree, POWER_A), sources(tree, POWER_A)
     if not names:
         return None
     levels = {law: of_law(tree, POWER_A, law, "source") for law in names}
     compared = baselines_among(tree, names)
-    head = ["law", *(f"{source} / dB(A)" for source in radiating)]
-    head += [f"{source} − {name} / dB" for name in compared for source in radiating]
+    whole = radiating.index("total") if "total" in radiating else -1
 
     def row(label: str, level: NDArray[np.float64]) -> list[Cell]:
         cells = [text_cell(label), *(Cell(told_level(value), "number") for value in level)]
-        for name in compared:
-            cells += [Cell(signed(d) if label != name else "–", "number") for d in level - levels[name]]
-        return cells
+        changes = (level[whole] - levels[name][whole] for name in compared)
+        told = ("–" if label == name else signed(d) for name, d in zip(compared, changes, strict=True))
+        return [*cells, *(Cell(text, "number") for text in told)]
 
     rows = [row(law, level) for law, level in levels.items()]
-    note = "Re 1 pW, over the bands that were computed. Positive differences: linear contact underestimates."
+    note = (
+        f"dB(A) re 1 pW, over the bands that were computed; differences of the {radiating[whole]}. Positive: "
+        "linear contact underestimates."
+    )
     standard = stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
     if standard is not None:
         rows.append(row("CNOSSOS-EU", standard.sel(source=radiating).values))
         name = standard.attrs.get("contact_filter", "")
-        note += f" CNOSSOS-EU: the same roughness with its own contact filter ({name})."
+        note += f" Last row: the same roughness with the contact filter of CNOSSOS-EU itself ({name})."
+    head = ["law", *radiating, *(f"over {name}" for name in compared)]
     return ReportTable("sound_power_table", "Sound power by CNOSSOS-EU, A-weighted", head, rows, note)
-
-
-def sound_power_change(tree: DataTree) -> HeadlineNumber | None:
-    """A-weighted sound power of the main law over that of the linear law of practice."""
-    names = laws(tree, POWER_A)
-    others = [law for law in baselines_among(tree, names) if law != names[0]]
-    if not others or "total" not in sources(tree, POWER_A):
-        return None
-    place = sources(tree, POWER_A).index("total")
-    level, *compared = (float(of_law(tree, POWER_A, law, "source")[place]) for law in (names[0], *others))
-    told = [f"{level:.1f} dB(A) re 1 pW ({names[0]})"]
-    told += [
-        f"{signed(level - other)} dB over {law}" for law, other in zip(others[1:], compared[1:], strict=True)
-    ]
-    name = f"sound power over {others[0]}"
-    return HeadlineNumber(name, f"{signed(level - compared[0])} dB(A)", "; ".join(told))
 
 
 def told_level(value: float) -> str:

@@ -8,11 +8,10 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.kinds.wheel_on_rail.figures.noise import sound_power_change, sources, told_level
+from asperity.kinds.wheel_on_rail.figures.noise import sources, told_level
 from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis
 from asperity.reporting.chart import Chart, Line, Panel
 from asperity.reporting.data import doubtful, laws, of_law, stored_variable, values
-from asperity.reporting.headline import HeadlineNumber
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import doubtful_words, product_series
 from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION
@@ -104,41 +103,33 @@ def _caption(tree: DataTree) -> str:
 
 
 def radiated_table(tree: DataTree) -> ReportTable | None:
-    """A-weighted sound power per law and radiator, beside that by CNOSSOS-EU."""
+    """A-weighted sound power per law and radiator."""
     names, parts = laws(tree, POWER_A), radiators(tree)
     if not names:
         return None
-    standard = laws(tree, STANDARD_A)
-    head = ["law", *(f"{part} / dB(A)" for part in parts)]
-    compared = sources(tree, STANDARD_A)
-    head += [f"{source}, CNOSSOS-EU / dB(A)" for source in compared]
-    of_track = {"rail", "sleepers"} <= set(parts) and "track" in compared
-    head += ["rail and sleepers − track, CNOSSOS-EU / dB"] if of_track else []
-    rows = []
-    for law in names:
-        level = of_law(tree, POWER_A, law, "radiator")
-        cells: list[Cell] = [text_cell(law), *(Cell(told_level(value), "number") for value in level)]
-        if law in standard:
-            by_label = of_law(tree, STANDARD_A, law, "source")
-            cells += [Cell(told_level(value), "number") for value in by_label]
-            if of_track:
-                track = energy_sum([level[parts.index(part)] for part in ("rail", "sleepers")])
-                cells.append(Cell(signed(float(track) - by_label[compared.index("track")]), "number"))
-        rows.append(cells)
-    note = f"Re 1 pW, over the bands that were computed. {silence(tree)}"
-    return ReportTable("radiated_power_table", "Sound power from vibration, A-weighted", head, rows, note)
-
-
-def noise_headline(tree: DataTree) -> HeadlineNumber | None:
-    """Change of the sound power over linear contact if it is known, else the sound power from vibration."""
-    change = sound_power_change(tree)
-    if change is not None or not laws(tree, POWER_A):
-        return change
-    main = laws(tree, POWER_A)[0]
-    *_, total = of_law(tree, POWER_A, main, "radiator")
-    return HeadlineNumber(
-        "sound power from vibration", f"{told_level(total)} dB(A)", f"re 1 pW ({main}). {silence(tree)}"
+    rows = [
+        [
+            text_cell(law),
+            *(Cell(told_level(value), "number") for value in of_law(tree, POWER_A, law, "radiator")),
+        ]
+        for law in names
+    ]
+    note = (
+        f"dB(A) re 1 pW, over the bands that were computed. {_over_standard(tree, names[0])}{silence(tree)}"
     )
+    title = "Sound power from vibration, A-weighted"
+    return ReportTable("radiated_power_table", title, ["law", *parts], rows, note)
+
+
+def _over_standard(tree: DataTree, law: str) -> str:
+    """Say how far rail and sleepers are from the track of CNOSSOS-EU, which is both; a blank comes last."""
+    parts, standard = radiators(tree), sources(tree, STANDARD_A)
+    if law not in laws(tree, STANDARD_A) or not {"rail", "sleepers"} <= set(parts) or "track" not in standard:
+        return ""
+    level = of_law(tree, POWER_A, law, "radiator")
+    both = float(energy_sum([level[parts.index(part)] for part in ("rail", "sleepers")]))
+    track = of_law(tree, STANDARD_A, law, "source")[standard.index("track")]
+    return f"Rail and sleepers together are {signed(both - track)} dB over the track of CNOSSOS-EU ({law}). "
 
 
 RADIATED = Part(
