@@ -8,20 +8,20 @@ from dataclasses import dataclass, field
 import numpy as np
 import xarray
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from asperity import __version__
 from asperity.printable import printable
+from asperity.reporting.chart_table import chart_tables
 from asperity.reporting.comparison import MAIN, OF_CONTACT, NamedRun
-from asperity.reporting.comparison_figures import contact_figure, levels_figure
+from asperity.reporting.comparison_figures import contact_chart, levels_chart
 from asperity.reporting.comparison_table import KIND, listed_keys, summary, sure
 from asperity.reporting.data import engineering, json_attribute, json_list, nominal_band, stated
 from asperity.reporting.law_entries import law_colours, law_style
-from asperity.reporting.page import Picture
-from asperity.reporting.style import narrow_page
-from asperity.reporting.svg import colour_variables, drawing_of, share_styles
+from asperity.reporting.page import PageSection, charts_of
+from asperity.reporting.payload import chart_script, chart_style, charts_json, script_digest
+from asperity.reporting.style import colour_variables
 from asperity.reporting.tables import Cell, ReportTable, in_percent, signed, text_cell
-from asperity.reporting.templates import page_template
+from asperity.reporting.templates import PageFigure, page_template
 from asperity.schema import provenance, rolling
 
 OFF, FAR = 1.0, 3.0
@@ -38,12 +38,9 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class ComparedSection:
+class ComparedSection(PageSection):
     """A chapter of the page."""
 
-    name: str
-    title: str
-    blocks: list[Picture | ReportTable] = field(default_factory=list)
     paragraphs: list[Paragraph] = field(default_factory=list)
 
 
@@ -59,25 +56,29 @@ def comparison_page(
     citations = dict.fromkeys(
         str(text) for run in runs for text in json_attribute(run.tree, provenance.CITATIONS, [])
     )
+    drawn = _sections(runs, table, levels)
     text = page_template("comparison.html.jinja").render(
         title=f"Comparison of {' and '.join(run.name for run in runs)}",
         summary=summary(runs, table, levels),
         first=runs[0].name,
         version=__version__,
         file=file,
-        sections=_sections(runs, table, levels, colours),
+        sections=drawn,
         provenance=_provenance_table(runs),
         citations=list(citations),
+        charts=Markup(charts_json(charts_of(drawn), colours)),
+        script=Markup(chart_script()),
+        script_style=Markup(chart_style()),
+        digest=script_digest(),
         light=Markup(colour_variables(dark=False, colours=colours)),
         dark=Markup(colour_variables(dark=True, colours=colours)),
     )
-    return share_styles(printable(text, lines=True))
+    return printable(text, lines=True)
 
 
 def _sections(
-    runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str], colours: Mapping[str, str]
+    runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str]
 ) -> list[ComparedSection]:
-    pictures = _Pictures(colours)
     found = [
         ComparedSection("case", "What differs in the cases", [_case_table(runs, table)]),
         ComparedSection("verdicts", "What each run says", [], _verdicts(runs)),
@@ -85,22 +86,17 @@ def _sections(
     ]
     looks = {law: law_style(runs[0].tree, law, str(table["law"].values[0])) for law in runs[0].laws}
     for name, title in levels.items():
-        drawing = pictures.of(
-            name,
-            title.capitalize(),
-            lambda name=name: levels_figure(table, name, looks),  # type: ignore[misc]
-            _levels_caption(table, name),
+        chart = levels_chart(table, name, looks)
+        figure = PageFigure(
+            name, title.capitalize(), _levels_caption(table, name), chart, chart_tables(chart)
         )
-        blocks: list[Picture | ReportTable] = [drawing, _difference_table(table, name, title)]
+        blocks: list[PageFigure | ReportTable] = [figure, _difference_table(table, name, title)]
         found.append(ComparedSection(f"levels-{name}", title.capitalize(), blocks))
-    last: list[Picture | ReportTable] = [_contact_table(table)]
+    last: list[PageFigure | ReportTable] = [_contact_table(table)]
     if "stiffness" in table or "filter" in table:
-        last.insert(
-            0,
-            pictures.of(
-                "stiffness_and_filter", "Stiffness and filter", lambda: contact_figure(table), _CONTACT
-            ),
-        )
+        chart = contact_chart(table)
+        title = "Stiffness and filter"
+        last.insert(0, PageFigure("stiffness_and_filter", title, _CONTACT, chart, chart_tables(chart)))
     found.append(ComparedSection("contact", "Contact", last))
     return found
 
@@ -109,20 +105,6 @@ _CONTACT = (
     "Contact stiffness k_c = F/r over the approach of the surfaces, mean of the samples, a ring at the "
     "working approach; magnitude of the contact filter at the working approach of each run, as fitted."
 )
-
-
-@dataclass(frozen=True)
-class _Pictures:
-    """Makes pictures of the page, wide and narrow."""
-
-    colours: Mapping[str, str]
-
-    def of(self, name: str, title: str, draw: Callable[[], Figure], caption: str) -> Picture:
-        wide = drawing_of(draw(), name)
-        with narrow_page():
-            narrow = drawing_of(draw(), f"{name}-narrow")
-        shown = [Markup(drawing.for_page(title, self.colours)) for drawing in (wide, narrow)]
-        return Picture(name, title, caption, shown[0], shown[1], wide.for_file(title))
 
 
 def _levels_caption(table: xarray.Dataset, name: str) -> str:

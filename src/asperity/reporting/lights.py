@@ -67,7 +67,8 @@ def validity(found: Sequence[Light]) -> Light:
     told = [
         _counted(state, counts[state], len(states) - counts[UNKNOWN]) for state in _ORDER if counts[state]
     ]
-    return Light(f"{_JUDGED[worst]}: {', '.join(told) or 'nothing was stored with this run'}.", "", "", worst)
+    words = ", ".join(told) or "nothing was stored with this run"
+    return Light(f"{_JUDGED[worst]}: {words}.", "", "", IN_RANGE if worst == NOTE else worst)
 
 
 def _counted(state: str, count: int, checked: int) -> str:

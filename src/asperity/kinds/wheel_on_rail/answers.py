@@ -9,7 +9,7 @@ from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.noise import sources, told_level
 from asperity.kinds.wheel_on_rail.figures.pass_by import passing_radiators
 from asperity.kinds.wheel_on_rail.figures.radiated import radiators, silence
-from asperity.reporting.data import laws, number, of_law, present, stored_variable, values
+from asperity.reporting.data import laws, number, of_law, present, values
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 from asperity.schema import Entry
@@ -52,8 +52,8 @@ def _by_vibration(tree: DataTree, own: Powers) -> list[str]:
     bands = _bands(tree, schema.RADIATED_POWER_LEVEL, radiators(tree), most)
     verb = "decide" if most == "sleepers" else "decides"
     return [
-        f"The {most} {verb}: {parts[most]:.1f} of {whole:.1f} dB(A) of sound power, half of it in the bands "
-        f"of {bands}.",
+        f"By vibration the {most} {verb}: {parts[most]:.1f} of {whole:.1f} dB(A) of sound power, half of it "
+        f"in the bands of {bands}.",
         *filter(None, [silence(tree)]),
     ]
 
@@ -116,17 +116,21 @@ def _table(own: Powers, standard: Powers) -> ReportTable:
 
 def pass_by_answers(tree: DataTree) -> Answers | None:
     """Level beside the track by the main law."""
-    names = laws(tree, schema.PASS_BY_LEVEL)
-    if not names or not present(tree, schema.TRANSIT_EXPOSURE_LEVEL, schema.PASS_BY_MAXIMUM_LEVEL):
+    levels = {
+        name: float(of_law(tree, entry, laws(tree, entry)[0], "radiator")[-1])
+        for name, entry in _PASSING.items()
+        if present(tree, entry)
+    }
+    if not levels:
         return None
-    *parts, whole = passing_radiators(tree)
-    exposure, largest = (
-        float(found.sel(law=names[0], radiator=whole))
-        for entry in (schema.TRANSIT_EXPOSURE_LEVEL, schema.PASS_BY_MAXIMUM_LEVEL)
-        if (found := stored_variable(tree, entry)) is not None
-    )
+    (first, level), *others = levels.items()
     away = number(tree, schema.RECEIVER_DISTANCE)
     where = "" if away is None else f", {away:g} m from the track"
-    held = "" if "wheel" in parts else ", without the wheel"
-    note = f"re 20 µPa{where}; at most {largest:.1f} dB(A) (L_pAFmax); {OWN}{held}"
-    return Answers(numbers=(HeadlineNumber("pass-by, TEL", f"{exposure:.1f} dB(A)", note),))
+    held = "" if "wheel" in passing_radiators(tree) else ", without the wheel"
+    told = "".join(f"; {name} {other:.1f} dB(A)" for name, other in others)
+    note = f"re 20 µPa{where}{told}; {OWN}{held}"
+    return Answers(numbers=(HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note),))
+
+
+_PASSING = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_MAXIMUM_LEVEL}
+"""Single numbers; the first only of a vehicle, whose length is known."""
