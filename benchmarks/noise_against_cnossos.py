@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from asperity import Track, Wheel
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
@@ -24,6 +23,10 @@ from asperity.radiation.rail import RailSection
 from asperity.radiation.sleeper import SleeperTop
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
+from asperity.reporting.axes import frequency_axis
+from asperity.reporting.chart import Axis, Chart, Line, Panel
+from asperity.reporting.figure_files import write_chart
+from asperity.reporting.style import BLUE, GREEN, INK, VERMILLION
 from asperity.spectra import nominal
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))
@@ -35,7 +38,9 @@ WITHIN = 10.0 ** (0.1 * (np.arange(25) - 12.0) / 25.0)
 PADS = {"soft": 225e6, "medium": 447e6, "hard": 894e6}  # as printed; geometric means of the classes
 LOAD, STIFFNESS = 50e3, 1.143e9  # N; of Hertz's contact under it, radii of 0.46 m and 0.3 m
 SPEED = 100.0 / 3.6
-COLOURS = {"soft": "#0067a5", "medium": "#00805c", "hard": "#c8500a"}
+COLOURS = {"soft": BLUE, "medium": GREEN, "hard": VERMILLION}
+DASHED = (3.7, 1.6)
+TRANSFER = "sound power per axle − roughness / dB"
 
 
 def track(pads: float) -> Track:
@@ -107,11 +112,10 @@ def wheel_transfer(pads: float) -> np.ndarray:
     return 10.0 * np.log10(np.mean(power.reshape(len(BANDS), -1), axis=1))
 
 
-def octaves(axes: Axes) -> None:
-    """Name the octaves along an axis of frequency."""
-    axes.set_xticks(1000.0 * 10.0 ** (0.3 * np.arange(-4, 3)), ["63", "125", "250", "500", "1k", "2k", "4k"])
-    axes.minorticks_off()
-    axes.grid(alpha=0.4)
+def panel(label: str, low: float, high: float, *lines: Line, **place: Any) -> Panel:
+    """Lines over one-third octaves, between two levels."""
+    ends = (float(edge * 10.0**step) for edge, step in ((lines[0].x[0], -0.05), (lines[0].x[-1], 0.05)))
+    return Panel(frequency_axis(*ends, "one-third octave / Hz"), Axis(label, low, high), lines, **place)
 
 
 def against_cnossos() -> None:
@@ -135,24 +139,18 @@ def against_cnossos() -> None:
         parts = [total(ours[name][part]) for part in ("rail", "sleepers", "track")]
         cells = [f"{cell:.1f}" for cell in (*parts, total(theirs[name]))]
         print(f"| {name}, {PADS[name] / 1e6:.0f} MN/m | " + " | ".join(cells) + " |")
-    figure = Figure(figsize=(10.5, 4.2), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    tracks = []
     for name, colour in COLOURS.items():
-        left.semilogx(BANDS, ours[name]["track"], color=colour, label=f"{name}, {PADS[name] / 1e6:.0f} MN/m")
-        left.semilogx(BANDS, theirs[name], "--", color=colour, label=f"{name}, CNOSSOS-EU")
-    left.set(xlabel="one-third octave / Hz", ylabel="sound power per axle − roughness / dB", ylim=(40, 125))
-    left.set_title("Track")
-    left.legend(fontsize=8)
-    for part, marker in (("rail", "o"), ("sleepers", "s")):
-        for name in ("soft", "hard"):
-            look = {"color": COLOURS[name], "marker": marker, "markersize": 3}
-            right.semilogx(BANDS, ours[name][part], label=f"{part}, {name} pads", **look)
-    right.set(xlabel="one-third octave / Hz", ylim=(40, 125))
-    right.set_title("Rail and sleepers")
-    right.legend(fontsize=8)
-    for axes in (left, right):
-        octaves(axes)
-    figure.savefig("noise.png", dpi=90)
+        tracks.append(Line(BANDS, ours[name]["track"], f"{name}, {PADS[name] / 1e6:.0f} MN/m", colour))
+        tracks.append(Line(BANDS, theirs[name], f"{name}, CNOSSOS-EU", colour, DASHED))
+    parts = [
+        Line(BANDS, ours[name][part], f"{part}, {name} pads", COLOURS[name], dashes, marker=marker)
+        for part, marker, dashes in (("rail", "o", ()), ("sleepers", "s", DASHED))
+        for name in ("soft", "hard")
+    ]
+    left = panel(TRANSFER, 40, 125, *tracks, title="Track", height=4.2)
+    right = panel(TRANSFER, 40, 125, *parts, title="Rail and sleepers", height=4.2, beside=True)
+    write_chart(Chart((left, right)), "", Path("noise.png"))
 
 
 def wheel_against_cnossos() -> None:
@@ -162,15 +160,11 @@ def wheel_against_cnossos() -> None:
     for band, own, label in zip(BANDS, ours, theirs, strict=True):
         print(f"| {nominal(band):g} | {own:.1f} | {label:.1f} | {own - label:+.1f} |")
     print(f"\nA-weighted, as the tracks: {total(ours):.1f}, CNOSSOS-EU {total(theirs):.1f} dB(A)")
-    figure = Figure(figsize=(7.0, 3.6), layout="constrained")
-    axes = figure.subplots()
-    axes.semilogx(BANDS, ours, "o-", color="#0067a5", markersize=3, label="by the modes of a drawn wheel")
-    axes.semilogx(BANDS, theirs, "--", color="#0067a5", label="CNOSSOS-EU, 920 mm")
-    axes.set(xlabel="one-third octave / Hz", ylabel="sound power per axle − roughness / dB")
-    axes.set(ylim=(20, 125), title="Two wheels")
-    octaves(axes)
-    axes.legend()
-    figure.savefig("noise_wheel.png", dpi=90)
+    drawn = (
+        Line(BANDS, ours, "by the modes of a drawn wheel", BLUE, marker="o"),
+        Line(BANDS, theirs, "CNOSSOS-EU, 920 mm", BLUE, DASHED),
+    )
+    write_chart(Chart((panel(TRANSFER, 20, 125, *drawn, title="Two wheels"),)), "", Path("noise_wheel.png"))
 
 
 def radiation_of_the_rail() -> None:
@@ -185,18 +179,15 @@ def radiation_of_the_rail() -> None:
             for f in at
         ]
         field.append(np.mean(found) / section.radiating_width)
-    model, field = 10 * np.log10(section.radiation_ratio(bands)), 10 * np.log10(field)
+    model, exact = 10 * np.log10(section.radiation_ratio(bands)), 10 * np.log10(field)
     print("\n| band / Hz | boundary elements / dB | model / dB | difference |\n|---:|---:|---:|---:|")
-    for band, exact, own in zip(bands, field, model, strict=True):
-        print(f"| {nominal(band):g} | {exact:.1f} | {own:.1f} | {own - exact:+.1f} |")
-    figure = Figure(figsize=(7.0, 3.6), layout="constrained")
-    axes = figure.subplots()
-    axes.semilogx(bands, field, "o-", color="#1c2126", label="boundary elements, section 60E1")
-    axes.semilogx(bands, model, color="#c8500a", label="model: dipole, then both faces of the foot")
-    axes.set(xlabel="one-third octave / Hz", ylabel="10 lg radiation ratio / dB", ylim=(-30, 6))
-    octaves(axes)
-    axes.legend()
-    figure.savefig("noise_rail.png", dpi=90)
+    for band, computed, own in zip(bands, exact, model, strict=True):
+        print(f"| {nominal(band):g} | {computed:.1f} | {own:.1f} | {own - computed:+.1f} |")
+    drawn = (
+        Line(bands, exact, "boundary elements, section 60E1", INK, marker="o"),
+        Line(bands, model, "model: dipole, then both faces of the foot", VERMILLION),
+    )
+    write_chart(Chart((panel("10 lg radiation ratio / dB", -30, 6, *drawn),)), "", Path("noise_rail.png"))
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 import asperity
 from asperity import HeightMap, read_surface
@@ -24,6 +23,8 @@ from asperity.errors import PhysicsWarning
 from asperity.kinds.cases import as_case
 from asperity.reduction.areal import punch_weights
 from asperity.reduction.ensemble import patches
+from asperity.reporting.chart import Axis, Chart, Field, Panel
+from asperity.reporting.figure_files import write_chart
 from asperity.running import prepare_case
 from asperity.surfaces.spikes import spikes
 from asperity.surfaces.statistics import rms_slope
@@ -223,23 +224,18 @@ def draw(folder: Path) -> None:
     shown = [(name, *FILES[name][:2]) for name in FILES if (folder / FILES[name][0]).exists()]
     if not shown:
         return
-    figure = Figure(figsize=(3.1 * len(shown), 2.9), layout="constrained")
-    for axes, (name, file, hints) in zip(np.atleast_1d(figure.subplots(1, len(shown))), shown, strict=True):
+    panels = []
+    for name, file, hints in shown:
         surface = read_surface(folder / file, **hints).without_spikes().filled().levelled(2)
         heights = 1e6 * surface.heights
         reach = float(np.percentile(np.abs(heights), 99.5))
-        size = [1e6 * length for length in surface.size]
-        image = axes.imshow(
-            heights.T,
-            origin="lower",
-            cmap="cividis",
-            vmin=-reach,
-            vmax=reach,
-            extent=(0, size[0], 0, size[1]),
+        length, width = (1e6 * side for side in surface.size)
+        heights_from_above = Field((0.0, length), (0.0, width), heights, "height / µm", -reach, reach)
+        x, y = Axis("x / µm", 0.0, length), Axis("y / µm", 0.0, width)
+        panels.append(
+            Panel(x, y, (heights_from_above,), title=name, height=2.9, equal=True, beside=len(panels) % 3 > 0)
         )
-        axes.set(title=name, xlabel="x / µm", ylabel="y / µm")
-        figure.colorbar(image, ax=axes, shrink=0.8, label="height / µm")
-    figure.savefig("real_surfaces.png", dpi=80)
+    write_chart(Chart(tuple(panels)), "", Path("real_surfaces.png"))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ import base64
 import hashlib
 import json
 import re
-from io import BytesIO
 from xml.etree import ElementTree
 
 import numpy as np
@@ -29,7 +28,6 @@ from asperity.reporting.literature import literature
 from asperity.reporting.style import envelope, smooth_on_log_axis
 from asperity.reporting.svg import tight
 from asperity.reporting.tables import practice_table, reference_table
-from asperity.reporting.texture import lines_picture, surface_picture
 from asperity.reporting.uncertainty import uncertainty_table
 
 PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.parts]
@@ -260,36 +258,6 @@ def test_the_line_of_the_path_is_written_from_end_to_end(folder, tree):
     line = tree["surface/line"].values
     assert table["x [m]"][-1] > 0.99 * float(tree["surface/distance"][-1])
     assert (table["lowest z [m]"].min(), table["highest z [m]"].max()) == (line.min(), line.max())
-
-
-@pytest.mark.parametrize("lengths", [[400, 400, 300], [3000] * 10])
-def test_picture_of_lines_side_by_side(lengths):
-    rng = np.random.default_rng(0)
-    lines = [rng.normal(0, 1e-5, n) for n in lengths]
-    lines[0][5:9] = np.nan
-    figure = lines_picture(lines, 1e-3, HOSTILE)
-    assert len(figure.axes[0].get_yticks()) == len(lengths)
-    file = BytesIO()
-    figure.savefig(file, format="png", dpi=60)
-    assert file.getvalue().startswith(b"\x89PNG")
-
-
-@pytest.mark.parametrize(
-    ("heights", "spacing"),
-    [
-        (np.random.default_rng(1).normal(0, 1e-6, (80, 60)), (1e-6, 2e-6)),
-        (np.random.default_rng(1).normal(0, 1e-6, (900, 20)), (1e-6, 1e-6)),
-        (np.random.default_rng(1).normal(0, 1e-6, 5000), (1e-6, 1e-6)),
-        (np.zeros((8, 8)), (1e-6, 1e-6)),
-        (np.where(np.eye(40) > 0, np.nan, np.arange(40) * 1e-9), (1e-6, 1e-6)),
-    ],
-    ids=["map", "strip", "line", "flat", "missing"],
-)
-def test_picture_of_a_surface(heights, spacing):
-    figure = surface_picture(heights, spacing, HOSTILE)
-    file = BytesIO()
-    figure.savefig(file, format="png", dpi=60)
-    assert file.getvalue().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(

@@ -174,7 +174,8 @@ def _draw_axis(axes: Axes, way: str, axis: Axis, reach: tuple[float, float], len
         at, names = zip(*axis.ticks, strict=True)
         side.set_major_locator(FixedLocator(at))
         side.set_major_formatter(FuncFormatter(dict(zip(at, names, strict=True)).get))
-        if way == "x" and sum(len(name) + 1.5 for name in names) * LETTER > 0.9 * length:
+        shown = sum(len(name) + 1.5 for number, name in axis.ticks if min(reach) <= number <= max(reach))
+        if way == "x" and shown * LETTER > 0.9 * length:
             axes.tick_params(axis="x", labelrotation=90)
     elif axis.log:
         _log_ticks(side, min(reach), max(reach))
