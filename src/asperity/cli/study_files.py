@@ -69,8 +69,8 @@ def write_page(
     figures = _key_figures(table, means, names, looks)
     if bands is not None:
         chart = ensemble_chart(bands, looks)
-        caption = str(bands.attrs["meaning"])
-        figures.append(PageFigure("ensemble", "Contact force over the seeds", caption, chart))
+        told = "Contact force over the seeds", str(bands.attrs["meaning"])
+        figures.append(PageFigure("ensemble", *told, chart, chart_tables(chart), "ensemble.csv"))
     if not figures:
         return {}
     swept = " × ".join(f"{table.sizes[name]} {name}" for name in json.loads(table.attrs["sweep"]))

@@ -88,6 +88,6 @@ def doubtful_boxes(bands: Numbers, doubtful: NDArray[np.bool_], labelled: bool =
     """Shades of the bands (by their centres) whose levels say little, and their name."""
     if not doubtful.any():
         return []
-    first, last = bands[stretches(doubtful)].T
+    first, last = np.sort(bands[stretches(doubtful)], axis=1).T  # wavelengths may fall
     note = Note("says little", 0.005, 0.03, x_share=True, y_share=True)  # low bands are left
     return [shade(first / EDGE, last * EDGE, opacity=0.6), *([note] if labelled else [])]

@@ -112,7 +112,7 @@ def _scale(values: xarray.DataArray) -> tuple[float, str, str]:
     if units == "1":
         size, unit = 0.01, "%"
     elif units.startswith("dB"):
-        size, unit = 1.0, units.replace("uPa", "µPa").replace("m/s2", "m/s²")
+        size, unit = 1.0, units.replace("uPa", "µPa").replace("1e-6 m/s2", "1 µm/s²")
     else:
         largest = np.nanmax(np.abs(values.values))
         power = 3 * math.floor(math.log10(largest) / 3) if largest > 0 else 0

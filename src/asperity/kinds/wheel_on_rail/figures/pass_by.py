@@ -8,13 +8,13 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.reporting.axes import levels_axis
+from asperity.reporting.axes import levels_axis, shade
 from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Note, Panel, Rules
 from asperity.reporting.data import laws, number, stored_variable, values
 from asperity.reporting.law_entries import law_style
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import main_last
-from asperity.reporting.style import GRID, INK, MUTED
+from asperity.reporting.style import INK, MUTED
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 
 LEVEL = schema.PASS_BY_LEVEL
@@ -79,11 +79,9 @@ def _train(tree: DataTree) -> list[Boxes | Note | Rules]:
     front, rear = number(tree, schema.FRONT_TIME), number(tree, schema.REAR_TIME)
     if front is None or rear is None:
         return [passing]
-    whole = np.array([np.inf])
-    shade = Boxes(np.array([front]), np.array([rear]), -whole, whole, colour=GRID, opacity=0.6)
     middle = 0.5 * (front + rear)
     named = Note(f"Tp = {rear - front:.2f} s", middle, 0.06, y_share=True, align="center")
-    return [shade, named, passing]
+    return [shade(np.array([front]), np.array([rear]), opacity=0.6), named, passing]
 
 
 def pass_by_caption(tree: DataTree) -> str:
