@@ -24,7 +24,7 @@ def figures_into(run: Path, folder: Path | None, format: str, names: Sequence[st
     say(f"Figures: {target.absolute()}, {', '.join(path.name for path in files) or 'none'}")
     return {
         "run": str(run.resolve()),
-        "format": format,
+        "file_format": format,
         "titles": {part.name: part.title for part in parts},
         "warnings": [],
         "files": {part.name: str(path.resolve()) for part, path in zip(parts, files, strict=True)},
