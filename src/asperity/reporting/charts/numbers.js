@@ -36,7 +36,7 @@ const raised = (power) => String(power).replace(/[-\d]/g, (sign) => "⁻⁰¹²�
 function written(number, digits = 4) {
   if (!Number.isFinite(number)) return "–";
   const size = Math.abs(number);
-  if (size === 0 || (size >= 1e-3 && size < 1e6)) {
+  if (size === 0 || (size >= 1e-4 && size < 1e6)) {
     return String(Number(number.toPrecision(Math.max(digits, Math.floor(Math.log10(size || 1)) + 1)))).replace("-", "−");
   }
   const [digit, power] = number.toExponential(digits - 1).split("e");

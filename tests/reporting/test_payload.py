@@ -1,0 +1,149 @@
+"""Charts as a browser gets them: numbers within a hair, once, in little room, and harmless."""
+
+from __future__ import annotations
+
+import base64
+import json
+import zlib
+
+import numpy as np
+import pytest
+from report_reading import HOSTILE
+
+from asperity.reporting import payload
+from asperity.reporting.chart import Axis, Boxes, Chart, Field, Line, Note, Panel
+from asperity.reporting.packed import LEVELS
+from asperity.reporting.part import Data, Series
+from asperity.reporting.payload import charts_json, numbers_table
+from asperity.reporting.style import BLUE, COLOURS
+
+X, LOG = Axis("x / m"), Axis("y / Pa", log=True)
+
+
+def chart(*marks, y=X, **kwargs):
+    return Chart((Panel(X, y, marks),), **kwargs)
+
+
+def read(charts):
+    """What was laid out, its arrays unpacked as the script unpacks them."""
+    found = json.loads(charts_json(charts, COLOURS))
+    plain, start, arrays = zlib.decompress(base64.b64decode(found["data"])), 0, []
+    for how in found["arrays"]:
+        count, planes = how["count"], 0 if "start" in how else 2 if "low" in how else 4
+        raw = np.frombuffer(plain[start : start + planes * count], np.uint8).reshape(planes, count)
+        start += planes * count
+        if "start" in how:
+            arrays.append(how["start"] + how["step"] * np.arange(count))
+        elif "low" in how:
+            changes = raw[0].astype(np.int64) | raw[1].astype(np.int64) << 8
+            levels = np.cumsum(np.cumsum(changes)) & 0xFFFF
+            arrays.append(np.where(levels, how["low"] + how["size"] * (levels - 1), np.nan))
+        else:
+            arrays.append(np.ascontiguousarray(raw.T).view("<f4").ravel())
+    assert start == len(plain)
+    return found["charts"], arrays
+
+
+def line_of(numbers, y=X):
+    """Numbers of a line as the browser has them."""
+    charts, arrays = read({"a": chart(Line(np.arange(float(len(numbers))) ** 2, numbers), y=y)})
+    return arrays[charts["a"]["panels"][0]["marks"][0]["y"]]
+
+
+def numbers(count, seed=1):
+    """Numbers of no order, some of them missing."""
+    found = np.random.default_rng(seed).standard_normal(count) * 10.0 + 1e3
+    found[:: max(count // 7, 2)] = np.nan
+    return found
+
+
+@pytest.mark.parametrize("count", [1, 2, 5, 900])
+def test_short_lines_are_kept_in_single_precision(count):
+    np.testing.assert_allclose(line_of(numbers(count)), numbers(count), rtol=1e-7)
+
+
+@pytest.mark.parametrize("count", [1001, 40_000])
+def test_long_lines_are_within_half_a_level(count):
+    there, here = numbers(count), line_of(numbers(count))
+    assert np.array_equal(np.isnan(here), np.isnan(there))
+    assert np.nanmax(np.abs(here - there)) <= 0.51 * np.ptp(there[~np.isnan(there)]) / LEVELS
+
+
+@pytest.mark.parametrize("value", [7.0, np.nan])
+def test_a_line_that_never_changes(value):
+    assert np.array_equal(line_of(np.full(2000, value)), np.full(2000, value), equal_nan=True)
+
+
+def test_what_stands_on_a_logarithmic_axis_keeps_its_digits():
+    powers = 10.0 ** np.random.default_rng(2).uniform(-30, 3, 5000)
+    np.testing.assert_allclose(line_of(powers, LOG), powers, rtol=1e-7)
+
+
+def test_arrays_are_kept_once_and_equal_steps_as_such():
+    time, force = np.linspace(0.0, 3.0, 30_001), numbers(30_001)
+    one, two = Line(time, force, "one"), Line(time, force, "two")
+    charts, arrays = read({"a": chart(one), "b": chart(one, two)})
+    assert [len(array) for array in arrays] == [30_001, 30_001]
+    np.testing.assert_allclose(arrays[charts["b"]["panels"][0]["marks"][1]["x"]], time, atol=1e-12)
+    assert len(charts_json({"a": chart(one)}, COLOURS)) < 2.7 * 30_001
+
+
+def test_a_chart_of_many_numbers_keeps_their_extremes(monkeypatch):
+    monkeypatch.setattr(payload, "MOST", 6000)
+    x, signal = np.linspace(0, 1, 40_000), numbers(40_000)
+    signal[[12_345, 23_456]] = 2e3, -2e3
+    charts, arrays = read({"a": chart(Line(x, signal), Line(x, 2 * signal))})
+    mark = charts["a"]["panels"][0]["marks"][0]
+    at, kept = arrays[mark["x"]], arrays[mark["y"]]
+    assert 2 * len(kept) <= 6000
+    assert (np.nanmin(kept), np.nanmax(kept)) == pytest.approx((-2e3, 2e3), abs=0.2)
+    assert at[np.nanargmax(kept)] == pytest.approx(x[12_345], abs=2 * (at[1] - at[0]))
+
+
+def test_fields_are_as_fine_as_can_be_seen():
+    heights = np.add.outer(np.arange(2000.0), np.arange(100.0))
+    heights[0, 0] = np.nan
+    field = Field((0, 1), (0, 1), heights, "height / µm", 0.0, 2100.0)
+    charts, arrays = read({"a": chart(field)})
+    told = charts["a"]["panels"][0]["marks"][0]["values"]
+    kept = arrays[told["array"]].reshape(told["shape"])
+    assert kept.shape == (667, 100)
+    assert np.isnan(kept[0, 0])
+    np.testing.assert_allclose(kept[1:], heights[3::3], atol=0.51 * np.nanmax(heights) / 1022)
+
+
+def test_endless_boxes_and_colours_reach_the_page():
+    box = Boxes(np.zeros(1), np.ones(1), np.array([-np.inf]), np.array([np.inf]), colour=BLUE, edge="#123456")
+    charts, arrays = read({"a": chart(box)})
+    mark = charts["a"]["panels"][0]["marks"][0]
+    assert (mark["kind"], mark["colour"], mark["edge"]) == (
+        "boxes",
+        f"--c{list(COLOURS).index(BLUE)}",
+        "#123456",
+    )
+    assert (arrays[mark["low"]][0], arrays[mark["high"]][0]) == (-np.inf, np.inf)
+
+
+def test_drawings_and_notes_without_a_place_are_left_out():
+    nowhere = Note("here", np.nan, 1.0)
+    found, _ = read({"scene": chart(drawing=True), "a": chart(nowhere)})
+    assert list(found) == ["a"]
+    assert found["a"]["panels"][0]["marks"] == []
+
+
+def test_nothing_in_the_data_ends_their_element():
+    words = f"</script>{HOSTILE}<!--"
+    marks = Line(np.zeros(2), np.zeros(2), words, law=words), Note(words, 0.0, 0.0)
+    text = charts_json({words: Chart((Panel(Axis(words), X, marks, title=words),))}, COLOURS)
+    assert "<" not in text
+    assert json.loads(text)["charts"][words]["panels"][0]["marks"][1]["text"] == words
+
+
+def test_the_table_of_a_figure_is_thinned_and_says_so():
+    x = np.arange(100.0)
+    lines = {n: Series(f"z(y={n} m)", "m", np.where(x > 90, np.nan, -1e-6 * n)) for n in range(40)}
+    table = numbers_table(Data(Series("x", "m", x), lines), most=24)
+    assert (len(table.rows), len(table.head)) == (24, 12)
+    assert table.note == "24 of 100 rows and 12 of 41 columns; the CSV file has all."
+    assert [cell.text for cell in (table.rows[0][-1], table.rows[-1][-1])] == ["−3.9e−05", "–"]
+    assert numbers_table(Data(None, {"a": Series("a", "m", np.ones(1))})).note == ""
