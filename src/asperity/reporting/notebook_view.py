@@ -72,7 +72,7 @@ def _picture(tree: DataTree) -> str:
 
     data = base64.b64encode(draw(overview_chart(tree))._repr_png_()).decode()
     main = escape(laws(tree, CONTACT_FORCE)[0])
-    return f'<img alt="contact force of {main}" width="700" src="data:image/png;base64,{data}">'
+    return f'<img alt="contact force of {main}" width="840" src="data:image/png;base64,{data}">'
 
 
 def overview_chart(tree: DataTree) -> Chart:
