@@ -350,7 +350,7 @@ def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(s
     assert not table["contact_loss_share"].values.any()
     chart = key_chart(table, None, "speed", {}, usual_in_figures("wheel-on-rail"))
     panels = {panel.title: panel for panel in chart.panels}
-    assert panels["L_pAFmax, areal"].y.label == "dB(A) re 20 µPa"
+    assert panels["L_pAFmax"].y.label == "dB(A) re 20 µPa"
     assert not any("without contact" in title for title in panels)
     sound = panels["sound power level from the vibration itself, areal"]
     power = table["radiated_power_level_a"].isel(law=0)

@@ -56,7 +56,7 @@ def band_over_seeds(table: xarray.Dataset) -> xarray.Dataset | None:
     return prediction_band(table) if table.sizes.get(SEED, 0) >= FEWEST else None
 
 
-def write_page(
+def write_study_page(
     table: xarray.Dataset,
     means: xarray.Dataset | None,
     bands: xarray.Dataset | None,

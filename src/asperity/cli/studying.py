@@ -15,7 +15,7 @@ from asperity.cli.study_files import (
     band_over_seeds,
     write_ensemble,
     write_mean,
-    write_page,
+    write_study_page,
 )
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
@@ -99,7 +99,7 @@ def _study_alone(
         say(f"Table:   {lasting(files['table']).resolve()}")
         bands = band_over_seeds(table)
         files |= write_mean(means, new) | write_ensemble(bands, new)
-        files |= write_page(table, means, bands, asked or usual_in_figures(kind), new)
+        files |= write_study_page(table, means, bands, asked or usual_in_figures(kind), new)
         for file in (each for pattern in NOT_ALWAYS for each in directory.glob(pattern)):
             if not (new / file.name).exists():
                 discard(file)

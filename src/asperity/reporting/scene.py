@@ -45,7 +45,7 @@ def length_of(data: Data, name: str) -> float | None:
     return float(data.lines[name].values[0]) if name in data.lines else None
 
 
-def lengths_of(data: Data, word: str) -> list[float]:
+def lengths_named(data: Data, word: str) -> list[float]:
     """Lengths of a scene whose names begin with a word, m."""
     return [float(line.values[0]) for name, line in data.lines.items() if str(name).startswith(word)]
 

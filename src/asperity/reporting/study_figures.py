@@ -13,7 +13,7 @@ import xarray
 
 from asperity.reporting.axes import band_axis, doubtful_boxes, words_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Line, Mark, Numbers, Panel
-from asperity.reporting.style import INK, told_apart
+from asperity.reporting.style import INK, sequence_styles
 from asperity.reporting.typed import typed_unit, typed_values, typed_words
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import say_little
@@ -139,7 +139,7 @@ def _lines(
         found = [word for word in table[own[0]].values if held.sel({**law, own[0]: word}).notnull().any()]
         return [
             ({**law, own[0]: word}, {**look, "label": str(word)})
-            for word, look in zip(found, told_apart(len(found)), strict=True)
+            for word, look in zip(found, sequence_styles(len(found)), strict=True)
         ]
     if not others:
         laws = [str(name) for name in table[LAW.name].values] if law else []
@@ -148,7 +148,7 @@ def _lines(
     here = law | {dim: table[dim].values[-1] for dim in own}
     places = list(product(*(range(table.sizes[name]) for name in others)))[:MOST_LINES]
     lines = []
-    for place, look in zip(places, told_apart(len(places)), strict=True):
+    for place, look in zip(places, sequence_styles(len(places)), strict=True):
         at = {name: table[name].values[n] for name, n in zip(others, place, strict=True)}
         words = [f"{name} {typed_words(table[name])[n]}" for name, n in zip(others, place, strict=True)]
         lines.append(({**here, **at}, {**look, "label": ", ".join(words)}))
@@ -221,7 +221,7 @@ def _bands(table: xarray.Dataset, key: str) -> Panel:
     if BAND_TIME_PRODUCT.name in here:
         little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
         marks += doubtful_boxes(band, little.any([dim for dim in little.dims if dim != BAND.name]).values)
-    for at, look in zip(shown, told_apart(len(shown)), strict=True):
+    for at, look in zip(shown, sequence_styles(len(shown)), strict=True):
         level = here[FORCE_LEVEL.name].isel({key: at}).values
         marks.append(Line(band, level, words[at], marker="o", **look))
     first = "".join(f", {name} {typed_words(table[name])[0]}" for name in others)

@@ -58,7 +58,7 @@ def sequence(count: int) -> list[str]:
     return [SEQUENCE[pick] for pick in picks]
 
 
-def told_apart(count: int) -> list[dict[str, Any]]:
+def sequence_styles(count: int) -> list[dict[str, Any]]:
     """Looks of `count` lines from low to high, by colour and by dashes."""
     looks = zip(sequence(count), cycle(DASHES), strict=False)
     return [{"colour": colour, "dashes": dashes} for colour, dashes in looks]

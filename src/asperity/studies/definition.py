@@ -49,7 +49,7 @@ seed = "1..3"                   # every whole number; "6 ratios" in place of ste
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class SweptAxis:
     """A key and its values."""
 
     entry: CaseKey  # the key
@@ -108,7 +108,7 @@ class Study:
 
     data: dict[str, Any]  # keys and values of the case, sections as dicts
     origin: Origin  # where they come from
-    axes: tuple[Axis, ...]  # the keys that are swept
+    axes: tuple[SweptAxis, ...]  # the keys that are swept
 
     @property
     def text(self) -> str:
@@ -231,7 +231,7 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | 
         example = 'Write [sweep] and below it, for instance, speed = ["20 m/s", "56 m/s"].'
         raise CaseError(str(source), [str(InputError("sweep", received, "a key with its values", example))])
     errors: list[str] = []
-    axes: list[Axis] = []
+    axes: list[SweptAxis] = []
     for dotted, values in _flat(sweep):
         if len(axes) + len(errors) >= MOST_KEYS:
             errors.append(str(InputError("sweep", "more keys", f"at most {MOST_KEYS} keys")))
@@ -264,7 +264,7 @@ def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, An
             yield f"{section}{name}", values
 
 
-def _axis(kind: object, dotted: str, values: object, origin: Origin) -> Axis:
+def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxis:
     if dotted == "kind":
         raise InputError("kind", "a swept key", "one kind of case in a study", "Write a study for each kind.")
     entry = entry_of(kind_named(kind).case, dotted)
@@ -290,7 +290,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> Axis:
             raise InputError(dotted, f"{shown(value)} more than once", "each value once")
         read[told] = found
     written = (_in_toml(value, found, entry) for value, found in zip(values, read.values(), strict=True))
-    return Axis(entry, tuple(written), tuple(read.values()))
+    return SweptAxis(entry, tuple(written), tuple(read.values()))
 
 
 def _in_toml(value: Any, found: Any, entry: CaseKey) -> Any:

@@ -19,7 +19,7 @@ from asperity.reporting.spectrum_figures import (
     shaded_words,
     spectrum_panel,
 )
-from asperity.reporting.style import told_apart
+from asperity.reporting.style import sequence_styles
 from asperity.schema.spectra import FREQUENCY
 
 _AXIS = "acceleration PSD / dB re (1 µm/s²)²/Hz"
@@ -59,7 +59,7 @@ def sensors_chart(tree: DataTree, data: Data) -> Chart:
     levels = {
         label: narrow_level(tree, psd.values, ACCELERATION_REFERENCE**2) for label, psd in data.lines.items()
     }
-    looks = told_apart(len(levels))
+    looks = sequence_styles(len(levels))
     drawn = [Line(*levels[label], label, **look) for label, look in zip(levels, looks, strict=True)]
     return Chart((spectrum_panel(tree, drawn, _AXIS),))
 

@@ -14,7 +14,7 @@ from asperity.reporting.scene import (
     ground,
     length_of,
     lengths,
-    lengths_of,
+    lengths_named,
     oval,
     patch_panel,
     patch_words,
@@ -55,7 +55,7 @@ def _beam(tree: DataTree, data: Data) -> Panel:
         path_line(begin, end),
         *oval(begin, radius, radius, radius, dashes=(2, 1.5), inside=0.0),
         *oval(end, radius, radius, radius, inside=0.0),
-        places(lengths_of(data, "sensor"), -height - 0.006 * length),
+        places(lengths_named(data, "sensor"), -height - 0.006 * length),
     ]
     if end - begin > 2 * radius:
         marks += arrow(begin + radius, end - radius, radius)

@@ -30,7 +30,7 @@ from asperity.reporting.spectrum_figures import (
     shaded_words,
     spectrum_panel,
 )
-from asperity.reporting.style import INK, MUTED, told_apart
+from asperity.reporting.style import INK, MUTED, sequence_styles
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FREQUENCY
 from asperity.spectra import energy_sum
@@ -67,7 +67,7 @@ def contact_levels_chart(tree: DataTree, data: Data) -> Chart:
     shown = [data.lines[contact] for contact in _shown(tree)]
     levels = [
         Line(data.at, line.values, line.name, marker="o", **look)
-        for line, look in zip(shown, told_apart(len(shown)), strict=True)
+        for line, look in zip(shown, sequence_styles(len(shown)), strict=True)
     ]
     levels.append(Line(data.at, data.lines[MEAN].values, f"{MEAN} of all", INK, width=2.0))
     axis = levels_axis("contact force level / dB re 1 N", [line.y for line in levels], span=100.0)

@@ -12,7 +12,7 @@ from asperity.reporting.chart import Chart, Line
 from asperity.reporting.data import laws, of_law, stored_variable
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.spectrum_figures import DRAWN, narrow_level, shaded_words, spectrum_panel
-from asperity.reporting.style import told_apart
+from asperity.reporting.style import sequence_styles
 from asperity.schema.spectra import FREQUENCY
 
 MOST_LINES = 6
@@ -46,7 +46,7 @@ def motion_chart(tree: DataTree, data: Data) -> Chart:
     shown = [data.lines[index] for index in _shown(degree_names(tree))]
     levels = [
         Line(*narrow_level(tree, line.values, BODY_REFERENCE**2), line.name, **look)
-        for line, look in zip(shown, told_apart(len(shown)), strict=True)
+        for line, look in zip(shown, sequence_styles(len(shown)), strict=True)
     ]
     label = "acceleration PSD / dB re (1 µm/s²)²/Hz"
     return Chart((spectrum_panel(tree, levels, label, tone_rules(tree)),))

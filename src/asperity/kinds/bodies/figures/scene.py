@@ -13,7 +13,7 @@ from asperity.reporting.scene import (
     ground,
     length_of,
     lengths,
-    lengths_of,
+    lengths_named,
     oval,
     patch_panel,
     patch_words,
@@ -43,7 +43,7 @@ def scene_chart(tree: DataTree, data: Data) -> Chart:
 def _path(data: Data) -> Panel:
     begin, end = rolled(data)
     radius = length_of(data, "radius") or 0.0
-    offsets, sensors = lengths_of(data, "contact"), lengths_of(data, "sensor")
+    offsets, sensors = lengths_named(data, "contact"), lengths_named(data, "sensor")
     contacts = [begin + offset for offset in offsets]
     span = length_of(data, "length") or max(end + max(offsets, default=0.0), *contacts, *sensors, 1e-3)
     drawn = max(radius, 0.012 * span)  # seen at all on a long path
@@ -65,7 +65,7 @@ def _caption(tree: DataTree) -> str:
     count, over = len(values(tree, OFFSET)), case_words(tree, "over")
     begin, end = rolled(data)
     radius = engineering(length_of(data, "radius") or 0.0, "m", 2)
-    seen = " Triangles below: accelerometers." if lengths_of(data, "sensor") else ""
+    seen = " Triangles below: accelerometers." if lengths_named(data, "sensor") else ""
     contacts = "one contact" if count == 1 else f"{count} contacts"
     return (
         f"{contacts.capitalize()} over a {over}, radius {radius}, drawn larger where it would not be seen; "

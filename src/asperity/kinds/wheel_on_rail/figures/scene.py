@@ -13,7 +13,7 @@ from asperity.reporting.scene import (
     ground,
     length_of,
     lengths,
-    lengths_of,
+    lengths_named,
     patch_panel,
     patch_words,
     path_line,
@@ -47,7 +47,7 @@ def track_scene_chart(tree: DataTree, data: Data) -> Chart:
 
 def _side(tree: DataTree, data: Data) -> Panel:
     begin, end = rolled(data)
-    points = [point for point in lengths_of(data, "point") if np.isfinite(point)]
+    points = [point for point in lengths_named(data, "point") if np.isfinite(point)]
     at = points[-1] if points else (begin + end) / 2
     spacing, radius = length_of(data, "sleeper spacing") or 0.6, length_of(data, "wheel radius")
     half = (BAYS + 0.4) * spacing
@@ -74,7 +74,7 @@ def _track(left: float, right: float, spacing: float) -> list[Mark]:
 def _caption(tree: DataTree) -> str:
     data = track_scene_data(tree)
     begin, end = rolled(data)
-    recorded = "; triangles: where the rail's motion is recorded" if lengths_of(data, "point") else ""
+    recorded = "; triangles: where the rail's motion is recorded" if lengths_named(data, "point") else ""
     return (
         "Radius of the wheel and distance of the sleepers to scale; dashed: rail, pads, sleepers and "
         f"ballast, whose shapes are no part of the case. Rolled from {begin:.4g} m to {end:.4g} m"

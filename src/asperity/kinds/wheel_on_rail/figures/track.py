@@ -15,7 +15,7 @@ from asperity.reporting.axes import frequency_axis, log_axis
 from asperity.reporting.chart import Axis, Chart, Dashes, Line, Panel, Rules
 from asperity.reporting.data import engineering, number, plain, present, stated, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
-from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION, told_apart
+from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION, sequence_styles
 from asperity.schema import Entry
 
 FREQUENCY = schema.TRACK_FREQUENCY
@@ -157,7 +157,7 @@ def _kernel_panel(data: Data, end: float, title: str) -> Panel:
     shown = data.at <= end
     lines = [
         Line(data.at[shown] * 1e3, line.values[shown] * 1e6, f"start {start:.2f} m", width=1.2, **look)
-        for (start, line), look in zip(data.lines.items(), told_apart(len(data.lines)), strict=True)
+        for (start, line), look in zip(data.lines.items(), sequence_styles(len(data.lines)), strict=True)
     ]
     time = Axis("time since the impulse / ms", 0.0, 1e3 * end)
     zero = Rules(np.zeros(1), "y", dashes=(), width=0.8)
