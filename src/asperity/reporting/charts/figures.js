@@ -79,7 +79,7 @@ function figureOf(element, chart, get, light) {
   const narrow = () => sized() < NARROW;
   const heightOf = (panel) => panel.told.height ?? 3.6;
   function arrange() {  // gives each panel its width and height in pixels of the page
-    const width = sized(), inch = within(width / 9.6, ...(paper ? [70, 70] : HIGH));
+    const width = sized(), inch = paper ? 58 : within(width / 9.6, ...HIGH);
     for (const { row, panels: beside } of rows) {
       const shares = beside.reduce((sum, panel) => sum + (panel.told.share ?? 1), 0), stacked = narrow() || beside.length === 1;
       row.classList.toggle("stacked", stacked);
@@ -300,7 +300,8 @@ function figureOf(element, chart, get, light) {
       for (const mark of panel.told.marks) if (mark.label && mark.kind !== "field" && !entries.has(keyOf(mark))) entries.set(keyOf(mark), mark);
     }
     const found = new Map();
-    for (const [key, mark] of [...entries].sort(([, a], [, b]) => (b.law ? 1 : 0) - (a.law ? 1 : 0))) {
+    const main = (mark) => Number(Boolean(mark.law) && mark.width > 2);  // drawn last, on top
+    for (const [key, mark] of [...entries].sort(([, a], [, b]) => main(b) - main(a))) {
       const label = make("label", {}, legend), box = make("input", { type: "checkbox", checked: true }, label);
       box.dataset.law = mark.law ?? "";
       box.addEventListener("change", () => {

@@ -63,7 +63,7 @@ const unscaled = (axis, value) => (axis.log ? 10 ** value : value);
 // Ticks of an axis of a panel for its length in pixels of the page, their names thinned or broken to have room.
 function layout(panel, way, [low, high], length, second = false) {
   const axis = panel.told[way], across = way === "x";
-  const most = length / (across ? (axis.log ? 48 : 74) : 38);
+  const most = length / (across ? (axis.log ? 48 : 70) : 38);
   const found = second ? secondTicks(axis.second, axis.log, low, high, most) : ticksOf(axis, low, high, most);
   const share = (at) => (scaled(axis, at) - scaled(axis, low)) / (scaled(axis, high) - scaled(axis, low));
   const places = found.at.map((at) => length * share(at));
@@ -159,7 +159,10 @@ function plotOf(panel, outer, height, colour, k) {
   }, [ascending(panel.seen("x")), [null, null]], panel.host);
 }
 
-const scaleTicks = (field, height) => linearTicks(field.low, field.high, Math.max(height / 40, 2.5));
+function scaleTicks({ low, high }, height) {
+  const { at, names } = linearTicks(low, high, height / 40), places = at.map((value) => (height * (value - low)) / (high - low || 1));
+  return { at, names: uncrowded(names, places, names.map(() => 14), 1) };
+}
 
 function drawScale(view, mark) {  // of the colours of a field, beside it
   const { ctx, unit } = view, left = view.right + 10 * unit, width = 12 * unit, height = view.bottom - view.top;

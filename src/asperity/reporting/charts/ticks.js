@@ -1,12 +1,12 @@
 // Where an axis has ticks, and how they are written: { at, names, minor } of what lies from `low` to `high`.
 
 function linearTicks(low, high, most) {
-  const rough = (high - low) / Math.max(most, 1), power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * [1, 2, 5, 10].find((each) => each * power >= rough * (1 - 1e-9));
-  const places = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), at = [];
-  for (let n = Math.ceil(low / step - 1e-9); n * step <= high + 1e-9 * step; n++) at.push(n * step);
-  const largest = Math.max(Math.abs(low), Math.abs(high));
-  const plain = largest < 1e6 && places < 6;
+  const rough = (high - low) / Math.max(most, 1), steps = [-1, 0, 1].flatMap((n) => [1, 2, 5].map((each) => each * 10 ** (Math.floor(Math.log10(rough)) + n)));
+  const count = (step) => Math.floor(high / step + 1e-9) - Math.ceil(low / step - 1e-9) + 1;
+  const step = steps.find((each, n) => each >= rough * (1 - 1e-9) || count(steps[n + 1]) < 3);  // three are enough to tell a scale
+  const places = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)), first = Math.ceil(low / step - 1e-9);
+  const at = Array.from({ length: count(step) }, (_, n) => (first + n) * step);
+  const plain = Math.max(Math.abs(low), Math.abs(high)) < 1e6 && places < 6;
   return { at, names: at.map((v) => (plain ? v.toFixed(places).replace(/^-(0(\.0*)?)$/, "$1").replace("-", "−") : written(v, 3))), minor: [] };
 }
 

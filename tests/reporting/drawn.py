@@ -1,0 +1,68 @@
+"""What is drawn on a page: colours, and texts with their places."""
+
+RECORDER = """(() => {  // every text that is drawn, where it stands in its picture
+  const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    const size = this.measureText(text), place = this.getTransform();
+    const corners = [-size.actualBoundingBoxLeft, size.actualBoundingBoxRight].flatMap((across) =>
+      [-size.actualBoundingBoxAscent, size.actualBoundingBoxDescent].map((down) =>
+        place.transformPoint({ x: x + across, y: y + down })));
+    const [xs, ys] = [corners.map((c) => c.x), corners.map((c) => c.y)];
+    if (text) (this.canvas.texts ??= []).push({ text, left: Math.min(...xs), right: Math.max(...xs),
+      top: Math.min(...ys), bottom: Math.max(...ys) });
+    return fillText.call(this, text, x, y);
+  };
+  CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+    this.canvas.texts = [];
+    return clearRect.apply(this, box);
+  };
+})()"""
+
+PIXELS = """(canvas, colours) => {  // how many have each of the colours, and how many are not empty
+  const { width, height } = canvas, count = colours.map(() => 0);
+  const copy = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+  copy.drawImage(canvas, 0, 0);
+  const { data } = copy.getImageData(0, 0, width, height);
+  for (let i = 0; i < data.length; i += 4) {
+    if (data[i + 3] < 200) continue;
+    const has = (colour) => colour.reduce((off, part, k) => off + Math.abs(data[i + k] - part), 0) < 12;
+    colours.forEach((colour, n) => { if (has(colour)) count[n]++; });
+  }
+  return count;
+}"""
+
+OVERLAPS = """() => {  // texts that stand over others, or are cut off
+  const meet = (a, b) =>
+    a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+  const found = [];
+  const look = (boxes, where) => boxes.forEach((a, n) => boxes.slice(n + 1).forEach((b) => {
+    if (meet(a, b)) found.push(`${where}: ${a.text} over ${b.text}`);
+  }));
+  for (const canvas of document.querySelectorAll(".uplot canvas")) {
+    const texts = canvas.texts ?? [], { id } = canvas.closest("figure");
+    look(texts, id);
+    for (const { text, left, right, top, bottom } of texts) {
+      const inside = left >= -1 && top >= -1 && right <= canvas.width + 1 && bottom <= canvas.height + 1;
+      if (!inside) found.push(`${id}: ${text} is cut off`);
+    }
+  }
+  for (const figure of document.querySelectorAll("figure.chart")) {
+    const labels = figure.querySelectorAll("h3, label, button, strong, .names span, .along, .uplot, summary");
+    const boxes = [...labels].map((label) => ({ text: label.textContent || label.className,
+      ...label.getBoundingClientRect().toJSON() }));
+    look(boxes.filter((box) => box.width && box.height), figure.id);
+  }
+  return found;
+}"""
+
+
+def settled(page):
+    """Wait until what was asked for is drawn."""
+    page.evaluate("new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
+
+
+def pixels(page, name, colour, panel=0):
+    """Pixels of a colour in a panel of a figure."""
+    settled(page)
+    canvas = page.locator(f"#{name} .uplot canvas").nth(panel)
+    return canvas.evaluate(PIXELS, [[int(colour[n : n + 2], 16) for n in (1, 3, 5)]])[0]
