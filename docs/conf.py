@@ -45,6 +45,7 @@ nb_number_source_lines = False
 
 autosummary_generate = ["generated/api.rst"]
 autodoc_typehints = "none"
+toc_object_entries_show_parents = "hide"  # names of a class are long enough without its own
 autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
 
