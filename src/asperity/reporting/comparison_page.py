@@ -56,7 +56,7 @@ def comparison_page(
     citations = dict.fromkeys(
         str(text) for run in runs for text in json_attribute(run.tree, provenance.CITATIONS, [])
     )
-    drawn = _sections(runs, table, levels)
+    drawn = compared_sections(runs, table, levels)
     text = page_template("comparison.html.jinja").render(
         title=f"Comparison of {' and '.join(run.name for run in runs)}",
         summary=summary(runs, table, levels),
@@ -76,9 +76,10 @@ def comparison_page(
     return printable(text, lines=True)
 
 
-def _sections(
+def compared_sections(
     runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str]
 ) -> list[ComparedSection]:
+    """Chapters of the page: cases, verdicts, force, each level, contact."""
     found = [
         ComparedSection("case", "What differs in the cases", [_case_table(runs, table)]),
         ComparedSection("verdicts", "What each run says", [], _verdicts(runs)),

@@ -47,27 +47,14 @@ export function engineering(value, unit, digits = 3) {
   return `${scaled.toFixed(places)} ${PREFIXES[exponent]}${unit}`.replace("-", "−");
 }
 
-export const squareMicrometres = (area) => area > 1e-6 ? `${(area * 1e6).toPrecision(3)} mm²` : `${Number((area * 1e12).toPrecision(3))} µm²`;
+export const squareMicrometres = (area) => area > 1e-8 ? `${(area * 1e6).toPrecision(3)} mm²` : `${Number((area * 1e12).toPrecision(3))} µm²`;
 
 export function span(seconds) {
   return seconds < 90 ? `${Math.round(seconds)} s` : seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`;
 }
 
-export function table(found, words = false, title = "") {
-  const head = make("tr", {}, ...found.head.map((each) => make("th", { textContent: each, scope: "col" })));
-  const body = found.rows.map((row) => make("tr", {}, ...row.map((cell) => make("td", { textContent: cell ?? "–" }))));
-  const made = make("table", { className: words ? "words" : "" }, ...(title ? [make("caption", { textContent: title })] : []), make("thead", {}, head), make("tbody", {}, ...body));
-  const around = make("div", { className: "scroll", tabIndex: 0 }, made);
-  around.setAttribute("role", "region");
-  around.setAttribute("aria-label", title || "Numbers");
-  return around;
-}
-
-// Figures as the report has them: the same script draws them.
-export function showFigures(box, found) {
-  box.replaceChildren(...found.figures.map((each) => make("figure", { id: each.name, className: "chart" },
-    make("div", { className: "heading" }, make("h3", { textContent: each.title })), make("div", { className: "plot" }),
-    make("details", { className: "numbers" }, make("summary", { textContent: "Numbers" }), table(each.numbers, false, each.title)),
-    make("figcaption", { textContent: each.caption }))));
-  window.asperityCharts(JSON.parse(found.charts), box);
+// Figures and tables as the report has them: the server writes them as it does there, and the same script draws.
+export function showBlocks(box, found) {
+  box.innerHTML = found.blocks;
+  window.asperityCharts.show(JSON.parse(found.charts), box);
 }

@@ -90,9 +90,9 @@ function drawContact() {
   drawStiffness(sample, state);
 }
 
-// A tenth to a third of the side, in the lower left corner.
+// A fifth of the side or some more, in the lower left corner.
 function drawScaleBar(pen, width, height, side) {
-  const length = ticks(0, side, 4)[1], end = 12 + length / side * width;
+  const length = ticks(0, side, 5)[1], end = 12 + length / side * width;
   pen.fillStyle = colour("--paper"); pen.globalAlpha = 0.8;
   pen.fillRect(6, height - 34, end, 28);
   pen.globalAlpha = 1;

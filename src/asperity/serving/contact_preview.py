@@ -40,6 +40,7 @@ class PressedSample:
         self.heights, gap, self.thinning = _laid_out(prepared)
         self.spacing = tuple(self.thinning * d for d in shape.spacing)
         self.load, self.hertz = shape.load, shape.hertz
+        self.passing = case.speed / (2.0 * shape.semi_axes[0])  # Hz, of waves as long as the contact
         self.half_space = HalfSpace(
             (gap.shape[0], gap.shape[1]), (self.spacing[0], self.spacing[1]), shape.modulus,
             case.contact.hardness,
@@ -106,6 +107,7 @@ class PressedSample:
             "heights": self.heights,
             "source": self.source,
             "load": self.load,
+            "passing": self.passing,
             "touch": self.touch,
             "deepest": self.deepest,
             "working": self.working,
@@ -130,6 +132,8 @@ def _prepared(case: Case) -> PreparedCase:
     """Lay a case ready with a path as short as it may be; where none is allowed, with its own."""
     contact = case.contact
     length = strip_rows(contact) * contact.spacing + SPARE * contact.window
+    if case.surface.rms is not None:  # each sample is synthesised by itself, and one is pressed
+        case = case.with_(contact={"samples": 1})
     try:
         return prepare_case(case.with_(duration=max(length / case.speed, 2.0 * case.time_step), settling=0.0))
     except (InputError, CaseError):

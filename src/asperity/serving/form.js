@@ -148,8 +148,10 @@ export function slide(slider) {
 }
 
 function sayTurned(slider) {
-  const field = turned.get(slider)?.field;
-  slider.parentElement.querySelector("output").textContent = field ? `${field.dataset.key} ${valueOf(field) || field.querySelector("input").placeholder}` : "as it is: no number to turn";
+  const field = turned.get(slider)?.field, words = field ? valueOf(field) || field.querySelector("input").placeholder : "no number to turn";
+  slider.parentElement.querySelector("output").textContent = words;
+  slider.setAttribute("aria-valuetext", words);
+  slider.title = field?.dataset.key ?? "";
 }
 
 // ---- surfaces ----------------------------------------------------------------------------------------------

@@ -11,6 +11,9 @@ from asperity.files import amount
 from asperity.serving.case_form import forms
 from asperity.serving.uploads import LARGEST_UPLOAD
 
+SLIDERS = (("Roughness", "surface.rms surface.level"), ("Load", ".load"), ("Speed", "speed"))
+"""What is turned most, and ends of the keys that do it: the first of them that holds a number."""
+
 
 @cache
 def page_text() -> str:
@@ -23,5 +26,9 @@ def page_text() -> str:
         lstrip_blocks=True,
     )
     return environment.get_template("page.html.jinja").render(
-        forms=forms(), version=__version__, largest=LARGEST_UPLOAD, largest_words=amount(LARGEST_UPLOAD)
+        forms=forms(),
+        sliders=SLIDERS,
+        version=__version__,
+        largest=LARGEST_UPLOAD,
+        largest_words=amount(LARGEST_UPLOAD),
     )

@@ -19,8 +19,10 @@ from starlette.routing import Route
 
 from asperity.config.parsing import LARGEST_CASE
 from asperity.errors import AsperityError
+from asperity.reporting.payload import chart_script
 from asperity.serving import kept_runs, uploads
 from asperity.serving.desk import Desk, Refused
+from asperity.serving.blocks import figures_style
 from asperity.serving.guard import policy_of
 from asperity.serving.jobs import Jobs
 from asperity.serving.page_template import page_text
@@ -32,7 +34,10 @@ MOST_COMPARISONS = 20
 """Comparisons that are kept; others are written again when they are asked for."""
 LONGEST_SIZE = 19  # digits of a number of bytes
 Handler = Callable[["Server", Request], Awaitable[Response]]
-_STATIC = {"page.js": "text/javascript", "page.css": "text/css"}
+_MODULES = ("page", "asking", "canvas", "form", "contact", "runs", "watching")
+_STATIC = {f"{name}.js": "text/javascript" for name in _MODULES} | {"page.css": "text/css"}
+_WRITTEN = {"charts.js": (chart_script, "text/javascript"), "charts.css": (figures_style, "text/css")}
+"""What figures need on every page: its text, and what it is."""
 
 
 def told_plainly(handler: Handler) -> Handler:
@@ -154,8 +159,11 @@ async def send_page(server: Server, request: Request) -> Response:
 
 
 async def send_static(server: Server, request: Request) -> Response:
-    """Its script and its style."""
+    """Its scripts and its styles."""
     name = request.path_params["name"]
+    if name in _WRITTEN:
+        text, kind = _WRITTEN[name]
+        return Response(text(), media_type=kind)
     if name not in _STATIC:
         raise HTTPException(404, "There is nothing of that name.")
     return Response(resources.files(__package__).joinpath(name).read_bytes(), media_type=_STATIC[name])

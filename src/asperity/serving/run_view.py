@@ -1,4 +1,4 @@
-"""What the page shows of a run: force and texture to watch, levels and sounds."""
+"""What the page shows of a run: force and texture to watch, figures and sounds."""
 
 from __future__ import annotations
 
@@ -13,25 +13,26 @@ from xarray import DataTree
 from asperity.reporting.data import (
     json_list,
     laws,
-    nominal_band,
     number,
     of_law,
     present,
     stated,
     values,
 )
-from asperity.reporting.law_entries import law_colours, law_entries, law_entry
-from asperity.reporting.style import envelope
+from asperity.reporting.law_entries import law_colours, law_entries
+from asperity.reporting.page import page_figure
+from asperity.reporting.spectrum_figures import FORCE_BANDS
+from asperity.reporting.style import COLOURS
+from asperity.reporting.time_figures import FORCE_ENVELOPE
 from asperity.results import read_result
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
-from asperity.schema.spectra import BAND, FORCE_LEVEL
+from asperity.serving.blocks import told_blocks
 from asperity.serving.kept_runs import SOUNDS
 
 PIECE = 20_000
 """Samples of a law, at most, that are watched one by one: those over the piece of texture that is kept."""
-COLUMNS = 900
-"""Stretches in which the whole record is drawn by its extremes."""
+FIGURES = (FORCE_BANDS, FORCE_ENVELOPE)
 LINE_POINTS = 20_000
 STRETCH = 4
 """Length over which a texture that is looked at has no mean, in its widths."""
@@ -49,7 +50,7 @@ def viewed_run(path: str) -> dict[str, Any]:
             for each in json_list(tree, provenance.WARNINGS)
         ],
         "laws": [
-            {"name": law.name, "meaning": law.meaning, "colour": law.colour, "dark": colours[law.colour]}
+            {"name": law.name, "colour": law.colour, "dark": colours[law.colour]}
             for law in law_entries(tree).values()
         ],
         "force": _force(tree),
@@ -59,30 +60,23 @@ def viewed_run(path: str) -> dict[str, Any]:
             "across": number(tree, contact.HERTZ_RADIUS_ACROSS),
             "load": number(tree, contact.WORKING_LOAD),
         },
-        "levels": _levels(tree),
         "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
+        **_figures(tree),
     }
 
 
 def _force(tree: DataTree) -> dict[str, Any] | None:
-    """Force of each law: sample by sample over the texture that is kept, and all of it by its extremes."""
+    """Force of each law, sample by sample over the texture that is kept."""
     if not present(tree, CONTACT_FORCE, TIME, POSITION):
         return None
     time, position = values(tree, TIME, "time"), values(tree, POSITION, "time")
     count = min(int(np.searchsorted(position - position[0], _watched(tree), side="right")), PIECE, len(time))
-    names = laws(tree, CONTACT_FORCE)
-    forces = {law: of_law(tree, CONTACT_FORCE, law, "time") for law in names}
-    extremes = {law: envelope(force, COLUMNS)[1:] for law, force in forces.items()}
+    pieces = {law: of_law(tree, CONTACT_FORCE, law, "time")[:count] for law in laws(tree, CONTACT_FORCE)}
     return {
-        "duration": float(time[-1] - time[0]),
         "watched": float(time[count - 1] - time[0]),
         "distance": position[:count] - position[0],
-        "start": float(position[0]),
-        "pieces": {law: force[:count] for law, force in forces.items()},
-        "low": {law: each[0] for law, each in extremes.items()},
-        "high": {law: each[1] for law, each in extremes.items()},
-        "range": {law: [float(np.nanmin(force)), float(np.nanmax(force))] for law, force in forces.items()},
-        "pull": [law for law in names if law_entry(tree, law).may_pull],
+        "pieces": pieces,
+        "range": {law: [float(np.nanmin(force)), float(np.nanmax(force))] for law, force in pieces.items()},
     }
 
 
@@ -117,14 +111,7 @@ def _spacing(coordinate: NDArray[np.float64]) -> float:
     return float(coordinate[1] - coordinate[0]) if len(coordinate) > 1 else 0.0
 
 
-def _levels(tree: DataTree) -> dict[str, Any] | None:
-    if not present(tree, FORCE_LEVEL, BAND):
-        return None
-    bands = values(tree, BAND, "band")
-    levels = {law: _rounded(of_law(tree, FORCE_LEVEL, law, "band")) for law in laws(tree, FORCE_LEVEL)}
-    return {"bands": [nominal_band(band) for band in bands], "by_law": levels}
-
-
-def _rounded(levels: NDArray[np.float64]) -> list[float | None]:
-    """Levels in dB for a table; None where there is none."""
-    return [round(float(level), 1) if np.isfinite(level) else None for level in levels]
+def _figures(tree: DataTree) -> dict[str, str]:
+    """Figures of the report that tell most of the force."""
+    found = [part for part in FIGURES if part.drawable(tree)]
+    return told_blocks([page_figure(tree, part, part.collect(tree), COLOURS) for part in found])

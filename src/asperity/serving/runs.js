@@ -1,6 +1,6 @@
 // The list of runs, rolling one, and several beside each other.
 
-import { ask, find, make, showFigures, span, table } from "./asking.js";
+import { ask, find, make, showBlocks, span } from "./asking.js";
 import { fill, kind, showErrors, typed } from "./form.js";
 import { showRun, shown } from "./watching.js";
 
@@ -117,9 +117,8 @@ export async function compare() {
   try {
     const found = await ask(`ask/compare?${asked}`);
     const page = make("a", { href: `${found.page}?${asked}`, target: "_blank", rel: "noopener", textContent: "The whole comparison as a page" });
-    const tables = [[found.cases, true, "What differs in the cases"], [found.numbers, false, `In numbers, ${found.law}`]];
-    find("comparison-words").replaceChildren(make("p", { textContent: found.summary }), make("p", {}, page), ...tables.filter(([each]) => each.rows.length).map((each) => table(...each)));
-    showFigures(find("comparison-figures"), found);
+    find("comparison-words").replaceChildren(make("p", { textContent: found.summary }), make("p", {}, page));
+    showBlocks(find("comparison-blocks"), found);
   } catch (error) {
     find("comparison-words").replaceChildren(make("p", { className: "alert", textContent: error.message }));
   }

@@ -1,6 +1,6 @@
 // One run: watched, read, heard.
 
-import { ask, colour, dark, engineering, find, make, numbers, showFigures } from "./asking.js";
+import { ask, colour, dark, engineering, find, make, numbers, showBlocks } from "./asking.js";
 import { axes, greyOf, imageOf, line, prepared } from "./canvas.js";
 
 export const shown = { id: null, view: null, at: 0, playing: false, law: null };
@@ -26,7 +26,7 @@ export async function showRun(run) {
     find("sound").replaceChildren(...view.sounds.map((name) => make("option", { value: name, textContent: name.replace(/\.wav$/, "").replaceAll("_", " ") })));
     hear();
     find("figures").hidden = false;
-    showFigures(find("figures"), view);
+    showBlocks(find("figures"), view);
     drawWatch();
     if (shown.jump) find("run").scrollIntoView();
     shown.jump = false;
