@@ -134,6 +134,29 @@ def test_pressure_and_stiffness_follow_the_slider(tab):
     tab.wait_for_function("() => document.querySelector('#contact-numbers').textContent.includes('50.0 N')")
 
 
+def slide(tab, what, steps):
+    """Move a slider of the form from the middle by hundredths of a tenfold, and wait for the contact."""
+    before = tab.evaluate("document.body.dataset.answers")
+    moved = "(it, steps) => { it.value = steps; it.dispatchEvent(new Event('input', { bubbles: true })); }"
+    tab.locator("#sliders label", has_text=what).locator("input").evaluate(moved, steps)
+    tab.wait_for_function("before => document.body.dataset.answers !== before", arg=before)
+
+
+def test_the_contact_follows_load_roughness_and_speed_and_a_reload_keeps_them(tab):
+    passing, pressure = number(tab, "waves of its length"), number(tab, "largest pressure")
+    slide(tab, "Speed", 100)
+    assert number(tab, "waves of its length").split()[0] == f"{10 * float(passing.split()[0]):.1f}"
+    slide(tab, "Roughness", 100)
+    assert float(number(tab, "largest pressure").split()[0]) > 1.2 * float(pressure.split()[0])
+    slide(tab, "Load", -100)
+    assert number(tab, "force F") == "5.00 N"
+    tab.reload()
+    tab.wait_for_selector("body[data-first-picture]")
+    kept = {name: tab.input_value(f"input[name='{name}']:visible") for name in ("speed", "surface.rms")}
+    assert kept == {"speed": "10 m/s", "surface.rms": "1 um"}
+    assert number(tab, "force F") == "5.00 N"
+
+
 def test_a_wrong_value_is_said_beside_its_field(tab):
     tab.fill("input[name='speed']", "fast")
     wrong = tab.locator(".case-form:not([hidden]) .field[data-key=speed] .wrong")
@@ -200,7 +223,8 @@ def test_two_tabs_reload_cancel_and_go_on(tab, served, tmp_path):
     other = tab.context.new_page()
     other.goto(served.address)
     other.wait_for_selector("body[data-first-picture]")
-    assert other.input_value("input[name='ball.load']") == "50 N"  # each tab has a case of its own
+    assert other.input_value("input[name='ball.load']") == "30 N"  # begins with the last one,
+    slide(other, "Load", 10)  # and has its own from there on
     roll(tab, "first")
     becomes(other, "first", "running")
     tab.reload()
@@ -217,7 +241,8 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     have_a_run(tab, tmp_path)
     fill(tab, tmp_path, SMALL | {"beam": {"loss_factor": 0.02}})
     roll(tab, "<b>second</b>")
-    becomes(tab, "<b>second</b>", "done")
+    tab.wait_for_selector("#rolled progress")  # where Roll was pressed
+    tab.wait_for_selector("#rolled a:has-text('<b>second</b> is done')")
     tab.wait_for_selector("#watch:not([hidden])")
     assert tab.locator("#run b").count() == 0
     before = tab.inner_text("#now")
@@ -226,6 +251,8 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     tab.click("#play")
     tab.locator("#player").evaluate("it => { it.preload = 'metadata'; }")
     tab.wait_for_function("() => document.getElementById('player').duration > 0.01")  # it is a sound
+    assert tab.evaluate("document.getElementById('player').loop")  # of 10 ms
+    tab.wait_for_selector("#force_bands.ready .plot canvas")
     with tab.expect_download() as taken:
         tab.click("text=Download run.nc")
     result = asperity.open_result(taken.value.path())
@@ -238,7 +265,7 @@ def test_a_run_is_watched_heard_compared_and_taken_away(tab, tmp_path):
     for box in tab.locator("#run-list input[type=checkbox]").all()[:2]:
         box.check()
     tab.click("#compare")
-    tab.wait_for_selector("#comparison table")
+    tab.wait_for_selector("#comparison #force_level.ready .plot canvas")
     words = tab.inner_text("#comparison")
     assert "beam.loss_factor" in words
     assert "0.02" in words

@@ -1,10 +1,11 @@
-"""Figures and tables as the page gets them: elements of a report, and what the script of all figures draws."""
+"""Figures and tables for the page: elements of a report, and what the script of all figures draws."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 from asperity.reporting.payload import chart_style, charts_json
 from asperity.reporting.style import COLOURS, colour_variables
@@ -14,7 +15,7 @@ from asperity.reporting.templates import PageFigure, page_template
 
 def told_blocks(blocks: Sequence[PageFigure | ReportTable]) -> dict[str, str]:
     """Elements of figures and tables, one after the other, and the charts that go into them."""
-    macros = page_template("blocks.html.jinja").module
+    macros: Any = page_template("blocks.html.jinja").module
     # no file lies beside this page
     elements = [
         macros.figure(replace(block, file="")) if isinstance(block, PageFigure) else macros.table(block)
@@ -28,4 +29,6 @@ def told_blocks(blocks: Sequence[PageFigure | ReportTable]) -> dict[str, str]:
 def figures_style() -> str:
     """Styles of figures, with the colours that their script asks for, light and dark."""
     light, dark = (colour_variables(dark=of) for of in (False, True))
-    return f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n{chart_style()}"
+    return (
+        f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n{chart_style()}"
+    )

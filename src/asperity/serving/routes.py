@@ -21,8 +21,8 @@ from asperity.config.parsing import LARGEST_CASE
 from asperity.errors import AsperityError
 from asperity.reporting.payload import chart_script
 from asperity.serving import kept_runs, uploads
-from asperity.serving.desk import Desk, Refused
 from asperity.serving.blocks import figures_style
+from asperity.serving.desk import Desk, Refused
 from asperity.serving.guard import policy_of
 from asperity.serving.jobs import Jobs
 from asperity.serving.page_template import page_text
