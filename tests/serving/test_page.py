@@ -142,19 +142,23 @@ def slide(tab, what, steps):
     tab.wait_for_function("before => document.body.dataset.answers !== before", arg=before)
 
 
+def hertz(words):
+    return float(words.split()[0]) * {"Hz": 1, "kHz": 1e3}[words.split()[1]]
+
+
 def test_the_contact_follows_load_roughness_and_speed_and_a_reload_keeps_them(tab):
     passing, pressure = number(tab, "waves of its length"), number(tab, "largest pressure")
-    slide(tab, "Speed", 100)
-    assert number(tab, "waves of its length").split()[0] == f"{10 * float(passing.split()[0]):.1f}"
-    slide(tab, "Roughness", 100)
-    assert float(number(tab, "largest pressure").split()[0]) > 1.2 * float(pressure.split()[0])
-    slide(tab, "Load", -100)
-    assert number(tab, "force F") == "5.00 N"
+    slide(tab, "Speed", 30)
+    assert hertz(number(tab, "waves of its length")) == pytest.approx(2 * hertz(passing), rel=5e-3)
+    slide(tab, "Roughness", 50)
+    assert float(number(tab, "largest pressure").split()[0]) > 1.1 * float(pressure.split()[0])
+    slide(tab, "Load", -30)
+    assert number(tab, "force F") == "25.1 N"
     tab.reload()
     tab.wait_for_selector("body[data-first-picture]")
     kept = {name: tab.input_value(f"input[name='{name}']:visible") for name in ("speed", "surface.rms")}
-    assert kept == {"speed": "10 m/s", "surface.rms": "1 um"}
-    assert number(tab, "force F") == "5.00 N"
+    assert kept == {"speed": "2 m/s", "surface.rms": "0.316 um"}
+    assert number(tab, "force F") == "25.1 N"
 
 
 def test_a_wrong_value_is_said_beside_its_field(tab):
