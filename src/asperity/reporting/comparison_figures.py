@@ -12,6 +12,7 @@ import xarray
 from asperity.reporting.axes import EDGE, band_axis, levels_axis, wavenumber_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Numbers, Panel, Rules
 from asperity.reporting.comparison_table import chance
+from asperity.reporting.data import written_units
 from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION
 from asperity.schema import contact
 
@@ -40,7 +41,7 @@ def levels_chart(table: xarray.Dataset, name: str, looks: Mapping[str, Mapping[s
     else:
         below += [_of_run(r, run, band, difference[r, 0]) for r, run in enumerate(runs[1:], 1)]
     bands = band_axis(band[np.isfinite(level).any(axis=(0, 1))])
-    heights = levels_axis(f"level of {laws[0]} / {table[name].attrs['units']}", [level[:, 0]])
+    heights = levels_axis(f"level of {laws[0]} / {written_units(table[name].attrs['units'])}", [level[:, 0]])
     over = Axis(f"over {runs[0]} / dB")
     return Chart(
         (Panel(bands, heights, tuple(above), height=3.2), Panel(bands, over, tuple(below), height=2.8))

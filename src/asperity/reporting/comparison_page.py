@@ -7,10 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import xarray
-from markupsafe import Markup
 
 from asperity import __version__
-from asperity.printable import printable
 from asperity.reporting.chart_table import chart_tables
 from asperity.reporting.comparison import MAIN, OF_CONTACT, NamedRun
 from asperity.reporting.comparison_figures import contact_chart, levels_chart
@@ -18,10 +16,8 @@ from asperity.reporting.comparison_table import KIND, listed_keys, summary, sure
 from asperity.reporting.data import engineering, json_attribute, json_list, nominal_band, stated
 from asperity.reporting.law_entries import law_colours, law_style
 from asperity.reporting.page import PageSection, charts_of
-from asperity.reporting.payload import chart_script, chart_style, charts_json, script_digest
-from asperity.reporting.style import colour_variables
 from asperity.reporting.tables import Cell, ReportTable, in_percent, signed, text_cell
-from asperity.reporting.templates import PageFigure, page_template
+from asperity.reporting.templates import PageFigure, whole_page
 from asperity.schema import provenance, rolling
 
 OFF, FAR = 1.0, 3.0
@@ -47,7 +43,7 @@ class ComparedSection(PageSection):
 def comparison_page(
     runs: Sequence[NamedRun], table: xarray.Dataset, levels: Mapping[str, str], file: str
 ) -> str:
-    """The whole page as one self-contained HTML text; nothing is loaded from elsewhere.
+    """The whole page as one self-contained HTML text.
 
     Runs and their table from `asperity.reporting.comparison.compared`; titles of its levels by name; name of
     the CSV file beside the page.
@@ -57,7 +53,10 @@ def comparison_page(
         str(text) for run in runs for text in json_attribute(run.tree, provenance.CITATIONS, [])
     )
     drawn = compared_sections(runs, table, levels)
-    text = page_template("comparison.html.jinja").render(
+    return whole_page(
+        "comparison.html.jinja",
+        charts_of(drawn),
+        colours,
         title=f"Comparison of {' and '.join(run.name for run in runs)}",
         summary=summary(runs, table, levels),
         first=runs[0].name,
@@ -66,14 +65,7 @@ def comparison_page(
         sections=drawn,
         provenance=_provenance_table(runs),
         citations=list(citations),
-        charts=Markup(charts_json(charts_of(drawn), colours)),
-        script=Markup(chart_script()),
-        script_style=Markup(chart_style()),
-        digest=script_digest(),
-        light=Markup(colour_variables(dark=False, colours=colours)),
-        dark=Markup(colour_variables(dark=True, colours=colours)),
     )
-    return printable(text, lines=True)
 
 
 def compared_sections(

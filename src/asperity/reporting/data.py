@@ -158,6 +158,11 @@ def plain(value: float, digits: int = 3) -> str:
     return f"{value:.{digits}g}".replace("-", "−")
 
 
+def written_units(units: str) -> str:
+    """Units of a variable as a reader writes them."""
+    return units.replace("uPa", "µPa").replace("1e-6 m/s2", "1 µm/s²")
+
+
 def force_unit(largest: float) -> tuple[float, str]:
     """Unit in which forces up to `largest` N read well: its size in N and its symbol."""
     return (1e3, "kN") if largest >= 5e3 else (1.0, "N")

@@ -11,7 +11,6 @@ from typing import Any
 from markupsafe import Markup
 from xarray import DataTree
 
-from asperity.printable import printable
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.chart import Chart
 from asperity.reporting.convergence import setting_names
@@ -22,17 +21,9 @@ from asperity.reporting.law_entries import law_colours, law_entries
 from asperity.reporting.lights import lights, validity
 from asperity.reporting.literature import literature, origins
 from asperity.reporting.part import Data, Part
-from asperity.reporting.payload import (
-    chart_script,
-    chart_style,
-    charts_json,
-    digest_of,
-    numbers_table,
-    script_digest,
-)
-from asperity.reporting.style import colour_variables
+from asperity.reporting.payload import digest_of, numbers_table
 from asperity.reporting.tables import ReportTable
-from asperity.reporting.templates import PageFigure, page_template
+from asperity.reporting.templates import PageFigure, whole_page
 from asperity.schema import provenance
 
 SUMMARY_FIGURES = 3
@@ -146,7 +137,6 @@ def page(
 ) -> str:
     """The whole page of a result, as one self-contained HTML text, or a summary of it on one sheet of paper.
 
-    Styles, figures and the script are inside; nothing is loaded from elsewhere, and no other script may run.
     Numbers of the figures, by name, are `collected` unless they were before.
     """
     on_sheet = summary_parts(tree, chapters)
@@ -155,7 +145,10 @@ def page(
         collected = {part.name: part.collect(tree) for part in drawable_parts(tree, shown)}
     drawn, checks, colours = sections(tree, shown, collected), lights(tree), law_colours(tree)
     kind, parameters = stated(tree, provenance.KIND), json_list(tree, provenance.PARAMETERS)
-    text = page_template("report.html.jinja").render(
+    return whole_page(
+        "report.html.jinja",
+        charts_of(drawn),
+        colours,
         title=stated(tree, provenance.TITLE) or kind or "Rolling contact",
         summary=summary,
         on_sheet={part.name for part in on_sheet},
@@ -177,13 +170,6 @@ def page(
         numerics=json_list(tree, provenance.NUMERICS),
         laws=_law_key(tree),
         sections=drawn,
-        charts=Markup(charts_json(charts_of(drawn), colours)),
-        script=Markup(chart_script()),
-        script_style=Markup(chart_style()),
-        digest=script_digest(),
         button=Markup(_button()),
         button_digest=digest_of(_button()),
-        light=Markup(colour_variables(dark=False, colours=colours)),
-        dark=Markup(colour_variables(dark=True, colours=colours)),
     )
-    return printable(text, lines=True)

@@ -13,6 +13,7 @@ import xarray
 
 from asperity.reporting.axes import band_axis, doubtful_boxes, words_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Line, Mark, Numbers, Panel
+from asperity.reporting.data import written_units
 from asperity.reporting.style import INK, sequence_styles
 from asperity.reporting.typed import typed_unit, typed_values, typed_words
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
@@ -112,7 +113,7 @@ def _scale(values: xarray.DataArray) -> tuple[float, str, str]:
     if units == "1":
         size, unit = 0.01, "%"
     elif units.startswith("dB"):
-        size, unit = 1.0, units.replace("uPa", "µPa").replace("1e-6 m/s2", "1 µm/s²")
+        size, unit = 1.0, written_units(units)
     else:
         largest = np.nanmax(np.abs(values.values))
         power = 3 * math.floor(math.log10(largest) / 3) if largest > 0 else 0
