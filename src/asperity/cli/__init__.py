@@ -43,7 +43,7 @@ _EXAMPLES = (
 _SECTIONS = {
     "Begin": ("demo", "new", "surface"),
     "Compute": ("check", "run", "study", "optimise"),
-    "Look, listen and compare": ("serve", "figures", "compare", "listen", "cite"),
+    "Look, listen and compare": ("serve", "report", "figures", "compare", "listen", "cite"),
     "Around it": ("cache", "completion"),
 }
 
@@ -404,6 +404,34 @@ def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> d
     from asperity.cli.comparing import compare_into
 
     return compare_into(runs, directory, laws)
+
+
+@main.command(
+    "report",
+    document=True,
+    short_help="Write the report of a run again, or a summary of one page.",
+    examples=[
+        ("asperity report runs/case --summary", "one sheet of A4 for a client: runs/case/summary.html"),
+        ("asperity report runs/case -o page", "the page and its CSVs, from what run.nc holds"),
+    ],
+)
+@click.argument("run", type=PATH)
+@click.option(
+    "--summary", is_flag=True, help="Result, three figures, validity and origin on one sheet of A4."
+)
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    type=PATH,
+    metavar="FOLDER",
+    help="Folder of the report. [default: that of the run]",
+)
+def report_again(run: Path, summary: bool, directory: Path | None) -> dict[str, Any]:
+    """Write the report of a RUN (run.nc, or its folder) again, or a summary of it on one sheet of paper."""
+    from asperity.cli.reporting import report_into
+
+    return report_into(run, directory, summary=summary)
 
 
 @main.command(

@@ -22,6 +22,7 @@ _LOOKS = {
     UNKNOWN: ("none", "○"),
 }
 _ORDER = (OUT, WARNING, NOTE, UNKNOWN, IN_RANGE)
+_TOLD = (OUT, WARNING, NOTE, IN_RANGE, UNKNOWN)
 _JUDGED = {
     OUT: "Out of range",
     WARNING: "To be read with care",
@@ -63,7 +64,7 @@ def validity(found: Sequence[Light]) -> Light:
     """All checks and warnings in one light, whose quantity is a sentence."""
     states = [light.state for light in found]
     counts = {state: states.count(state) for state in _ORDER}
-    worst = next((state for state in (OUT, WARNING, NOTE, IN_RANGE, UNKNOWN) if counts[state]), UNKNOWN)
+    worst = next((state for state in _TOLD if counts[state]), UNKNOWN)
     told = [
         _counted(state, counts[state], len(states) - counts[UNKNOWN]) for state in _ORDER if counts[state]
     ]

@@ -27,7 +27,7 @@ from asperity.reporting.templates import PageFigure, whole_page
 from asperity.schema import provenance
 
 SUMMARY_FIGURES = 3
-"""That a summary shows, of the last chapters that have one."""
+"""That a summary shows."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
 
 
 def summary_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
-    """Figures of a summary: one of each of the last chapters that name any."""
+    """Figures of a summary: one of each of the first chapters that name any."""
     firsts = (next((part for part in chapter.summary if part.drawable(tree)), None) for chapter in chapters)
-    return [part for part in firsts if part is not None][-SUMMARY_FIGURES:]
+    return [part for part in firsts if part is not None][:SUMMARY_FIGURES]
 
 
 def page_figure(tree: DataTree, part: Part, data: Data, colours: Mapping[str, str]) -> PageFigure:

@@ -13,6 +13,9 @@ from asperity.reporting.tables import Cell, ReportTable, text_cell
 from asperity.schema.spectra import BAND
 from asperity.spectra import a_weighting, energy_sum
 
+MOST_SENSORS = 6
+"""That are listed."""
+
 
 def acceleration_answers(tree: DataTree) -> Answers | None:
     """Acceleration at the sensors by the main law: rms, A-weighted level, and the bands that hold it."""
@@ -27,7 +30,7 @@ def acceleration_answers(tree: DataTree) -> Answers | None:
     places = [f"x = {place:g} m" for place in _places(tree)]
     most = int(np.nanargmax(rms))
     lead = (
-        f"It shakes most at {places[most]}: {engineering(rms[most], 'm/s²')} rms, half of its energy in the "
+        f"The structure vibrates most at {places[most]}: {engineering(rms[most], 'm/s²')} rms, half of its energy in the "
         f"bands of {deciding_bands(bands, levels[most])}."
     )
     note = f"{weighted[most]:.1f} dB(A) re 1 µm/s², at {places[most]}, the most of {len(places)} sensors"
@@ -47,12 +50,18 @@ def _weighted(bands: NDArray[np.float64], level: NDArray[np.float64]) -> float:
 
 
 def _table(places: list[str], rms: NDArray[np.float64], weighted: NDArray[np.float64]) -> ReportTable:
+    shown = np.sort(np.argsort(-np.nan_to_num(rms), kind="stable")[:MOST_SENSORS])
     rows = [
-        [text_cell(place), Cell(engineering(value, "m/s²"), "number"), Cell(_level(level), "number")]
-        for place, value, level in zip(places, rms.tolist(), weighted.tolist(), strict=True)
+        [
+            text_cell(places[i]),
+            Cell(engineering(rms[i], "m/s²"), "number"),
+            Cell(_level(weighted[i]), "number"),
+        ]
+        for i in shown
     ]
     head = ["sensor at", "rms", "A-weighted / dB(A) re 1 µm/s²"]
-    return ReportTable("vibration_sensors", "Vibration at the sensors", head, rows)
+    note = f"The {len(shown)} of {len(places)} sensors that vibrate most." if len(shown) < len(places) else ""
+    return ReportTable("vibration_sensors", "Vibration at the sensors", head, rows, note)
 
 
 def _level(value: float) -> str:

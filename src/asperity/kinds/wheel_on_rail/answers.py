@@ -95,8 +95,8 @@ def _table(own: Powers, standard: Powers) -> ReportTable:
     both = [own[name] for name in ("rail", "sleepers") if name in own]
     track = float(energy_sum(both)) if len(both) == 2 else np.nan
     rows = [
-        ("from vibration, own radiation model", own, track),
-        ("from tables by label, CNOSSOS-EU", standard, standard.get("track", np.nan)),
+        ("by vibration, own model", own, track),
+        ("by CNOSSOS-EU", standard, standard.get("track", np.nan)),
     ]
     cells = [
         [
@@ -109,7 +109,7 @@ def _table(own: Powers, standard: Powers) -> ReportTable:
         for name, levels, together in rows
         if levels
     ]
-    head = ["sound power / dB(A) re 1 pW", "rail", "sleepers", TRACK, "wheel", "sum"]
+    head = ["dB(A) re 1 pW", "rail", "sleepers", TRACK, "wheel", "sum"]
     note = "" if "wheel" in own or not own else "–: not known. The first sum is without the wheel."
     return ReportTable("sound_power_sources", "Sound power by source", head, cells, note)
 
