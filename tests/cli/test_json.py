@@ -72,6 +72,7 @@ COMMANDS = {
     "surface": ("surface", "map.npy", "--height-unit", "um", "--pixel", "2 um", "--psd"),
     "study": ("study", "small.toml", "--vary", "seed=1, 2", "-o", "st", "--workers", "1"),
     "compare": ("compare", "a", "a"),
+    "report": ("report", "a", "--summary"),
     "figures": ("figures", "a", "scene"),
     "listen": ("listen", "a"),
     "cite": ("cite", "a"),

@@ -30,8 +30,8 @@ def acceleration_answers(tree: DataTree) -> Answers | None:
     places = [f"x = {place:g} m" for place in _places(tree)]
     most = int(np.nanargmax(rms))
     lead = (
-        f"The structure vibrates most at {places[most]}: {engineering(rms[most], 'm/s²')} rms, half of its energy in the "
-        f"bands of {deciding_bands(bands, levels[most])}."
+        f"The structure vibrates most at {places[most]}: {engineering(rms[most], 'm/s²')} rms, half of "
+        f"its energy in the bands of {deciding_bands(bands, levels[most])}."
     )
     note = f"{weighted[most]:.1f} dB(A) re 1 µm/s², at {places[most]}, the most of {len(places)} sensors"
     largest = HeadlineNumber("vibration, rms", engineering(rms[most], "m/s²"), note)

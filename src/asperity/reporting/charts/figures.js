@@ -78,7 +78,7 @@ function figureOf(element, chart, get, light) {
   const printed = (name, usual) => parseFloat(getComputedStyle(element).getPropertyValue(`--print-${name}`)) || usual;
   const sized = () => (paper ? printed("width", 680) : area.clientWidth);
   const narrow = () => sized() < NARROW;
-  const told = ({ told: { y } }) => y.ticks?.length && !y.log;  // rows with names, which need their height
+  const inRows = ({ told: { y } }) => y.ticks?.length && !y.log;  // rows with names, which need their height
   const heightOf = (panel) => panel.told.height ?? 3.6;
   function arrange() {  // gives each panel its width and height in pixels of the page
     const width = sized(), inch = paper ? printed("inch", 58) : within(width / 9.6, ...HIGH);
@@ -87,7 +87,7 @@ function figureOf(element, chart, get, light) {
       row.classList.toggle("stacked", stacked);
       for (const panel of beside) {
         panel.width = stacked ? width : Math.floor(((width - GAP * (beside.length - 1)) * (panel.told.share ?? 1)) / shares);
-        panel.height = Math.round((told(panel) ? Math.max(inch, 70) : inch) * heightOf(panel));
+        panel.height = Math.round((inRows(panel) ? Math.max(inch, 70) : inch) * heightOf(panel));
         panel.box.style.width = `${panel.width}px`;
         panel.host.style.minHeight = panel.plot ? "" : `${panel.height}px`;
       }
