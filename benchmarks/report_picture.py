@@ -20,7 +20,7 @@ from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).parents[1]
 PICTURES = {"light": ROOT / "docs/report.png", "dark": ROOT / "docs/report_dark.png"}
-VIEW = {"width": 1000, "height": 1150}
+VIEW = {"width": 1000, "height": 1600}
 COLOURS = 96
 """As many as a page needs; they make a picture a quarter as large."""
 
@@ -40,10 +40,13 @@ def main() -> None:
         chromium = shutil.which("chromium") or shutil.which("google-chrome")
         browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
         for scheme, file in PICTURES.items():
-            tab = browser.new_page(viewport=VIEW, color_scheme=scheme, device_scale_factor=1.5)
+            tab = browser.new_page(viewport=VIEW, color_scheme=scheme, device_scale_factor=1.25)
             tab.goto(page.as_uri(), wait_until="load")
-            tab.wait_for_timeout(1000)  # until charts are drawn
-            taken = Image.open(BytesIO(tab.screenshot())).convert("RGB")
+            first = tab.locator("figure.chart .plot").first
+            first.locator("canvas").last.wait_for()
+            box = first.bounding_box()
+            shown = {"x": 0, "y": 0, "width": VIEW["width"], "height": box["y"] + box["height"]}
+            taken = Image.open(BytesIO(tab.screenshot(clip=shown))).convert("RGB")
             taken.quantize(COLOURS, dither=Image.Dither.NONE).save(file, optimize=True)
         browser.close()
 
