@@ -83,6 +83,14 @@ def test_the_document_is_what_json_md_says(folder):
     assert {path for path in told["files"].values() if not Path(path).is_file()} == set()
 
 
+def test_its_page_shows_the_bands_and_leads_to_what_was_written(folder):
+    page = (folder[0] / "bands.html").read_text(encoding="utf-8")
+    assert '<figure id="bands" class="chart">' in page
+    linked = set(re.findall('href="([^#]*?)"', page))
+    assert linked == {"texture.csv", "case.toml", "trials.csv", "bands.csv"}  # reports were not asked for
+    assert page.count("<tr>") == 1 + len(columns(folder[0] / "bands.csv")["wavelength [m]"])
+
+
 def test_its_case_runs_as_what_was_found(folder):
     out, _, _ = folder
     case = load_case(out / "case.toml")

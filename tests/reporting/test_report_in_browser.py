@@ -45,7 +45,9 @@ def test_every_figure_is_drawn_and_readable(opened, width, scheme):
     assert page.locator("figure.chart:not(:has(.uplot canvas))").count() == 0
     for canvas in page.locator("figure.chart .uplot canvas").all():
         name = canvas.evaluate("canvas => canvas.closest('figure').id")
-        shown = canvas.evaluate("canvas => canvas.getContext('2d', { willReadFrequently: true }) && canvas.texts.length")
+        shown = canvas.evaluate(
+            "canvas => canvas.getContext('2d', { willReadFrequently: true }) && canvas.texts.length"
+        )
         assert shown >= 3, name
     assert page.evaluate(OVERLAPS) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= width

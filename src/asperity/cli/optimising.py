@@ -21,10 +21,11 @@ from asperity.laws import spec_of
 from asperity.optimising.definition import Assignment, load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
-from asperity.reporting.chart_table import chart_tables
+from asperity.reporting.chart_table import number_cell
 from asperity.reporting.figures_page import figures_page
 from asperity.reporting.law_entries import read_entries
 from asperity.reporting.optimised import TextureBands, optimised_chart
+from asperity.reporting.tables import ReportTable
 from asperity.reporting.templates import PageFigure
 from asperity.results import save
 from asperity.store import content_key
@@ -139,7 +140,7 @@ def _case_text(found: Optimised) -> str:
     return toml_text({"kind": found.case.kind, **keys})
 
 
-def _table(bands: TextureBands, units: str) -> tuple[list[str], list[list[object]]]:
+def _table(bands: TextureBands, units: str) -> tuple[list[str], list[list[float]]]:
     columns = {
         "wavelength [m]": bands.wavelength,
         "frequency [Hz]": bands.frequency,
@@ -170,8 +171,11 @@ def _write_page(found: Optimised, bands: TextureBands, path: Path, *, report: bo
     caption = (
         "Above, the texture before and after, and what it was allowed to be; below, what is heard of it."
     )
-    figure = PageFigure("bands", "Texture and response in bands", caption, chart, chart_tables(chart), TABLE)
+    titles, rows = _table(bands, found.measure.units)
+    numbers = ReportTable("", "Numbers", titles, [[number_cell(each) for each in row] for row in rows])
+    figure = PageFigure("bands", "Texture and response in bands", caption, chart, [numbers], TABLE)
     files = {"texture (CSV)": TEXTURE, "case": CASE, "trials (CSV)": TRIALS}
     if report:
         files |= {f"report {name}": f"{name}/report.html" for name in ("before", "after")}
-    write_bytes(path, figures_page("Optimised texture", found.sentence, [figure], files).encode())
+    summary = f"{found.sentence[:1].upper()}{found.sentence[1:]}"
+    write_bytes(path, figures_page("Optimised texture", summary, [figure], files).encode())

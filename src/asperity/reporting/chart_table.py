@@ -25,7 +25,7 @@ def _table(axis: Axis, lines: list[tuple[Panel, Line]]) -> ReportTable:
     rows = [
         [
             Cell(names.get(place) or plain(place), "number"),
-            *(Cell(_written(line.y[row]), "number") for _, line in lines),
+            *(number_cell(line.y[row]) for _, line in lines),
         ]
         for row, place in enumerate(places)
     ]
@@ -33,5 +33,6 @@ def _table(axis: Axis, lines: list[tuple[Panel, Line]]) -> ReportTable:
     return ReportTable("", "Numbers", [axis.label, *titles], rows)
 
 
-def _written(number: np.float64) -> str:
-    return plain(float(number), 4) if np.isfinite(number) else "–"
+def number_cell(number: float) -> Cell:
+    """A number, or a dash where there is none."""
+    return Cell(plain(number, 4) if np.isfinite(number) else "–", "number")

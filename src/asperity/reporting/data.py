@@ -160,7 +160,7 @@ def plain(value: float, digits: int = 3) -> str:
 
 def written_units(units: str) -> str:
     """Units of a variable as a reader writes them."""
-    return units.replace("uPa", "µPa").replace("1e-6 m/s2", "1 µm/s²")
+    return units.replace("uPa", "µPa").replace("m/s2", "m/s²").replace("1e-6 m", "1 µm")
 
 
 def force_unit(largest: float) -> tuple[float, str]:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from asperity.reporting.axes import EDGE, band_axis, levels_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Numbers, Panel, Second
+from asperity.reporting.data import written_units
 from asperity.reporting.style import INK, MUTED
 from asperity.spectra import nominal_length
 
@@ -50,7 +51,7 @@ def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mappin
     return Chart(
         (
             Panel(along, above, tuple(texture), height=3.2),
-            Panel(along, Axis(f"in the band / {units}"), tuple(response), heard, height=3.2),
+            Panel(along, Axis(f"in the band / {written_units(units)}"), tuple(response), heard, height=3.2),
         )
     )
 
