@@ -55,6 +55,24 @@ OVERLAPS = """() => {  // texts that stand over others, or are cut off
   return found;
 }"""
 
+EMPTY = """() => {  // panels without words, or with nothing but words and grid
+  const root = getComputedStyle(document.documentElement);
+  const grid = [0, 2, 4].map((n) => parseInt(root.getPropertyValue("--c2").trim().slice(n + 1, n + 3), 16));
+  return [...document.querySelectorAll(".uplot canvas")].filter((canvas) => {
+    const { left, top, width, height } = canvas.parentElement.querySelector(".u-over").style;
+    const [x, y, across, down] = [left, top, width, height].map(parseFloat);
+    const copy = new OffscreenCanvas(across, down).getContext("2d", { willReadFrequently: true });
+    copy.drawImage(canvas, -x, -y);
+    const { data } = copy.getImageData(0, 0, across, down);
+    let drawn = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      const off = grid.reduce((sum, part, k) => sum + Math.abs(data[i + k] - part), 0);
+      if (data[i + 3] > 200 && off > 60) drawn++;
+    }
+    return drawn < 100 || (canvas.texts ?? []).length < 3;
+  }).map((canvas) => canvas.closest("figure").id);
+}"""
+
 
 def settled(page):
     """Wait until what was asked for is drawn."""

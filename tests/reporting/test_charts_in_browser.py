@@ -188,8 +188,8 @@ def opened(browser, address):
 DRAWN = [
     ("run", 0, BLUE), ("run", 0, VERMILLION), ("run", 1, BLUE), ("spectrum", 0, BLUE),
     ("spectrum", 0, VERMILLION), ("bands", 0, BLUE), ("bands", 1, GREEN), ("bands", 1, INK),
-    ("map", 0, "#fcffa4"), ("map", 0, INK), ("map", 1, "#00224e"), ("map", 1, "#fee838"), ("axes", 0, GREEN), ("axes", 1, INK),
-    ("words", 0, BLUE), ("words", 1, GREEN),
+    ("map", 0, "#fcffa4"), ("map", 0, INK), ("map", 1, "#00224e"), ("map", 1, "#fee838"),
+    ("axes", 0, GREEN), ("axes", 1, INK), ("words", 0, BLUE), ("words", 1, GREEN),
 ]  # fmt: skip
 
 

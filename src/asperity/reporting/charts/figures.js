@@ -301,9 +301,9 @@ function figureOf(element, chart, get, light) {
     for (const panel of panels) {
       for (const mark of panel.told.marks) if (mark.label && mark.kind !== "field" && !entries.has(keyOf(mark))) entries.set(keyOf(mark), mark);
     }
-    const found = new Map();
-    const main = (mark) => Number(Boolean(mark.law) && mark.width > 2);  // drawn last, on top
-    for (const [key, mark] of [...entries].sort(([, a], [, b]) => main(b) - main(a))) {
+    const found = new Map(), ofLaws = [...entries.values()].filter((mark) => mark.law && mark.kind === "line");
+    const main = ofLaws.find((mark) => mark.width > 2) ?? ofLaws.at(-1);  // drawn last, on top
+    for (const [key, mark] of [...entries].sort(([, a], [, b]) => (b === main) - (a === main))) {
       const label = make("label", {}, legend), box = make("input", { type: "checkbox", checked: true }, label);
       box.dataset.law = mark.law ?? "";
       box.addEventListener("change", () => {
@@ -357,7 +357,7 @@ function figureOf(element, chart, get, light) {
     button("+", "zoom in", () => zoom(0.5));
     const update = () => {
       const zoomed = spans.size > 0 || panels.some((panel) => panel.span.y);
-      for (const each of shifted) each.style.visibility = zoomed ? "" : "hidden";
+      for (const each of shifted) each.classList.toggle("idle", !zoomed);
     };
     update();
     return update;

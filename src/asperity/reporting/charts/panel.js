@@ -114,7 +114,7 @@ function measured(panel, width, height) {
   const left = Math.max(panel.figure.left, longest(sides("y", height - bottom - top).names) + 13);
   const bar = panel.marks.find((mark) => mark.kind === "field");
   const right = bar ? 36 + longest(scaleTicks(bar, height).names)
-    : told.y.second ? longest(sides("y", height, true).names) + 13 : 16;
+    : told.y.second ? longest(sides("y", height, true).names) + 13 : told.x.second ? 26 : 16;
   let inner = { width: width - left - right, height: height - top - bottom };
   if (told.equal) {
     const [x, y] = ["x", "y"].map((way) => Math.abs(panel.full[way][1] - panel.full[way][0]));
