@@ -116,7 +116,7 @@ def tones_words(tree: DataTree) -> str:
     if not present(tree, PASSING_FREQUENCY):
         return ""
     first = float(values(tree, PASSING_FREQUENCY)[0])
-    return f" Dotted: k v/L, multiples of the {first:.4g} Hz at which contacts pass a place, up to the tenth."
+    return f" Dotted: k v/L, multiples of the {first:.4g} Hz at which contacts pass a place; ten are drawn."
 
 
 def _sum_caption(tree: DataTree) -> str:
