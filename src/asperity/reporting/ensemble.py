@@ -10,6 +10,7 @@ import xarray
 
 from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis
 from asperity.reporting.chart import Area, Chart, Line, Mark, Panel
+from asperity.reporting.spectrum_figures import main_last
 from asperity.reporting.typed import typed_words
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import say_little
@@ -39,7 +40,7 @@ def _panel(here: xarray.Dataset, keys: list[str], looks: Mapping[str, Mapping[st
         little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
         marks += doubtful_boxes(centre, little.values)
     drawn = []
-    for law in map(str, here[LAW.name].values):
+    for law in main_last(map(str, here[LAW.name].values)):
         mean, low, high = (here[f"{FORCE_LEVEL.name}{end}"].sel({LAW.name: law}).values for end in _ENDS)
         look = dict(looks.get(law, {}))
         shade = {key: look[key] for key in ("colour", "law") if key in look}

@@ -14,6 +14,7 @@ import xarray
 from asperity.reporting.axes import band_axis, doubtful_boxes, words_axis
 from asperity.reporting.chart import Axis, Boxes, Chart, Line, Mark, Numbers, Panel
 from asperity.reporting.data import written_units
+from asperity.reporting.spectrum_figures import main_last
 from asperity.reporting.style import INK, sequence_styles
 from asperity.reporting.typed import typed_unit, typed_values, typed_words
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
@@ -143,7 +144,7 @@ def _lines(
             for word, look in zip(found, sequence_styles(len(found)), strict=True)
         ]
     if not others:
-        laws = [str(name) for name in table[LAW.name].values] if law else []
+        laws = main_last(map(str, table[LAW.name].values)) if law else []
         lines = [({LAW.name: each}, {**looks.get(each, {}), "label": each}) for each in laws]
         return lines or [({}, {"colour": INK, "label": ""})]
     here = law | {dim: table[dim].values[-1] for dim in own}
