@@ -7,14 +7,11 @@ import re
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from report_reading import Reader, read_csv, without
 
 from asperity.kinds import KINDS
 from asperity.kinds.report import page_of, parts_of
 from asperity.reporting.csv_files import columns_text
-from asperity.reporting.style import narrow_page, styled
-from asperity.reporting.svg import Drawing
 from asperity.results import read_result, save
 
 PARTS = {
@@ -51,9 +48,7 @@ def test_page_loads_nothing(text):
     assert not reader.open
     assert not {"link", "iframe", "object", "base"} & {tag for tag, _ in reader.tags}
     for target in reader.all("src") + reader.all("href") + reader.all("xlink:href"):
-        assert target.startswith(("#", "data:image/png;base64,")) or re.fullmatch(
-            r"[a-z_]+\.(csv|svg)", target
-        )
+        assert target.startswith("#") or re.fullmatch(r"[a-z_]+\.csv", target)
     assert "http:" not in text
     assert "https:" not in text
     assert "@import" not in text
@@ -75,29 +70,17 @@ def test_all_figures_tables_and_numbers_are_there(real_run, text, folder):
     parts = {name for known, name in PARTS if known == kind}
     chapters = {chapter.name for chapter in KINDS[kind].chapters}
     assert parts | chapters | TABLES[kind] | {"case", "literature", "remake", "provenance"} <= names
-    files = {f"{name}.{ending}" for name in parts for ending in ("csv", "svg")}
-    assert {path.name for path in folder.iterdir()} == {"report.html", *files}
-
-
-def test_every_figure_is_drawn_for_a_phone_too(real_run, text):
-    """At 360 px, 4.5 inches are as wide as the page: their letters of 9 points are as high as on paper."""
-    live = [part for part in parts_of(real_run) if part.live]  # drawn by the browser, as wide as it is
-    count = len(parts_of(real_run)) - len(live)
-    boxes = [float(box.split()[2]) for box in re.findall(r'<svg role="img".*? viewBox="([^"]*)"', text)]
-    assert sorted(boxes) == pytest.approx(sorted([72 * 9.6, 72 * 4.5] * count + [72 * 9.6] * len(live)))
-    assert text.count('class="drawing wide"') == text.count('class="drawing narrow"') == count
-    assert text.count('class="drawing"') == len(live) == 1
-    assert "min-width: 40rem" not in text
-    assert re.search(r"@media screen and \(max-width: \d+rem\) {\s+.narrow { display: block; }", text)
+    assert {path.name for path in folder.iterdir()} == {"report.html", *(f"{name}.csv" for name in parts)}
 
 
 def test_what_the_run_says_is_shown(real_run, text):
     shown = "".join(Reader(text).text).replace("\u00a0", " ")
     assert real_run.attrs["verdict"] in shown
     for warning in json.loads(real_run.attrs["warnings"]):
-        assert warning["message"] in shown
+        assert warning["message"][1:] in shown
     for citation in json.loads(real_run.attrs["citations"]):
-        assert citation in shown
+        key, _, origin = citation.partition(": ")
+        assert citation in shown or (key in shown and origin in shown)
     for entry in json.loads(real_run["scenario"].attrs["numerics"]):
         assert entry["value"] in shown
     for parameter in json.loads(real_run["scenario"].attrs["parameters"]):
@@ -150,7 +133,7 @@ def test_figure_goes_without_attributes(real_runs, kind, name):
     part, tree = PARTS[kind, name], real_runs[kind].copy()
     for group in tree.children:
         tree[group].attrs = {}
-    assert part.draw(tree).axes
+    assert part.laid_out(tree).panels
     assert part.columns(tree)
     assert part.caption(tree)
 
@@ -164,30 +147,14 @@ def test_figure_goes_without_each_number_that_it_does_not_need(real_runs, kind, 
         others = [str(v) for v in tree[group].data_vars if (group, str(v)) not in kept]
         tree = without(tree, group, *others)
     assert part.drawable(tree)
-    assert part.draw(tree).axes
+    assert part.laid_out(tree).panels
     assert part.columns(tree)
     assert part.caption(tree)
 
 
 @pytest.mark.parametrize("group", ["scenario", "surface", "track", "contact", "rolling", "spectra"])
-def test_one_group_alone_makes_a_page(real_run, group, monkeypatch):
-    """All is plotted; what takes long, to lay it out and to write it, depends on no group."""
-    monkeypatch.setattr("asperity.reporting.page.drawing_of", lambda *drawing: Drawing("0 0 1 1", ""))
+def test_one_group_alone_makes_a_page(real_run, group):
     tree = real_run.copy()
     for other in set(tree.children) - {group}:
         del tree[other]
     assert "</html>" in page_of(tree)
-
-
-@each_part
-def test_figures_for_a_phone_have_room_for_all_that_is_in_them(real_runs, kind, name):
-    with styled(), narrow_page():
-        figure = PARTS[kind, name].draw(real_runs[kind])
-        FigureCanvasAgg(figure)
-        figure.get_layout_engine().execute(figure)  # warns, and thereby fails, where there is none
-        width = figure.bbox.width
-        for axes in figure.axes:
-            assert axes.bbox.width > 0.35 * width or len(axes.get_xticklabels()) == 0 or axes.bbox.width < 20
-            box = axes.get_tightbbox()
-            assert box.x0 > -0.01 * width
-            assert box.x1 < 1.01 * width

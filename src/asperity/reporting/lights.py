@@ -65,9 +65,8 @@ def validity(found: Sequence[Light]) -> Light:
     states = [light.state for light in found]
     counts = {state: states.count(state) for state in _ORDER}
     worst = next((state for state in _TOLD if counts[state]), UNKNOWN)
-    told = [
-        _counted(state, counts[state], len(states) - counts[UNKNOWN]) for state in _ORDER if counts[state]
-    ]
+    checked = len(states) - counts[UNKNOWN]
+    told = [_counted(state, counts[state], checked) for state in _TOLD if counts[state]]
     words = ", ".join(told) or "nothing was stored with this run"
     return Light(f"{_JUDGED[worst]}: {words}.", "", "", IN_RANGE if worst == NOTE else worst)
 
