@@ -1,4 +1,4 @@
-"""A result on its way to another process of this program: as it is in memory, without a file."""
+"""A result on its way from another process of this program: as it is in memory, without a file."""
 
 from __future__ import annotations
 
