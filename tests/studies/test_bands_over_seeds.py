@@ -101,7 +101,7 @@ def test_the_figure_shows_mean_and_band(study):
     lines = {mark.label: mark for mark in panel.marks if isinstance(mark, Line)}
     np.testing.assert_allclose(lines["linear"].y, found["force_level"].sel(law="linear"))
     areas = [mark for mark in panel.marks if isinstance(mark, Area)]
-    assert [(area.colour, area.law) for area in areas] == [("#0067a5", "hertz"), (INK, "")]
-    np.testing.assert_allclose(areas[0].high, found["force_level_high"].sel(law="hertz"))
+    assert [(area.colour, area.law) for area in areas] == [(INK, ""), ("#0067a5", "hertz")]  # main on top
+    np.testing.assert_allclose(areas[1].high, found["force_level_high"].sel(law="hertz"))
     assert "mean over 30 values of seed" in found.attrs["meaning"]
     assert "it holds the value of one more seed with a probability of 80 %" in found.attrs["meaning"]
