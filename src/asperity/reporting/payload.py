@@ -27,7 +27,7 @@ PIXELS, SHADES = (800, 320), 1022
 COLUMNS = 12
 """Of a table of numbers; fields have more."""
 COLOURED = ("colour", "fill", "edge")
-SCRIPTS = ("numbers", "ticks", "marks", "panel", "figures")
+SCRIPTS = ("numbers", "ticks", "marks", "panel", "cursor", "legend", "figures")
 
 
 def charts_json(charts: Mapping[str, Chart], colours: Mapping[str, str]) -> str:

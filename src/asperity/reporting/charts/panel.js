@@ -96,7 +96,7 @@ function plotAxis(panel, way, side, measures, colour, k, second = false) {
     lineGap: 1.15,
     size: (plot, values) => k * (way === "x"
       ? (turned ? longest(values ?? names) + 12 : 10 + 14 * rows)
-      : Math.max(side === 3 ? panel.figure.left : 0, longest(values ?? names) + 13)),
+      : Math.max(side === 3 ? panel.left : 0, longest(values ?? names) + 13)),
     splits: (plot, n, low, high) => [...laid(low, high).at, ...laid(low, high).minor].sort((a, b) => a - b),
     values: (plot, splits) => splits.map((at) => found.names[found.at.indexOf(at)] ?? ""),
     filter: kept, space: 1,
@@ -111,7 +111,7 @@ function measured(panel, width, height) {
   const below = sides("x", width - 60), rows = Math.max(1, ...below.names.map((name) => name.split("\n").length));
   const bottom = below.turned ? longest(below.names) + 12 : 10 + 14 * rows;
   const top = told.x.second ? 26 : 9;
-  const left = Math.max(panel.figure.left, longest(sides("y", height - bottom - top).names) + 13);
+  const left = Math.max(panel.left, longest(sides("y", height - bottom - top).names) + 13);
   const bar = panel.marks.find((mark) => mark.kind === "field");
   const right = bar ? 36 + longest(scaleTicks(bar, height).names)
     : told.y.second ? longest(sides("y", height, true).names) + 13 : told.x.second ? 26 : 16;
@@ -153,9 +153,9 @@ function plotOf(panel, outer, height, colour, k) {
     padding: [told.x.second ? 4 * k : size.top * k, told.y.second ? 4 * k : padding, 0, 0],
     legend: { show: false },
     cursor: { drag: { x: true, y: true, uni: 40, dist: 4, setScale: false }, points: { show: false }, focus: { prox: -1 },
-      bind: { dblclick: () => () => { panel.figure.all(panel); } } },
+      bind: { dblclick: () => () => showAll(panel) } },
     scales: { x: scale("x"), y: scale("y") }, axes, series: [{}, { show: false }],
-    hooks: { drawClear: [drawn(false)], draw: [drawn(true)], setSelect: [() => panel.figure.select(panel)] },
+    hooks: { drawClear: [drawn(false)], draw: [drawn(true)], setSelect: [() => select(panel)] },
   }, [ascending(panel.seen("x")), [null, null]], panel.host);
 }
 
