@@ -2,13 +2,14 @@
 
 function legendOf(figure) {  // where the readings of entries are written, by their keys
   const marks = figure.panels.flatMap((panel) => panel.told.marks).filter((mark) => mark.label && mark.kind !== "field");
-  const entries = new Map(marks.map((mark) => [keyOf(mark), mark]).reverse()), found = new Map();
+  const entries = new Map(), found = new Map();
+  for (const mark of marks) if (!entries.has(keyOf(mark))) entries.set(keyOf(mark), mark);
   const ofLaws = marks.filter((mark) => mark.law && mark.kind === "line");
   const main = ofLaws.find((mark) => mark.width > 2) ?? ofLaws.at(-1);  // drawn last, on top
   const isMain = ([key]) => Number(main !== undefined && key === keyOf(main));
   figure.legend.setAttribute("role", "group");
   figure.legend.setAttribute("aria-label", `What is drawn: ${figure.title}`);
-  for (const [key, mark] of [...entries].reverse().sort((a, b) => isMain(b) - isMain(a))) {
+  for (const [key, mark] of [...entries].sort((a, b) => isMain(b) - isMain(a))) {
     const label = make("label", {}, figure.legend), box = make("input", { type: "checkbox" }, label);
     make("canvas", { className: "swatch" }, label).mark = mark;
     make("span", { textContent: mark.label }, label);

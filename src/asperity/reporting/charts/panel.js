@@ -144,7 +144,7 @@ function plotOf(panel, outer, height, colour, k) {
     for (const mark of shown) if (mark.kind !== "note" && endless(mark) !== front) drawMark(view, mark);
     if (front) drawNotes(view, shown.filter((mark) => mark.kind === "note"));
     ctx.restore();
-    if (front) for (const mark of shown) if (mark.kind === "field") drawScale(view, mark);
+    if (front) for (const mark of shown) if (mark.kind === "field") drawScale({ ...view, colour }, mark);
     const { style } = ctx.canvas.parentElement;  // on paper drawn larger, and seen in its size: sharp
     for (const side of ["width", "height"]) style[side] = `${plot[side] / k}px`;
   };
