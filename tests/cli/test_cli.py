@@ -117,6 +117,19 @@ def test_figures_of_a_run_are_drawn_when_asked(ran):
     assert {path.name for path in Path("all").iterdir()} == {f"{name}.svg" for name in numbers}
 
 
+def test_a_report_is_written_again_from_its_run_and_as_a_summary(ran):
+    folder, _ = ran
+    again = call("report", str(folder / "run.nc"), "-o", "page").stdout
+    assert str(Path("page/report.html").absolute()) in again
+    assert Path("page/report.html").read_bytes() == (folder / "report.html").read_bytes()
+    assert {path.name for path in Path("page").glob("*.csv")} == {path.name for path in folder.glob("*.csv")}
+    call("report", str(folder), "--summary", "-o", "sheet")
+    assert [path.name for path in Path("sheet").iterdir()] == ["summary.html"]
+    assert "no such file" in call("report", "nothing", code=2).stderr
+    Path("taken").write_text("a file")
+    assert "folder of the report: received taken" in call("report", str(folder), "-o", "taken", code=2).stderr
+
+
 def test_wrong_figures_and_folders_are_told_and_leave_nothing(ran):
     folder, _ = ran
     refused = call("figures", str(folder), "scene", "force_band", "-o", "new", code=2).stderr
@@ -792,7 +805,7 @@ def test_a_run_leaves_no_report_of_another(out):
     rail = [part.name for chapter in WHEEL_ON_RAIL for part in chapter.parts]
     (out / f"{rail[0]}.csv").write_text("x")
     call("run", "small.toml", "-o", "out", "--no-report", "--again")
-    assert sorted(path.name for path in out.iterdir()) == ["measured.csv", "run.nc"]
+    assert sorted(path.name for path in out.iterdir() if path.is_file()) == ["measured.csv", "run.nc"]
 
 
 @pytest.mark.parametrize("command", ["run", "check"])
