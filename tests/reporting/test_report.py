@@ -15,7 +15,7 @@ from report_reading import HOSTILE, Reader, read_csv
 from report_tree import DATUM, LAWS, LOAD, report_tree, uncertain, with_force
 
 from asperity.convergence.group import sentence
-from asperity.errors import ComputationError
+from asperity.errors import ComputationError, InputError
 from asperity.kinds.ball_on_beam.answers import acceleration_answers
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import page_of, parts_of, report
@@ -220,6 +220,15 @@ def test_differences_to_the_reference_law_are_printed(tree, text):
         assert band == nominal_band(centre)
         shown = re.findall(r">([^<]+)</td>", cells)[column]
         assert float(shown.strip("()").replace("−", "-")) == pytest.approx(value, abs=0.051)
+
+
+def test_figures_are_files_too_where_they_are_asked_for(tmp_path):
+    tree = contact_only()
+    report(tree, tmp_path, figures="svg")
+    files = {f"{part.name}.{ending}" for part in parts_of(tree) for ending in ("csv", "svg")}
+    assert {file.name for file in tmp_path.iterdir()} == {"report.html", *files}
+    with pytest.raises(InputError, match="figures: received 'jpg'; allowed: svg, pdf, png"):
+        report(tree, tmp_path, figures="jpg")
 
 
 def test_page_that_cannot_be_written_is_a_computation_error(tmp_path):

@@ -19,6 +19,7 @@ from asperity.files import (
     require_space,
     together,
 )
+from asperity.memory import give_back
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.scenarios.second_process import contact_compiled_beside
 from asperity.schema import provenance, rolling, spectra
@@ -103,16 +104,16 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, conver
     before, name = (time.monotonic(), COMPILATION.seconds), name_of_run(case)
     with contact_compiled_beside():
         from asperity.running import run
-        from asperity.unneeded import spare_pint
 
         prepared = prepared_case(case, source)
-        spare_pint()
         with progress_bar() as progress:
             announce_scan(prepared, progress)
             tree: DataTree = run(prepared, progress=progress)
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name
     _warn(tree)
+    if not converge:
+        del prepared  # what it holds is not needed beside what is written
     _write(tree, directory, report=report)
     if converge:
         from asperity.convergence.running import with_convergence
@@ -206,6 +207,7 @@ def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
 
     with together(directory, last=PAGE) as new:
         save(tree, new / "run.nc")
+        give_back()
         if report:
             write_page(tree, new / PAGE)
         for name in names_of_reports() if (directory / PAGE).exists() else []:

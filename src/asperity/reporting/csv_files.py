@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from asperity.comma_separated import csv_text
 from asperity.files import write_bytes
 from asperity.reporting.part import Columns
+
+ROWS = 4096
+"""Rows that are written at a time: as text they take many times as much memory."""
 
 
 def columns_text(columns: Columns) -> str:
@@ -16,10 +21,16 @@ def columns_text(columns: Columns) -> str:
 
     A missing number (NaN) is an empty field.
     """
-    numbers = (np.asarray(column, dtype=float).tolist() for column in columns.values())
-    written = (["" if number != number else repr(number) for number in column] for column in numbers)
-    rows = map(",".join, zip(*written, strict=True))
-    return csv_text(list(columns), []) + "".join(f"{row}\n" for row in rows)
+    table = [np.asarray(column, dtype=float) for column in columns.values()]
+    return csv_text(list(columns), []) + "".join(_pieces(table))
+
+
+def _pieces(table: Sequence[NDArray[np.float64]]) -> Iterator[str]:
+    """Rows of columns (n,), all of one length, some at a time."""
+    for start in range(0, max(map(len, table)), ROWS):
+        numbers = (column[start : start + ROWS].tolist() for column in table)
+        written = (["" if number != number else repr(number) for number in column] for column in numbers)
+        yield "".join(f"{','.join(row)}\n" for row in zip(*written, strict=True))
 
 
 def write_columns(columns: Columns, path: Path) -> Path:

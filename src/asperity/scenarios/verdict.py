@@ -95,7 +95,8 @@ def _compared(bands: xarray.Dataset, main: str, others: list[str]) -> Iterator[s
 
 
 def _signed(difference: float | xarray.DataArray) -> str:
-    return f"{float(difference):+.1f} dB".replace("-", "−")
+    rounded = round(float(difference), 1)
+    return f"{rounded:+.1f} dB".replace("-", "−") if rounded else "0.0 dB"
 
 
 def _force(newtons: float) -> str:
