@@ -51,6 +51,13 @@ def test_large_parts_of_scipy_wait_until_they_are_used():
     assert done.stdout.strip() == "[]"
 
 
+def test_a_report_is_written_without_what_draws_for_papers():
+    chapters = "import asperity.kinds.report as r; [kind.chapters for kind in r.KINDS.values()]"
+    code = f"import sys; {chapters}; print('matplotlib' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
 def test_public_names_resolve():
     for name in asperity.__all__:
         assert getattr(asperity, name) is not None

@@ -202,17 +202,21 @@ def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
 
     What an earlier report has beyond this one goes: it would not belong to the run beside it.
     """
-    from asperity.kinds.report import names_of_reports, write_page
     from asperity.results import save
 
     with together(directory, last=PAGE) as new:
         save(tree, new / "run.nc")
         give_back()
         if report:
+            from asperity.kinds.report import write_page
+
             write_page(tree, new / PAGE)
-        for name in names_of_reports() if (directory / PAGE).exists() else []:
-            if not (new / name).exists():
-                discard(directory / name)
+        if (directory / PAGE).exists():
+            from asperity.kinds.report import names_of_reports
+
+            for name in names_of_reports():
+                if not (new / name).exists():
+                    discard(directory / name)
 
 
 def _expected_size(case: Case) -> float:
