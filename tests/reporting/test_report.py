@@ -88,6 +88,15 @@ def test_values_that_differ_from_the_default_are_marked(tree, text):
     assert "default: 10 mm" in on_top
 
 
+def test_many_changes_are_counted_on_top():
+    tree = contact_only()
+    changed = [{"key": f"k{n}", "value": f"{n} m", "is_default": False} for n in range(10)]
+    tree["scenario"].attrs["parameters"] = json.dumps(changed)
+    shown = html.unescape(page_of(tree))
+    told = ", ".join(f"k{n} = {n} m" for n in range(8))
+    assert f"other than the defaults: {told}, and 2 more" in shown
+
+
 def test_nothing_on_top_where_nothing_differs():
     tree = contact_only()
     usual = [p | {"is_default": True} for p in json.loads(tree["scenario"].attrs["parameters"])]

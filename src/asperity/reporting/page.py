@@ -28,6 +28,8 @@ from asperity.schema import provenance
 
 SUMMARY_FIGURES = 3
 """That a summary shows."""
+CHANGES = 8
+"""Parameters that the top of the page tells of."""
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,13 @@ def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[
     return list(groups.items())
 
 
+def _differing(changed: list[dict[str, Any]]) -> str:
+    """The first parameters that are not the defaults, in a line, and how many more there are."""
+    told = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]
+    more = len(changed) - len(told)
+    return ", ".join([*told, *([f"and {more} more"] if more else [])])
+
+
 @cache
 def _button() -> str:
     """Script that prints the summary."""
@@ -145,6 +154,7 @@ def page(
         collected = {part.name: part.collect(tree) for part in drawable_parts(tree, shown)}
     drawn, checks, colours = sections(tree, shown, collected), lights(tree), law_colours(tree)
     kind, parameters = stated(tree, provenance.KIND), json_list(tree, provenance.PARAMETERS)
+    changed = [parameter for parameter in parameters if not parameter.get("is_default", True)]
     return whole_page(
         "report.html.jinja",
         charts_of(drawn),
@@ -165,7 +175,8 @@ def page(
         literature=literature(tree),
         origins=origins(tree),
         case_groups=_case_groups(parameters),
-        changed=_case_groups([p for p in parameters if not p.get("is_default", True)]),
+        changed=_case_groups(changed),
+        differing=_differing(changed),
         count=len(parameters),
         numerics=json_list(tree, provenance.NUMERICS),
         laws=_law_key(tree),
