@@ -15,7 +15,7 @@ from asperity.errors import InputError
 from asperity.kinds.cases import as_case
 from asperity.reporting.chapter import UNCERTAINTY
 from asperity.reporting.convergence import changes_table, settings_table
-from asperity.reporting.page import page, sections
+from asperity.reporting.page import page
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way
 from asperity.scenarios.restricting import restricted
@@ -271,7 +271,7 @@ class TestKept:
     def test_a_result_is_written_read_and_shown(self, ball, tmp_path):
         asperity.save(ball, tmp_path / "run.nc")
         assert asperity.open_result(tmp_path / "run.nc").identical(ball)
-        assert ">Uncertainty</h2>" in page(ball, (UNCERTAINTY,), sections(ball, (UNCERTAINTY,)))
+        assert ">Uncertainty</h2>" in page(ball, (UNCERTAINTY,))
         table = changes_table(ball)
         assert table.head == ["band / Hz", *ball["convergence"]["setting"].values.tolist()]
         assert len(table.rows) == ball["spectra"].sizes["band"]

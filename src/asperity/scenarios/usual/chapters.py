@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from asperity.reporting.chapter import Chapter
+from asperity.reporting.chapter import CONTACT, LAWS, Chapter
 from asperity.reporting.headline import force_answers
 from asperity.reporting.spectrum_figures import FORCE_BANDS, FORCE_SPECTRUM
 from asperity.reporting.tables import (
@@ -24,3 +24,5 @@ FORCE = Chapter(
 TEXTURE = Chapter(
     "texture", "Texture", TEXTURE_PARTS, (statistics_table, homogeneity_table), summary=TEXTURE_PARTS[::-1]
 )
+CHAPTERS = (FORCE, TEXTURE, CONTACT, LAWS)
+"""Of a kind that has none of its own."""
