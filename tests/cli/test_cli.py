@@ -913,7 +913,7 @@ def test_each_array_and_map_has_a_picture_of_its_own(ensemble):
 def test_titles_of_pictures_name_array_and_map(ensemble, monkeypatch):
     titles = []
     monkeypatch.setattr(
-        "asperity.cli.inspecting.draw", lambda first, title, to, *drawn: titles.append(title) or to
+        "asperity.cli.inspecting._draw", lambda first, title, to, *drawn: titles.append(title) or to
     )
     call(*ensemble, "--array", "polished")
     call(*ensemble, "--array", "polished", "--index", "2")

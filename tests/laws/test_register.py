@@ -120,10 +120,9 @@ def test_a_law_of_the_test_runs_through_result_report_and_csv(kind, registered, 
     assert "The force curve, shifted once more. Here without the filter." in page
     (variable,) = re.findall(r"(--c\d+):#123456;", page)  # for light screens …
     assert page.count(f"{variable}:") >= 2  # … and another value for dark ones
-    figure = page[page.index('<figure id="force_bands"') :]
-    figure = figure[: figure.index("</figure>")]
-    styles = re.findall(rf"\.(s\d+)\{{[^}}]*var\({variable}\)", page)
-    assert any(f'class="{style}"' in figure for style in styles)
+    told = json.loads(re.search(r'id="charts">(.*?)</script>', page, re.DOTALL)[1])
+    marks = [mark for panel in told["charts"]["force_bands"]["panels"] for mark in panel["marks"]]
+    assert variable in [mark["colour"] for mark in marks if mark.get("law") == "twin"]
     with open(tmp_path / "force_bands.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
     columns = [cell for row in rows[:3] for cell in row]

@@ -141,7 +141,7 @@ def test_poles_end_as_the_kernel_does_however_many(name):
     taps = kernel.weights.shape[1]
     longer = moving_kernel(track, 56.0, step, positions=2, duration=2.5 * taps * step).weights
     for count in (60, 200):
-        fit = rail_poles(kernel, count)
+        fit = poles_or_kernel(kernel, count)
         assert fit.accepted
         found = fit.weights(longer.shape[1])
         assert np.linalg.norm(found - longer) < 2e-3 * np.linalg.norm(longer)

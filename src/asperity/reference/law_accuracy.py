@@ -49,7 +49,7 @@ class MappedPoint:
     details: Mapping[str, Any]  # what else the file holds
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LawMap:
     """All points, and how far their interpolation held elsewhere."""
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -187,14 +188,21 @@ def expected_error(mapped: LawMap, kind: str, place: Place, law: str) -> Expecte
 
 def estimate(mapped: LawMap, kind: str, place: Place, law: str) -> tuple[float, float]:
     """Estimate the logarithm of the error of a law, and its standard deviation in those of the whole map."""
-    known = [point for point in mapped.points if law in point.errors]
-    at = np.array([_coordinates(mapped, point.kind, point.place) for point in known])
+    at, logarithms, inverse = _fitted(mapped, law)
     here = _coordinates(mapped, kind, place)[None]
-    logarithms = np.log([point.errors[law] for point in known])
-    mean, to_points = float(logarithms.mean()), _covariance(at, here)[:, 0]
-    weights = np.linalg.solve(_covariance(at, at) + NOISE * np.eye(len(at)), to_points)
+    to_points, mean = _covariance(at, here)[:, 0], float(logarithms.mean())
+    weights = inverse @ to_points
     variance = float(_covariance(here, here)[0, 0] + NOISE - weights @ to_points)
     return mean + float(weights @ (logarithms - mean)), math.sqrt(variance)
+
+
+@lru_cache(maxsize=32)
+def _fitted(mapped: LawMap, law: str) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Coordinates of the points of a law, logarithms of its errors there, and their inverse covariance."""
+    known = [point for point in mapped.points if law in point.errors]
+    at = np.array([_coordinates(mapped, point.kind, point.place) for point in known])
+    inverse = np.linalg.inv(_covariance(at, at) + NOISE * np.eye(len(at)))
+    return at, np.log([point.errors[law] for point in known]), inverse
 
 
 def _covariance(these: NDArray[np.float64], those: NDArray[np.float64]) -> NDArray[np.float64]:
