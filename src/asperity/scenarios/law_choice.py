@@ -201,7 +201,7 @@ def _fitted(mapped: LawMap, law: str) -> tuple[NDArray[np.float64], NDArray[np.f
     """Coordinates of the points of a law, logarithms of its errors there, and their inverse covariance."""
     known = [point for point in mapped.points if law in point.errors]
     at = np.array([_coordinates(mapped, point.kind, point.place) for point in known])
-    inverse = np.linalg.inv(_covariance(at, at) + NOISE * np.eye(len(at)))
+    inverse = np.asarray(np.linalg.inv(_covariance(at, at) + NOISE * np.eye(len(at))), dtype=np.float64)
     return at, np.log([point.errors[law] for point in known]), inverse
 
 
