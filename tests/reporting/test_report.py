@@ -49,6 +49,11 @@ def text(folder):
     return (folder / "report.html").read_text(encoding="utf-8")
 
 
+def test_it_says_when_it_was_made_as_people_write_it(text):
+    assert text.count("2026-01-02, 03:04 UTC") == 2
+    assert "T03:04" not in text
+
+
 def small(**changes):
     """Tree of a short run; `changes` map a group to the variables dropped from it."""
     tree = report_tree(["areal", "linear"], steps=1000)

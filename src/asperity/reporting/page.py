@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -115,6 +116,12 @@ def _law_key(tree: DataTree) -> list[dict[str, str]]:
     ]
 
 
+def _readable(instant: str) -> str:
+    """A moment of ISO 8601 in universal time as people write it; other words as they are."""
+    found = re.fullmatch(r"(\d{4}-\d\d-\d\d)T(\d\d:\d\d):\d\d\+00:00", instant)
+    return f"{found[1]}, {found[2]} UTC" if found else instant
+
+
 def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
     """Parameters by the table of the case file they stand in, in their order."""
     groups: dict[str, list[dict[str, Any]]] = {}
@@ -167,7 +174,7 @@ def page(
         validity=validity(checks),
         lights=checks,
         version=stated(tree, provenance.ASPERITY_VERSION) or "unknown",
-        created=stated(tree, provenance.CREATED) or "",
+        created=_readable(str(stated(tree, provenance.CREATED) or "")),
         seed="" if (seed := stated(tree, provenance.SEED)) is None else seed,
         case=stated(tree, provenance.CASE) or "",
         converged=bool(setting_names(tree)),
