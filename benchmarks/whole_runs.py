@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -78,7 +79,11 @@ class Tree:
         (folder / "wheel.toml").write_bytes(done.stdout)
 
     def took(self, arguments: list[str]) -> Took:
-        """Time a command, in a process whose children are its own alone."""
+        """Time a command, in a process whose children are its own alone.
+
+        What it wrote before goes first: a finished run is not run again.
+        """
+        shutil.rmtree(self.folder / arguments[arguments.index("-o") + 1], ignore_errors=True)
         timed = (
             "import json, resource, subprocess, sys, time; begin = time.perf_counter(); "
             "subprocess.run([sys.executable, '-m', 'asperity', *sys.argv[1:]], check=True, "
