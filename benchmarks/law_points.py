@@ -28,7 +28,7 @@ from asperity.progress import Progress
 from asperity.reference.law_accuracy import HIGH, LOW
 from asperity.running import prepare_case
 from asperity.scenarios.chain import Chain
-from asperity.scenarios.law_place import place_of
+from asperity.scenarios.law_choice import place_of
 from asperity.spectra import band_levels, psd
 from asperity.surfaces.correlation import CORRELATION_THRESHOLD
 

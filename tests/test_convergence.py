@@ -17,8 +17,7 @@ from asperity.reporting.chapter import UNCERTAINTY
 from asperity.reporting.convergence import changes_table, settings_table
 from asperity.reporting.page import page
 from asperity.running import prepare_case
-from asperity.scenarios.refining import Way
-from asperity.scenarios.restricting import restricted
+from asperity.scenarios.refining import Way, restricted
 from asperity.schema import contents_of, convergence
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import LongStrip
@@ -126,7 +125,7 @@ class TestOnTheSameSurface:
         )  # fmt: skip
         found = restricted(replace(large, path=strip), 20e-6, 2, 19)
         assert found.path.shape == (len(found.line), 19)
-        monkeypatch.setattr("asperity.scenarios.restricting.MOST_POINTS", 1000)
+        monkeypatch.setattr("asperity.scenarios.refining.MOST_POINTS", 1000)
         with pytest.raises(InputError, match="at most 1000 points, to be compared on another grid"):
             restricted(replace(large, path=strip), 20e-6, 2, 19)
 

@@ -10,7 +10,7 @@ from asperity.cli import main
 from asperity.config.recipe import read_recipe
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import parse_case
-from asperity.scenarios.reading import read_maps
+from asperity.scenarios.records import read_maps
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import GAUSSIAN_CONSTANT, band_limit, level
 from asperity.surfaces.rotation import rotated

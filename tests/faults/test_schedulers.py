@@ -16,8 +16,8 @@ posix = pytest.mark.skipif(sys.platform == "win32", reason="processes are stoppe
 BALL = 'kind = "ball-on-beam"\nduration = "0.1 s"\nlaws = ["hertz"]\n[surface]\nspectrum = "iso3095"\n'
 STUDY = 'case = "ball.toml"\n[sweep]\nseed = [1, 2, 3, 4, 5, 6, 7, 8]\nstart = ["0 m", "0.9 m"]\n'
 IMPATIENT = (
-    "from asperity.studies import cluster, executors\n"
-    "cluster.PATIENCE, cluster.SILENCE, executors.BEAT = 2.0, 4.0, 1.0\n"
+    "from asperity.studies import cluster, running\n"
+    "cluster.PATIENCE, cluster.SILENCE, running.BEAT = 2.0, 4.0, 1.0\n"
     "from asperity.__main__ import start\n"
     "start()"
 )

@@ -20,9 +20,8 @@ from asperity.laws import spec_of
 from asperity.reporting.chapter import UNCERTAINTY
 from asperity.reporting.chart import Boxes, Line, Note, Rules
 from asperity.reporting.study_figures import key_chart
-from asperity.studies.columns import columns_of
-from asperity.studies.kept import kept, names_kept
-from asperity.studies.shown import chosen, usual, usual_in_figures
+from asperity.studies.member import kept, names_kept
+from asperity.studies.table import chosen, columns_of, usual, usual_in_figures
 
 PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
 

@@ -17,8 +17,16 @@ from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.reference.law_accuracy import Place, law_map, mapped_points
 from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work
-from asperity.scenarios.law_choice import ExpectedError, choose, expected_error, law_choice, law_to_take
-from asperity.scenarios.law_place import correlation_lengths, place_of, without_slow
+from asperity.scenarios.law_choice import (
+    ExpectedError,
+    choose,
+    correlation_lengths,
+    expected_error,
+    law_choice,
+    law_to_take,
+    place_of,
+    without_slow,
+)
 from asperity.scenarios.validity import doubted_by_area
 from asperity.surfaces.heightmap import HeightMap
 

@@ -13,8 +13,8 @@ from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
 from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
 from asperity.store import Store
-from asperity.studies.kept import kept
-from asperity.studies.shown import usual
+from asperity.studies.member import kept
+from asperity.studies.table import usual
 from asperity.surfaces.synthesis import self_affine
 
 BALL = {

@@ -5,8 +5,7 @@ import pytest
 
 from asperity.cli.studying import varied
 from asperity.errors import CaseError, InputError
-from asperity.studies.definition import study_of
-from asperity.studies.ranges import expanded
+from asperity.studies.definition import expanded, study_of
 
 BALL = {"kind": "ball-on-beam", "surface": {"rms": "0.5 um"}}
 

@@ -16,7 +16,7 @@ from asperity.kinds.cases import as_case
 from asperity.running import prepare_case, run
 from asperity.store import Store
 from asperity.studies.definition import study_of
-from asperity.studies.kept import kept, packed
+from asperity.studies.member import kept, packed
 from asperity.surfaces.fields import Fields
 from asperity.surfaces.strip import LongStrip
 

@@ -19,7 +19,7 @@ from asperity.errors import CaseError, ComputationError, InputError
 from asperity.kinds.cases import load_case, parse_case
 from asperity.running import run
 from asperity.store import Store
-from asperity.studies import executors, member
+from asperity.studies import member, running
 from asperity.studies.definition import TEMPLATE, load_study, study_of
 
 BALL = """
@@ -310,7 +310,7 @@ class TestExecutors:
             asperity.study("ball.toml", SWEEP, executor=executor)
 
     def test_a_member_that_ends_its_process_fails_alone(self, monkeypatch):
-        monkeypatch.setattr(executors, "compute_member", ends_with_seed_2)
+        monkeypatch.setattr(running, "compute_member", ends_with_seed_2)
         table = asperity.study("ball.toml", {"seed": [1, 2, 3, 4]}, workers=2)
         assert table["completed"].values.tolist() == [1, 0, 1, 1]
         assert json.loads(table.attrs["failures"])[0]["error"] == "ProcessEnded"
@@ -318,7 +318,7 @@ class TestExecutors:
     def test_processes_end_with_the_one_that_started_them(self):
         script = (
             "import os, time\n"
-            "from asperity.studies.executors import _pool\n"
+            "from asperity.studies.running import _pool\n"
             "if __name__ == '__main__':\n"
             "    with _pool(1) as pool:\n"
             "        print(pool.submit(os.getpid).result(), flush=True)\n"

@@ -178,7 +178,7 @@ def announce_scan(prepared: PreparedCase, progress: Progress) -> None:
 def _measured(case: Case) -> list[tuple[str, str]]:
     """Say what is in the measured files."""
     from asperity.cli.inspecting import described, described_lines
-    from asperity.scenarios.reading import read_lines, read_maps
+    from asperity.scenarios.records import read_lines, read_maps
     from asperity.surfaces.heightmap import HeightMap
     from asperity.surfaces.parallel_lines import lines_of
 

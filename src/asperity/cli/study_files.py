@@ -18,8 +18,8 @@ from asperity.reporting.figures_page import figures_page
 from asperity.reporting.law_entries import line_style, read_entries
 from asperity.reporting.study_figures import key_caption, key_chart
 from asperity.reporting.templates import PageFigure
-from asperity.studies.columns import columns_of, long_columns
 from asperity.studies.ensemble import FEWEST, SCATTER, prediction_band
+from asperity.studies.table import columns_of, long_columns
 from asperity.terminal import say
 
 SEED = "seed"

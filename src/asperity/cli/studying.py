@@ -21,12 +21,10 @@ from asperity.comma_separated import write_csv
 from asperity.errors import InputError
 from asperity.files import alone_in, discard, lasting, refuse_unwritable, together
 from asperity.progress import progress_bar
-from asperity.studies.columns import axes_of, columns_of
-from asperity.studies.definition import Study, study_of
+from asperity.studies.definition import Study, separated, study_of
 from asperity.studies.ensemble import SCATTER, mean_and_scatter
-from asperity.studies.kept import PLACES, names_kept
-from asperity.studies.ranges import separated
-from asperity.studies.shown import OVER, chosen, usual, usual_in_figures
+from asperity.studies.member import PLACES, names_kept
+from asperity.studies.table import OVER, axes_of, chosen, columns_of, usual, usual_in_figures
 from asperity.terminal import line_width, remark, say, say_table
 
 if TYPE_CHECKING:

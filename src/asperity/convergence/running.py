@@ -13,14 +13,12 @@ from xarray import DataTree
 from asperity import __version__
 from asperity.config.case import Case
 from asperity.config.content import content, file_digest
-from asperity.convergence.group import NOT_CONVERGED, Comparison, convergence_group
-from asperity.convergence.levels import Levels, halves
+from asperity.convergence.group import NOT_CONVERGED, Comparison, Levels, convergence_group, halves
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.preparing import PreparedCase, prepare_of_kind
-from asperity.scenarios.refining import Setting, Way, shared_settings
-from asperity.scenarios.restricting import restricted
+from asperity.scenarios.refining import Setting, Way, restricted, shared_settings
 from asperity.schema import contact, convergence, provenance
 from asperity.store import Store, content_key
 from asperity.threads import one_thread_in_linear_algebra

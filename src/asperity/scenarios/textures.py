@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from asperity.config.sections import ContactCase, Surface
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.scenarios.geometry import window_cells
-from asperity.scenarios.reading import read_maps
+from asperity.scenarios.records import read_maps
 from asperity.surfaces.continuation import Continuation, extend
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample

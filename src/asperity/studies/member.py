@@ -1,18 +1,163 @@
-"""One member of a study, as it is computed wherever the executor puts it."""
+"""One member of a study: computed wherever the executor puts it, and what is kept of it."""
 
 from __future__ import annotations
 
+import json
 import threading
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import xarray
 from numpy.typing import NDArray
 
 from asperity.errors import TOO_MUCH_MEMORY, AsperityError, ComputationError
+from asperity.kinds import KINDS
+from asperity.results import variable
+from asperity.schema import Entry, contact, provenance, rolling, spectra
+from asperity.schema.provenance import KIND
+from asperity.spectra import a_weighted_total
 
 if TYPE_CHECKING:
     from asperity.config.case import Case
+
+KEPT = (
+    spectra.FORCE_LEVEL,
+    spectra.BAND_TIME_PRODUCT,
+    spectra.START_SHARE,
+    *spectra.FORCE_LEVEL_DIFFERENCES.values(),
+    spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
+    rolling.CONTACT_LOSS_SHARE,
+    rolling.CONTACT_LOSS_EVENTS,
+    rolling.LONGEST_LOSS,
+    contact.TRACK_RMS,
+    contact.TRACK_STIFFNESS,
+)
+"""What is kept of the results of all kinds; what is kept beside it stands in the schema of a kind."""
+FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE)
+"""Attributes of a result that are kept."""
+FORCES = {
+    "mean_force": "mean contact force",
+    "rms_force": "rms of the contact force about its mean",
+    "peak_force": "largest contact force",
+}
+LEVEL = "dB re"
+"""Beginning of the units of levels."""
+PLACES = ("sensor", "point")
+"""Dimensions whose positions may differ between members: they are numbered, from 1."""
+
+
+def kept(tree: xarray.DataTree) -> xarray.Dataset:
+    """Choose what a study keeps of a result: quantities by law, and by band where they have bands.
+
+    With citations and warnings as attributes.
+    """
+    own = KINDS[tree[KIND.group].attrs[KIND.name]].kept
+    found = {
+        entry.name: tree[entry.path].sel(own.get(entry, {}), drop=True)
+        for entry in (*KEPT, *own)
+        if entry.name in tree[entry.group]
+    }
+    force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name]
+    for (name, what), of in zip(FORCES.items(), (force.mean, force.std, force.max), strict=True):
+        found[name] = _described(of("time"), "N", what)
+    lowering = contact.RUNNING_IN_LOWERING
+    if lowering.name in tree[lowering.group]:
+        most = tree[lowering.group].to_dataset()[lowering.name].max(contact.RUNNING_IN_PASS.name)
+        found[lowering.name] = _described(most, "m", "largest lowering of a place in a pass of running-in")
+    found |= _weighted(
+        {name: values for name, values in found.items() if isinstance(values, xarray.DataArray)}
+    )
+    table = xarray.Dataset(found).drop_attrs(deep=False)
+    for place in set(PLACES) & set(map(str, table.dims)):
+        table = _numbered(table, place)
+    for fact in FACTS:
+        if (value := tree[fact.group].attrs.get(fact.name)) is not None:
+            table[fact.name] = variable((), value, fact.units, fact.meaning)
+    told = (provenance.CITATIONS.name, provenance.WARNINGS.name)
+    return table.assign_attrs({name: tree.attrs[name] for name in told})
+
+
+def names_kept(kind: str) -> dict[str, str]:
+    """Names that the table of a study of a kind may have, each with which results have it, if not all."""
+    entries = (*KEPT, contact.RUNNING_IN_LOWERING, *KINDS[kind].kept)
+    found = dict.fromkeys(FORCES, "") | {entry.name: entry.condition for entry in entries}
+    found |= {fact.name: fact.condition for fact in FACTS}
+    for entry in entries:
+        if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"):
+            found.setdefault(f"{entry.name}_a", entry.condition)
+    for entry in spectra.FORCE_LEVEL_DIFFERENCES.values():
+        found[_weighted_name(entry)] = entry.condition
+    return found
+
+
+def _weighted_name(difference: Entry) -> str:
+    return difference.name.replace(spectra.FORCE_LEVEL.name, f"{spectra.FORCE_LEVEL.name}_a")
+
+
+def _weighted(found: Mapping[str, xarray.DataArray]) -> dict[str, xarray.DataArray]:
+    """A-weighted totals of levels, where the result has none, and of the force over the linear laws."""
+    totals: dict[str, xarray.DataArray] = {}
+    for name, level in found.items():
+        units, band = str(level.attrs["units"]), str(level.dims[-1]) if level.dims else ""
+        if units.startswith(LEVEL) and band.endswith("band") and f"{name}_a" not in found:
+            long_name = f"A-weighted {level.attrs['long_name']}, over the bands computed"
+            total = _total(level, band)
+            totals[f"{name}_a"] = _described(total, units.replace("dB", "dB(A)", 1), long_name)
+    force = found.get(spectra.FORCE_LEVEL.name)
+    for entry in spectra.FORCE_LEVEL_DIFFERENCES.values():
+        if force is not None and entry.name in found:
+            law, band = str(found[entry.name].attrs["reference"]), str(force.dims[-1])
+            both = np.isfinite(force) & np.isfinite(force.sel(law=law, drop=True))
+            change = _total(force.where(both), band) - _total(force.sel(law=law, drop=True).where(both), band)
+            totals[_weighted_name(entry)] = _described(
+                change, "dB", f"A-weighted {entry.long_name}, over the bands of both"
+            )
+    return totals
+
+
+def _total(level: xarray.DataArray, band: str) -> xarray.DataArray:
+    numbers = a_weighted_total(level.transpose(..., band).values, level[band].values)
+    return (
+        level.isel({band: 0}, drop=True).transpose(*[d for d in level.dims if d != band]).copy(data=numbers)
+    )
+
+
+def _described(values: xarray.DataArray, units: str, long_name: str) -> xarray.DataArray:
+    return values.drop_attrs().assign_attrs(units=units, long_name=long_name)
+
+
+def _numbered(table: xarray.Dataset, place: str) -> xarray.Dataset:
+    positions = table[place]
+    number = variable(place, np.arange(1, len(positions) + 1), "1", f"number of the {place}")
+    table = table.assign_coords({place: number})
+    table[f"{place}_position"] = variable(place, positions.values, "m", str(positions.attrs["long_name"]))
+    return table
+
+
+def packed(table: xarray.Dataset) -> dict[str, NDArray[Any]]:
+    """Lay out a table from `kept` as a store keeps it: plain arrays, and their description as JSON."""
+    layout = {
+        str(name): {"dims": values.dims, "attrs": values.attrs} for name, values in table.variables.items()
+    }
+    description = json.dumps({"variables": layout, "attrs": table.attrs}, ensure_ascii=False)
+    arrays = {str(name): values.values for name, values in table.variables.items()}
+    return {"__description__": np.array(description), **arrays}
+
+
+def unpacked(arrays: Mapping[str, NDArray[Any]]) -> xarray.Dataset:
+    """Make the table that `packed` laid out."""
+    description = json.loads(str(arrays["__description__"]))
+    return xarray.Dataset(
+        {
+            name: xarray.Variable(item["dims"], arrays[name], item["attrs"])
+            for name, item in description["variables"].items()
+        },
+        attrs=description["attrs"],
+    )
+
 
 _one_at_a_time = threading.Lock()
 """Warnings and threads of linear algebra belong to the whole process; a member has it for itself."""
@@ -38,7 +183,7 @@ def compute_member(key: str, case: Case) -> dict[str, NDArray[Any]] | Failure:
     """Compute a member, or take what an earlier study has kept of it under its key, `packed`."""
     from asperity.running import run
     from asperity.store import Store
-    from asperity.studies.kept import kept, packed
+    from asperity.studies.member import kept, packed
 
     store = Store()
     with _one_at_a_time:

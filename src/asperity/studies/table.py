@@ -1,10 +1,11 @@
-"""One table of all members of a study, with the swept keys as dimensions."""
+"""One table of all members of a study: swept keys as dimensions, rows and columns, what is shown of it."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -12,10 +13,16 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity import __version__
+from asperity.arguments import nearest, shown
 from asperity.config.content import described_value
+from asperity.errors import InputError
+from asperity.kinds import KINDS
+from asperity.reporting.typed import typed_unit, typed_values
 from asperity.results import variable
+from asperity.schema import contact, rolling, spectra
 from asperity.studies.definition import Member, Study
-from asperity.studies.member import Failure
+from asperity.studies.ensemble import SCATTER
+from asperity.studies.member import Failure, names_kept
 
 
 def tabulated(
@@ -143,3 +150,127 @@ def _grouped(members: Sequence[Member], failures: Mapping[tuple[int, ...], Failu
 
 def _kind(name: str, message: str) -> tuple[str, str]:
     return name, re.sub(r"[-+−]?\d[\d.]*(?:e[-+]?\d+)?", "#", message)
+
+
+Rows = tuple[list[str], list[list[object]]]
+"""Heading, and rows of numbers and words."""
+
+
+def axes_of(table: xarray.Dataset) -> list[str]:
+    """Swept keys that the table still has, and the law."""
+    return [name for name in (*json.loads(table.attrs["sweep"]), "law") if name in table.dims]
+
+
+def columns_of(table: xarray.Dataset, *, bands: bool = True) -> Rows:
+    """Heading and rows of a study, one for each member and law; with or without what has bands."""
+    axes = axes_of(table)
+    heading = [key_title(table[axis]) for axis in axes]
+    chosen: list[tuple[list[str], NDArray[Any]]] = []
+    for name, others in _in_order(table, axes):
+        if len(others) > 1 or (not bands and _has_bands(others)):
+            continue
+        values = table[name]
+        own = [axis for axis in axes if axis in values.dims]
+        chosen.append((own, values.transpose(*own, *others).values))
+        heading += _titles(table, name, others)
+    labels = {axis: typed_values(table[axis]) for axis in axes}
+    rows: list[list[object]] = []
+    for places in product(*(range(table.sizes[axis]) for axis in axes)):
+        here = dict(zip(axes, places, strict=True))
+        row: list[object] = [labels[axis][place] for axis, place in here.items()]
+        for own, numbers in chosen:
+            row += np.atleast_1d(numbers[tuple(here[axis] for axis in own)]).tolist()
+        rows.append(row)
+    return heading, rows
+
+
+def _in_order(table: xarray.Dataset, axes: Sequence[str]) -> list[tuple[str, list[str]]]:
+    """Quantities, each with its dimensions beside the axes: those with bands last, scatter after its mean."""
+    names = [str(name) for name in table.data_vars]
+    whole = [name for name in names if not name.endswith(SCATTER)]
+    paired = [each for name in whole for each in (name, f"{name}{SCATTER}") if each in names]
+    found = [(name, [str(dim) for dim in table[name].dims if dim not in axes]) for name in paired]
+    return sorted(found, key=lambda item: _has_bands(item[1]))
+
+
+def _has_bands(dims: Sequence[str]) -> bool:
+    return any(dim.endswith("band") for dim in dims)
+
+
+def _titles(table: xarray.Dataset, name: str, others: Sequence[str]) -> list[str]:
+    own = name.removesuffix(SCATTER)
+    shown = own if own == name else f"± {own}"
+    units = table[name].attrs["units"]
+    if not others:
+        return [f"{shown} [{units}]"]
+    place = table[others[0]]
+    unit = "" if place.attrs["units"] == "1" else str(place.attrs["units"])
+    words = [
+        each if isinstance(each, str) else f"{each:.6g} {unit}".strip() for each in place.values.tolist()
+    ]
+    return [f"{shown} {word} [{units}]" for word in words]
+
+
+def key_title(key: xarray.DataArray) -> str:
+    """Heading of an axis, with the unit in which its values were typed."""
+    unit = typed_unit(key)
+    return f"{key.name} [{unit}]" if unit else str(key.name)
+
+
+def long_columns(table: xarray.Dataset, axes: Sequence[str]) -> Rows:
+    """Heading and rows of what has all these axes, one row for each place on them."""
+    held = {
+        str(name): values.transpose(*axes)
+        for name, values in table.data_vars.items()
+        if set(values.dims) == set(axes)
+    }
+    heading = [key_title(table[axis]) for axis in axes]
+    heading += [f"{name} [{values.attrs['units']}]" for name, values in held.items()]
+    labels = [typed_values(table[axis]) for axis in axes]
+    numbers = [values.values.ravel().tolist() for values in held.values()]
+    rows: list[list[object]] = [
+        [*place, *found] for place, found in zip(product(*labels), zip(*numbers, strict=True), strict=True)
+    ]
+    return heading, rows
+
+
+WEIGHTED = f"{spectra.FORCE_LEVEL.name}_a"
+OVER = f"{WEIGHTED}_difference_to_"
+"""Beginning of the names of differences, which are printed, and drawn where they are asked for."""
+_FIRST = (WEIGHTED, f"{OVER}linear_filtered", f"{OVER}linear")
+_THEN = (
+    contact.TRACK_RMS.name,
+    contact.YIELDED_SHARE.name,
+    contact.RUNNING_IN_LOWERING.name,
+    contact.TRACK_STIFFNESS.name,
+    "rms_force",
+    "peak_force",
+    rolling.CONTACT_LOSS_SHARE.name,
+)
+
+
+def usual(kind: str) -> tuple[str, ...]:
+    """Names of what a study of a kind of case shows unasked, where its table has it."""
+    return (*_FIRST, *KINDS[kind].shown, *_THEN)
+
+
+def usual_in_figures(kind: str) -> tuple[str, ...]:
+    """Names of what its figures show unasked."""
+    return tuple(name for name in usual(kind) if not name.startswith(OVER))
+
+
+def chosen(words: Iterable[str], kind: str) -> tuple[str, ...]:
+    """Names that words of the command line ask for, each word with commas between names.
+
+    Spaces may stand for underscores, as in the headings that are printed.
+    """
+    known = names_kept(kind)
+    names = ["_".join(name.split()) for word in words for name in word.split(",")]
+    for name in names:
+        if name not in known:
+            raise InputError("--show", shown(name), _listed(sorted(known)), nearest(name, list(known)))
+    return tuple(dict.fromkeys(names))
+
+
+def _listed(names: Sequence[str]) -> str:
+    return f"names of what a study keeps: {', '.join(names)}"

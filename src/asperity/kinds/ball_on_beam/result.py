@@ -20,8 +20,7 @@ from asperity.scenarios.tree import (
     rolling_group,
     spectrum_segment,
 )
-from asperity.scenarios.validity import choice_of, findings, warn_of_findings
-from asperity.scenarios.verdict import verdict
+from asperity.scenarios.validity import choice_of, findings, verdict, warn_of_findings
 from asperity.schema import variables
 from asperity.spectra import band_levels, psd
 

@@ -17,8 +17,7 @@ from asperity.kinds.bodies.textures import loads_of
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import assembled, drawn, force_spectra, rolling_group, spectrum_segment
-from asperity.scenarios.validity import findings, warn_of_findings
-from asperity.scenarios.verdict import verdict
+from asperity.scenarios.validity import findings, verdict, warn_of_findings
 from asperity.schema import Entry, variables
 from asperity.spectra import band_levels, psd
 

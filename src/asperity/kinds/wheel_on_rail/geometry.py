@@ -13,7 +13,7 @@ from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.reference.materials import contact_modulus
 from asperity.scenarios.geometry import Geometry, across_window, geometry
-from asperity.scenarios.reading import read_section
+from asperity.scenarios.records import read_section
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
 

@@ -13,8 +13,7 @@ from asperity.config.content import name_of
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines, RailSurface
 from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
-from asperity.scenarios.reading import read_lines
-from asperity.scenarios.records import Grid, Record
+from asperity.scenarios.records import Grid, Record, read_lines
 from asperity.surfaces.continuation import Continuation, close, extend
 from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import Profile

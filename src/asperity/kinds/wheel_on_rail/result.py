@@ -22,8 +22,7 @@ from asperity.reference.cnossos import CITATION
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import assembled, rolling_group
-from asperity.scenarios.validity import choice_of, findings, warn_of_findings
-from asperity.scenarios.verdict import verdict
+from asperity.scenarios.validity import choice_of, findings, verdict, warn_of_findings
 from asperity.structures.rail_poles import RailPoles
 
 

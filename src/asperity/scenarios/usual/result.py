@@ -11,8 +11,7 @@ from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import assembled, force_spectra, rolling_group
 from asperity.scenarios.usual import schema
 from asperity.scenarios.usual.compute import Computed
-from asperity.scenarios.validity import findings, warn_of_findings
-from asperity.scenarios.verdict import verdict
+from asperity.scenarios.validity import findings, verdict, warn_of_findings
 
 
 def layout(

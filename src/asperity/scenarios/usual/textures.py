@@ -14,8 +14,7 @@ from asperity.config.content import name_of
 from asperity.errors import InputError
 from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
-from asperity.scenarios.reading import read_lines
-from asperity.scenarios.records import Grid, Record, spectrum_levels, spectrum_strip
+from asperity.scenarios.records import Grid, Record, read_lines, spectrum_levels, spectrum_strip
 from asperity.scenarios.textures import (
     Textures,
     cut_from,
