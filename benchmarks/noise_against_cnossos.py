@@ -16,7 +16,7 @@ import numpy as np
 
 from asperity import Track, Wheel
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
-from asperity.kinds.wheel_on_rail.sound_power import rolling_sound_power
+from asperity.kinds.wheel_on_rail.sound import rolling_sound_power
 from asperity.radiation.air import SPEED_OF_SOUND
 from asperity.radiation.along import effective_length
 from asperity.radiation.rail import RailSection

@@ -10,7 +10,7 @@ import numpy as np
 from ledger import Check
 
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
-from asperity.kinds.wheel_on_rail.sound_power import SoundPower, rolling_sound_power
+from asperity.kinds.wheel_on_rail.sound import SoundPower, rolling_sound_power
 from asperity.reference import cnossos
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel

@@ -8,8 +8,8 @@ import pytest
 
 from asperity import Track
 from asperity.errors import LossFactorWarning
-from asperity.kinds.wheel_on_rail import loss_factors
-from asperity.kinds.wheel_on_rail.loss_factors import loss_factor_error, warn_of_loss_factors
+from asperity.kinds.wheel_on_rail import losses
+from asperity.kinds.wheel_on_rail.losses import loss_factor_error, warn_of_loss_factors
 from asperity.spectra import nominal_frequency
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.wheel import Wheel
@@ -70,7 +70,7 @@ def test_a_large_error_is_warned_of_with_a_remedy(error):
     ],
 )
 def test_the_part_with_the_largest_loss_factor_is_named(track, part, monkeypatch):
-    monkeypatch.setattr(loss_factors, "DOUBTFUL", 0.01)
+    monkeypatch.setattr(losses, "DOUBTFUL", 0.01)
     with pytest.warns(LossFactorWarning, match=part):
         warn_of_loss_factors(loss_factor_error(track, WHEEL, STIFFNESS, 5000.0))
 

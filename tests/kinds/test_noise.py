@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.sound_power import SOURCES, SoundPower, rolling_sound_power
+from asperity.kinds.wheel_on_rail.sound import SOURCES, SoundPower, rolling_sound_power
 from asperity.reference import cnossos
 
 RAIL = cnossos.rail_roughness("iso3095")

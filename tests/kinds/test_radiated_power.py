@@ -14,7 +14,7 @@ from asperity.kinds.wheel_on_rail.figures.radiated import (
     RADIATED,
     radiated_table,
 )
-from asperity.kinds.wheel_on_rail.radiated import RADIATORS, rail_section, silent_wheel
+from asperity.kinds.wheel_on_rail.sound import RADIATORS, rail_section, silent_wheel
 from asperity.radiation.along import squared_point_mobility
 from asperity.radiation.sleeper import SleeperTop
 from asperity.reporting.chart import Line

@@ -191,7 +191,7 @@ class TestLossFactors:
         assert "of the nominal one: rail 0.9" in numerics["stiffness at rest"]
 
     def test_a_large_one_is_warned_of(self, tree, monkeypatch):
-        monkeypatch.setattr("asperity.kinds.wheel_on_rail.loss_factors.DOUBTFUL", 0.01)
+        monkeypatch.setattr("asperity.kinds.wheel_on_rail.losses.DOUBTFUL", 0.01)
         again = run(case(laws=["linear"]))  # the same track, kept
         assert "LossFactorWarning" in [entry["category"] for entry in json.loads(again.attrs["warnings"])]
         assert "LossFactorWarning" not in tree.attrs["warnings"]

@@ -6,8 +6,7 @@ import pytest
 import asperity
 from asperity.config.parsing import FROM_PYTHON, read_toml, validated
 from asperity.errors import CaseError, InputError
-from asperity.optimising.definition import Aim, assignment_template, load_assignment
-from asperity.optimising.texture import bands_of, with_texture
+from asperity.optimising.definition import Aim, assignment_template, bands_of, load_assignment, with_texture
 from small_cases import COARSE, WHEEL
 
 CASE = COARSE | {"start": "0.2 m", "duration": "0.2 s"}

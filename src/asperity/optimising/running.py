@@ -19,9 +19,8 @@ from asperity.config.content import content, file_digest
 from asperity.errors import InputError, PhysicsWarning
 from asperity.kinds.cases import kind_of
 from asperity.optimising.allocation import Limits, rms_of
-from asperity.optimising.definition import Assignment, assignment_of
+from asperity.optimising.definition import Assignment, Bands, assignment_of, bands_of, with_texture
 from asperity.optimising.searching import Trial, search
-from asperity.optimising.texture import Bands, bands_of, with_texture
 from asperity.progress import Progress, shown_progress
 from asperity.running import prepare_case, run
 from asperity.scenarios.measure import Measure, line_frequencies

@@ -4,27 +4,113 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from asperity.errors import Grade, PhysicsWarning
+from asperity.errors import Grade, LossFactorWarning, PhysicsWarning
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.bodies import wheel_of
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.geometry import geometry_of
-from asperity.kinds.wheel_on_rail.loss_factors import (
-    DOUBTFUL,
-    LossFactorError,
-    loss_factor_error,
-    signed_level,
-)
+from asperity.kinds.wheel_on_rail.linear_reference import WheelReceptance
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.validity import Finding
 from asperity.schema import Entry
-from asperity.spectra import nominal_frequency
+from asperity.spectra import nominal_frequency, third_octave_bands
 from asperity.structures.causal_track import causal_track
+from asperity.structures.track import Track
+
+LOWEST = 5.0
+"""Frequency in the first one-third octave, Hz."""
+LINES, POSITIONS = 64, 12
+"""Frequencies in a band, and places in half a bay."""
+DOUBTFUL = 0.75
+"""Error of a band, dB, from which on it is warned of."""
+
+
+@dataclass(frozen=True, eq=False)
+class LossFactorError:
+    """What the causal track changes of a track with constant loss factors, for a linear contact at rest."""
+
+    track: Track  # with constant loss factors
+    bands: NDArray[np.float64]  # (b,), centres of one-third octaves, Hz
+    force: NDArray[np.float64]  # (b,), level of the contact force over that with constant loss factors, dB
+    rail: NDArray[np.float64]  # (b,), level of the rail's displacement under a given force over that, dB
+
+    @property
+    def worst(self) -> int:
+        """Index of the band whose force is farthest off."""
+        return int(np.argmax(np.abs(self.force)))
+
+
+def loss_factor_error(
+    track: Track, wheel: WheelReceptance, stiffness: float, highest: float
+) -> LossFactorError:
+    """Compare a track with the causal one that stands for it in time; the error of a causal one is zero.
+
+    Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to that of `highest`, Hz. In
+    each band of mean squares over a bay and over the band, for a texture that is white in it.
+    """
+    bands, low, high = third_octave_bands(LOWEST, highest)
+    steps = (np.arange(LINES) + 0.5) / LINES
+    frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
+    places = (np.arange(POSITIONS) + 0.5) * 0.5 * track.sleeper_spacing / POSITIONS
+
+    def levels(rail: Track) -> NDArray[np.float64]:
+        moved = rail.receptance(frequency, places, places)
+        force = 1.0 / (wheel.receptance(frequency) + 1.0 / stiffness + moved)  # as `force_transfer`
+        squares = [
+            np.mean(np.abs(found) ** 2, axis=0).reshape(-1, LINES).mean(axis=1) for found in (force, moved)
+        ]
+        return 10.0 * np.log10(np.array(squares))
+
+    force, rail = levels(causal_track(track)) - levels(track)
+    return LossFactorError(track, bands, force, rail)
+
+
+def warn_of_loss_factors(error: LossFactorError) -> None:
+    """Say where loss factors change the contact force of a band by more than is tolerable, 0.75 dB."""
+    off = np.flatnonzero(np.abs(error.force) > DOUBTFUL)
+    if not off.size:
+        return
+    layer, factor, remedy = _largest(error.track, error.bands[error.worst])
+    bands = ", ".join(nominal_frequency(error.bands[i]) for i in off)
+    warnings.warn(
+        f"the contact force in time is up to {signed_level(error.force[error.worst])} dB from that with "
+        f"constant loss factors, more than {DOUBTFUL:g} dB in the one-third octaves of {bands}: nothing "
+        f"that answers after a force only has the loss factor {factor:g} of the {layer} at all "
+        f"frequencies. Read these bands with their error, or {remedy}.",
+        LossFactorWarning,
+        stacklevel=2,
+    )
+
+
+def _largest(track: Track, frequency: float) -> tuple[str, float, str]:
+    """Part with the largest loss factor, the factor, and what to do about it."""
+    parts = {
+        "rail": track.rail_loss_factor,
+        "pad": track.pad_loss_factor,
+        "ballast": track.ballast_loss_factor,
+    }
+    layer, factor = max(((name, eta or 0.0) for name, eta in parts.items()), key=lambda item: item[1])
+    if layer == "rail":
+        return layer, factor, "give the rail a smaller one"
+    stiffness = track.pad_stiffness if layer == "pad" else track.ballast_stiffness
+    damping = 1e-3 * stiffness * factor / (2.0 * np.pi * frequency)
+    remedy = (
+        f"give {layer}_damping, which is exact: {damping:.3g} kN s/m dissipate as much at {frequency:.3g} Hz"
+    )
+    return layer, factor, remedy
+
+
+def signed_level(level: float) -> str:
+    """Write a level difference with its sign, to 0.1 dB."""
+    return f"{level:+.1f}".replace("-", "−")
+
 
 LEAST_SHOWN = 0.05
 """Errors below this, dB, are not listed."""

@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 
 from asperity.kinds.wheel_on_rail.labels import findings_of_labels, track_label, wheel_label
-from asperity.kinds.wheel_on_rail.loss_factors import warn_of_loss_factors
-from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses
-from asperity.kinds.wheel_on_rail.radiated import silent_wheel
+from asperity.kinds.wheel_on_rail.losses import (
+    described_losses,
+    expected_error_of_losses,
+    warn_of_loss_factors,
+)
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
+from asperity.kinds.wheel_on_rail.sound import silent_wheel
 from asperity.laws import HertzLaw, Role, in_role
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture

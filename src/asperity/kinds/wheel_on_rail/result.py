@@ -12,12 +12,15 @@ from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.bodies import Bodies, square_transfer
 from asperity.kinds.wheel_on_rail.compute import Computed
 from asperity.kinds.wheel_on_rail.labels import findings_of_labels
-from asperity.kinds.wheel_on_rail.loss_factors import LossFactorError, warn_of_loss_factors
-from asperity.kinds.wheel_on_rail.losses import described_losses, error_of_losses, findings_of_losses
-from asperity.kinds.wheel_on_rail.pass_by_group import pass_by_group
-from asperity.kinds.wheel_on_rail.radiated import warn_of_silence
-from asperity.kinds.wheel_on_rail.spectra import spectra_group
-from asperity.kinds.wheel_on_rail.track_group import track_group
+from asperity.kinds.wheel_on_rail.losses import (
+    LossFactorError,
+    described_losses,
+    error_of_losses,
+    findings_of_losses,
+    warn_of_loss_factors,
+)
+from asperity.kinds.wheel_on_rail.sound import pass_by_group, warn_of_silence
+from asperity.kinds.wheel_on_rail.spectra import spectra_group, track_group
 from asperity.reference.cnossos import CITATION
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
