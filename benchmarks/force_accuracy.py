@@ -27,8 +27,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.accuracy import FILTER_SHARE, FORCE_ACCURACY, SINGLE_ENOUGH, rtol_for
-from asperity.contact.scan import ScanJob, ScannedForces, scan_forces
+from asperity.contact.scan import (
+    FILTER_SHARE,
+    FORCE_ACCURACY,
+    SINGLE_ENOUGH,
+    ScanJob,
+    ScannedForces,
+    rtol_for,
+    scan_forces,
+)
 from asperity.reduction.filter import estimate_filter, filter_spectra
 from asperity.spectra import band_levels, psd
 from asperity.surfaces.strip import Rows
@@ -68,7 +75,7 @@ class Problem:
         """Scan on one thread."""
         half_space = HalfSpace(self.body.shape, self.spacing, MODULUS, self.hardness)
         job = ScanJob(half_space, Rows(self.heights), self.body, self.approaches, rtol=rtol, device=None)
-        with patch("asperity.contact.accuracy.SINGLE_PAYS", 0.0 if single else np.inf):
+        with patch("asperity.contact.scan.SINGLE_PAYS", 0.0 if single else np.inf):
             return scan_forces(job, workers=1)
 
 

@@ -23,7 +23,7 @@ import numpy as np
 
 import asperity
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.device import Device, gpu, processor
+from asperity.contact.batched import Device, gpu, processor
 from asperity.contact.scan import BLOCK, ScanJob, scan_forces
 from asperity.errors import InputError
 from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum

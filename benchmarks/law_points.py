@@ -30,7 +30,7 @@ from asperity.running import prepare_case
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.law_choice import place_of
 from asperity.spectra import band_levels, psd
-from asperity.surfaces.correlation import CORRELATION_THRESHOLD
+from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 
 BALL, WHEEL = "ball-on-beam", "wheel-on-rail"
 SECTION = {BALL: "ball", WHEEL: "wheel"}

@@ -17,10 +17,7 @@ import numpy as np
 from asperity import Track, Wheel
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
 from asperity.kinds.wheel_on_rail.sound import rolling_sound_power
-from asperity.radiation.air import SPEED_OF_SOUND
-from asperity.radiation.along import effective_length
-from asperity.radiation.rail import RailSection
-from asperity.radiation.sleeper import SleeperTop
+from asperity.radiation.track import SPEED_OF_SOUND, RailSection, SleeperTop, effective_length
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
 from asperity.reporting.axes import frequency_axis

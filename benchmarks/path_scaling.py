@@ -36,9 +36,8 @@ def scanned(positions: int, approaches: int, workers: int, stored: bool) -> dict
     import resource
 
     from asperity.contact import HalfSpace, Hertz
-    from asperity.contact.accuracy import FORCE_ACCURACY, rtol_for
-    from asperity.contact.scan import ScanJob, scan_forces
-    from asperity.reduction.stored import scan_into
+    from asperity.contact.scan import FORCE_ACCURACY, ScanJob, rtol_for, scan_forces
+    from asperity.reduction.table import scan_into
     from asperity.store import Store
     from asperity.surfaces.strip import Rows
     from asperity.surfaces.synthesis import long_self_affine

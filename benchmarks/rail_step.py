@@ -27,7 +27,7 @@ from step_clock import Clock
 from asperity.contact import Hertz as HertzContact
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw, Law, Linear, Shifted, Table
-from asperity.reduction.fir import filtered_texture
+from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture

@@ -21,8 +21,8 @@ from asperity import HeightMap, read_surface
 from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
 from asperity.kinds.cases import as_case
-from asperity.reduction.areal import punch_weights
-from asperity.reduction.ensemble import patches
+from asperity.reduction.stiffness import patches
+from asperity.reduction.texture import punch_weights
 from asperity.reporting.chart import Axis, Chart, Field, Panel
 from asperity.reporting.figure_files import write_chart
 from asperity.running import prepare_case

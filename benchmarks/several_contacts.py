@@ -36,12 +36,10 @@ from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.several import roll_bodies
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
-from asperity.structures.body import Body
+from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.rail_between import RailBetween, rail_between
-from asperity.structures.rail_poles import RailPoles, rail_poles
+from asperity.structures.rail_poles import RailBetween, RailPoles, rail_between, rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 

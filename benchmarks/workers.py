@@ -23,8 +23,7 @@ def serve(positions: int, approaches: int) -> None:
     import time
 
     from asperity.contact import HalfSpace, Hertz
-    from asperity.contact.accuracy import FORCE_ACCURACY, rtol_for
-    from asperity.contact.scan import ScanJob, scan_forces
+    from asperity.contact.scan import FORCE_ACCURACY, ScanJob, rtol_for, scan_forces
     from asperity.surfaces.strip import Rows
     from asperity.surfaces.synthesis import long_self_affine
 

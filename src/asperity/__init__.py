@@ -8,17 +8,17 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOME = {
-    "Ball": "structures.ball",
+    "Ball": "structures.body",
     "Beam": "structures.beam",
     "Contact": "contact.halfspace",
     "HalfSpace": "contact.halfspace",
     "HeightMap": "surfaces.heightmap",
     "Hertz": "contact.hertz",
     "Material": "reference.materials",
-    "ModalStructure": "structures.modal_table",
+    "ModalStructure": "structures.modal",
     "Profile": "surfaces.heightmap",
-    "Support": "structures.supported_beam",
-    "SupportedBeam": "structures.supported_beam",
+    "Support": "structures.beam",
+    "SupportedBeam": "structures.beam",
     "Track": "structures.track",
     "Wheel": "structures.wheel",
     "compare": "kinds.comparing",

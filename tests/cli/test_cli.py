@@ -731,7 +731,7 @@ def test_the_plan_counts_contact_solutions(monkeypatch):
     assert rows["contact solutions, scan for the path"] == f"at most {2 * (path - window + 1)}"
     assert rows["contact solutions, direct"] == f"at most {7500}"
     assert rows["work"] == "about 44 s, less what the cache holds: rolling 40 s, report 4 s"
-    monkeypatch.setattr("asperity.contact.device.find_device", lambda name=None: object())
+    monkeypatch.setattr("asperity.contact.batched.find_device", lambda name=None: object())
     assert rows_of(laws + CASE + contact)["work"].startswith(
         "about 44 s if the processor solves all contacts"
     )

@@ -9,11 +9,9 @@ import numpy as np
 from ledger import Check
 
 from asperity.reference.materials import contact_modulus, material
-from asperity.structures.ball import Ball
-from asperity.structures.beam import Beam
-from asperity.structures.relaxation import Relaxation
-from asperity.structures.supported_beam import Support, SupportedBeam
-from asperity.structures.suspended import carriage, chain
+from asperity.structures.beam import Beam, Support, SupportedBeam
+from asperity.structures.body import Ball, carriage, chain
+from asperity.structures.track import Relaxation
 from asperity.structures.wheel import Wheel
 
 STEEL = material("steel")

@@ -10,7 +10,7 @@ import numpy as np
 from ledger import Check
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.conforming import in_groove
+from asperity.contact.hertz import in_groove
 
 DATA = Path(__file__).parent / "data"
 STEEL = 210e9 / (1 - 0.3**2) / 2  # E*, both bodies of steel

@@ -12,9 +12,11 @@ from asperity.radiation.pass_by import (
     Receiver,
     divergence,
     exposure,
+    pass_by_levels,
+    pressure_level,
     squared_pressure,
+    time_weighted,
 )
-from asperity.radiation.pass_by_levels import pass_by_levels, pressure_level, time_weighted
 
 WATT = np.array([1e-3])
 FLAT = Receiver(7.5, 0.0)

@@ -6,9 +6,13 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.radiation.along import effective_length, squared_sleeper_mobility
-from asperity.radiation.elementary import baffled_piston, cylinder
-from asperity.radiation.rail import RailSection
+from asperity.radiation.track import (
+    RailSection,
+    baffled_piston,
+    cylinder,
+    effective_length,
+    squared_sleeper_mobility,
+)
 from asperity.radiation.wheel import axial_transition
 from asperity.structures.track import Track
 

@@ -13,13 +13,12 @@ from asperity.contact import HalfSpace, Hertz
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import HertzLaw, Linear, Printed, Shifted
 from asperity.laws.layout import force
-from asperity.reduction.areal import areal_texture
-from asperity.reduction.fir import punch_taps, response
+from asperity.reduction.filter import punch_taps, response
 from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.texture import StateTexture
+from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.reference.materials import material
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 
 STEEL = material("steel")
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.batched import solve_batched
-from asperity.contact.device import find_device, gpu, processor
+from asperity.contact.batched import find_device, gpu, processor, solve_batched
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum
 from asperity.surfaces.synthesis import self_affine

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.conforming import FORCE_LOST, check_half_space, groove_gap, in_groove, relative_radius
+from asperity.contact.hertz import FORCE_LOST, check_half_space, groove_gap, in_groove, relative_radius
 from asperity.errors import HalfSpaceWarning, InputError
 
 STEEL = 115e9

@@ -22,7 +22,7 @@ from asperity.rolling.ball import RollingBall
 from asperity.scenarios.geometry import geometry, parabola
 from asperity.scenarios.kind import Words
 from asperity.scenarios.usual.bodies import Bodies
-from asperity.structures.ball import Ball
+from asperity.structures.body import Ball
 
 
 class Roller(Section):

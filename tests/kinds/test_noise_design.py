@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer, linear_force_psd
-from asperity.radiation.rail import STEEL_DENSITY, RailSection
-from asperity.radiation.sleeper import SleeperTop
+from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
 from asperity.structures.decay_rate import decay_rate

@@ -15,8 +15,7 @@ from asperity.kinds.wheel_on_rail.figures.radiated import (
     radiated_table,
 )
 from asperity.kinds.wheel_on_rail.sound import RADIATORS, rail_section, silent_wheel
-from asperity.radiation.along import squared_point_mobility
-from asperity.radiation.sleeper import SleeperTop
+from asperity.radiation.track import SleeperTop, squared_point_mobility
 from asperity.reporting.chart import Line
 from asperity.spectra import HALF_BAND, band_energies, psd
 

@@ -28,9 +28,8 @@ from asperity.rolling.beam import RolledBeam
 from asperity.rolling.events import contact_losses
 from asperity.rolling.pair import roll_pair
 from asperity.rolling.several import roll_bodies
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
-from asperity.structures.body import Body
+from asperity.structures.body import Ball, Body
 
 STEEL = material("steel")
 BALL = Ball(0.025, STEEL)

@@ -19,8 +19,8 @@ from asperity.reference.cnossos import rail_roughness
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.running import prepare_case, run
 from asperity.studies.running import study
+from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.levels import band_levels_of
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
 

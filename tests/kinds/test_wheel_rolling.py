@@ -17,8 +17,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store
-from asperity.structures.hat_response import HatResponse
-from asperity.structures.moving_kernel import moving_kernel
+from asperity.structures.moving_kernel import HatResponse, moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel

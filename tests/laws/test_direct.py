@@ -8,10 +8,10 @@ from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError, TruncatedContactWarning
 from asperity.laws import Areal, Direct, Printed, Shifted, Table
 from asperity.laws.layout import force
-from asperity.reduction.areal import areal_texture
-from asperity.reduction.fir import filtered_texture
+from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
+from asperity.reduction.texture import areal_texture
 from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM
 from asperity.surfaces.strip import Rows

@@ -7,7 +7,7 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.radiation.along import (
+from asperity.radiation.track import (
     effective_length,
     squared_mobility,
     squared_point_mobility,

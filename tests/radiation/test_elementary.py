@@ -7,7 +7,7 @@ import pytest
 from scipy.special import hankel2, j1
 
 from asperity.errors import InputError
-from asperity.radiation.elementary import baffled_piston, cylinder
+from asperity.radiation.track import baffled_piston, cylinder
 
 
 @pytest.mark.parametrize("ka", [0.2, 1.0, 3.0])

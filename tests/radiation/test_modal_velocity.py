@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from asperity.radiation.modal_velocity import modal_velocity_psd
+from asperity.radiation.wheel import modal_velocity_psd
 from asperity.spectra import band_energies, psd, third_octave_bands
 from asperity.structures.wheel import Wheel
 

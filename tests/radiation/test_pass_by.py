@@ -7,7 +7,6 @@ from scipy.integrate import quad
 from scipy.special import sici
 
 from asperity.errors import InputError
-from asperity.radiation.air import IMPEDANCE
 from asperity.radiation.pass_by import (
     AxleSource,
     Passage,
@@ -16,6 +15,7 @@ from asperity.radiation.pass_by import (
     exposure,
     squared_pressure,
 )
+from asperity.radiation.track import IMPEDANCE
 
 HERE = Receiver()
 D = 7.5

@@ -5,9 +5,18 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import ComputationError, InputError
-from asperity.radiation.air import IMPEDANCE
-from asperity.radiation.pass_by import AxleSource, Passage, Receiver, exposure, squared_pressure
-from asperity.radiation.pass_by_levels import FAST, pass_by_levels, pressure_level, time_weighted
+from asperity.radiation.pass_by import (
+    FAST,
+    AxleSource,
+    Passage,
+    Receiver,
+    exposure,
+    pass_by_levels,
+    pressure_level,
+    squared_pressure,
+    time_weighted,
+)
+from asperity.radiation.track import IMPEDANCE
 
 FLAT = Receiver(7.5, 0.0)
 

@@ -8,10 +8,15 @@ from section_field import INSIDE_60E1, SECTION_60E1, mirrored, power_per_length
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.radiation.air import IMPEDANCE, SPEED_OF_SOUND
-from asperity.radiation.along import effective_length, squared_point_mobility
-from asperity.radiation.elementary import cylinder
-from asperity.radiation.rail import STEEL_DENSITY, RailSection
+from asperity.radiation.track import (
+    IMPEDANCE,
+    SPEED_OF_SOUND,
+    STEEL_DENSITY,
+    RailSection,
+    cylinder,
+    effective_length,
+    squared_point_mobility,
+)
 
 UIC60 = RailSection(foot_width=0.150, head_width=0.072, area=60.2 / STEEL_DENSITY)
 

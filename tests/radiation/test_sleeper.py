@@ -7,10 +7,13 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.radiation.air import IMPEDANCE, SPEED_OF_SOUND
-from asperity.radiation.along import squared_sleeper_mobility
-from asperity.radiation.rail import RailSection
-from asperity.radiation.sleeper import SleeperTop
+from asperity.radiation.track import (
+    IMPEDANCE,
+    SPEED_OF_SOUND,
+    RailSection,
+    SleeperTop,
+    squared_sleeper_mobility,
+)
 
 TOP = SleeperTop(length=2.6, width=0.25)
 

@@ -8,7 +8,7 @@ from disc_field import axial_ratio
 from scipy.special import jv
 
 from asperity.errors import InputError
-from asperity.radiation.air import IMPEDANCE, SPEED_OF_SOUND
+from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND
 from asperity.radiation.wheel import RadiatingWheel, axial_transition, radial_transition
 
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.accuracy import FORCE_ACCURACY, rtol_for
-from asperity.contact.scan import ScanJob, scan_forces
+from asperity.contact.scan import FORCE_ACCURACY, ScanJob, rtol_for, scan_forces
 from asperity.errors import InputError
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine

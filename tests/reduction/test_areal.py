@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
-from asperity.reduction.areal import areal_texture, punch_weights
+from asperity.reduction.texture import areal_texture, punch_weights
 
 
 @pytest.mark.parametrize("axes", [(40e-6, 40e-6), (60e-6, 25e-6), (3e-6, 90e-6), (1e-6, 1e-6)])

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from asperity import HalfSpace
 from asperity.cli import main
-from asperity.contact.device import choose_device, find_device, gpu, processor
+from asperity.contact.batched import choose_device, find_device, gpu, processor
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError
 from asperity.surfaces.strip import Rows

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from asperity.reduction.convolving import LongConvolution
+from asperity.reduction.texture import LongConvolution
 
 
 @pytest.mark.parametrize(("length", "piece"), [(500, 64), (500, 500), (41, 7), (40, 16384)])

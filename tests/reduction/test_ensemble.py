@@ -6,8 +6,8 @@ import pytest
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.scan import first_touch
 from asperity.errors import InputError
-from asperity.reduction.areal import punch_weights
-from asperity.reduction.ensemble import patches, stiffness_ensemble, weighted_mean
+from asperity.reduction.stiffness import patches, stiffness_ensemble, weighted_mean
+from asperity.reduction.texture import punch_weights
 
 DX, MODULUS, RADIUS, N = 5e-6, 115e9, 10e-3, 51
 APPROACHES = np.linspace(-0.2e-6, 0.4e-6, 7)

@@ -7,8 +7,15 @@ from numpy.testing import assert_allclose
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.scan import ScanJob, scan_forces
 from asperity.errors import InputError
-from asperity.reduction.filter import FLOOR, closed_form, estimate_filter, filter_spectra, punch_filter
-from asperity.reduction.fir import design_fir, tap_count
+from asperity.reduction.filter import (
+    FLOOR,
+    closed_form,
+    design_fir,
+    estimate_filter,
+    filter_spectra,
+    punch_filter,
+    tap_count,
+)
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 

@@ -7,12 +7,13 @@ from scipy.signal import freqz
 from threadpoolctl import threadpool_limits
 
 from asperity.errors import InputError
-from asperity.reduction.filter import ContactFilter, punch_filter
-from asperity.reduction.fir import (
+from asperity.reduction.filter import (
     ACCURACY,
+    ContactFilter,
     LineFilter,
     design_fir,
     filtered_texture,
+    punch_filter,
     punch_taps,
     response,
     tap_count,

@@ -16,10 +16,9 @@ import pytest
 from asperity.contact import HalfSpace
 from asperity.contact.scan import ScanJob, first_touch, scan_forces
 from asperity.errors import ComputationError, InputError
-from asperity.reduction.areal import areal_texture
-from asperity.reduction.ensemble import stiffness_ensemble
-from asperity.reduction.stored import scan_into
-from asperity.reduction.table import ForceTable
+from asperity.reduction.stiffness import stiffness_ensemble
+from asperity.reduction.table import ForceTable, scan_into
+from asperity.reduction.texture import areal_texture
 from asperity.store import Store
 from asperity.surfaces.strip import LongStrip, Rows
 from asperity.threads import in_order
@@ -148,7 +147,7 @@ def overlaps(job, rows, planes):
 
 
 def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
-    monkeypatch.setattr("asperity.reduction.areal.PIECE", 500)
+    monkeypatch.setattr("asperity.reduction.texture.PIECE", 500)
     monkeypatch.setattr("asperity.contact.scan.TOUCHED", 500)
     axes = [(20e-6, 20e-6), (30e-6, 35e-6)]
 
@@ -160,7 +159,7 @@ def test_lines_of_a_path_are_made_in_pieces(monkeypatch):
     assert long - short < 40 * 20000
     whole = strip(2000).rows(0, 2000)
     pieces = areal_texture(strip(2000), (DX, DX), [0.0, 1e-6], axes).heights
-    monkeypatch.setattr("asperity.reduction.areal.PIECE", 5000)
+    monkeypatch.setattr("asperity.reduction.texture.PIECE", 5000)
     np.testing.assert_allclose(
         pieces, areal_texture(whole, (DX, DX), [0.0, 1e-6], axes).heights, rtol=0, atol=1e-20
     )
@@ -171,7 +170,7 @@ SCRIPT = """
 import sys
 import numpy as np
 from asperity.contact import scan
-from asperity.reduction.stored import scan_into
+from asperity.reduction.table import scan_into
 from asperity.store import Store
 sys.path.insert(0, {folder!r})
 from test_long_scan import job

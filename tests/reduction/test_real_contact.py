@@ -5,7 +5,7 @@ import pytest
 from scipy.special import erf
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.reduction.real_contact import isolated_share
+from asperity.reduction.stiffness import isolated_share
 from asperity.surfaces.statistics import rms_slope
 from asperity.surfaces.synthesis import self_affine
 

@@ -82,7 +82,7 @@ def test_stride_takes_every_other_position():
 @pytest.mark.parametrize(("hardness", "pays"), [(None, np.inf), (1e9, np.inf), (None, 0.0)])
 def test_workers_do_not_change_a_digit(monkeypatch, hardness, pays):
     monkeypatch.setattr("asperity.contact.scan.BLOCK", 7)
-    monkeypatch.setattr("asperity.contact.accuracy.SINGLE_PAYS", pays)
+    monkeypatch.setattr("asperity.contact.scan.SINGLE_PAYS", pays)
     scanned = job(rough(70, 41), [0.1e-6, 0.2e-6], hardness, rtol=4e-6)
     one, two = (scan_forces(scanned, workers=n) for n in (1, 2))
     assert one.single == two.single == (pays == 0.0)
@@ -254,7 +254,7 @@ def test_single_precision_is_as_accurate_as_the_tolerance(monkeypatch, hardness,
     heights, approaches = rough(120, 41), [0.05e-6, 0.15e-6, 0.3e-6]
     scans = []
     for pays, tolerance in ((np.inf, 1e-10), (np.inf, rtol), (0.0, rtol)):
-        monkeypatch.setattr("asperity.contact.accuracy.SINGLE_PAYS", pays)
+        monkeypatch.setattr("asperity.contact.scan.SINGLE_PAYS", pays)
         scans.append(scan_forces(job(heights, approaches, hardness, rtol=tolerance)))
     exact, double, single = scans
     assert single.counts.unconverged == 0

@@ -21,8 +21,8 @@ from asperity.rolling.pair import roll_pair
 from asperity.rolling.path import Path
 from asperity.rolling.rail import RolledRail
 from asperity.rolling.wheel import RollingWheel
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track

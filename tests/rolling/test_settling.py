@@ -13,9 +13,8 @@ from asperity.rolling.ball import RollingBall
 from asperity.rolling.beam import RolledBeam
 from asperity.rolling.pair import roll_pair
 from asperity.rolling.several import roll_bodies
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
-from asperity.structures.body import Body
+from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel

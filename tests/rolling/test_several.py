@@ -15,9 +15,8 @@ from asperity.laws.layout import force as force_of
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.several import roll_bodies
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
-from asperity.structures.body import Body
+from asperity.structures.body import Ball, Body
 
 STEEL = material("steel")
 BALL = Ball(0.025, STEEL)

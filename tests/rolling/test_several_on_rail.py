@@ -13,8 +13,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.rolling.several import roll_bodies
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.rail_between import rail_between
-from asperity.structures.rail_poles import rail_poles
+from asperity.structures.rail_poles import rail_between, rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 

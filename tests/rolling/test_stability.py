@@ -20,8 +20,8 @@ from asperity.rolling.beam import modal_alternating_compliance, resolved_step
 from asperity.rolling.path import Path
 from asperity.rolling.rail import RolledRail
 from asperity.rolling.wheel import RollingWheel, wheel_step
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track

@@ -6,8 +6,8 @@ import pytest
 from asperity import BallOnBeam
 from asperity.errors import CaseError, InputError
 from asperity.running import prepare_case
+from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.levels import band_levels_of
 from small_cases import COARSE
 
 WAVELENGTHS = 10.0 ** (-np.arange(26, 41) / 10.0)  # 2.5 mm to 0.1 mm

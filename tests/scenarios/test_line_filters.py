@@ -15,7 +15,7 @@ from asperity.kinds.report import parts_of
 from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
 from asperity.laws import Printed, Shifted
 from asperity.laws.layout import force
-from asperity.reduction.fir import response
+from asperity.reduction.filter import response
 from asperity.running import prepare_case, run
 from asperity.scenarios.reducing import patch_planes
 

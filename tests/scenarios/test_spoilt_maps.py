@@ -8,8 +8,8 @@ import pytest
 from asperity import HeightMap
 from asperity.contact.scan import first_touch
 from asperity.kinds.cases import as_case
-from asperity.reduction.areal import punch_weights
-from asperity.reduction.ensemble import patches, stiffness_ensemble
+from asperity.reduction.stiffness import patches, stiffness_ensemble
+from asperity.reduction.texture import punch_weights
 from asperity.running import prepare_case
 from asperity.surfaces.synthesis import self_affine
 

@@ -10,7 +10,7 @@ import pytest
 
 from asperity.cli.planning import plan, planned
 from asperity.contact import HalfSpace
-from asperity.contact.flaws import Counts, warn_of_flaws, window_for
+from asperity.contact.scan import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
 from asperity.kinds.cases import parse_case
 from asperity.running import prepare_case, run

@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material, contact_modulus, material
-from asperity.structures.ball import Ball
 from asperity.structures.beam import SUPPORTS, Beam
+from asperity.structures.body import Ball
 
 STEEL = material("steel")
 # roots of cos x cosh x = 1, as printed in Blevins, Formulas for Natural Frequency and Mode Shape, table 8-1

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.structures.beam import Beam
+from asperity.structures.modal import ModalStructure
 from asperity.structures.modal_files import read_modal_structure
-from asperity.structures.modal_table import ModalStructure
 
 BEAM = Beam(1.0, 100.0, 4.0, highest_frequency=400.0, loss_factor=0.02)
 X = np.linspace(0.0, 1.0, 41)

@@ -13,7 +13,7 @@ from asperity.reference.materials import material
 from asperity.rolling.several import roll_bodies
 from asperity.structures.beam import SUPPORTS, Beam
 from asperity.structures.body import Body
-from asperity.structures.modal_table import ModalStructure
+from asperity.structures.modal import ModalStructure
 
 STEEL = material("steel")
 FORTY = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=37.6e3)

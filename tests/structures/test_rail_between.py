@@ -6,8 +6,7 @@ import pytest
 from asperity.errors import InputError
 from asperity.store import Store
 from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.rail_between import NEGLIGIBLE, rail_between
-from asperity.structures.rail_poles import TOLERANCE, RailPoles, rail_poles
+from asperity.structures.rail_poles import NEGLIGIBLE, TOLERANCE, RailPoles, rail_between, rail_poles
 from asperity.structures.track import Track
 
 STEP = 50e-6

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from asperity.errors import InputError
-from asperity.structures.rational_fit import vector_fit
+from asperity.structures.modal_fit import vector_fit
 
 POLES = np.array([-20.0, -5.0 + 300.0j, -40.0 + 2000.0j, -10.0 + 2100.0j])
 RESIDUES = np.array([[3.0, 1.0 - 2.0j, 4.0j, 0.5], [1.0, 0.2j, -3.0, 2.0 + 1.0j]])

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from asperity.structures.relaxation import Relaxation, relaxing
+from asperity.structures.track import Relaxation, relaxing
 
 strengths = st.lists(st.floats(0.0, 10.0), min_size=3, max_size=3).map(tuple)
 relaxations = st.builds(Relaxation, st.floats(0.0, 2.0), strengths, st.just((5.0, 70.0, 900.0)))

@@ -9,8 +9,7 @@ from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
 from asperity.reference.materials import material
-from asperity.structures.beam import SUPPORTS, Beam
-from asperity.structures.supported_beam import Support, SupportedBeam
+from asperity.structures.beam import SUPPORTS, Beam, Support, SupportedBeam
 
 STIFFNESS, MASS = 4375.0, 3.925  # N m² and kg/m of a steel bar of 50 × 10 mm
 CLAMPED = math.inf

@@ -5,9 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.structures.ball import GRAVITY
-from asperity.structures.body import Body
-from asperity.structures.suspended import bogie, carriage, chain
+from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
 from asperity.structures.wheel import Wheel
 
 F = np.array([0.7, 4.0, 31.0, 250.0])

@@ -17,8 +17,7 @@ from asperity.running import prepare_case, run
 from asperity.store import Store
 from asperity.studies.definition import study_of
 from asperity.studies.member import kept, packed
-from asperity.surfaces.fields import Fields
-from asperity.surfaces.strip import LongStrip
+from asperity.surfaces.strip import Fields, LongStrip
 
 WHEEL = """
 kind = "wheel-on-rail"

@@ -7,9 +7,8 @@ from scipy.special import k1
 from asperity import spectra
 from asperity.errors import InputError
 from asperity.reference import cnossos
-from asperity.surfaces.bands import strip_from_bands
+from asperity.surfaces.bands import band_levels_of, check_levels, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levels import band_levels_of, check_levels
 from asperity.surfaces.synthesis import from_bands
 
 MM, UM = 1e-3, 1e-6

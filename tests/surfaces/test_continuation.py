@@ -3,7 +3,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import InputError
-from asperity.surfaces.continuation import close, extend
+from asperity.surfaces.synthesis import close, extend
 
 RAMP = np.arange(5.0)
 

@@ -3,6 +3,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import InputError
+from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.defects import (
     corrugation,
     dipped_joint,
@@ -12,7 +13,6 @@ from asperity.surfaces.defects import (
 )
 from asperity.surfaces.en15610 import roll_over
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.levels import band_levels_of
 
 MM, UM = 1e-3, 1e-6
 RADIUS, DEPTH = 0.46, 0.4 * MM

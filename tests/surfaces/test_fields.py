@@ -6,8 +6,8 @@ import threading
 import numpy as np
 import pytest
 
-from asperity.surfaces import fields as module
-from asperity.surfaces.fields import Fields
+from asperity.surfaces import strip as module
+from asperity.surfaces.strip import Fields
 
 
 class Made:

@@ -7,8 +7,12 @@ from scipy.special import ndtri
 from scipy.stats import norm
 
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.material_ratio import material_ratio_curve, stratified
-from asperity.surfaces.statistics import areal_statistics, profile_statistics
+from asperity.surfaces.statistics import (
+    areal_statistics,
+    material_ratio_curve,
+    profile_statistics,
+    stratified,
+)
 
 RATIO = (np.arange(200_000) + 0.5) / 200_000
 

@@ -6,9 +6,8 @@ from numpy.testing import assert_allclose
 from scipy import fft
 
 from asperity.errors import InputError, ShortRecordWarning
-from asperity.surfaces.areal_psd import texture_direction
-from asperity.surfaces.correlation import LagSums
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.spectra import LagSums, texture_direction
 from asperity.surfaces.statistics import (
     areal_statistics,
     autocorrelation,

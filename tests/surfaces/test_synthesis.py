@@ -7,13 +7,13 @@ from scipy import fft, integrate, stats
 
 from asperity import spectra
 from asperity.errors import InputError
-from asperity.surfaces.correlation import autocorrelation_lengths
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.readers import read_surfaces
+from asperity.surfaces.rotation import gaussian_correlation, height_transform
+from asperity.surfaces.spectra import autocorrelation_lengths
 from asperity.surfaces.statistics import psd_1d, psd_2d
 from asperity.surfaces.synthesis import from_bands, from_map, long_self_affine, self_affine
-from asperity.surfaces.translation import gaussian_correlation, height_transform
 
 UM = 1e-6
 SHEET = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"

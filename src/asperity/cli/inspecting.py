@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from asperity.arguments import shown
 from asperity.errors import InputError
 from asperity.files import atomic_write
-from asperity.surfaces.readers.spelling import on_command_line, spelled
+from asperity.surfaces.readers.headers import on_command_line, spelled
 from asperity.terminal import say
 from asperity.units import quantity
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from asperity.cli.surface_spectra import Spectra
     from asperity.config.recipe import Recipe
+    from asperity.surfaces.en15610 import ThirdOctaves
     from asperity.surfaces.heightmap import HeightMap, Profile
     from asperity.surfaces.statistics import Statistic
-    from asperity.surfaces.third_octaves import ThirdOctaves
 
 
 def inspect(
@@ -177,7 +177,7 @@ def _documented(item: Statistic) -> dict[str, Any]:
 
 def _material_ratio(heights: NDArray[np.float64]) -> dict[str, Any]:
     """The material ratio curve: shares of the points, and the heights, m, that they reach."""
-    from asperity.surfaces.material_ratio import material_ratio_curve
+    from asperity.surfaces.statistics import material_ratio_curve
 
     ratio, height = material_ratio_curve(heights)
     return {"ratio": ratio, "height": height}
@@ -230,7 +230,7 @@ def _inspect_lines(
 def _against_limit(lines: list[Profile]) -> tuple[ThirdOctaves | None, dict[str, Any]]:
     """One-third-octave levels of a rail's or wheel's lines and the limit, printed band by band."""
     from asperity.spectra import nominal
-    from asperity.surfaces.third_octaves import third_octaves
+    from asperity.surfaces.en15610 import third_octaves
 
     found = third_octaves(lines) if lines else None
     if found is None:
@@ -325,7 +325,7 @@ def homogeneity_of(surface: HeightMap | Profile) -> tuple[dict[str, Any] | None,
     from asperity.surfaces.heightmap import HeightMap
     from asperity.surfaces.homogeneity import TILES, homogeneity
     from asperity.surfaces.levelling import FILLED_SHARE_WARNED, level, nearly_complete
-    from asperity.surfaces.likeness import FLAT
+    from asperity.surfaces.synthesis import FLAT
 
     if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(TILES):
         return None, ""

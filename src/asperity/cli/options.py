@@ -35,7 +35,7 @@ converge = click.option(
 
 def _choose(device: str | None) -> None:
     if device is not None:
-        from asperity.contact.device import choose_device
+        from asperity.contact.batched import choose_device
 
         choose_device(device)
 

@@ -127,7 +127,7 @@ def _real_contact(expected: Work) -> list[tuple[str, str]]:
 
 def _described_work(expected: Work) -> str:
     """Time of a run, and of its longest parts."""
-    from asperity.contact.device import find_device
+    from asperity.contact.batched import find_device
 
     parts = sorted(expected.seconds.items(), key=lambda part: -part[1])
     longest = [(name, part) for name, part in parts if part >= max(SMALL_PART * expected.total, 0.5)]

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.reporting.csv_files import write_columns
-from asperity.surfaces.areal_psd import psd_1d, psd_radial
+from asperity.surfaces.en15610 import full_lines
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import nearly_complete
-from asperity.surfaces.third_octaves import full_lines
+from asperity.surfaces.spectra import psd_1d, psd_radial
 
 Spectra = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
 """Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""

@@ -1,12 +1,16 @@
-"""Hertz's contact of smooth bodies with elliptic gap, in closed form."""
+"""Smooth bodies in contact: Hertz in closed form, and bodies that conform, as a ball in its groove."""
 
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
-from asperity.errors import InputError
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import HalfSpaceWarning, InputError, percent
 
 HALVINGS = 56
 """Of the interval that holds the logarithm of the axis ratio, until its ends are neighbours."""
@@ -166,3 +170,208 @@ class Hertz:
             return 0.0
         a, b = self.semi_axes(approach)
         return 1.5 * self.force(approach) / (math.pi * a * b)
+
+
+SLENDER = (0.1, 1.0 / 3.0)
+"""Semi-axis over the radius of a convex body: warned of, and refused, above."""
+HOLLOW = (0.3, 0.6)
+"""Half the angle of a groove, rad, that the contact fills: warned of, and refused, above."""
+FORCE_LOST = 0.32
+"""Share of the force that the plane of the half-space adds in a groove, over the square of that angle."""
+CONFORMITY = 0.985
+"""Radius of what rolls over that of its groove, from which on the form of the groove decides."""
+
+
+def relative_radius(*radii: float, what: str = "radii of the bodies (m)") -> float:
+    """Radius of the gap between bodies: 1/R = Σ 1/Rᵢ.
+
+    Parameters
+    ----------
+    *radii : float
+        Of the surfaces in one direction, m: positive where a body bulges towards the other, negative where it
+        is hollow, infinite where it is flat.
+    what : str
+        For messages.
+
+    Returns
+    -------
+    float
+        m; finite and positive.
+
+    Raises
+    ------
+    InputError
+        If a radius is zero or no number, or the bodies fit each other or touch at two ends: a gap that does
+        not open.
+    """
+    for radius in radii:
+        if math.isnan(radius) or radius == 0.0:
+            raise InputError(what, radius, "numbers other than 0; infinite where a body is flat")
+    curvature = sum(1.0 / radius for radius in radii)
+    if curvature <= 1e-9 * max(abs(1.0 / radius) for radius in radii):
+        received = " and ".join(f"{radius:.6g}" for radius in radii)
+        remedy = "A hollow must be rounder than what lies in it: of a greater radius."
+        raise InputError(what, received, "bodies whose gap opens on both sides", remedy)
+    return 1.0 / curvature
+
+
+def in_groove(
+    modulus: float, radius: float, groove_radius: float = math.inf, raceway_radius: float = math.inf
+) -> Hertz:
+    """Smooth contact of a ball in a groove that is straight, or curved along the path.
+
+    Parameters
+    ----------
+    modulus : float
+        Contact modulus E*, Pa.
+    radius : float
+        Of the ball, m.
+    groove_radius : float
+        Of the groove across the path, m, greater than that of the ball, as 0.52 ball diameters; infinite
+        for a flat path.
+    raceway_radius : float
+        Along the path, where the contact is, m: positive of an inner ring, which the ball rolls around,
+        negative of an outer ring, in which it rolls; infinite for a straight path.
+
+    Returns
+    -------
+    Hertz
+        With 1/R_x = 1/R + 1/R_raceway along the path and 1/R_y = 1/R − 1/r_groove across it.
+
+    Raises
+    ------
+    InputError
+        If the ball does not fit, or a radius is not positive that has to be.
+
+    Examples
+    --------
+    >>> contact = in_groove(115e9, 6.35e-3, 6.6e-3, 26.15e-3)  # the inner ring of a bearing 6209
+    >>> a, b = contact.semi_axes(contact.approach(1000.0))
+    >>> f"{a * 1e3:.2f} mm along, {b * 1e3:.2f} mm across"
+    '0.16 mm along, 1.54 mm across'
+    """
+    for what, value in (("radius of the ball (m)", radius), ("radius of the groove (m)", groove_radius)):
+        if not value > 0.0:
+            raise InputError(what, value, "a positive number")
+    along = relative_radius(radius, raceway_radius, what="radii of ball and raceway (m)")
+    across = relative_radius(radius, -groove_radius, what="radii of ball and groove (m)")
+    return Hertz(modulus, along, across)
+
+
+def groove_gap(across: ArrayLike, radius: float, groove_radius: float) -> NDArray[np.float64]:
+    """Gap of a circle in a circle, exact, normal to the groove.
+
+    Parameters
+    ----------
+    across : array_like (n,)
+        Places along the arc of the groove from its lowest point, m.
+    radius, groove_radius : float
+        Of ball and groove, m.
+
+    Returns
+    -------
+    ndarray (n,)
+        m. It is the parabola s²/2R_y up to a share of about s²/12r²: 1 % at s = r/3.
+    """
+    angle, offset = np.asarray(across, dtype=float) / groove_radius, groove_radius - radius
+    # r − ρ with ρ = e cos θ + √(R² − e² sin² θ), without taking near numbers from each other
+    sine = offset * np.sin(angle)
+    chord = sine**2 / (radius + np.sqrt(radius**2 - sine**2))
+    return np.asarray(2.0 * offset * np.sin(0.5 * angle) ** 2 + chord)
+
+
+def check_half_space(
+    semi_axes: tuple[float, float],
+    radius: float,
+    *,
+    groove_radius: float = math.inf,
+    raceway_radius: float = math.inf,
+    groove_width: float | None = None,
+    cause: str = "the load",
+) -> None:
+    """Refuse a contact that is none on a half-space, and warn of one that is nearly none.
+
+    Parameters
+    ----------
+    semi_axes : (float, float)
+        Of the contact along and across the path, m.
+    radius, groove_radius, raceway_radius : float
+        As in `in_groove`, m.
+    groove_width : float, optional
+        Width of the groove between its edges, m.
+    cause : str
+        What makes the contact so large, for messages.
+
+    Raises
+    ------
+    InputError
+        If a semi-axis is above a third of the radius of a convex body, fills more than 0.6 rad of a groove
+        to either side, or reaches over its edge.
+
+    Warns
+    -----
+    HalfSpaceWarning
+        Above a tenth, above 0.3 rad, or where ball and groove are so near that the groove's form decides.
+
+    Notes
+    -----
+    In a groove the ball is pressed down, but surfaces give way at right angles. At an angle θ to the side the
+    overlap of an approach δ is δ cos θ, and a pressure p carries p cos θ. On the plane of a half-space both
+    are taken as one, and the force becomes too large by about 0.32 θ² for a contact that ends at θ: 3 % at
+    0.3 rad, 11 % at 0.6.
+    """
+    along, across = semi_axes
+    _slender(along, min(radius, abs(raceway_radius)), "along the path", cause)
+    if math.isinf(groove_radius):
+        _slender(across, radius, "across the path", cause)
+        return
+    if radius > CONFORMITY * groove_radius:
+        warnings.warn(
+            f"The radius of the ball is {percent(1.0 - radius / groove_radius)} below that of the groove: "
+            "the width of the contact follows from form errors of the groove as much as from its radius. "
+            "Take the measured radius.",
+            HalfSpaceWarning,
+            stacklevel=2,
+        )
+    angle = across / groove_radius
+    if groove_width is not None and groove_radius * _edge(groove_width, groove_radius) < across:
+        received = f"{groove_width * 1e3:.4g} mm, and a contact of {2e3 * across:.4g} mm under {cause}"
+        raise InputError(
+            "width of the groove",
+            received,
+            "a groove wider than the contact",
+            "The edge would carry. Press less.",
+        )
+    if angle > HOLLOW[1]:
+        received = f"{cause}, a contact that fills {angle:.2g} rad of the groove to either side"
+        allowed = f"at most {HOLLOW[1]:g} rad, where the groove is an elastic half-space"
+        raise InputError(
+            "contact", received, allowed, "Lower the load, or take a groove of a greater radius."
+        )
+    if angle > HOLLOW[0]:
+        warnings.warn(
+            f"Under {cause} the contact fills {angle:.2g} rad of the groove to either side, more than "
+            f"{HOLLOW[0]:g}: the plane of the half-space makes forces too large by about "
+            f"{percent(FORCE_LOST * angle**2)}. Lower the load.",
+            HalfSpaceWarning,
+            stacklevel=2,
+        )
+
+
+def _edge(width: float, radius: float) -> float:
+    """Angle of a groove's edge, rad."""
+    return math.asin(min(0.5 * width / radius, 1.0))
+
+
+def _slender(a: float, radius: float, direction: str, cause: str) -> None:
+    if a > SLENDER[1] * radius:
+        received = f"{cause}, a semi-axis of {a / radius:.2g} R {direction}"
+        allowed = "at most R/3, where the body is an elastic half-space"
+        raise InputError("contact", received, allowed, "Lower the load, or take a larger body.")
+    if a > SLENDER[0] * radius:
+        warnings.warn(
+            f"Under {cause} the contact has a semi-axis of {a / radius:.2g} R {direction}, above 0.1 R: the "
+            "elastic half-space overestimates the stiffness by some per cent. Lower the load.",
+            HalfSpaceWarning,
+            stacklevel=3,
+        )

@@ -8,11 +8,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import real, real_array, shown, whole
-from asperity.contact.accuracy import rtol_for
-from asperity.contact.device import find_device
-from asperity.contact.flaws import warn_of_flaws, window_for
+from asperity.contact.batched import find_device
 from asperity.contact.halfspace import BELOW_ONE, HalfSpace
-from asperity.contact.scan import ScanJob, ScannedForces, first_touch, scan_forces
+from asperity.contact.scan import (
+    ScanJob,
+    ScannedForces,
+    first_touch,
+    rtol_for,
+    scan_forces,
+    warn_of_flaws,
+    window_for,
+)
 from asperity.errors import InputError
 from asperity.progress import Progress
 from asperity.store import Cache

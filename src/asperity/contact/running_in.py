@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import MOST_PASSES, SHAKEDOWN, passes_of, real, real_array, whole
-from asperity.contact.flaws import Counts, total, warn_of_flaws
 from asperity.contact.halfspace import HalfSpace
+from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import Grade, InputError, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress

@@ -1,23 +1,21 @@
-"""The quasi-static scan F_c(x, r): a body moved along a surface, the 3-D contact solved at each position."""
+"""How tightly a contact is solved, by what its force is for."""
 
 from __future__ import annotations
 
 import time
+import warnings
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.contact import accuracy
-from asperity.contact.batched import solve_batched
-from asperity.contact.device import Device, find_device
-from asperity.contact.flaws import Counts, total
-from asperity.errors import InputError
+from asperity.contact.batched import Device, find_device, solve_batched
+from asperity.errors import Grade, InputError, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
 from asperity.progress import Progress
 from asperity.store import PATIENCE, Cache, claimed, content_key, made
@@ -26,6 +24,100 @@ from asperity.threads import in_order, thread_count
 
 if TYPE_CHECKING:
     from asperity.contact.halfspace import HalfSpace
+
+FORCE_ACCURACY = 1e-4
+"""Largest relative error of a scanned force: at most 0.2 dB in a band of the force on a path, to ka = 16."""
+FILTER_SHARE = 0.1
+"""Accuracy of the scans for contact filters, relative to that: short waves are small parts of a force."""
+SAFETY = 2.5
+"""Residual asked for, below the accuracy of the force: see `rtol_for`."""
+
+SINGLE_ENOUGH = 2e-6
+"""`rtol` from which single precision reaches it in as many iterations as double."""
+SINGLE_PAYS = 2e9
+"""Cells of all contacts of a scan from which single precision saves more than the 10 s to compile it."""
+
+
+def rtol_for(force_accuracy: float) -> float:
+    """`rtol` of a contact solution whose force shall have a relative accuracy, above 0 and at most 0.1.
+
+    Notes
+    -----
+    A residual e on the contact set acts as an error of the approach: by reciprocity it changes the force by
+    no more than k_t max|e|. Relative to the force, with F growing as the n-th power of the overlap, that is n
+    times the relative residual: 1.5 for Hertz, 1 to 3 for rough contacts, if the residual had everywhere its
+    largest value and one sign. It alternates: on smooth, rough and flowing contacts, from first touches to
+    heavy loads, the largest error found is twice the relative residual
+    (``benchmarks/force_accuracy.py``).
+    """
+    if not 0.0 < force_accuracy <= 0.1:
+        raise InputError("force_accuracy", force_accuracy, "a number above 0, at most 0.1", "Try 1e-4.")
+    return force_accuracy / SAFETY
+
+
+class Counts(NamedTuple):
+    """Contact solutions, and how they went."""
+
+    solved: int = 0  # in contact
+    iterations: int = 0  # of conjugate gradients, all solutions together
+    unconverged: int = 0  # missed the tolerance
+    truncated: int = 0  # with a noticeable share of the force on the window's edge
+
+
+def total(counts: Iterable[Counts]) -> Counts:
+    """Counts of several scans together."""
+    return Counts(*(sum(column) for column in zip(*counts, strict=True)))
+
+
+def warn_of_flaws(counts: Counts, what: str, tolerance: str, remedy: str = "Enlarge the window.") -> None:
+    """Warn of contact solutions that did not converge or were cut off, graded by their share.
+
+    They were made for `what`, as ``"the scan"``; `tolerance` is the key or argument that says how tightly
+    they are solved, `remedy` what to do about contacts that are cut off.
+    """
+    solved, _, unconverged, truncated = counts
+    if unconverged:
+        share = unconverged / max(solved, 1)
+        warnings.warn(
+            UnconvergedWarning(
+                f"{unconverged} of {solved} contact solutions of {what} ({percent(share)}) missed their "
+                f"tolerance; their forces are approximate. Try a larger {tolerance}, and check the surface "
+                "for outliers.",
+                Grade.of_share(share),
+            ),
+            stacklevel=4,
+        )
+    if truncated:
+        share = truncated / max(solved, 1)
+        warnings.warn(
+            TruncatedContactWarning(
+                f"in {truncated} of {solved} contact solutions of {what} ({percent(share)}) more than "
+                f"{100 * TRUNCATED:.0f} % of the force acts on the window's edge: the contact is cut off and "
+                f"its force too small{_MEANING[Grade.of_share(share)]}. {remedy}",
+                Grade.of_share(share),
+            ),
+            stacklevel=4,
+        )
+
+
+_MEANING = {
+    Grade.NOTE: ", too seldom to matter",
+    Grade.WARNING: "",
+    Grade.OUT: ", so often that levels are wrong",
+}
+
+
+def window_for(body: NDArray[np.float64], spacing: tuple[float, float], overlap: float) -> float:
+    """Side of a square window, m, that holds the contact of a body (nx, ny), m, which goes on as a parabola.
+
+    Hertz's patch of smooth bodies at the largest overlap, m, of the undeformed ones, with the highest peak,
+    and a tenth more for peaks beyond it.
+    """
+    middle = [n // 2 for n in body.shape]
+    edges = min(body[0, middle[1]], body[-1, middle[1]]), min(body[middle[0], 0], body[middle[0], -1])
+    grown = [np.sqrt(max(0.5 * overlap / edge, 0.0)) if edge > 0.0 else 1.0 for edge in edges]
+    return 1.1 * float(max(n * d * g for n, d, g in zip(body.shape, spacing, grown, strict=True)))
+
 
 F = TypeVar("F")
 
@@ -110,8 +202,8 @@ class ScanJob:
     def single(self) -> bool:
         """Whether the processor iterates in single precision: where it is enough, and pays."""
         cells = self.positions * self.approaches.size * self.body.size
-        enough = self.rtol >= accuracy.SINGLE_ENOUGH
-        return self.device is None and enough and cells >= accuracy.SINGLE_PAYS
+        enough = self.rtol >= SINGLE_ENOUGH
+        return self.device is None and enough and cells >= SINGLE_PAYS
 
     @property
     def bytes(self) -> int:

@@ -174,7 +174,7 @@ class DirectOnPath:
 
     def warn_of_flaws(self) -> None:
         """Warn of contacts that did not converge or were cut off."""
-        from asperity.contact.flaws import Counts, warn_of_flaws, window_for
+        from asperity.contact.scan import Counts, warn_of_flaws, window_for
 
         window = window_for(self.law.body, self.law.spacing, self.overlap)
         remedy = f'contact.window = "{window * 1e3:.3g} mm" holds them.'

@@ -26,8 +26,8 @@ from asperity.running import prepare_case
 from asperity.scenarios.measure import A_WEIGHTED, MEASURE_NAMES
 from asperity.scenarios.records import spectrum_levels
 from asperity.spectra import HALF_BAND, third_octave_bands
+from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levels import band_levels_of
 
 C = TypeVar("C", bound=Case)
 ROWS = 2**17

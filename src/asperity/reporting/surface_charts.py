@@ -24,10 +24,10 @@ from asperity.reporting.texture import (
     psd_panel,
 )
 from asperity.spectra import nominal
-from asperity.surfaces.material_ratio import material_ratio_curve
+from asperity.surfaces.statistics import material_ratio_curve
 
 if TYPE_CHECKING:
-    from asperity.surfaces.third_octaves import ThirdOctaves
+    from asperity.surfaces.en15610 import ThirdOctaves
 
 NamedSpectra = Mapping[str, tuple[Numbers, Numbers]]
 """Wavenumbers above zero, cycles/m, and one-sided PSD, m³, by name."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.rolling.path import Path
-from asperity.structures.ball import Ball
+from asperity.structures.body import Ball
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
-from asperity.reduction.filter import punch_filter
-from asperity.reduction.fir import LineFilter, punch_taps, response
+from asperity.reduction.filter import LineFilter, punch_filter, punch_taps, response
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.population import Answer, answers

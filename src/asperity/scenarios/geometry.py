@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase
 from asperity.contact import HalfSpace, Hertz
-from asperity.contact.flaws import window_for
+from asperity.contact.scan import window_for
 from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
 
 HIGHEST_FORCE = 8.0

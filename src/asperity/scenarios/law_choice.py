@@ -14,12 +14,12 @@ from scipy import fft
 
 from asperity.config.case import Case
 from asperity.errors import percent
-from asperity.reduction.areal import areal_texture
+from asperity.reduction.texture import areal_texture
 from asperity.reference.law_accuracy import HIGH, LOW, LawMap, MappedPoint, Place, law_map
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
 from asperity.spectra import psd
-from asperity.surfaces.correlation import CORRELATION_THRESHOLD
+from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 from asperity.surfaces.strip import Strip
 from asperity.threads import thread_count
 

@@ -11,18 +11,14 @@ from numpy.typing import NDArray
 
 from asperity.arguments import shown
 from asperity.config.sections import ContactCase, Numerics
-from asperity.contact.accuracy import rtol_for
-from asperity.contact.flaws import warn_of_flaws
-from asperity.contact.scan import ScanJob, ScannedForces, first_touch
+from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, warn_of_flaws
 from asperity.errors import InputError
 from asperity.laws import Law, LawSpec, Need, spec_of
 from asperity.progress import Progress
-from asperity.reduction.areal import areal_texture
-from asperity.reduction.fir import filtered_texture, punch_taps
+from asperity.reduction.filter import filtered_texture, punch_taps
 from asperity.reduction.stiffness import ForceCurve
-from asperity.reduction.stored import StoredForces, scan_into
-from asperity.reduction.table import ForceTable
-from asperity.reduction.texture import StateTexture
+from asperity.reduction.table import ForceTable, StoredForces, scan_into
+from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.line_filters import normalisation, warn_of_filter
 from asperity.scenarios.reducing import SCAN_TOLERANCE, Reduction

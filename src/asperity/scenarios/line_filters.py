@@ -10,20 +10,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase
-from asperity.contact.device import find_device
+from asperity.contact.batched import find_device
 from asperity.contact.scan import ScanJob, ScannedForces, scan_forces
 from asperity.errors import ContactFilterWarning
 from asperity.laws import LawSpec, Need, spec_of
 from asperity.progress import Progress
-from asperity.reduction.ensemble import StiffnessEnsemble
 from asperity.reduction.filter import (
     FilterSpectra,
+    LineFilter,
     Normalise,
     closed_form,
+    design_fir,
     estimate_filter,
     filter_spectra,
+    punch_taps,
+    tap_count,
 )
-from asperity.reduction.fir import LineFilter, design_fir, punch_taps, tap_count
+from asperity.reduction.stiffness import StiffnessEnsemble
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.textures import Textures
 from asperity.store import Cache

@@ -16,12 +16,11 @@ from scipy.special import fdtrc
 
 from asperity.errors import Grade, ShortRecordWarning
 from asperity.laws import spec_of
-from asperity.reduction.ensemble import samples_of_maps
+from asperity.reduction.stiffness import samples_of_maps
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.reducing import Reduction
-from asperity.surfaces.areal_psd import psd_1d, texture_direction
-from asperity.surfaces.correlation import autocorrelation_lengths
 from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.spectra import autocorrelation_lengths, psd_1d, texture_direction
 
 SIGNIFICANCE = 0.01
 """Probability by chance below which groups are told apart: there are several tests in every run."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from asperity.config.case import Case
 from asperity.config.chosen import with_chosen_window
-from asperity.contact.device import find_device
+from asperity.contact.batched import find_device
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios.geometry import Geometry, window_cells

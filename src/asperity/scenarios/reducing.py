@@ -11,16 +11,18 @@ from numpy.typing import NDArray
 
 from asperity.config.sections import ContactCase, Numerics
 from asperity.contact import Contact, HalfSpace
-from asperity.contact.accuracy import FILTER_SHARE, rtol_for
-from asperity.contact.flaws import Counts, total, warn_of_flaws
-from asperity.contact.scan import first_touch
+from asperity.contact.scan import FILTER_SHARE, Counts, first_touch, rtol_for, total, warn_of_flaws
 from asperity.errors import InputError
 from asperity.progress import Progress
-from asperity.reduction.areal import areal_texture, punch_weights
-from asperity.reduction.ensemble import StiffnessEnsemble, patches, stiffness_ensemble
 from asperity.reduction.filter import Normalise
-from asperity.reduction.real_contact import isolated_share
-from asperity.reduction.stiffness import ForceCurve
+from asperity.reduction.stiffness import (
+    ForceCurve,
+    StiffnessEnsemble,
+    isolated_share,
+    patches,
+    stiffness_ensemble,
+)
+from asperity.reduction.texture import areal_texture, punch_weights
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.line_filters import LineFilters, line_filters
 from asperity.scenarios.textures import Textures

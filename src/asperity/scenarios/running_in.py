@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from asperity.arguments import passes_of
 from asperity.config.case import Case
 from asperity.contact import HalfSpace
-from asperity.contact.flaws import total
 from asperity.contact.running_in import RunInHeights, RunningIn, run_in, tolerance_of, warn_of_running_in
+from asperity.contact.scan import total
 from asperity.progress import Progress
-from asperity.reduction.areal import punch_weights
-from asperity.reduction.ensemble import patches
+from asperity.reduction.stiffness import patches
+from asperity.reduction.texture import punch_weights
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.textures import Textures

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from asperity.config.case import Case
-from asperity.contact.accuracy import FILTER_SHARE, rtol_for
-from asperity.contact.scan import ScanJob
+from asperity.contact.scan import FILTER_SHARE, ScanJob, rtol_for
 from asperity.errors import InputError
 from asperity.files import amount, free_space
 from asperity.laws import Need, needs_of

@@ -14,13 +14,19 @@ from asperity.config.sections import ContactCase, Surface
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.records import read_maps
-from asperity.surfaces.continuation import Continuation, extend
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
 from asperity.surfaces.rotation import QUARTER, rotated
 from asperity.surfaces.statistics import rms_slope
 from asperity.surfaces.strip import LongStrip, Strip, raised
-from asperity.surfaces.synthesis import from_map, long_self_affine, long_strip_like, self_affine
+from asperity.surfaces.synthesis import (
+    Continuation,
+    extend,
+    from_map,
+    long_self_affine,
+    long_strip_like,
+    self_affine,
+)
 
 STRIP_WINDOWS = 16
 """Length of a strip for the filters, in windows: few bins of its spectra span the fall of a filter else."""

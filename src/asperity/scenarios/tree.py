@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from asperity import __version__
 from asperity.config.case import Case
-from asperity.contact.device import find_device
+from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning
 from asperity.laws import baselines, reference, spec_of
 from asperity.results import checked

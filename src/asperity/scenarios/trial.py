@@ -13,15 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.contact import HalfSpace
-from asperity.contact.accuracy import FILTER_SHARE, rtol_for
 from asperity.contact.running_in import run_in
-from asperity.contact.scan import ScanJob, first_touch, scan_forces
+from asperity.contact.scan import FILTER_SHARE, ScanJob, first_touch, rtol_for, scan_forces
 from asperity.errors import PhysicsWarning
 from asperity.laws import Need, needs_of
 from asperity.progress import Progress
-from asperity.reduction.areal import areal_texture, punch_weights
-from asperity.reduction.ensemble import patches
-from asperity.reduction.real_contact import isolated_share
+from asperity.reduction.stiffness import isolated_share, patches
+from asperity.reduction.texture import areal_texture, punch_weights
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
 from asperity.scenarios.line_filters import filter_stride

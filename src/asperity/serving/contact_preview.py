@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from asperity.config.case import Case
 from asperity.contact import Contact, HalfSpace
 from asperity.errors import CaseError, InputError
-from asperity.reduction.areal import punch_weights
-from asperity.reduction.ensemble import patches
+from asperity.reduction.stiffness import patches
+from asperity.reduction.texture import punch_weights
 from asperity.running import prepare_case
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.preparing import PreparedCase

@@ -1,4 +1,4 @@
-"""Infinite railway track: a rail on discrete supports of pad, sleeper and ballast."""
+"""Complex stiffness that is causal: a spring beside Maxwell elements."""
 
 from __future__ import annotations
 
@@ -8,13 +8,101 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real_array, shown
+from asperity.arguments import real, real_array, shown
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
-from asperity.structures.free_rail import free_rail_waves, pinned_frequency
-from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
-from asperity.structures.relaxation import Relaxation, Relaxations
-from asperity.structures.track_checks import check_track
+from asperity.structures.periodic_rail import (
+    PeriodicWaves,
+    free_rail_waves,
+    periodic_waves,
+    pinned_frequency,
+    static_receptance,
+)
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """Stiffness relative to a nominal one: a spring beside Maxwell elements (springs in line with dampers).
+
+    K(ω)/k = static + Σ_j strength_j iω/(iω + 2π f_j). It is analytic in the lower half-plane, hence causal,
+    and Im K >= 0 at all ω > 0, hence passive.
+    """
+
+    static: float  # of the spring, zero or more: the stiffness at rest
+    # of the Maxwell elements, zero or more: what each adds well above its frequency
+    strengths: tuple[float, ...]
+    frequencies: tuple[float, ...]  # at which they dissipate most, Hz
+
+    def at(self, omega: ArrayLike) -> NDArray[np.complex128]:
+        """Stiffness relative to the nominal one at angular frequencies, rad/s, with Im ω <= 0."""
+        return relaxing(omega, self.frequencies) @ np.array([self.static, *self.strengths])
+
+
+@dataclass(frozen=True)
+class Relaxations:
+    """What stands for the loss factors of a track; None where there is none."""
+
+    rail: Relaxation | None = None  # of its bending (and shear) stiffness
+    pad: Relaxation | None = None
+    ballast: Relaxation | None = None
+
+
+def relaxing(omega: ArrayLike, frequencies: ArrayLike) -> NDArray[np.complex128]:
+    """Stiffnesses (..., 1 + j) of a spring, 1, and of Maxwell elements of unit strength, iω/(iω + 2π f_j).
+
+    Angular frequency (...), rad/s; frequencies f_j (j,), Hz.
+    """
+    rate = 1j * np.asarray(omega, dtype=complex)[..., None]
+    elements = rate / (rate + 2.0 * np.pi * np.asarray(frequencies, dtype=float))
+    return np.concatenate([np.ones_like(rate), elements], axis=-1)
+
+
+def check_track(track: Track) -> None:
+    """Refuse parameters that no track has; see `asperity.structures.track.Track`."""
+    for what, value, needed in (
+        ("bending stiffness of the rail (N m^2)", track.bending_stiffness, True),
+        ("mass per length of the rail (kg/m)", track.mass_per_length, True),
+        ("pad stiffness (N/m)", track.pad_stiffness, True),
+        ("ballast stiffness (N/m)", track.ballast_stiffness, True),
+        ("sleeper spacing (m)", track.sleeper_spacing, True),
+        ("shear stiffness of the rail (N)", track.shear_stiffness, False),
+        ("rotary inertia of the rail (kg m)", track.rotary_inertia, False),
+    ):
+        if needed or value is not None:
+            real(what, value, "a finite positive number", above=0.0)
+    for what, value, needed in (
+        ("sleeper mass (kg)", track.sleeper_mass, True),
+        ("rail loss factor", track.rail_loss_factor, True),
+        ("pad damping (N s/m)", track.pad_damping, False),
+        ("pad loss factor", track.pad_loss_factor, False),
+        ("ballast damping (N s/m)", track.ballast_damping, False),
+        ("ballast loss factor", track.ballast_loss_factor, False),
+    ):
+        if needed or value is not None:
+            real(what, value, "a finite number, zero or more", at_least=0.0)
+    _refuse_doubles(track)
+
+
+def _refuse_doubles(track: Track) -> None:
+    for element, viscous, factor in (
+        ("pad", track.pad_damping, track.pad_loss_factor),
+        ("ballast", track.ballast_damping, track.ballast_loss_factor),
+    ):
+        if viscous is not None and factor is not None:
+            raise InputError(
+                f"damping of the {element}",
+                f"{element}_damping = {viscous:g} N s/m and {element}_loss_factor = {factor:g}",
+                "one of them",
+                "Remove one: an element is either viscous or has a loss factor.",
+            )
+    if (track.shear_stiffness is None) != (track.rotary_inertia is None):
+        missing = "rotary_inertia" if track.rotary_inertia is None else "shear_stiffness"
+        raise InputError(
+            "Timoshenko rail",
+            f"no {missing}",
+            "shear_stiffness and rotary_inertia together, or neither (Euler-Bernoulli)",
+        )
+
 
 _ALTERNATIVES = {
     "pad_damping": "pad_loss_factor",

@@ -7,10 +7,9 @@ from typing import TypeVar
 
 from asperity.arguments import FORMS as POLYNOMIALS
 from asperity.errors import InputError
-from asperity.surfaces.form import Surface
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import band_limit, level, remove_form
-from asperity.surfaces.readers.spelling import spell
+from asperity.surfaces.levelling import Surface, band_limit, level, remove_form
+from asperity.surfaces.readers.headers import spell
 from asperity.surfaces.rotation import rotated
 
 S = TypeVar("S", HeightMap, Profile, HeightMap | Profile)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from asperity.errors import InputError
 from asperity.spectra import psd
-from asperity.surfaces.correlation import LagSums, lengths_of
+from asperity.surfaces.spectra import LagSums, lengths_of
 from asperity.surfaces.statistics import Statistic, areal_parameters, inner_slope
 from asperity.surfaces.strip import Strip
 

@@ -1,18 +1,225 @@
-"""Synthetic surfaces: self-affine, from band levels, and in the likeness of measured maps; all seeded."""
+"""Continuation of a record that is shorter than the run: refused, mirrored or repeated."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
+from scipy.special import j0
 
 from asperity.errors import InputError
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.likeness import Likeness, likeness
+from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.rotation import gaussian_correlation, height_transform
 from asperity.surfaces.strip import LongStrip
+
+Continuation = Literal["refuse", "mirror", "repeat"]
+
+CHOICES = ("refuse", "mirror", "repeat")
+
+
+def extend(
+    heights: ArrayLike,
+    rows: int,
+    how: Continuation = "refuse",
+    *,
+    spacing: float,
+    start: int = 0,
+    crossfade: int = 0,
+    what: str = "record",
+) -> NDArray[np.float64]:
+    """Heights (rows,) or (rows, k), m, along a path of any length from a record (n,) or (n, k).
+
+    The record is complete. One that is too short is refused, mirrored, that is run through to and fro (no
+    step, a kink where it turns), or repeated with period n, as the circumference of a wheel; then it is
+    closed over the points `crossfade`, see `close`. `start` is the point that comes first, negative only if
+    it is mirrored or repeated. `what` names the record in messages.
+    """
+    values = np.asarray(heights, dtype=np.float64)
+    n = len(values)
+    if how not in CHOICES:
+        raise InputError(f"continuation of the {what}", repr(how), "one of " + ", ".join(CHOICES))
+    if not np.isfinite(values).all():
+        raise InputError(what, "missing points", "complete heights", "Fill or trim it first.")
+    index = np.arange(start, start + rows)
+    if how == "repeat":
+        return close(values, crossfade)[np.mod(index, n)]
+    if how == "mirror":
+        folded = np.mod(index, 2 * (n - 1))
+        return np.asarray(values[np.where(folded < n, folded, 2 * (n - 1) - folded)])
+    if start < 0 or start + rows > n:
+        received = f"{n * spacing:.4g} m"
+        allowed = f"at least the run with its margins, {rows * spacing:.4g} m"
+        if start:
+            allowed += f", from {start * spacing:.4g} m on"
+        remedy = "Set surface.continuation to 'mirror' or 'repeat', or shorten the run."
+        raise InputError(f"length of the {what}", received, allowed, remedy)
+    return np.asarray(values[start : start + rows])
+
+
+def close(heights: ArrayLike, points: int) -> NDArray[np.float64]:
+    """Close a periodic record: spread the step between its end and its start over both sides of the join.
+
+    Heights (n,) or (n, k), m; half the step is taken from that many points on either side, fading with a
+    raised cosine.
+    """
+    values = np.array(heights, dtype=np.float64)
+    if not 0 <= 2 * points <= len(values):
+        raise InputError("crossfade", f"{points} points", f"0 to {len(values) // 2}, half the record")
+    if points == 0:
+        return values
+    fade = 0.5 + 0.5 * np.cos(np.pi * np.arange(points) / points)
+    share = np.multiply.outer(fade, 0.5 * (values[0] - values[-1]))
+    values[:points] -= share
+    values[-points:] += share[::-1]
+    return values
+
+
+LEAST_POINTS = 8
+"""Along each side of a map that has a spectrum."""
+LAGS = 2
+"""Lengths of the map beyond which the correlation is taken as zero."""
+ROUNDING = 1e-12
+"""Heights, relative to the largest before levelling, that are nothing but rounding."""
+FLAT = 1e-15
+"""Heights within which a map that was levelled before is a plane, m: less than any atom."""
+LONGEST = 2.0
+"""Wavelength, in lengths of the map, that heights are given which the spectrum does not explain."""
+
+
+@dataclass(frozen=True, eq=False)
+class Likeness:
+    """What a synthesised surface shares with measured maps."""
+
+    # from a normal variable of unit variance to heights, m
+    transform: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    # (odd, odd), of the normal field at all lags up to `LAGS` maps, zero lag first (wrapped)
+    correlation: NDArray[np.float64]
+    spacing: tuple[float, float]  # (dx, dy), m
+    source: str  # where the maps came from
+
+    @property
+    def reach(self) -> int:
+        """Length of the maps, points."""
+        return (self.correlation.shape[0] + 1) // (2 * LAGS)
+
+
+def likeness(
+    maps: HeightMap | Sequence[HeightMap], spacing: float | tuple[float, float] | None = None
+) -> Likeness:
+    """Estimate the height distribution and the correlation of the surface that maps were cut from.
+
+    The maps are of one texture, with one spacing, and complete, with at least eight points along a side; each
+    is levelled by its mean plane. Another spacing, m, may be wanted.
+
+    A window mixes each wavenumber with its neighbours, one step of the map away. In a spectrum that falls by
+    10 dB a step, as that of long waves or of a bow, the neighbours win. So the window is put on the
+    *curvature* of the maps, whose spectrum is nearly even and which knows no plane and no bow, and the
+    spectrum is divided by what that has done, from one wave per map on. For longer waves that level is held,
+    as far as the variance of the heights goes; what lacks is form, and gets waves twice as long as the map.
+    """
+    return _likeness((maps,) if isinstance(maps, HeightMap) else tuple(maps), spacing)
+
+
+@lru_cache(maxsize=2)  # heights are read-only, and a path and its strips are made from the same maps
+def _likeness(maps: tuple[HeightMap, ...], spacing: float | tuple[float, float] | None) -> Likeness:
+    levelled = _prepared(maps, spacing)
+    transform = height_transform(np.concatenate([m.heights.ravel() for m in levelled]))
+    needed = gaussian_correlation(transform, _correlation([m.heights for m in levelled], levelled[0].spacing))
+    sources = ", ".join(dict.fromkeys(m.source for m in levelled if m.source))
+    return Likeness(transform, needed, levelled[0].spacing, sources or "maps")
+
+
+def _prepared(maps: tuple[HeightMap, ...], spacing: float | tuple[float, float] | None) -> list[HeightMap]:
+    if not maps:
+        raise InputError("maps", "none", "one or more height maps")
+    for one in maps:
+        if np.isnan(one.heights).any():
+            received = f"{one.missing_share:.2%} missing points in {one.source or 'a map'}"
+            raise InputError("maps", received, "complete maps", "Use fill first.")
+        if not np.allclose(one.spacing, maps[0].spacing, rtol=1e-6, atol=0.0):
+            received = f"spacings {maps[0].spacing} and {one.spacing} m"
+            raise InputError("maps", received, "one spacing for all", "Use resample first.")
+    levelled = [level(one) for one in maps]
+    if all(
+        np.ptp(flat.heights) <= max(ROUNDING * np.abs(one.heights).max(), FLAT)
+        for flat, one in zip(levelled, maps, strict=True)
+    ):
+        received = f"a plane without roughness, {maps[0].source or 'a map'}"
+        raise InputError(
+            "maps", received, "maps with roughness", "Check the measurement, and which array is read."
+        )
+    levelled = levelled if spacing is None else [resample(one, spacing) for one in levelled]
+    smallest = min(min(one.shape) for one in levelled)
+    if smallest < LEAST_POINTS:
+        raise InputError("maps", f"{smallest} points along a side", f"at least {LEAST_POINTS}")
+    return levelled
+
+
+def _correlation(maps: list[NDArray[np.float64]], spacing: tuple[float, float]) -> NDArray[np.float64]:
+    """Correlation coefficients at all lags up to twice the map, odd size, zero lag first (wrapped)."""
+    size = [max(m.shape[axis] for m in maps) for axis in (0, 1)]
+    grid = [2 * LAGS * n for n in size]
+    variance = float(np.mean(np.concatenate([m.ravel() for m in maps]) ** 2))
+    covariance = fft.irfft2(_spectrum(maps, size, grid, spacing, variance), s=grid)
+    lags = [np.minimum(np.arange(g), g - np.arange(g)) / n for g, n in zip(grid, size, strict=True)]
+    fades = [np.cos(0.5 * np.pi * np.clip((lag - 1.0) / (LAGS - 1.0), 0.0, 1.0)) ** 2 for lag in lags]
+    resolved = covariance * np.outer(*fades) / variance
+    longer = np.outer(*(_faded(LAGS * n, g) for n, g in zip(size, grid, strict=True)))
+    longer *= j0(2.0 * np.pi / LONGEST * np.hypot(lags[0][:, None], lags[1][None, :]))
+    whole = resolved + max(0.0, 1.0 - resolved[0, 0]) * longer
+    # the lag of half the grid is zero, and its own opposite
+    return np.asarray(np.delete(np.delete(whole, grid[0] // 2, 0), grid[1] // 2, 1) / whole[0, 0])
+
+
+def _spectrum(
+    maps: list[NDArray[np.float64]],
+    size: list[int],
+    grid: list[int],
+    spacing: tuple[float, float],
+    variance: float,
+) -> NDArray[np.float64]:
+    """Half spectrum of the heights, m²; its mean over the grid is what it explains of their variance."""
+    shares = [(min(spacing) / step) ** 2 for step in spacing]
+    power, weight = np.zeros((grid[0], grid[1] // 2 + 1)), 0.0
+    for heights in maps:
+        inner = heights[1:-1, 1:-1]
+        along = heights[2:, 1:-1] + heights[:-2, 1:-1] - 2.0 * inner
+        across = heights[1:-1, 2:] + heights[1:-1, :-2] - 2.0 * inner
+        curvature = shares[0] * along + shares[1] * across
+        window = np.outer(*(_hann(n) for n in curvature.shape))
+        curvature -= np.sum(window * curvature) / np.sum(window)
+        power += np.abs(fft.rfft2(window * curvature, s=grid)) ** 2
+        weight += float(np.sum(window**2))
+    per_map = (fft.fftfreq(grid[0]) * size[0], fft.rfftfreq(grid[1]) * size[1])
+    turns = [4.0 * np.sin(np.pi * k / n) ** 2 for k, n in zip(per_map, size, strict=True)]
+    response = shares[0] * turns[0][:, None] + shares[1] * turns[1][None, :]
+    waves = np.hypot(per_map[0][:, None], per_map[1][None, :])
+    longer = waves < 1.0
+    density = np.where(longer, 0.0, power / weight / np.where(longer, np.inf, response) ** 2)
+    # held below one wave per map, as far as the heights have variance for it
+    unexplained = max(0.0, variance - float(fft.irfft2(density, s=grid)[0, 0]))
+    held = density[(waves >= 1.0) & (waves < 1.5)].mean()
+    share = float(fft.irfft2(longer.astype(np.float64), s=grid)[0, 0])
+    density[longer] = min(held, unexplained / share)
+    return density
+
+
+def _faded(points: int, grid: int) -> NDArray[np.float64]:
+    """Correlation that fades out at `points`, with a spectrum nowhere negative: that of a Hann window."""
+    found = fft.irfft(np.abs(fft.rfft(_hann(points), grid)) ** 2, grid)
+    return np.asarray(found / found[0])
+
+
+def _hann(points: int) -> NDArray[np.float64]:
+    return np.sin(np.pi * (np.arange(points) + 0.5) / points) ** 2
+
 
 __all__ = [
     "from_bands",
@@ -139,7 +346,7 @@ def from_map(
 
     The maps are of one texture, with one spacing, and complete. The two-sided angular spectrum, with its
     anisotropy, is that of the surface that the levelled maps were cut from, as
-    `asperity.surfaces.likeness.likeness` estimates it; its variance is that of the pooled heights. A Gaussian
+    `likeness` estimates it; its variance is that of the pooled heights. A Gaussian
     field with a pre-distorted correlation is translated to their distribution: no height exceeds the measured
     extremes. Another spacing, m, leaves wavelengths below two new samples out. No realisation is rescaled, so
     Sq scatters as in pieces of one long surface.

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kinds.ball_on_beam.case import BallOnBeam
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 from asperity.structures.modal import driving_point
 
 MODES_BEYOND = 4.0

@@ -27,7 +27,7 @@ from asperity.config.surface_laws import LawsOfSurface, problems_of_surface_laws
 from asperity.errors import InputError
 from asperity.reference.materials import contact_modulus
 from asperity.scenarios.kind import Words
-from asperity.structures.ball import Ball
+from asperity.structures.body import Ball
 from asperity.units import written
 
 LONGEST_SETTLING = 0.2

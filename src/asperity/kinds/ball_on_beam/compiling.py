@@ -11,8 +11,8 @@ from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.scenarios import compiling
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 
 
 def compile_kernels(progress: Progress) -> None:

@@ -15,8 +15,8 @@ from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.usual.compute import checkpoint_of
 from asperity.scenarios.usual.textures import recorded_time
 from asperity.store import Store
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 
 if TYPE_CHECKING:
     from asperity.scenarios.preparing import PreparedCase

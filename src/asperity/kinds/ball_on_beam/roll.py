@@ -20,8 +20,8 @@ from asperity.rolling.beam import RolledBeam, beam_step, carried, most_complianc
 from asperity.rolling.path import Path
 from asperity.rolling.rolled import Limit, Rolled, roll_along
 from asperity.store import Checkpoint
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 
 LARGEST_DEFLECTION = 0.02
 """Share of the length up to which a beam may be displaced: slopes are then below about 0.06."""

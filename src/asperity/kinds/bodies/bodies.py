@@ -12,14 +12,11 @@ from numpy.typing import NDArray
 from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.bodies.smooth import load_of, upper_stiffness
 from asperity.kinds.wheel_on_rail.tables import fitted_to, read_modes, read_receptance
-from asperity.structures.ball import GRAVITY
-from asperity.structures.beam import Beam
-from asperity.structures.body import Body
+from asperity.structures.beam import Beam, SupportedBeam
+from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
 from asperity.structures.modal import Modal, driving_point
 from asperity.structures.modal_fit import warn_of_short_band
 from asperity.structures.receptance_fit import fit_body
-from asperity.structures.supported_beam import SupportedBeam
-from asperity.structures.suspended import bogie, carriage, chain
 from asperity.structures.track import Track
 
 MODES_BEYOND = 4.0

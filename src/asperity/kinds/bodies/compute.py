@@ -19,8 +19,7 @@ from asperity.scenarios.usual.textures import recorded_time
 from asperity.store import Store
 from asperity.structures.modal import Modal
 from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.rail_between import RailBetween, rail_between
-from asperity.structures.rail_poles import poles_or_kernel
+from asperity.structures.rail_poles import RailBetween, poles_or_kernel, rail_between
 from asperity.structures.track import Track
 
 Over = Modal | RailBetween | None

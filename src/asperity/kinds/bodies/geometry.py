@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from asperity.contact.conforming import check_half_space, groove_gap
+from asperity.contact.hertz import check_half_space, groove_gap
 from asperity.kinds.bodies.bodies import bodies_of
 from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.bodies.smooth import raceway_radius, radius_across, smooth_contact

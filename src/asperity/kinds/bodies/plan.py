@@ -15,8 +15,7 @@ from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
 from asperity.scenarios.trial_track import POLE_TIME, try_track
 from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
-from asperity.structures.rail_between import DECIMALS, RailBetween
-from asperity.structures.rail_poles import POLES, RailPoles
+from asperity.structures.rail_poles import DECIMALS, POLES, RailBetween, RailPoles
 from asperity.structures.track import Track
 from asperity.threads import thread_count
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from asperity.contact import Hertz
-from asperity.contact.conforming import relative_radius
+from asperity.contact.hertz import relative_radius
 from asperity.errors import InputError
 from asperity.kinds.bodies.case import Bodies
 from asperity.reference.materials import Material, contact_modulus
-from asperity.structures.ball import GRAVITY
+from asperity.structures.body import GRAVITY
 
 
 def smooth_contact(case: Bodies) -> Hertz:

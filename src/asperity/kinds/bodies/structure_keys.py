@@ -30,8 +30,8 @@ from asperity.config.tables import Column, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.kinds.ball_on_beam.case import BeamCase
 from asperity.kinds.wheel_on_rail.track_keys import TrackParameters
-from asperity.structures.modal_table import ModalStructure
-from asperity.structures.supported_beam import Support
+from asperity.structures.beam import Support
+from asperity.structures.modal import ModalStructure
 
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""

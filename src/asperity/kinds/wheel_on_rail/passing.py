@@ -16,8 +16,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.roll import WheelRolling
 from asperity.progress import Progress
-from asperity.structures.hat_response import ZONES, HatResponse
-from asperity.structures.moving_kernel import MovingKernel, lagrange_weights
+from asperity.structures.moving_kernel import ZONES, HatResponse, MovingKernel, lagrange_weights
 from asperity.threads import one_thread_in_linear_algebra
 
 NODES = 24

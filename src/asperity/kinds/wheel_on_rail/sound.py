@@ -19,26 +19,26 @@ from asperity.kinds.wheel_on_rail.labels import track_label, wheel_label
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
 from asperity.kinds.wheel_on_rail.tables import read_mode_shapes, read_ratios
 from asperity.laws import Role, in_role
-from asperity.radiation.modal_velocity import modal_velocity_psd
 from asperity.radiation.pass_by import (
     AxleSource,
     Passage,
     Receiver,
     exposure,
+    pass_by_levels,
+    pressure_level,
+    time_weighted,
     weighted_squared_pressure,
 )
-from asperity.radiation.pass_by_levels import pass_by_levels, pressure_level, time_weighted
-from asperity.radiation.rail import STEEL_DENSITY, RailSection
-from asperity.radiation.sleeper import SleeperTop
-from asperity.radiation.wheel import RadiatingWheel
+from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
+from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
 from asperity.reference import cnossos
 from asperity.scenarios.laws import working_point
 from asperity.schema import Attribute, Entry, attributes, spectra, variables
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum, psd
 from asperity.structures.decay_rate import decay_rate
 from asperity.structures.track import Track
+from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.levels import band_levels_of
 
 Table = tuple[ArrayLike, ArrayLike]
 """Band centres and levels in dB, each (n,)."""

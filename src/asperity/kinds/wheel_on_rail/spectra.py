@@ -24,8 +24,8 @@ from asperity.schema import Attribute, Entry, attributes, spectra, variables
 from asperity.spectra import averaging_time, band_levels, psd
 from asperity.structures.decay_rate import decay_rate, decay_rate_en15461
 from asperity.structures.rail_poles import RailPoles
+from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.levels import band_levels_of
 
 
 def spectra_group(computed: Computed) -> xarray.Dataset:

@@ -48,13 +48,13 @@ from asperity.scenarios.textures import (
     synthesised,
     synthesised_path,
 )
-from asperity.surfaces.continuation import Continuation, close, extend
+from asperity.surfaces.bands import check_levels
 from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
-from asperity.surfaces.levels import check_levels
 from asperity.surfaces.parallel_lines import bring_into_register, common_length, lines_of, strip_from_lines
 from asperity.surfaces.strip import LongStrip, Raised, Rows, raised, turning
+from asperity.surfaces.synthesis import Continuation, close, extend
 
 FULL_TURN = 0.02
 """Share of the circumference that a measured line around a wheel may lack or exceed."""

@@ -29,7 +29,7 @@ from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_leve
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines
 from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
-from asperity.structures.ball import GRAVITY
+from asperity.structures.body import GRAVITY
 from asperity.units import written
 
 WHEEL_ROUGHNESS = ("cast-iron", "composite", "disc")

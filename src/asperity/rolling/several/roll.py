@@ -32,7 +32,7 @@ from asperity.rolling.stepping import advance_to_end, restore
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
-from asperity.structures.rail_between import RailBetween
+from asperity.structures.rail_poles import RailBetween
 
 Array = NDArray[np.float64]
 
@@ -85,7 +85,7 @@ def roll_bodies(
     Parameters
     ----------
     over : Modal or RailBetween or None
-        What is rolled over: a structure by its modes, a rail (`asperity.structures.rail_between`), or None
+        What is rolled over: a structure by its modes, a rail (`asperity.structures.rail_poles`), or None
         for a plane that does not move. Loads have rolled on it long enough to be steady; one that stands on a
         support has just come on, and modes without stiffness are at rest.
     bodies : sequence of Body

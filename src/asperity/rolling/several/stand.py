@@ -30,7 +30,7 @@ from asperity.rolling.stability import (
 )
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
-from asperity.structures.rail_between import RailBetween
+from asperity.structures.rail_poles import RailBetween
 
 Array = NDArray[np.float64]
 

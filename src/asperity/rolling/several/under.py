@@ -14,11 +14,9 @@ from asperity.rolling.beam import PLACES, alternating_of_modes, most_compliance,
 from asperity.rolling.path import Path
 from asperity.rolling.rail import RolledRail
 from asperity.rolling.rolled import Limit
-from asperity.structures.modal import Modal
+from asperity.structures.modal import STATIC, Modal
 from asperity.structures.moving_kernel import MovingKernel
-from asperity.structures.rail_between import RailBetween
-from asperity.structures.rail_poles import CELLS, RailPoles, over_the_bay
-from asperity.structures.residual_flexibility import STATIC
+from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_bay
 
 Array = NDArray[np.float64]
 

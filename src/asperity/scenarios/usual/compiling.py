@@ -13,8 +13,8 @@ from asperity.rolling.ball import RollingBall
 from asperity.rolling.beam import RolledBeam
 from asperity.rolling.pair import roll_pair
 from asperity.scenarios import compiling
-from asperity.structures.ball import Ball
 from asperity.structures.beam import Beam
+from asperity.structures.body import Ball
 
 
 def compile_kernels(progress: Progress) -> None:

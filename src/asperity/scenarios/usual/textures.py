@@ -30,11 +30,10 @@ from asperity.scenarios.textures import (
     synthesised_path,
 )
 from asperity.spectra import HALF_BAND
-from asperity.surfaces.continuation import Continuation, extend
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.strip import Strip
-from asperity.surfaces.synthesis import from_bands
+from asperity.surfaces.synthesis import Continuation, extend, from_bands
 
 
 def textures_of(case: Case) -> Textures:

@@ -14,10 +14,9 @@ from asperity.arguments import shown, whole
 from asperity.errors import InputError, MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import arrays, sdf, text, x3p
-from asperity.surfaces.readers.foreign import read_apart
-from asperity.surfaces.readers.guards import archive, readable_file
-from asperity.surfaces.readers.hints import Hints, Length, Surface, checked_hints
-from asperity.surfaces.readers.spelling import advice, spell
+from asperity.surfaces.readers.guards import Hints, Length, Surface, archive, checked_hints, readable_file
+from asperity.surfaces.readers.headers import advice, spell
+from asperity.surfaces.readers.instruments import read_apart
 
 __all__ = ["read_surface", "read_surfaces"]
 

@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 
 from asperity.arguments import listed, shown
 from asperity.errors import InputError
-from asperity.surfaces.readers.arrays import only_one
-from asperity.surfaces.readers.grid import uniform_step
-from asperity.surfaces.readers.guards import check_claim, hostile
-from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
-from asperity.surfaces.readers.spelling import advice
+from asperity.surfaces.readers.arrays import only_one, uniform_step
+from asperity.surfaces.readers.guards import Hints, Surface, check_claim, hostile, scaled, surfaces_of
+from asperity.surfaces.readers.headers import advice
 from asperity.units import factor
 
 MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written

@@ -11,8 +11,16 @@ from numpy.typing import NDArray
 
 from asperity.decoding import number_in
 from asperity.errors import InputError
-from asperity.surfaces.readers.guards import check_claim, count, header_number, hostile
-from asperity.surfaces.readers.hints import Hints, Surface, scaled, surfaces_of
+from asperity.surfaces.readers.guards import (
+    Hints,
+    Surface,
+    check_claim,
+    count,
+    header_number,
+    hostile,
+    scaled,
+    surfaces_of,
+)
 
 DATA_TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")  # by the code in the header
 # Integers of 16 and 32 bits mark a missing point by the largest unsigned or the smallest signed value.

@@ -18,11 +18,9 @@ from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.readers.grid import line, rasterised
-from asperity.surfaces.readers.guards import MAX_POINTS, check_claim, hostile
-from asperity.surfaces.readers.headers import Header, parsed_header
-from asperity.surfaces.readers.hints import Hints, Surface, surfaces_of
-from asperity.surfaces.readers.spelling import advice, spell
+from asperity.surfaces.readers.arrays import line, rasterised
+from asperity.surfaces.readers.guards import MAX_POINTS, Hints, Surface, check_claim, hostile, surfaces_of
+from asperity.surfaces.readers.headers import Header, advice, parsed_header, spell
 
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")

@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.readers.grid import line, rasterised
+from asperity.surfaces.readers.arrays import line, rasterised
 from asperity.surfaces.readers.guards import (
     MAX_XML_BYTES,
+    Hints,
+    Surface,
     archive,
     check_claim,
     count,
@@ -24,8 +26,8 @@ from asperity.surfaces.readers.guards import (
     hostile,
     member_bytes,
     parse_xml,
+    surfaces_of,
 )
-from asperity.surfaces.readers.hints import Hints, Surface, surfaces_of
 
 DATA_TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 
