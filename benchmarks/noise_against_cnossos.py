@@ -21,9 +21,8 @@ from asperity.radiation.track import SPEED_OF_SOUND, RailSection, SleeperTop, ef
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
 from asperity.reporting.axes import frequency_axis
-from asperity.reporting.chart import Axis, Chart, Line, Panel
-from asperity.reporting.figure_files import write_chart
-from asperity.reporting.style import BLUE, GREEN, INK, VERMILLION
+from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, Line, Panel
+from asperity.reporting.part import write_chart
 from asperity.spectra import nominal
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from asperity.comma_separated import csv_text, write_csv
-from asperity.reporting import csv_files
+from asperity.reporting import part
 
 
 @pytest.mark.parametrize("word", ["=cmd|' /C calc'!A0", "+1+1", "-2+3", "@SUM(A1)"])
@@ -28,8 +28,8 @@ def test_numbers_are_exact_and_missing_ones_empty():
 
 def test_figures_and_studies_share_one_writer():
     columns = {"x [m]": np.array([0.5, np.nan]), "F [N]": np.array([-1.0, 2.0])}
-    assert csv_files.columns_text(columns) == csv_text(list(columns), [(0.5, -1.0), (math.nan, 2.0)])
-    assert csv_files.columns_text(columns) == "x [m],F [N]\n0.5,-1.0\n,2.0\n"
+    assert part.columns_text(columns) == csv_text(list(columns), [(0.5, -1.0), (math.nan, 2.0)])
+    assert part.columns_text(columns) == "x [m],F [N]\n0.5,-1.0\n,2.0\n"
 
 
 def test_a_word_stays_in_its_field(tmp_path):

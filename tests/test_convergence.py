@@ -14,8 +14,8 @@ from asperity.convergence.running import changed_case, on_the_surface_of, settin
 from asperity.errors import InputError
 from asperity.kinds.cases import as_case
 from asperity.reporting.chapter import UNCERTAINTY
-from asperity.reporting.convergence import changes_table, settings_table
 from asperity.reporting.page import page
+from asperity.reporting.uncertainty import changes_table, settings_table
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted
 from asperity.schema import contents_of, convergence

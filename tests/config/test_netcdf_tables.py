@@ -4,7 +4,7 @@ import h5netcdf
 import numpy as np
 import pytest
 
-from asperity.config import netcdf_tables
+from asperity.config import tables
 from asperity.config.tables import read_table
 from asperity.errors import InputError
 from asperity.kinds.bodies.structure_keys import RECEPTANCES
@@ -76,9 +76,9 @@ def test_what_is_no_table_is_said(tmp_path, change, message):
 def test_tables_have_a_most_of_lines(tmp_path, monkeypatch):
     file = write(tmp_path / "matrix.nc", GRID)
     found = [(along, np.asarray(values)) for along, values, _ in GRID.values()]
-    monkeypatch.setattr(netcdf_tables, "MOST_LINES", 179)
+    monkeypatch.setattr(tables, "MOST_LINES", 179)
     with pytest.raises(InputError, match="a table of 180 lines; allowed: at most 179"):
-        netcdf_tables._laid_out(found, file)
+        tables._laid_out(found, file)
 
 
 @pytest.mark.parametrize("content", [b"", b"frequency (Hz), 1", b"\x89HDF\r\n\x1a\n" + bytes(300)])

@@ -12,7 +12,7 @@ import pytest
 
 import asperity
 from asperity import laws
-from asperity.reporting.style import COLOURS
+from asperity.reporting.chart import COLOURS
 from small_cases import BALL
 
 FILE = '''

@@ -11,7 +11,12 @@ from report_reading import HOSTILE
 
 from asperity.reporting.axes import band_axis, doubtful_boxes, frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.chart import (
+    BLUE,
+    COLOURS,
+    GREEN,
+    INK,
     TIME,
+    VERMILLION,
     Area,
     Axis,
     Boxes,
@@ -23,11 +28,11 @@ from asperity.reporting.chart import (
     Rules,
     Second,
     Shape,
+    colour_variables,
 )
+from asperity.reporting.page import PageFigure, page_template
 from asperity.reporting.payload import chart_script, chart_style, charts_json, script_digest
-from asperity.reporting.style import BLUE, COLOURS, GREEN, INK, VERMILLION, colour_variables
 from asperity.reporting.tables import Cell, ReportTable
-from asperity.reporting.templates import PageFigure, page_template
 
 AREAL = {"label": "areal", "law": "areal", "colour": BLUE, "width": 2.2}
 LINEAR = {"label": "linear", "law": "linear", "colour": VERMILLION, "dashes": (3.0, 1.5)}

@@ -10,6 +10,9 @@ from xarray import DataTree
 from asperity.errors import InputError
 from asperity.reporting.axes import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.chart import (
+    BLUE,
+    COLOURS,
+    INK,
     Area,
     Axis,
     Boxes,
@@ -23,12 +26,9 @@ from asperity.reporting.chart import (
     Shape,
 )
 from asperity.reporting.drawing import svg_of
-from asperity.reporting.figure_files import chosen_parts, write_chart, write_figures
 from asperity.reporting.paper import draw, save_figure
-from asperity.reporting.part import Data, Part
-from asperity.reporting.style import BLUE, COLOURS, INK
-from asperity.reporting.surface_charts import lines_chart, surface_chart
-from asperity.reporting.texture import height_scale
+from asperity.reporting.part import Data, Part, chosen_parts, write_chart, write_figures
+from asperity.reporting.texture_figures import height_scale, lines_chart, surface_chart
 
 X = np.array([0.0, 1.0, 2.0])
 Y = np.array([1.0, np.nan, 4.0])

@@ -13,8 +13,8 @@ from asperity.kinds.ball_on_beam.chapters import CHAPTERS
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules
 from asperity.reporting.data import missing
+from asperity.reporting.force_figures import piece
 from asperity.reporting.law_entries import law_entries
-from asperity.reporting.time_figures import piece
 from asperity.schema import contact
 
 PARTS = {part.name: part for chapter in CHAPTERS for part in chapter.parts}

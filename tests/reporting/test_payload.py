@@ -11,11 +11,9 @@ import pytest
 from report_reading import HOSTILE
 
 from asperity.reporting import payload
-from asperity.reporting.chart import Axis, Boxes, Chart, Field, Line, Note, Panel
-from asperity.reporting.packed import LEVELS
+from asperity.reporting.chart import BLUE, COLOURS, Axis, Boxes, Chart, Field, Line, Note, Panel
 from asperity.reporting.part import Data, Series
-from asperity.reporting.payload import charts_json, numbers_table
-from asperity.reporting.style import BLUE, COLOURS
+from asperity.reporting.payload import LEVELS, charts_json, numbers_table
 
 X, LOG = Axis("x / m"), Axis("y / Pa", log=True)
 

@@ -11,7 +11,7 @@ from report_reading import Reader, read_csv, without
 
 from asperity.kinds import KINDS
 from asperity.kinds.report import page_of, parts_of
-from asperity.reporting.csv_files import columns_text
+from asperity.reporting.part import columns_text
 from asperity.results import read_result, save
 
 PARTS = {

@@ -20,13 +20,12 @@ from asperity.kinds.ball_on_beam.answers import acceleration_answers
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import page_of, parts_of, report
 from asperity.laws import spec_of
-from asperity.reporting.csv_files import write_columns
+from asperity.reporting.chart import envelope, smooth_on_log_axis
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
-from asperity.reporting.headline import deciding_bands, force_answers
-from asperity.reporting.lights import lights
-from asperity.reporting.literature import literature
+from asperity.reporting.headline import deciding_bands, force_answers, lights
+from asperity.reporting.page import literature
+from asperity.reporting.part import write_columns
 from asperity.reporting.payload import chart_script
-from asperity.reporting.style import envelope, smooth_on_log_axis
 from asperity.reporting.tables import practice_table, reference_table
 from asperity.reporting.uncertainty import uncertainty_table
 from asperity.spectra import a_weighting, nominal_frequency

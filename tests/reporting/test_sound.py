@@ -11,8 +11,7 @@ from scipy.fft import rfft, rfftfreq
 
 import asperity
 from asperity.errors import InputError
-from asperity.reporting.pass_by import pass_by_pressure, radiated
-from asperity.reporting.sound import FADE, PEAK, RATE, Sound, at_rate, wav_bytes
+from asperity.reporting.sound import FADE, PEAK, RATE, Sound, at_rate, pass_by_pressure, radiated, wav_bytes
 
 STEP = 1 / 37333.0
 

@@ -19,7 +19,7 @@ pytest.importorskip("starlette", reason="the extra app is not installed")
 pytest.importorskip("uvicorn", reason="the extra app is not installed")
 
 import asperity
-from asperity.config.writing import toml_text
+from asperity.config.describing import toml_text
 from asperity.kinds.cases import load_case
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the server is ended by signals")

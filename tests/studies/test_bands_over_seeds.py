@@ -8,9 +8,8 @@ import xarray
 
 import asperity
 from asperity.errors import InputError
-from asperity.reporting.chart import Area, Line
-from asperity.reporting.ensemble import ensemble_chart
-from asperity.reporting.style import INK
+from asperity.reporting.chart import INK, Area, Line
+from asperity.reporting.study_figures import ensemble_chart
 from small_cases import COARSE
 
 CASE = COARSE | {

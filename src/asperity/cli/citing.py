@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from asperity.reporting.literature import literature
+from asperity.reporting.page import literature
 from asperity.results import read_result
 from asperity.terminal import say
 

@@ -201,8 +201,8 @@ def _inspect_lines(
     import numpy as np
 
     from asperity.cli.surface_spectra import spectra_of_lines
-    from asperity.reporting.figure_files import write_chart
-    from asperity.reporting.surface_charts import lines_chart
+    from asperity.reporting.part import write_chart
+    from asperity.reporting.texture_figures import lines_chart
     from asperity.surfaces.statistics import line_statistics
 
     say(f"{title}: {described_lines(lines)}")
@@ -363,8 +363,8 @@ def _draw(
     octaves: ThirdOctaves | None = None,
 ) -> Path:
     """Draw a levelled surface and its spectra to a PNG, PDF or SVG file."""
-    from asperity.reporting.figure_files import write_chart
-    from asperity.reporting.surface_charts import surface_chart
+    from asperity.reporting.part import write_chart
+    from asperity.reporting.texture_figures import surface_chart
     from asperity.surfaces.heightmap import HeightMap
 
     spacing = surface.spacing if isinstance(surface, HeightMap) else (surface.spacing, surface.spacing)

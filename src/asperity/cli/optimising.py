@@ -11,9 +11,8 @@ import numpy as np
 
 from asperity.comma_separated import write_csv
 from asperity.config.content import content, file_digest
-from asperity.config.describing import in_toml
+from asperity.config.describing import in_toml, toml_text
 from asperity.config.parsing import read_definition
-from asperity.config.writing import toml_text
 from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable, together, write_bytes
 from asperity.kinds import report as reports
@@ -21,12 +20,11 @@ from asperity.laws import spec_of
 from asperity.optimising.definition import Assignment, load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
-from asperity.reporting.chart_table import number_cell
-from asperity.reporting.figures_page import figures_page
 from asperity.reporting.law_entries import read_entries
-from asperity.reporting.optimised import TextureBands, optimised_chart
+from asperity.reporting.page import PageFigure, figures_page
+from asperity.reporting.payload import number_cell
+from asperity.reporting.study_figures import TextureBands, optimised_chart
 from asperity.reporting.tables import ReportTable
-from asperity.reporting.templates import PageFigure
 from asperity.results import save
 from asperity.store import content_key
 from asperity.terminal import say

@@ -8,7 +8,7 @@ from typing import Any
 
 from asperity.files import refuse_unwritable, together
 from asperity.kinds.report import parts_of
-from asperity.reporting.figure_files import chosen_parts, write_figures
+from asperity.reporting.part import chosen_parts, write_figures
 from asperity.results import read_result
 from asperity.terminal import say
 

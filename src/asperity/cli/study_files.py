@@ -12,12 +12,10 @@ import xarray
 from asperity.comma_separated import write_csv
 from asperity.files import lasting, write_bytes
 from asperity.laws import spec_of
-from asperity.reporting.chart_table import chart_tables
-from asperity.reporting.ensemble import ensemble_chart
-from asperity.reporting.figures_page import figures_page
 from asperity.reporting.law_entries import line_style, read_entries
-from asperity.reporting.study_figures import key_caption, key_chart
-from asperity.reporting.templates import PageFigure
+from asperity.reporting.page import PageFigure, figures_page
+from asperity.reporting.payload import chart_tables
+from asperity.reporting.study_figures import ensemble_chart, key_caption, key_chart
 from asperity.studies.ensemble import FEWEST, SCATTER, prediction_band
 from asperity.studies.table import columns_of, long_columns
 from asperity.terminal import say

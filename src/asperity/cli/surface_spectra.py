@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.reporting.csv_files import write_columns
+from asperity.reporting.part import write_columns
 from asperity.surfaces.en15610 import full_lines
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import nearly_complete

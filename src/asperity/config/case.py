@@ -11,11 +11,10 @@ from pydantic import BeforeValidator
 
 from asperity.config.chosen import NominalPatch, choose_lengths
 from asperity.config.content import described_value
-from asperity.config.describing import in_toml, parameters, refused
+from asperity.config.describing import in_toml, parameters, refused, toml_text
 from asperity.config.form import Section, key
 from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
 from asperity.config.sections import MOST_CELLS, ContactCase, Index, Numerics, Surface
-from asperity.config.writing import toml_text
 from asperity.errors import InputError
 from asperity.laws import names
 from asperity.units import written

@@ -8,10 +8,10 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator
 
+from asperity.config.describing import toml_text
 from asperity.config.form import Section, key
 from asperity.config.keys import Angle, Choice, HeightUnit, Length, Name, Number, Position, YesNo
 from asperity.config.parsing import Origin, read_definition, read_toml, validated
-from asperity.config.writing import toml_text
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import read_surface, read_surfaces

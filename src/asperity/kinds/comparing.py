@@ -16,9 +16,7 @@ from asperity.files import together, write_bytes
 from asperity.kinds import KINDS
 from asperity.printable import printable
 from asperity.reporting.comparison import NamedRun, compared
-from asperity.reporting.comparison_figures import MOST_RUNS
-from asperity.reporting.comparison_page import comparison_page
-from asperity.reporting.comparison_table import table_rows
+from asperity.reporting.comparison_page import MOST_RUNS, comparison_page, table_rows
 from asperity.reporting.data import stated
 from asperity.results import read_result
 from asperity.schema import Entry

@@ -57,9 +57,9 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         'one-third octave band / Hz'
         """
         from asperity.kinds.report import parts_of
-        from asperity.reporting.figure_files import chosen_parts
         from asperity.reporting.notebook_view import overview_chart
         from asperity.reporting.paper import draw
+        from asperity.reporting.part import chosen_parts
 
         if name is None and present(self, CONTACT_FORCE, TIME):
             return draw(overview_chart(self))

@@ -12,11 +12,9 @@ from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.kinds import KINDS
 from asperity.reporting.chapter import Chapter
-from asperity.reporting.csv_files import write_columns
 from asperity.reporting.data import stated
-from asperity.reporting.figure_files import figure_format, write_figures
 from asperity.reporting.page import drawable_parts, page
-from asperity.reporting.part import Part
+from asperity.reporting.part import Part, figure_format, write_columns, write_figures
 from asperity.schema.provenance import KIND
 
 PAGE, SUMMARY = "report.html", "summary.html"

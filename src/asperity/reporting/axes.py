@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.reporting.chart import FREQUENCY, Axis, Boxes, Note, Numbers, Second
+from asperity.reporting.chart import FREQUENCY, GRID, Axis, Boxes, Note, Numbers, Second
 from asperity.reporting.data import nominal_band
-from asperity.reporting.style import GRID
 
 EDGE = 10**0.05
 """From the centre of a one-third octave to its upper edge."""

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 
 from xarray import DataTree
 
-from asperity.reporting import convergence
-from asperity.reporting.contact_figures import LOADING, PRESSURE
-from asperity.reporting.filter_figures import FILTER
+from asperity.reporting.contact_figures import FILTER, LOADING, PRESSURE
 from asperity.reporting.headline import Answers
 from asperity.reporting.part import Part
 from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
 from asperity.reporting.tables import ReportTable, population_table, practice_table, reference_table
-from asperity.reporting.uncertainty import uncertainty_table
+from asperity.reporting.uncertainty import changes_table, settings_table, uncertainty_table
 
 
 @dataclass(frozen=True)
@@ -37,5 +35,5 @@ UNCERTAINTY = Chapter(
     "uncertainty",
     "Uncertainty",
     (),
-    (uncertainty_table, convergence.settings_table, convergence.changes_table),
+    (uncertainty_table, settings_table, changes_table),
 )

@@ -1,15 +1,24 @@
-"""Drawings of a page, as SVG: the scene and the contact from above, in the colours of the reader's screen."""
+"""Drawings of what rolls: laid out from a result, and as SVG."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from itertools import accumulate
+from typing import Any
 
 import numpy as np
+from xarray import DataTree
 
 from asperity.reporting.chart import (
+    BLUE,
+    GRID,
+    INK,
+    MUTED,
+    NARROW,
+    VERMILLION,
+    WIDE,
     Axis,
     Boxes,
     Chart,
@@ -21,10 +30,14 @@ from asperity.reporting.chart import (
     Panel,
     Rules,
     Shape,
+    limits,
+    rows_of,
 )
-from asperity.reporting.data import plain
-from asperity.reporting.extent import limits, rows_of
-from asperity.reporting.style import INK, MUTED, NARROW, WIDE
+from asperity.reporting.data import engineering, number, plain, present, values
+from asperity.reporting.part import Data, Series
+from asperity.reporting.texture_figures import length_unit
+from asperity.schema import contact
+from asperity.schema.rolling import POSITION
 
 POINTS = 72.0
 """Points per inch."""
@@ -196,8 +209,8 @@ def _draw_panel(sheet: _Sheet, panel: Panel, place: _Place) -> None:
 def _draw_along(sheet: _Sheet, axis: Axis, place: _Place) -> None:
     foot = place.top + place.height
     sheet.path(f"M{place.left:.1f} {foot:.1f}h{place.width:.1f}", "", MUTED, 0.7, (), 1.0)
-    for number, name in _ticks(axis, place.across, place.width / APART):
-        x = float(place.x(number))
+    for at, name in _ticks(axis, place.across, place.width / APART):
+        x = float(place.x(at))
         sheet.path(f"M{x:.1f} {foot:.1f}v3", "", MUTED, 0.7, (), 1.0)
         sheet.write(name, x, foot + 10, "center", must=False)
     sheet.write(axis.label, place.left + place.width / 2, foot + 24, "center")
@@ -205,8 +218,8 @@ def _draw_along(sheet: _Sheet, axis: Axis, place: _Place) -> None:
 
 def _draw_upwards(sheet: _Sheet, axis: Axis, place: _Place) -> None:
     sheet.path(f"M{place.left:.1f} {place.top:.1f}v{place.height:.1f}", "", MUTED, 0.7, (), 1.0)
-    for number, name in _ticks(axis, place.upwards, place.height / APART):
-        y = float(place.y(number))
+    for at, name in _ticks(axis, place.upwards, place.height / APART):
+        y = float(place.y(at))
         sheet.path(f"M{place.left:.1f} {y:.1f}h-3", "", MUTED, 0.7, (), 1.0)
         sheet.write(name, place.left - 5, y, "right", must=False)
     sheet.write(axis.label, place.left - 37, place.top + place.height / 2, "center", upright=True)
@@ -280,3 +293,134 @@ def _write_note(sheet: _Sheet, note: Note, place: _Place) -> None:
         y += LINE / 2 if note.y > 0.5 else -LINE / 2
     beside = {"left": 3.0, "center": 0.0, "right": -3.0}[note.align]
     sheet.write(note.text.strip(), x + beside, y, note.align, note.colour, upright=note.upright)
+
+
+BESIDE = 1.6
+"""Half the side of what is drawn around a patch without a window, in its larger semi-axis."""
+CORNERS, HEAD = 120, 0.1
+"""Of an oval; and the length of the head of an arrow, as a share of it."""
+
+
+def lengths(tree: DataTree, own: Mapping[str, float | None]) -> Data:
+    """Lengths of a scene, a row: the path, those that are known of a kind's `own`, and the contact, m."""
+    position = values(tree, POSITION)
+    found = {"record begins at x": float(position[0]), "record ends at x": float(position[-1]), **own}
+    found["semi-axis of the contact along"] = number(tree, contact.HERTZ_RADIUS)
+    found["semi-axis of the contact across"] = number(tree, contact.HERTZ_RADIUS_ACROSS)
+    if present(tree, contact.PX, contact.PY):
+        x, y = values(tree, contact.PX), values(tree, contact.PY)
+        found |= {"window along": _side(x), "window across": _side(y), "cell": float(x[1] - x[0])}
+    known = {name: value for name, value in found.items() if value is not None}
+    lines: dict[Any, Series] = {name: Series(name, "m", np.array([value])) for name, value in known.items()}
+    return Data(None, lines)
+
+
+def _side(cells: np.ndarray) -> float:
+    return float(cells[-1] - cells[0]) * len(cells) / (len(cells) - 1)
+
+
+def length_of(data: Data, name: str) -> float | None:
+    """A length of a scene, m, if it is known."""
+    return float(data.lines[name].values[0]) if name in data.lines else None
+
+
+def lengths_named(data: Data, word: str) -> list[float]:
+    """Lengths of a scene whose names begin with a word, m."""
+    return [float(line.values[0]) for name, line in data.lines.items() if str(name).startswith(word)]
+
+
+def rolled(data: Data) -> tuple[float, float]:
+    """Where the record begins and ends, m."""
+    begin, end = (length_of(data, f"record {word} at x") or 0.0 for word in ("begins", "ends"))
+    return begin, end
+
+
+def path_line(begin: float, end: float) -> Line:
+    """Draw what is rolled over."""
+    return Line(np.array([begin, end]), np.zeros(2), colour=VERMILLION, width=2.5)
+
+
+def places(x: Sequence[float], y: float) -> Line:
+    """Draw triangles where something is recorded."""
+    return Line(np.array(x), np.full(len(x), y), width=0.0, marker="^")
+
+
+def rolling_body(x: float, radius: float, unit: float, speed: float | None, inside: float) -> list[Mark]:
+    """Draw a ball or wheel that stands at `x`, its radius, and its speed in m/s; lengths in `unit` m."""
+    spoke = Line(np.array([x, x + 0.8 * radius]), np.array([radius, 1.6 * radius]), colour=MUTED, width=0.9)
+    name = Note(f"R = {engineering(radius * unit, 'm', 2)}", x, 0.8 * radius, align="center", colour=INK)
+    body = [*oval(x, radius, radius, radius, inside=inside), spoke, name]
+    if speed is None:
+        return body
+    ahead = Note(f"{speed:.3g} m/s", x + 1.42 * radius, radius, colour=INK)
+    return [*body, *arrow(x + 1.1 * radius, x + 1.4 * radius, radius), ahead]
+
+
+def patch_panel(data: Data, **place: Any) -> Panel:
+    """The contact from above: the window with its cells, and the nominal patch in it."""
+    along, across = (length_of(data, f"semi-axis of the contact {way}") for way in ("along", "across"))
+    if along is None:
+        return Panel(Axis(""), Axis(""), (), title="the contact from above", bare=True, **place)
+    across = across or along
+    sides = [
+        length_of(data, f"window {way}") or 2 * BESIDE * max(along, across) for way in ("along", "across")
+    ]
+    size, symbol = length_unit(max(sides))
+    wide, high = (side / size for side in sides)
+    marks: list[Mark] = []
+    if cell := length_of(data, "cell"):
+        side = cell / size
+        marks = [
+            ground(-wide / 2, -high / 2, wide, high, fill=""),
+            ground(-wide / 2, -high / 2, side, side, fill=INK, colour=""),
+            Note(f" a cell, {engineering(cell, 'm', 2)}", side - wide / 2, 2 * side - high / 2),
+        ]
+    marks += oval(0.0, 0.0, along / size, across / size)
+    marks += arrow(-0.45 * along / size, 0.45 * along / size, 0.0)
+    x = Axis(f"x / {symbol} (rolling direction →)", -0.54 * wide, 0.54 * wide)
+    y = Axis(f"y / {symbol}", -0.54 * high, 0.54 * high)
+    return Panel(x, y, tuple(marks), title="the contact from above", equal=True, **place)
+
+
+def patch_words(data: Data) -> str:
+    """Say what the drawing of the contact shows; a blank comes first."""
+    along, across = (length_of(data, f"semi-axis of the contact {way}") for way in ("along", "across"))
+    if along is None:
+        return ""
+    size = f"{engineering(2 * along, 'm')} along and {engineering(2 * (across or along), 'm')} across"
+    window = length_of(data, "window along")
+    inside = f", inside the window of {engineering(window, 'm')} that is solved" if window else ""
+    return f" From above: the patch of smooth bodies under the load, {size}{inside}."
+
+
+def ground(left: float, bottom: float, length: float, height: float, **look: Any) -> Shape:
+    """Draw a body as a rectangle, in the look of a `Shape`."""
+    x, y = left + length * np.array([0, 1, 1, 0]), bottom + height * np.array([0, 0, 1, 1])
+    return Shape(x, y, **{"fill": GRID} | look)
+
+
+def oval(
+    x: float,
+    y: float,
+    along: float,
+    across: float,
+    *,
+    dashes: Dashes = (),
+    inside: float = 0.25,
+    width: float = 1.4,
+) -> list[Mark]:
+    """Draw an ellipse by its semi-axes, or a circle, filled as densely as `inside` says."""
+    angle = np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False)
+    outline = (x + along * np.cos(angle), y + across * np.sin(angle))
+    fill = Shape(*outline, fill=BLUE, colour="", opacity=inside)
+    return [*([fill] if inside else []), Shape(*outline, colour=BLUE, width=width, dashes=dashes)]
+
+
+def arrow(left: float, right: float, y: float, colour: str = INK) -> list[Mark]:
+    """Draw an arrow to the right."""
+    head = HEAD * (right - left)
+    shaft = Line(np.array([left, right]), np.array([y, y]), colour=colour, width=1.0)
+    tip = Line(
+        right - np.array([head, 0, head]), y + np.array([head, 0, -head]) / 2, colour=colour, width=1.0
+    )
+    return [shaft, tip]

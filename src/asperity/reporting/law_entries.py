@@ -10,9 +10,8 @@ from typing import Any
 
 from xarray import DataTree
 
-from asperity.reporting.chart import Dashes
+from asperity.reporting.chart import COLOURS, LAW_COLOURS, Dashes
 from asperity.reporting.data import json_list, present
-from asperity.reporting.style import COLOURS, LAW_COLOURS
 from asperity.schema import Entry, provenance
 from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES
 

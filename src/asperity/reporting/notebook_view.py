@@ -9,11 +9,10 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.reporting.axes import band_axis, levels_axis
-from asperity.reporting.chart import Area, Axis, Chart, Line, Mark, Panel
+from asperity.reporting.chart import Area, Axis, Chart, Line, Mark, Panel, envelope
 from asperity.reporting.data import engineering, force_unit, json_list, laws, of_law, present, stated, values
+from asperity.reporting.force_figures import main_limits, time_unit
 from asperity.reporting.law_entries import law_entry, law_style
-from asperity.reporting.style import envelope
-from asperity.reporting.time_figures import main_limits, time_unit
 from asperity.schema import provenance
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, LONGEST_LOSS, TIME
 from asperity.schema.spectra import BAND, FORCE_LEVEL

@@ -1,31 +1,130 @@
-"""The page: everything that the template shows, collected from a result tree."""
+"""Templates of pages, and a figure as they take it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 from xarray import DataTree
 
+from asperity import __version__
+from asperity.printable import printable
 from asperity.reporting.chapter import Chapter
-from asperity.reporting.chart import Chart
-from asperity.reporting.convergence import setting_names
-from asperity.reporting.data import json_list, missing, stated
+from asperity.reporting.chart import Chart, Line, colour_variables
+from asperity.reporting.data import json_attribute, json_list, missing, stated
 from asperity.reporting.drawing import svg_of
-from asperity.reporting.headline import Answers
-from asperity.reporting.law_entries import law_colours, law_entries
-from asperity.reporting.lights import lights, validity
-from asperity.reporting.literature import literature, origins
+from asperity.reporting.headline import Answers, lights, validity
+from asperity.reporting.law_entries import law_colours, law_entries, page_colours
 from asperity.reporting.part import Data, Part
-from asperity.reporting.payload import digest_of, numbers_table
+from asperity.reporting.payload import (
+    chart_script,
+    chart_style,
+    charts_json,
+    digest_of,
+    numbers_table,
+    script_digest,
+)
 from asperity.reporting.tables import ReportTable
-from asperity.reporting.templates import PageFigure, whole_page
+from asperity.reporting.uncertainty import setting_names
 from asperity.schema import provenance
+
+_UNITS = "[kM]?N|k?Hz|dB|%|[µmk]?m|m/s|[GM]?Pa|[µm]?s|mm²|µm²|g"
+
+
+@dataclass(frozen=True, eq=False)
+class PageFigure:
+    """A figure of a page, which the script of the page draws unless it is a `drawing`."""
+
+    name: str
+    title: str
+    caption: str
+    chart: Chart
+    numbers: list[ReportTable] = field(default_factory=list)  # shown where no script runs
+    file: str = ""  # with its numbers, beside the page
+    drawing: Markup | None = None  # elements of the page
+
+
+def whole_page(name: str, charts: Mapping[str, Chart], colours: Mapping[str, str], **told: object) -> str:
+    """Fill a template with what is `told`, as one self-contained HTML text.
+
+    Styles, charts and the script are inside; nothing is loaded from elsewhere, and no other script may run.
+    """
+    text = page_template(name).render(
+        charts=Markup(charts_json(charts, colours)),
+        script=Markup(chart_script()),
+        script_style=Markup(chart_style()),
+        digest=script_digest(),
+        light=Markup(colour_variables(dark=False, colours=colours)),
+        dark=Markup(colour_variables(dark=True, colours=colours)),
+        **told,
+    )
+    return printable(text, lines=True)
+
+
+@cache
+def page_template(name: str) -> Template:
+    """A template of this package, which writes text of others so that it is seen and does nothing."""
+    environment = Environment(
+        loader=PackageLoader("asperity.reporting", ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["unbroken"] = _unbroken
+    return environment.get_template(name)
+
+
+def _unbroken(text: str) -> str:
+    """Keep numbers and their units on one line."""
+    return re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
+
+
+_OF_A_KEY = re.compile(r"([a-z_]+): (.+)", re.DOTALL)
+"""Where the value of a key comes from: ``"pad_damping: published together with …"``."""
+
+
+def literature(tree: DataTree) -> list[str]:
+    """The program in the version of a run, then the sources of what it computed, one text each."""
+    version = stated(tree, provenance.ASPERITY_VERSION) or "of unknown version"
+    own = f"asperity {version}: rough contact reduced to a moving point force. The asperity developers."
+    return [own, *(source for source in _sources(tree) if not _OF_A_KEY.fullmatch(source))]
+
+
+def origins(tree: DataTree) -> dict[str, list[str]]:
+    """Keys of the case whose values a named set gave, by where these come from."""
+    found: dict[str, list[str]] = {}
+    for told in filter(None, map(_OF_A_KEY.fullmatch, _sources(tree))):
+        found.setdefault(told[2], []).append(told[1])
+    return found
+
+
+def _sources(tree: DataTree) -> list[str]:
+    return [str(text) for text in json_attribute(tree, provenance.CITATIONS, [])]
+
+
+def figures_page(title: str, summary: str, figures: Sequence[PageFigure], files: Mapping[str, str]) -> str:
+    """The page as one self-contained HTML text, with links to files beside it, by what they are."""
+    charts = {figure.name: figure.chart for figure in figures}
+    marks = (mark for chart in charts.values() for panel in chart.panels for mark in panel.marks)
+    colours = page_colours(mark.colour for mark in marks if isinstance(mark, Line) and mark.law)
+    return whole_page(
+        "figures.html.jinja",
+        charts,
+        colours,
+        title=title,
+        summary=summary,
+        version=__version__,
+        files=files,
+        figures=figures,
+    )
+
 
 SUMMARY_FIGURES = 3
 """That a summary shows."""

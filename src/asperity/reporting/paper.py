@@ -18,6 +18,10 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLo
 from matplotlib.transforms import ScaledTranslation, blended_transform_factory
 
 from asperity.reporting.chart import (
+    GRID,
+    INK,
+    MUTED,
+    WIDE,
     Area,
     Axis,
     Boxes,
@@ -30,10 +34,10 @@ from asperity.reporting.chart import (
     Rules,
     Second,
     Shape,
+    limits,
+    rows_of,
 )
 from asperity.reporting.data import engineering, power_of_ten
-from asperity.reporting.extent import limits, rows_of
-from asperity.reporting.style import GRID, INK, MUTED, WIDE
 
 RC: dict[Any, Any] = {
     "svg.fonttype": "none",

@@ -6,12 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.chart import Axis, Chart, Line, Panel
+from asperity.reporting.chart import BLUE, MUTED, Axis, Chart, Line, Panel
 from asperity.reporting.data import engineering, number, present, stored_variable, values
 from asperity.reporting.part import Data, Part, present_series, series
-from asperity.reporting.style import BLUE, MUTED
 from asperity.reporting.tables import Cell, ReportTable, in_percent, text_cell
-from asperity.reporting.texture import SECOND_DASHES, length_unit
+from asperity.reporting.texture_figures import SECOND_DASHES, length_unit
 from asperity.schema import contact, surface
 
 STRETCH = 10.0

@@ -1,28 +1,135 @@
-"""A figure for each swept key of a study: what was asked for over it, and the force level in bands."""
+"""Figures of studies, seeds and optimised textures."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 import xarray
+from numpy.typing import NDArray
 
-from asperity.reporting.axes import band_axis, doubtful_boxes, words_axis
-from asperity.reporting.chart import Axis, Boxes, Chart, Line, Mark, Numbers, Panel
-from asperity.reporting.data import written_units
-from asperity.reporting.spectrum_figures import main_last
-from asperity.reporting.style import INK, sequence_styles
-from asperity.reporting.typed import typed_unit, typed_values, typed_words
+from asperity.reporting.axes import EDGE, band_axis, doubtful_boxes, levels_axis, words_axis
+from asperity.reporting.chart import (
+    INK,
+    MUTED,
+    Area,
+    Axis,
+    Boxes,
+    Chart,
+    Dashes,
+    Line,
+    Mark,
+    Numbers,
+    Panel,
+    Second,
+    sequence_styles,
+)
+from asperity.reporting.data import typed_unit, typed_values, typed_words, written_units
+from asperity.reporting.force_figures import main_last
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
-from asperity.spectra import say_little
+from asperity.spectra import nominal_length, say_little
+
+MOST_PANELS = 6
+"""Members of other keys that are drawn; the CSV file has all of them."""
+_ENDS = ("", "_low", "_high")
+
+
+def ensemble_chart(bands: xarray.Dataset, looks: Mapping[str, Mapping[str, Any]]) -> Chart:
+    """Force level of each law, mean and band, a panel for each value of the other keys.
+
+    The dataset is from `asperity.prediction_band`, whose ``meaning`` is the caption; looks of lines by law.
+    """
+    others = [str(dim) for dim in bands[FORCE_LEVEL.name].dims if dim not in (LAW.name, BAND.name)]
+    places = list(product(*(range(bands.sizes[dim]) for dim in others)))[:MOST_PANELS]
+    return Chart(
+        tuple(_band_panel(bands.isel(dict(zip(others, at, strict=True))), others, looks) for at in places)
+    )
+
+
+def _band_panel(here: xarray.Dataset, keys: list[str], looks: Mapping[str, Mapping[str, Any]]) -> Panel:
+    """Levels of one value of each of the other keys."""
+    centre = here[BAND.name].values
+    marks: list[Mark] = []
+    if BAND_TIME_PRODUCT.name in here:
+        little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
+        marks += doubtful_boxes(centre, little.values)
+    drawn = []
+    for law in main_last(map(str, here[LAW.name].values)):
+        mean, low, high = (here[f"{FORCE_LEVEL.name}{end}"].sel({LAW.name: law}).values for end in _ENDS)
+        look = dict(looks.get(law, {}))
+        shade = {key: look[key] for key in ("colour", "law") if key in look}
+        marks += [
+            Area(centre, low, high, opacity=0.2, **shade),
+            Line(centre, mean, law, **{"marker": "o"} | look),
+        ]
+        drawn += [low, high]
+    axis = levels_axis("contact force level / dB re 1 N", drawn, span=100.0)
+    title = ", ".join(f"{here[key].name} = {typed_words(here[key].expand_dims('place'))[0]}" for key in keys)
+    return Panel(band_axis(centre), axis, tuple(marks), title=title, height=3.2)
+
+
+BEFORE, AFTER = "before", "after"
+_DASHES: dict[str, Dashes] = {BEFORE: (1.5, 1.5), AFTER: ()}
+
+
+@dataclass(frozen=True, eq=False)
+class TextureBands:
+    """Numbers of the figure, by one-third octave of wavelength (b,)."""
+
+    wavelength: NDArray[np.float64]  # centres, m
+    levels: Mapping[str, NDArray[np.float64]]  # before and after, dB re 1 µm
+    lowest: NDArray[np.float64]  # bounds of the levels; NaN where a band was not to be changed
+    highest: NDArray[np.float64]
+    frequency: NDArray[np.float64]  # at which they are passed, Hz
+    # level of the response while they are passed, dB, by law, before and after
+    heard: Mapping[str, Mapping[str, NDArray[np.float64]]]
+
+
+def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mapping[str, str]) -> Chart:
+    """The texture above, and below what is heard of it in each band; colours by law."""
+    edges = bands.wavelength / EDGE, bands.wavelength * EDGE
+    bounds = np.stack([*edges, bands.lowest, bands.highest])
+    left, right, low, high = bounds[:, np.isfinite(bounds).all(axis=0)]
+    texture: list[Boxes | Line] = [Boxes(left, right, low, high, "allowed", MUTED, 0.15)]
+    response = []
+    for name, dashes in _DASHES.items():
+        texture.append(Line(*_steps(*edges, bands.levels[name]), name, INK, dashes))
+        for law, levels in bands.heard.items():
+            look = colours.get(law, INK), dashes
+            response.append(
+                Line(bands.wavelength, levels[name], f"{law}, {name}", *look, marker="o", law=law)
+            )
+    along = _wavelengths(bands)
+    found = [*bands.levels.values(), bands.lowest, bands.highest]
+    above = levels_axis("roughness level / dB re 1 µm", found)
+    return Chart(
+        (
+            Panel(along, above, tuple(texture), height=3.2),
+            Panel(along, Axis(f"in the band / {written_units(units)}"), tuple(response), heard, height=3.2),
+        )
+    )
+
+
+def _wavelengths(bands: TextureBands) -> Axis:
+    """Bands by wavelength, long waves on the left, and opposite the frequency at which they are passed."""
+    axis = band_axis(np.sort(bands.wavelength), "one-third octave of wavelength", nominal_length)
+    speed = float(np.median(bands.wavelength * bands.frequency))
+    second = Second("frequency at which it is passed", speed, inverse=True, unit="Hz")
+    return replace(axis, low=axis.high, high=axis.low, second=second, linked="wavelength")
+
+
+def _steps(left: Numbers, right: Numbers, level: Numbers) -> tuple[Numbers, Numbers]:
+    """A line that keeps its height within each band."""
+    order = np.argsort(left)
+    return np.stack([left, right], axis=1)[order].ravel(), np.repeat(level[order], 2)
+
 
 MOST_LINES = 6
 """Values of other keys, or bands of one, that are told apart; the CSV file has all."""
-MOST_PANELS = 6
 """Quantities in a figure; the table has all."""
 PLACES = ("sensor", "point")
 """Dimensions over which levels are averaged; other words, as what radiates, are told apart."""

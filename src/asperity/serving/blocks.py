@@ -7,10 +7,10 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+from asperity.reporting.chart import COLOURS, colour_variables
+from asperity.reporting.page import PageFigure, page_template
 from asperity.reporting.payload import chart_style, charts_json
-from asperity.reporting.style import COLOURS, colour_variables
 from asperity.reporting.tables import ReportTable
-from asperity.reporting.templates import PageFigure, page_template
 
 
 def told_blocks(blocks: Sequence[PageFigure | ReportTable]) -> dict[str, str]:

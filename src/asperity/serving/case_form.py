@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from asperity.arguments import shown
-from asperity.config.describing import CaseKey, entries
+from asperity.config.describing import CaseKey, entries, toml_value
 from asperity.config.form import extra_of
 from asperity.config.keys import (
     Choice,
@@ -26,7 +26,6 @@ from asperity.config.keys import (
     value_kind,
 )
 from asperity.config.single_keys import entry_of
-from asperity.config.writing import toml_value
 from asperity.errors import InputError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import kind_named

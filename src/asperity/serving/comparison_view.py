@@ -7,8 +7,7 @@ from typing import Any
 
 from asperity.kinds.comparing import compare, compared_levels, named_runs, shown_levels
 from asperity.reporting.comparison import compared
-from asperity.reporting.comparison_page import compared_sections
-from asperity.reporting.comparison_table import summary
+from asperity.reporting.comparison_page import compared_sections, summary
 from asperity.serving.blocks import told_blocks
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
+from asperity.reporting.chart import COLOURS
 from asperity.reporting.data import (
     json_list,
     laws,
@@ -19,11 +20,9 @@ from asperity.reporting.data import (
     stated,
     values,
 )
+from asperity.reporting.force_figures import FORCE_BANDS, FORCE_ENVELOPE
 from asperity.reporting.law_entries import law_colours, law_entries
 from asperity.reporting.page import page_figure
-from asperity.reporting.spectrum_figures import FORCE_BANDS
-from asperity.reporting.style import COLOURS
-from asperity.reporting.time_figures import FORCE_ENVELOPE
 from asperity.results import read_result
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME

@@ -20,14 +20,13 @@ from asperity.arguments import file_path, shown
 from asperity.config.case import Case
 from asperity.config.chosen import shared_lengths
 from asperity.config.content import content, described_value, file_digest, holds_memory
-from asperity.config.describing import CaseKey, in_toml, value_in_toml
+from asperity.config.describing import CaseKey, in_toml, toml_text, value_in_toml
 from asperity.config.parsing import FROM_PYTHON, Origin, plain_data, read_definition, read_toml
 from asperity.config.single_keys import entry_of, reader_of, unit_of
-from asperity.config.writing import toml_text
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import case_of, kind_named
 from asperity.reference.materials import Material
-from asperity.reporting.typed import TYPED_FACTOR, TYPED_UNIT
+from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
 from asperity.store import content_key
 from asperity.units import factor, unit_in
 

@@ -17,7 +17,7 @@ from asperity.arguments import nearest, shown
 from asperity.config.content import described_value
 from asperity.errors import InputError
 from asperity.kinds import KINDS
-from asperity.reporting.typed import typed_unit, typed_values
+from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
 from asperity.schema import contact, rolling, spectra
 from asperity.studies.definition import Member, Study

@@ -13,14 +13,14 @@ from asperity.kinds.wheel_on_rail.figures.roughness import ROUGHNESS_LEVELS
 from asperity.kinds.wheel_on_rail.figures.scene import TRACK_SCENE
 from asperity.kinds.wheel_on_rail.figures.track import TRACK
 from asperity.reporting.chapter import CONTACT, LAWS, Chapter
+from asperity.reporting.force_figures import FORCE_ENVELOPE
 from asperity.reporting.headline import force_answers
 from asperity.reporting.tables import (
     homogeneity_table,
     loss_table,
     statistics_table,
 )
-from asperity.reporting.texture import TEXTURE
-from asperity.reporting.time_figures import FORCE_ENVELOPE
+from asperity.reporting.texture_figures import TEXTURE
 
 CHAPTERS = (
     Chapter(

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from asperity.reporting.chapter import CONTACT, LAWS, Chapter
+from asperity.reporting.force_figures import FORCE_BANDS, FORCE_ENVELOPE, FORCE_PIECE, FORCE_SPECTRUM
 from asperity.reporting.headline import force_answers
-from asperity.reporting.spectrum_figures import FORCE_BANDS, FORCE_SPECTRUM
 from asperity.reporting.tables import (
     homogeneity_table,
     loss_table,
     statistics_table,
 )
-from asperity.reporting.texture import TEXTURE as TEXTURE_PARTS
-from asperity.reporting.time_figures import FORCE_ENVELOPE, FORCE_PIECE
+from asperity.reporting.texture_figures import TEXTURE as TEXTURE_PARTS
 
 FORCE = Chapter(
     "force",

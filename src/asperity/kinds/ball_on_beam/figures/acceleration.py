@@ -9,17 +9,16 @@ from xarray import DataTree
 
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_LEVEL, ACCELERATION_REFERENCE
 from asperity.kinds.ball_on_beam.schema import ACCELERATION_PSD as PSD
-from asperity.reporting.chart import Chart, Line
+from asperity.reporting.chart import Chart, Line, sequence_styles
 from asperity.reporting.data import laws, missing, of_law, stored_variable
-from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import (
+from asperity.reporting.force_figures import (
     DRAWN,
     laws_panel,
     narrow_level,
     shaded_words,
     spectrum_panel,
 )
-from asperity.reporting.style import sequence_styles
+from asperity.reporting.part import Data, Part, Series, series
 from asperity.schema.spectra import FREQUENCY
 
 _AXIS = "acceleration PSD / dB re (1 µm/s²)²/Hz"

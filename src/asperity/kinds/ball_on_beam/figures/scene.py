@@ -6,10 +6,9 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.kinds.ball_on_beam.schema import ROLLING_SENSOR
-from asperity.reporting.chart import Axis, Boxes, Chart, Mark, Panel, Shape
+from asperity.reporting.chart import GRID, INK, Axis, Boxes, Chart, Mark, Panel, Shape
 from asperity.reporting.data import case_quantity, case_words, number, present, values
-from asperity.reporting.part import Data, Part
-from asperity.reporting.scene import (
+from asperity.reporting.drawing import (
     arrow,
     ground,
     length_of,
@@ -23,7 +22,7 @@ from asperity.reporting.scene import (
     rolled,
     rolling_body,
 )
-from asperity.reporting.style import GRID, INK
+from asperity.reporting.part import Data, Part
 from asperity.schema.rolling import POSITION, SPEED
 
 

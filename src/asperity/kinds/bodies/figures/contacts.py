@@ -18,10 +18,9 @@ from asperity.kinds.bodies.schema import (
     SUM_PSD,
 )
 from asperity.reporting.axes import band_axis, levels_axis
-from asperity.reporting.chart import Chart, Line, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, Chart, Line, Panel, Rules, sequence_styles
 from asperity.reporting.data import engineering, laws, of_law, present, values
-from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import (
+from asperity.reporting.force_figures import (
     DRAWN,
     frequency_range,
     narrow_level,
@@ -30,7 +29,7 @@ from asperity.reporting.spectrum_figures import (
     shaded_words,
     spectrum_panel,
 )
-from asperity.reporting.style import INK, MUTED, sequence_styles
+from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FREQUENCY
 from asperity.spectra import energy_sum

@@ -8,11 +8,10 @@ from xarray import DataTree
 
 from asperity.kinds.bodies.figures.contacts import tone_rules, tones_words
 from asperity.kinds.bodies.schema import BODY_ACCELERATION_PSD, BODY_REFERENCE, SPECTRA_DEGREE
-from asperity.reporting.chart import Chart, Line
+from asperity.reporting.chart import Chart, Line, sequence_styles
 from asperity.reporting.data import laws, of_law, stored_variable
+from asperity.reporting.force_figures import DRAWN, narrow_level, shaded_words, spectrum_panel
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import DRAWN, narrow_level, shaded_words, spectrum_panel
-from asperity.reporting.style import sequence_styles
 from asperity.schema.spectra import FREQUENCY
 
 MOST_LINES = 6

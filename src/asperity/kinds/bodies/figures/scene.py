@@ -5,10 +5,9 @@ from __future__ import annotations
 from xarray import DataTree
 
 from asperity.kinds.bodies.schema import OFFSET, ROLLING_SENSOR
-from asperity.reporting.chart import Axis, Chart, Mark, Panel
+from asperity.reporting.chart import MUTED, Axis, Chart, Mark, Panel
 from asperity.reporting.data import case_quantity, case_words, engineering, present, values
-from asperity.reporting.part import Data, Part
-from asperity.reporting.scene import (
+from asperity.reporting.drawing import (
     arrow,
     ground,
     length_of,
@@ -21,7 +20,7 @@ from asperity.reporting.scene import (
     places,
     rolled,
 )
-from asperity.reporting.style import MUTED
+from asperity.reporting.part import Data, Part
 from asperity.schema.rolling import POSITION
 
 

@@ -11,21 +11,23 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.marks import pinned_pinned_split, sleeper_tones, split_rules
 from asperity.reporting.axes import levels_axis, linear_frequency_axis
-from asperity.reporting.chart import Chart, Line, Panel
+from asperity.reporting.chart import Chart, Line, Panel, decibels
 from asperity.reporting.data import engineering, laws, number, of_law, present, values
-from asperity.reporting.law_entries import law_style
-from asperity.reporting.part import Data, Part, Series, by_law, series
-from asperity.reporting.spectrum_figures import (
+from asperity.reporting.force_figures import (
     IN_FREQUENCY,
     REFERENCE_STYLE,
     Spectrum,
+    bars_words,
+    cut_off,
     force_bands,
+    forces_chart,
+    forces_data,
     main_last,
     shaded_bands,
     shaded_words,
 )
-from asperity.reporting.style import decibels
-from asperity.reporting.time_figures import bars_words, cut_off, forces_chart, forces_data
+from asperity.reporting.law_entries import law_style
+from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.schema.spectra import BAND, FORCE_PSD, FREQUENCY
 

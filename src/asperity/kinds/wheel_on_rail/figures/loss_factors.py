@@ -7,10 +7,21 @@ from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.axes import EDGE, band_axis, log_axis
-from asperity.reporting.chart import Axis, Boxes, Chart, Line, Panel, Rules
+from asperity.reporting.chart import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    VERMILLION,
+    Axis,
+    Boxes,
+    Chart,
+    Line,
+    Panel,
+    Rules,
+)
 from asperity.reporting.data import engineering, number, stored_variable, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
-from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION
 
 BAND, FORCE, RAIL = schema.TRACK_BAND, schema.LOSS_FACTOR_FORCE_ERROR, schema.LOSS_FACTOR_RAIL_ERROR
 CONSTANT, STIFFNESS, LOSS = schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR

@@ -6,9 +6,8 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
-from asperity.reporting.chart import Note, Rules
+from asperity.reporting.chart import INK, Note, Rules
 from asperity.reporting.data import number, present, values
-from asperity.reporting.style import INK
 from asperity.schema.rolling import POSITION, SPEED, TIME
 
 _NAMES = (

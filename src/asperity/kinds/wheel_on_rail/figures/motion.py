@@ -13,20 +13,21 @@ from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.force import around_peak
 from asperity.kinds.wheel_on_rail.figures.marks import natural_frequencies, natural_rules, sleeper_times
 from asperity.reporting.axes import levels_axis
-from asperity.reporting.chart import Axis, Chart, Line, Panel, Rules
+from asperity.reporting.chart import INK, Axis, Chart, Line, Panel, Rules
 from asperity.reporting.data import laws, number, of_law, present, stored_variable, values
-from asperity.reporting.law_entries import baselines_among, law_style, pulling
-from asperity.reporting.part import Data, Part, Series, by_law, series
-from asperity.reporting.spectrum_figures import (
+from asperity.reporting.force_figures import (
     DRAWN,
+    beyond_limits,
     frequency_range,
     main_last,
+    main_limits,
     narrow_level,
     shaded_words,
     spectrum_panel,
+    time_axis,
 )
-from asperity.reporting.style import INK
-from asperity.reporting.time_figures import beyond_limits, main_limits, time_axis
+from asperity.reporting.law_entries import baselines_among, law_style, pulling
+from asperity.reporting.part import Data, Part, Series, by_law, series
 from asperity.schema import Entry
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, RELATIVE_DISPLACEMENT, SPEED, TIME
 from asperity.schema.spectra import FREQUENCY

@@ -12,12 +12,11 @@ from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis, words_axis
-from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Note, Panel
+from asperity.reporting.chart import HATCHES, INK, MUTED, Axis, Boxes, Chart, Dashes, Line, Note, Panel
 from asperity.reporting.data import doubtful, laws, of_law, stored_variable
+from asperity.reporting.force_figures import doubtful_words, main_last, product_series
 from asperity.reporting.law_entries import baselines_among, law_entry, law_style
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import doubtful_words, main_last, product_series
-from asperity.reporting.style import HATCHES, INK, MUTED
 from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
 from asperity.schema import Entry
 from asperity.spectra import a_weighting

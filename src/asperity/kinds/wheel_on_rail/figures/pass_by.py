@@ -9,12 +9,11 @@ from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.axes import levels_axis, shade
-from asperity.reporting.chart import Axis, Boxes, Chart, Dashes, Line, Note, Panel, Rules
+from asperity.reporting.chart import INK, MUTED, Axis, Boxes, Chart, Dashes, Line, Note, Panel, Rules
 from asperity.reporting.data import laws, number, stored_variable, values
+from asperity.reporting.force_figures import main_last
 from asperity.reporting.law_entries import law_style
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import main_last
-from asperity.reporting.style import INK, MUTED
 from asperity.reporting.tables import Cell, ReportTable, text_cell
 
 LEVEL = schema.PASS_BY_LEVEL

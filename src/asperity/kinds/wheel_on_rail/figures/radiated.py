@@ -10,11 +10,10 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.noise import sources, told_level
 from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis
-from asperity.reporting.chart import Chart, Line, Panel
+from asperity.reporting.chart import BLUE, GREEN, INK, MUTED, VERMILLION, Chart, Line, Panel
 from asperity.reporting.data import doubtful, laws, of_law, stored_variable, values
+from asperity.reporting.force_figures import doubtful_words, product_series
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import doubtful_words, product_series
-from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION
 from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
 from asperity.spectra import a_weighting, energy_sum

@@ -10,11 +10,23 @@ from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail import schema
 from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis
-from asperity.reporting.chart import Axis, Chart, Dashes, Line, Note, Panel, Rules, Second
+from asperity.reporting.chart import (
+    BLUE,
+    INK,
+    MUTED,
+    VERMILLION,
+    Axis,
+    Chart,
+    Dashes,
+    Line,
+    Note,
+    Panel,
+    Rules,
+    Second,
+)
 from asperity.reporting.data import doubtful, engineering, nominal_band, number, stored_variable
+from asperity.reporting.force_figures import doubtful_words, product_series
 from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.spectrum_figures import doubtful_words, product_series
-from asperity.reporting.style import BLUE, INK, MUTED, VERMILLION
 from asperity.schema.contact import HERTZ_RADIUS
 from asperity.schema.rolling import SPEED
 

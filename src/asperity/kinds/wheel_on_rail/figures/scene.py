@@ -6,10 +6,9 @@ import numpy as np
 from xarray import DataTree
 
 from asperity.kinds.wheel_on_rail.schema import ROLLING_POINT
-from asperity.reporting.chart import Axis, Chart, Mark, Panel
+from asperity.reporting.chart import MUTED, Axis, Chart, Mark, Panel
 from asperity.reporting.data import case_quantity, number, present, values
-from asperity.reporting.part import Data, Part
-from asperity.reporting.scene import (
+from asperity.reporting.drawing import (
     ground,
     length_of,
     lengths,
@@ -21,7 +20,7 @@ from asperity.reporting.scene import (
     rolled,
     rolling_body,
 )
-from asperity.reporting.style import MUTED
+from asperity.reporting.part import Data, Part
 from asperity.schema.rolling import POSITION, SPEED
 
 RAIL, PAD, SLEEPER, BALLAST = 0.17, 0.02, 0.2, 0.12

@@ -12,10 +12,22 @@ from xarray import DataTree
 from asperity.kinds.wheel_on_rail import schema
 from asperity.kinds.wheel_on_rail.figures.marks import natural_rules
 from asperity.reporting.axes import frequency_axis, log_axis
-from asperity.reporting.chart import Axis, Chart, Dashes, Line, Panel, Rules
+from asperity.reporting.chart import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    VERMILLION,
+    Axis,
+    Chart,
+    Dashes,
+    Line,
+    Panel,
+    Rules,
+    sequence_styles,
+)
 from asperity.reporting.data import engineering, number, plain, present, stated, values
 from asperity.reporting.part import Data, Part, Series, present_series, series
-from asperity.reporting.style import BLUE, GREEN, INK, MUTED, VERMILLION, sequence_styles
 from asperity.schema import Entry
 
 FREQUENCY = schema.TRACK_FREQUENCY
