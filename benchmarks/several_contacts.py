@@ -3,8 +3,8 @@
 
 Balls a tenth of a metre apart on a beam of 4 m, and the wheels of a train on a rail, each over its own rough
 path. Timed is the rolling alone: structure, bodies and all contacts of every time step, and the mode shapes
-under the contacts. Beside it the same number of single runs by the compiled steppers of the two kinds, in
-turn in the same run, best of the rounds. CPU time of one thread.
+under the contacts. Beside it the same number of runs of one contact, in turn in the same run, best of the
+rounds. CPU time of one thread.
 
 The general integrator is SciPy's `solve_ivp` (LSODA, which the stiff contacts need; it stands for what is
 written by hand for such a problem) with the same modes, balls and Hertzian contacts over the same textures.

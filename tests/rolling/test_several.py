@@ -9,7 +9,6 @@ from shelf import Shelf
 
 from asperity.contact import Hertz
 from asperity.errors import CoarseSamplingWarning
-from asperity.kinds.ball_on_beam import roll as ball_on_beam
 from asperity.laws import Direct, HertzLaw, Linear
 from asperity.laws.layout import force as force_of
 from asperity.reduction.texture import StateTexture
@@ -63,27 +62,6 @@ def carriage(mass, load, places, inertia=None):
 
 
 # --- one contact -------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("beam", "modes"), [(BEAM, 14), (LONG, 40)], ids=["14 modes", "40 modes"])
-def test_one_ball_on_a_beam_is_that_of_the_kind(beam, modes):
-    assert len(beam.natural_frequencies) == modes
-    law = HertzLaw(2.4e10, rough(2e-8, 1e-5, 0.29), damping=2.0)
-    kind = ball_on_beam.roll_ball(beam, BALL, law, sensors=[0.5, 0.7], **PATH)
-    found = roll_bodies(beam, [rolling_ball()], [law], positions=[0.0], sensors=[0.5, 0.7], **PATH)
-    assert np.std(kind.contact_force) > 0.1 * BALL.static_load
-    assert not kind.contact_loss  # flights multiply what rounding leaves
-    same(found.contact_force[0], kind.contact_force)
-    same(found.over_displacement[0], kind.beam_displacement)
-    same(found.rolling_displacement[0], kind.ball_displacement)
-    same(-found.degrees_of_freedom[0][0], kind.ball_displacement)
-    same(found.acceleration, kind.acceleration)
-    same(found.positions[0], kind.position)
-    assert found.energy.throughput == pytest.approx(kind.energy.throughput, rel=1e-9)
-    assert found.energy.loads == pytest.approx(kind.energy.load, rel=1e-6)
-
-
-# --- symmetries --------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("count", [2, 4])
@@ -295,6 +273,7 @@ def test_the_energy_of_four_contacts_closes_contact_losses_included():
 # --- cost --------------------------------------------------------------------------------------
 
 
+@pytest.mark.filterwarnings("ignore::asperity.errors.LargeDeflectionWarning")
 def test_evaluations_for_each_contact_do_not_grow_with_their_number():
     beam = Beam.rectangular(4.0, 0.05, 0.01, STEEL, highest_frequency=2e3)
     law = HertzLaw(2.4e10, rough(2e-8, 1e-5, 0.05, 400000))

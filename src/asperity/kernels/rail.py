@@ -1,8 +1,7 @@
-"""Rolling on a rail, compiled: the rail by poles or by scattering, a wheel, and the contact between them.
+"""A rail under several contacts, compiled: what each force does at its own contact and at the others.
 
-The force varies linearly over a step. For that the wheel is exact, and so is the rail, whose kernel is
-the response to one hat-shaped piece of such a force. Rail and wheel are then affine in the force at the
-end of the step, and one scalar equation remains.
+A *channel* goes from the contact where a force acts to one that feels it, and carries a moving kernel for
+their distance, by poles or scattered. Contacts too far apart have none.
 """
 
 from __future__ import annotations
@@ -12,71 +11,57 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.modal import backward, solve_step
-from asperity.kernels.options import ENTERED, INNER, LOOP, REASSOCIATE, compiled
+from asperity.kernels.options import ENTERED, INNER, LOOP, ONCE, REASSOCIATE, compiled
 
 
-class Vehicle(NamedTuple):
-    """Wheel and rail: what does not change while rolling."""
+class Channels(NamedTuple):
+    """Channels p, in the order of their sources, of t kernels between n contacts."""
 
-    decay: NDArray  # (2 p,), poles of the rail, per step: real parts, then imaginary parts
-    # (cells + 1, 2 p), residues at equal places over one sleeper bay, both ends included, m/N, in the same
-    # order
-    residue: NDArray
-    # (cells + 1,), displacement at the end of a step for unit force at the end, m/N, at the same places
-    direct: NDArray
-    # (positions, taps), the kernel itself where the rail is scattered, m/N; else without rows
-    scattered: NDArray
-    flexible_decay: NDArray  # (w,), poles of the wheel per step
-    flexible_before: NDArray  # (w,), factors of the force at the start of the step, m/N
-    flexible_now: NDArray  # (w,), factors of the force at its end, m/N
-    flexible_compliance: float  # twice the real part of the sum of the last, m/N
-    mass: float  # of the wheel, kg
-    load: float  # of the wheel, N
-    time_step: float  # s
-    # compliance in series with the contact, m/N, that keeps a step stable which is too long for it
-    softening: float
-    first: float  # position at step zero, in sleeper bays
+    source: NDArray  # (p,), contact where the force acts
+    receiver: NDArray  # (p,), contact whose displacement it is
+    table: NDArray  # (p,), kernel
+    first: NDArray  # (n + 1,), first channel of each source, and their number
+    place: NDArray  # (n,), of the contacts at step zero, in sleeper bays
     stride: float  # distance rolled in a step, in sleeper bays
+    decay: NDArray  # (t, 2 q), poles of the kernels, per step: real parts, then imaginary parts
+    residue: NDArray  # (t, cells + 1, 2 q), at equal places over a bay, both ends included, m/N
+    now: NDArray  # (t, cells + 1), displacement at the end of a step for unit force there, m/N
+    scattered: NDArray  # (t, positions, taps), kernels that are scattered, m/N; of one tap if none is
+    scatters: NDArray  # (t,), whether a kernel is scattered
 
 
-class RailMotion(NamedTuple):
-    """What changes from step to step; the arrays are written in place."""
+class Channel(NamedTuple):
+    """One channel, as views."""
 
-    rail: NDArray  # (2 p,), states of the poles: real parts, then imaginary parts, m
-    ring: NDArray  # (taps,), displacement to come where the rail is scattered, m
-    flexible: NDArray  # (w,), states of the wheel's poles, m
-    wheel: NDArray  # (2,), rigid displacement, m, and velocity, m/s
-    force: NDArray  # (2,), contact force, N, now and one step ago
-    approach: NDArray  # (2,), as the law sees it, m, now and one step ago
-    # (2,), displacements of rail and flexible wheel at the end of the step without its last force, m
-    free: NDArray
-    counts: NDArray  # (3,), steps done, steps not converged, evaluations of the law
+    decay: NDArray
+    residue: NDArray
+    direct: NDArray  # as `now` of `Channels`
+    scattered: NDArray
+    first: float  # place of its source at step zero, in sleeper bays
+    stride: float
 
 
-class RailRecord(NamedTuple):
-    """Time histories (n,), written in place."""
+class ChannelMotion(NamedTuple):
+    """What is written for one channel."""
 
-    force: NDArray  # contact force, N
-    approach: NDArray  # m
-    wheel: NDArray  # displacement at the contact, m
-    rail: NDArray  # displacement at the contact, m
+    rail: NDArray
+    ring: NDArray
 
 
 @compiled(**INNER)
-def place(vehicle, step, cells):  # type: ignore[no-untyped-def]
+def place(channel, step, cells):  # type: ignore[no-untyped-def]
     """Cell of the bay in which the contact is at a step, and the share of the cell behind it."""
-    bays = vehicle.first + vehicle.stride * step
+    bays = channel.first + channel.stride * step
     at = (bays - np.floor(bays)) * cells
     cell = min(int(at), cells - 1)
     return cell, at - cell
 
 
-@compiled(**ENTERED)
-def direct_at(vehicle, step):  # type: ignore[no-untyped-def]
+@compiled(**INNER)
+def direct_at(channel, step):  # type: ignore[no-untyped-def]
     """Displacement of the rail at a step for unit force there, m/N."""
-    cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
-    return vehicle.direct[cell] + share * (vehicle.direct[cell + 1] - vehicle.direct[cell])
+    cell, share = place(channel, step, channel.direct.shape[0] - 1)
+    return channel.direct[cell] + share * (channel.direct[cell + 1] - channel.direct[cell])
 
 
 @compiled(**ENTERED)
@@ -92,14 +77,14 @@ def cubic_weights(t):  # type: ignore[no-untyped-def]
 
 
 @compiled(**INNER, **REASSOCIATE)
-def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
+def advance_poles(channel, motion, step, force):  # type: ignore[no-untyped-def]
     """Advance the rail by one step under the force at its start, N; return its displacement, m.
 
     That is the displacement at the end without the force there.
     """
-    cell, share = place(vehicle, step, vehicle.direct.shape[0] - 1)
-    state, decay = motion.rail, vehicle.decay
-    residue = vehicle.residue
+    cell, share = place(channel, step, channel.direct.shape[0] - 1)
+    state, decay = motion.rail, channel.decay
+    residue = channel.residue
     low, high = force * (1.0 - share), force * share
     poles = state.shape[0] // 2
     total = 0.0
@@ -114,15 +99,15 @@ def advance_poles(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
 
 
 @compiled(**INNER, **REASSOCIATE)
-def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
+def scatter(channel, motion, step, force):  # type: ignore[no-untyped-def]
     """Add to the ring what a force at a step, N, will do; the displacement of the next step, m.
 
     The start positions of the kernel are interpolated by a periodic cubic.
     """
-    rows, taps = vehicle.scattered.shape
-    cell, t = place(vehicle, step, rows)
-    before, after = vehicle.scattered[(cell + rows - 1) % rows], vehicle.scattered[(cell + 1) % rows]
-    here, beyond = vehicle.scattered[cell % rows], vehicle.scattered[(cell + 2) % rows]
+    rows, taps = channel.scattered.shape
+    cell, t = place(channel, step, rows)
+    before, after = channel.scattered[(cell + rows - 1) % rows], channel.scattered[(cell + 1) % rows]
+    here, beyond = channel.scattered[cell % rows], channel.scattered[(cell + 2) % rows]
     w0, w1, w2, w3 = cubic_weights(t)
     w0, w1, w2, w3 = w0 * force, w1 * force, w2 * force, w3 * force
     ring, now = motion.ring, step % taps
@@ -134,75 +119,63 @@ def scatter(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
     return ring[(step + 1) % taps]
 
 
-@compiled(**INNER)
-def advance_rail(vehicle, motion, step, force):  # type: ignore[no-untyped-def]
-    """Advance the rail by poles or by scattering; see `advance_poles`."""
-    if vehicle.scattered.shape[0] > 0:
-        return scatter(vehicle, motion, step, force)
-    return advance_poles(vehicle, motion, step, force)
+@compiled(**ONCE)
+def advance_channels(channels, motion, force, step):  # type: ignore[no-untyped-def]
+    """Advance the rail over the step that ends at `step`, under the forces (n,) at its start, N.
+
+    What the rail remembers, and its displacements at the end, without the forces there, are those of
+    `asperity.kernels.several.ContactsMotion`.
+    """
+    taps = motion.ring.shape[1]
+    for k in range(motion.rail_ahead.shape[0]):
+        motion.rail_ahead[k] = 0.0
+    for p in range(channels.source.shape[0]):
+        source, receiver, t = channels.source[p], channels.receiver[p], channels.table[p]
+        channel = Channel(
+            channels.decay[t],
+            channels.residue[t],
+            channels.now[t],
+            channels.scattered[t],
+            channels.place[source],
+            channels.stride,
+        )
+        kept = ChannelMotion(motion.rail[p], motion.ring[receiver])
+        if channels.scatters[t]:
+            scatter(channel, kept, step - 1, force[source])
+        else:
+            motion.rail_ahead[receiver] += advance_poles(channel, kept, step - 1, force[source])
+        motion.rail_now[p] = direct_at(channel, step)
+    if taps > 1:
+        for k in range(motion.rail_ahead.shape[0]):
+            motion.ring[k, (step - 1) % taps] = 0.0
+            motion.rail_ahead[k] += motion.ring[k, step % taps]
+
+
+@compiled(**ONCE)
+def press_rail(channels, motion, k, change):  # type: ignore[no-untyped-def]
+    """Add to the force of a contact at the end of the step, N."""
+    for p in range(channels.first[k], channels.first[k + 1]):
+        motion.rail_ahead[channels.receiver[p]] += motion.rail_now[p] * change
+
+
+@compiled(**ONCE)
+def rail_compliance(channels, motion, k):  # type: ignore[no-untyped-def]
+    """Displacement of the rail under a contact for one newton there at the end of the step, m/N."""
+    total = 0.0
+    for p in range(channels.first[k], channels.first[k + 1]):
+        if channels.receiver[p] == k:
+            total += motion.rail_now[p]
+    return total
 
 
 @compiled(**LOOP)
-def preload(vehicle, motion, force, steps):  # type: ignore[no-untyped-def]
-    """Let a constant force, N, roll up to step zero.
+def preload_channels(channels, motion, force, steps, before):  # type: ignore[no-untyped-def]
+    """Let constant forces (n,), N, roll up to step zero.
 
-    Returns the rail's displacement, m, at step zero and one step before, without the force at that step.
+    The displacements then are without the forces at that step; those one step earlier are written to
+    `before` (n,), m.
     """
-    now, before = 0.0, 0.0
-    for step in range(-steps, 0):
-        before = now
-        now = advance_rail(vehicle, motion, step, force)
-    return now, before
-
-
-@compiled(**INNER)
-def free_rail_step(vehicle, motion, step):  # type: ignore[no-untyped-def]
-    """Advance all but the last force of the step that ends at `step`; see `modal.free_beam_step`."""
-    h, force = vehicle.time_step, motion.force[0]
-    motion.free[0] = advance_rail(vehicle, motion, step - 1, force)
-    flexible = 0.0
-    for w in range(motion.flexible.shape[0]):
-        state = vehicle.flexible_decay[w] * motion.flexible[w] - vehicle.flexible_before[w] * force
-        motion.flexible[w] = state
-        flexible += 2.0 * state.real
-    motion.free[1] = flexible
-    wheel = motion.wheel[0] + h * motion.wheel[1] + h * h / vehicle.mass * (0.5 * vehicle.load - force / 3.0)
-    approach = wheel + flexible - motion.free[0]
-    compliance = direct_at(vehicle, step) + h * h / (6.0 * vehicle.mass) + vehicle.flexible_compliance
-    return backward(approach, compliance + vehicle.softening, motion.approach, h)
-
-
-@compiled(**INNER)
-def complete_rail_step(vehicle, motion, record, step, force, evaluations, converged):  # type: ignore[no-untyped-def]
-    """Apply the force at the end of a step, N, advance the state and write the records."""
-    h, mass, before = vehicle.time_step, vehicle.mass, motion.force[0]
-    motion.wheel[0] += h * motion.wheel[1]
-    motion.wheel[0] += h * h / mass * (0.5 * vehicle.load - before / 3.0 - force / 6.0)
-    motion.wheel[1] += h / mass * (vehicle.load - 0.5 * (before + force))
-    for w in range(motion.flexible.shape[0]):
-        motion.flexible[w] -= vehicle.flexible_now[w] * force
-    rail = motion.free[0] + direct_at(vehicle, step) * force
-    wheel = motion.wheel[0] + motion.free[1] - vehicle.flexible_compliance * force
-    motion.force[1], motion.force[0] = before, force
-    motion.approach[1], motion.approach[0] = motion.approach[0], wheel - rail - vehicle.softening * force
-    record.force[step], record.approach[step] = force, wheel - rail
-    record.wheel[step], record.rail[step] = wheel, rail
-    motion.counts[0] = step
-    motion.counts[1] += 0 if converged else 1
-    motion.counts[2] += evaluations
-
-
-@compiled(**LOOP)
-def roll_rail(vehicle, motion, record, law, stop, largest):  # type: ignore[no-untyped-def]
-    """Roll a compiled law from the state's step to `stop`; False from a force larger than `largest`, or NaN.
-
-    Then the state stands at that step.
-    """
-    for step in range(motion.counts[0] + 1, stop + 1):
-        free = free_rail_step(vehicle, motion, step)
-        guess = 2.0 * motion.force[0] - motion.force[1]
-        force, evaluations, converged = solve_step(law, step, free, vehicle.load, guess)
-        complete_rail_step(vehicle, motion, record, step, force, evaluations, converged)
-        if not abs(force) <= largest:
-            return False
-    return True
+    for step in range(1 - steps, 1):
+        for k in range(before.shape[0]):
+            before[k] = motion.rail_ahead[k]
+        advance_channels(channels, motion, force, step)

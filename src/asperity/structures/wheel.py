@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError, UnconvergedWarning
+from asperity.structures.body import Body
 from asperity.structures.modal_fit import fit_modes, warn_of_wide_lines
 
 DOUBTFUL_FIT = 1.0  # dB, from here on a fit is warned of
 REFUSED_FIT = 6.0  # dB, beyond it mass or unit cannot be right
+ROUNDING = 1e-9  # share of a residue that may be real
 
 
 def _no_modes() -> NDArray[np.complex128]:
@@ -226,6 +228,24 @@ class Wheel:
     def damping_ratios(self) -> NDArray[np.float64]:
         """Damping ratios of the flexible modes, shape (p,)."""
         return -self.poles.real / np.abs(self.poles)
+
+    @property
+    def body(self) -> Body:
+        """The same as a body on one contact.
+
+        Raises
+        ------
+        InputError
+            If a residue is not that of a real mode shape, −i/(2 m ω_d).
+        """
+        damped = self.poles.imag
+        if (np.abs(self.residues.real) > ROUNDING * np.abs(self.residues)).any() or (
+            self.residues.imag > 0.0
+        ).any():
+            allowed = "residues of real mode shapes, with no real part and a negative imaginary one"
+            raise InputError("residues of the wheel", "others", allowed, "Use Wheel.from_modes.")
+        masses = 0.5 / (np.abs(self.residues) * damped)
+        return Body.from_modes(self.mass, self.load, self.natural_frequencies, self.damping_ratios, masses)
 
     def receptance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Displacement per harmonic force at the contact point.

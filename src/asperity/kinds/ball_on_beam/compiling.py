@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.kernels import modal, waves
+from asperity.kernels import several, waves
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
@@ -17,7 +17,7 @@ from asperity.structures.body import Ball
 
 def compile_kernels(progress: Progress) -> None:
     """Call every kernel once on next to nothing, see `asperity.scenarios.compiling`."""
-    compiling.call_kernels(progress, (modal.roll_beam, waves.turn_on), roll_a_ball)
+    compiling.call_kernels(progress, (several.roll_contacts, waves.turn_on), roll_a_ball)
 
 
 def roll_a_ball() -> None:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from asperity.kinds.ball_on_beam.bodies import Bodies
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.compiling import compile_kernels
-from asperity.kinds.ball_on_beam.roll import Rolling, roll_ball
+from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import Law
 from asperity.progress import Progress
+from asperity.rolling.several import FirstContact
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.usual.compute import checkpoint_of
 from asperity.scenarios.usual.textures import recorded_time
@@ -27,7 +28,7 @@ class Computed:
     """Everything that was computed for a case, before it is laid out as a result."""
 
     case: BallOnBeam
-    chain: Chain[Rolling]  # textures, state functions, laws and runs
+    chain: Chain[FirstContact]  # textures, state functions, laws and runs
     ball: Ball
     beam: Beam
 
@@ -55,7 +56,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     watch.lap("compiled functions")
     duration = recorded_time(case, textures)
 
-    def roll_law(law: Law) -> Rolling:
+    def roll_law(law: Law) -> FirstContact:
         return roll_ball(
             beam,
             ball,

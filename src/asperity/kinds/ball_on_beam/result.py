@@ -69,16 +69,16 @@ def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:
 
 def _rolling(computed: Computed) -> xarray.Dataset:
     runs, stack = list(computed.chain.runs.values()), computed.chain.stacked
-    terms = list(runs[0].energy.terms())
+    terms = list(runs[0].energy.shares())
     return rolling_group(
         computed.chain,
         {
             schema.ROLLING_SENSOR: computed.case.beam.sensor_positions,
             schema.ACCELERATION: stack("acceleration"),
-            schema.BALL_DISPLACEMENT: stack("ball_displacement"),
-            schema.BEAM_DISPLACEMENT: stack("beam_displacement"),
+            schema.BALL_DISPLACEMENT: stack("rolling_displacement"),
+            schema.BEAM_DISPLACEMENT: stack("over_displacement"),
             schema.ENERGY_TERM: terms,
-            schema.ENERGY: [[run.energy.terms()[t] for t in terms] for run in runs],
+            schema.ENERGY: [[run.energy.shares()[t] for t in terms] for run in runs],
             schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
         },
     )

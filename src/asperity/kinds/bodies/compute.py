@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from asperity.kinds.bodies.bodies import RolledCase
 from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.bodies.compiling import compile_kernels
-from asperity.kinds.bodies.roll import FirstContact, first_of
 from asperity.kinds.bodies.textures import contacts_of, loads_of
 from asperity.laws import Law
 from asperity.progress import Progress
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.several import FirstContact, first_contact, roll_bodies
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.usual.compute import checkpoint_of
@@ -65,7 +64,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             progress=progress,
             checkpoint=checkpoint_of(first, prepared, store),
         )
-        return first_of(every)
+        return first_contact(every)
 
     chain = reduce_and_roll(prepared, roll_laws, store, progress, watch, others)
     return Computed(case, bodies, over, chain)

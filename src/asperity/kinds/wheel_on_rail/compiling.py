@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from asperity.kernels import rail
+from asperity.kernels import rail, several
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
@@ -18,7 +18,7 @@ from asperity.structures.wheel import Wheel
 
 def compile_kernels(progress: Progress) -> None:
     """Call every kernel once on next to nothing, see `asperity.scenarios.compiling`."""
-    compiling.call_kernels(progress, (rail.roll_rail, rail.preload), roll_a_wheel)
+    compiling.call_kernels(progress, (several.roll_contacts, rail.preload_channels), roll_a_wheel)
 
 
 def roll_a_wheel() -> None:

@@ -12,9 +12,10 @@ from asperity.kinds.wheel_on_rail.bodies import Bodies
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compiling import compile_kernels
 from asperity.kinds.wheel_on_rail.passing import passed_points
-from asperity.kinds.wheel_on_rail.roll import WheelRolling, roll_wheel
+from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import Law
 from asperity.progress import Progress
+from asperity.rolling.several import FirstContact
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.usual.compute import checkpoint_of
 from asperity.store import Store
@@ -32,7 +33,7 @@ class Computed:
     """Everything that was computed for a case, before it is laid out as a result."""
 
     case: WheelOnRail
-    chain: Chain[WheelRolling]  # textures, state functions, laws and runs
+    chain: Chain[FirstContact]  # textures, state functions, laws and runs
     wheel: Wheel
     track: Track
     kernel: MovingKernel  # response of the rail under the moving contact
@@ -56,7 +57,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         rail = poles_or_kernel(kernel, case.numerics.poles, cache=store)
     watch.lap("track")
 
-    def roll_law(law: Law) -> WheelRolling:
+    def roll_law(law: Law) -> FirstContact:
         return roll_wheel(
             rail,
             wheel,
@@ -70,6 +71,9 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         )
 
     chain = reduce_and_roll(prepared, roll_law, store, progress, watch)
-    points = passed_points(kernel, list(chain.runs.values()), case.point_positions, progress)
+    runs = [run.every for run in chain.runs.values()]
+    forces, settled = np.stack([run.history[0] for run in runs]), runs[0].history.shape[1] - len(runs[0].time)
+    origin = float(runs[0].history_start[0])
+    points = passed_points(kernel, forces, origin, case.point_positions, settled, progress)
     watch.lap("passed points")
     return Computed(case, chain, wheel, track, kernel, rail, points)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
@@ -14,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.roll import WheelRolling
 from asperity.progress import Progress
 from asperity.structures.moving_kernel import ZONES, HatResponse, MovingKernel, lagrange_weights
 from asperity.threads import one_thread_in_linear_algebra
@@ -34,15 +32,17 @@ DIFFERENCE = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
 
 def passed_points(
     kernel: MovingKernel,
-    runs: Sequence[WheelRolling],
+    forces: NDArray[np.float64],
+    origin: float,
     points: ArrayLike,
+    settled: int = 0,
     progress: Progress | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Displacement, m, and velocity, m/s, (runs, p, n), of the rail at fixed points under the forces of runs.
+    """Displacement, m, and velocity, m/s, (runs, p, n), of the rail at fixed points under moving forces.
 
-    Positive downwards, at the times of the runs, which go over the same path; points (p,), m from the sleeper
-    at zero. The force acts from the start of the run-in on; the velocity is the central difference of sixth
-    order (−0.2 % at an eighth of the sampling frequency).
+    Forces (runs, m), N, at every time step from a position `origin` on, m from the sleeper at zero, as are
+    the points (p,). Positive downwards, without the first `settled` time steps. The velocity is the central
+    difference of sixth order (−0.2 % at an eighth of the sampling frequency).
 
     Bay by bay: what the forces in it do at a point. By reciprocity G(x_f|x) = G(x|x_f), so that one source at
     the point gives the responses to forces at all places of a bay. Responses as in
@@ -53,11 +53,8 @@ def passed_points(
     places = np.atleast_1d(np.asarray(points, dtype=float))
     if not np.isfinite(places).all():
         raise InputError("points on the rail (m)", places, "finite numbers")
-    forces = np.stack([run.history for run in runs])
-    path = _Path(
-        forces, runs[0].history_start / kernel.spacing, kernel.speed * kernel.time_step / kernel.spacing
-    )
-    displacement = np.zeros((len(runs), len(places), forces.shape[1]))
+    path = _Path(forces, origin / kernel.spacing, kernel.speed * kernel.time_step / kernel.spacing)
+    displacement = np.zeros((len(forces), len(places), forces.shape[1]))
     near, far = _Near(kernel), _Far(kernel, path.steps_in_bay)
     passed = [_Point(near, far, float(place)) for place in places]
     reach = [point.reach(path.bays) for point in passed]
@@ -71,7 +68,6 @@ def passed_points(
                         point.add(displacement[:, i], path, bay, sent)
                 if progress is not None:
                     progress(bay + 1 - path.bays.start, len(path.bays), "the rail at the points passed")
-    settled = forces.shape[1] - len(runs[0].time)
     padded = np.pad(displacement, ((0, 0), (0, 0), (3, 3)), mode="reflect", reflect_type="odd")
     velocity = np.zeros_like(displacement)
     for offset, weight in enumerate(DIFFERENCE):

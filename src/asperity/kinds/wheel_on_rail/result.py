@@ -91,8 +91,8 @@ def _rolling(computed: Computed) -> xarray.Dataset:
         computed.chain,
         {
             schema.ROLLING_POINT: computed.case.point_positions,
-            schema.RAIL_DISPLACEMENT: stack("rail_displacement"),
-            schema.WHEEL_DISPLACEMENT: stack("wheel_displacement"),
+            schema.RAIL_DISPLACEMENT: stack("over_displacement"),
+            schema.WHEEL_DISPLACEMENT: stack("rolling_displacement"),
             schema.POINT_DISPLACEMENT: moved,
             schema.POINT_VELOCITY: velocity,
         },

@@ -323,7 +323,7 @@ def radiated_power(
     density[:, 0, used], density[:, 1, used] = rail * exciting, sleepers * exciting
     wheel = radiating_wheel(case)
     if wheel is not None:
-        _, motion = psd(computed.chain.stacked("wheel_displacement"), case.time_step, segment=segment)
+        _, motion = psd(computed.chain.stacked("rolling_displacement"), case.time_step, segment=segment)
         middle = 0.5 * track.sleeper_spacing
         compliance = np.abs(1.0 / stiffness + track.receptance(lines, middle, middle))
         square = modal_velocity_psd(computed.wheel, lines, exciting, motion[:, used], compliance)

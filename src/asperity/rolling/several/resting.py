@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.pointforce import Prepared
-from asperity.kernels.several import Assembly, ContactsMotion
-from asperity.kernels.several_rail import preload_channels
-from asperity.kernels.several_records import POWERS
+from asperity.kernels.rail import preload_channels
+from asperity.kernels.several import POWERS, Assembly, ContactsMotion
 from asperity.laws.base import SteppedLaw
 from asperity.rolling.beam import carried
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation

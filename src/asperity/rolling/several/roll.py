@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import Outcome
-from asperity.kernels.several import ContactsMotion
-from asperity.kernels.several_records import (
+from asperity.kernels.several import (
     BODY_DAMPING,
     CONTACT_DAMPING,
     CONTACT_WORK,
     OVER_DAMPING,
     SLOPE_WORK,
     THROUGHPUT,
+    ContactsMotion,
 )
 from asperity.laws.base import Law
 from asperity.progress import Progress
@@ -24,6 +24,7 @@ from asperity.rolling.events import ContactLoss, contact_losses
 from asperity.rolling.momentum import displaced_in_contact, free_motion, refuse_missed_load
 from asperity.rolling.outcome import flying
 from asperity.rolling.path import Path
+from asperity.rolling.rolled import Rolled
 from asperity.rolling.several.energy import Ledger
 from asperity.rolling.several.stand import Stand, stand
 from asperity.rolling.several.stepper import Remembered
@@ -45,6 +46,8 @@ class RolledBodies:
     positions: Array  # (c, n), of the contacts, m
     body: NDArray[np.int64]  # (c,), to which body each contact belongs
     contact_force: Array  # (c, n), N, compression positive
+    history: Array  # (c, m), contact force of run-in and run, N
+    history_start: Array  # (c,), position of its first value, m
     relative_displacement: Array  # (c, n), approach of the mean surfaces, m, positive closing
     over_displacement: Array  # (c, n), of what is rolled over, at the contacts, m, positive downwards
     rolling_displacement: Array  # (c, n), of what rolls, at the contacts, m, positive downwards
@@ -56,6 +59,43 @@ class RolledBodies:
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
     outcome: Outcome  # whether all steps converged
+
+
+@dataclass(frozen=True, eq=False)
+class FirstContact(Rolled):
+    """What the first contact of bodies that have rolled recorded, and beside it what all of them did."""
+
+    over_displacement: Array  # (n,), of what is rolled over, at the contact, m, positive downwards
+    rolling_displacement: Array  # (n,), of what rolls, at the contact, m, positive downwards
+    every: RolledBodies
+
+    @property
+    def acceleration(self) -> Array:
+        """Of what is rolled over (sensors, n), m/s², positive downwards."""
+        return self.every.acceleration
+
+    @property
+    def energy(self) -> Ledger:
+        """Where the work of the loads went, in run-in and run."""
+        return self.every.energy
+
+
+def first_contact(every: RolledBodies) -> FirstContact:
+    """Take the first contact of bodies that have rolled."""
+    return FirstContact(
+        time=every.time,
+        position=every.positions[0],
+        contact_force=every.contact_force[0],
+        relative_displacement=every.relative_displacement[0],
+        in_contact=every.in_contact[0],
+        contact_loss=every.contact_loss[0],
+        evaluations=every.evaluations,
+        unconverged_steps=every.unconverged_steps,
+        outcome=every.outcome,
+        over_displacement=every.over_displacement[0],
+        rolling_displacement=every.rolling_displacement[0],
+        every=every,
+    )
 
 
 def roll_bodies(
@@ -132,7 +172,10 @@ def roll_bodies(
     energies = standing.energies()
     restore(checkpoint, stepper, remembered)
     largest = standing.largest
-    advance_to_end(stepper, remembered, lambda: stepper.advance(largest), largest, progress, checkpoint)
+    try:
+        advance_to_end(stepper, remembered, lambda: stepper.advance(largest), largest, progress, checkpoint)
+    finally:  # why a motion may have run away
+        standing.under.judge(stepper.record.over)
     return _rolled(standing, whole, energies)
 
 
@@ -156,6 +199,8 @@ def _rolled(standing: Stand, whole: Path, energies: tuple[float, float, float]) 
         positions=np.array([path.positions[kept] for path in stepper.paths]),
         body=standing.steps.body,
         contact_force=record.force[:, kept],
+        history=record.force,
+        history_start=np.array([path.positions[0] for path in stepper.paths]),
         relative_displacement=record.approach[:, kept],
         over_displacement=record.over[:, kept],
         rolling_displacement=record.rolling[:, kept],

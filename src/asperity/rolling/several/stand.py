@@ -39,6 +39,7 @@ Array = NDArray[np.float64]
 class Stand:
     """Bodies that stand on a structure, ready to roll."""
 
+    under: Under
     bodies: Sequence[Body]
     steps: BodySteps
     stepper: ContactsStepper
@@ -88,7 +89,7 @@ def stand(
     stepper = ContactsStepper(
         system, resting.start(rest), _record(system, paths), modal, paths, laws, prepared
     )
-    return Stand(bodies, steps, stepper, largest, under.most_compliance(paths))
+    return Stand(under, bodies, steps, stepper, largest, under.most_compliance(paths))
 
 
 def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
@@ -157,8 +158,9 @@ def _limits(
         for stiffness, own, least in zip(rest.stiffness, direct, alternating, strict=True)
     ]
     yield from under.limits(max(resonances), float(rest.stiffness.max()), paths[0])
-    highest = max(float(body.natural_frequencies.max(initial=0.0)) for body in bodies)
-    yield "the highest mode of a body", highest, 4.0
+    natural = np.concatenate([body.natural_frequencies for body in bodies])
+    asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
+    yield "the highest mode of a body", float(asked.max(initial=0.0)), 4.0
     yield "the highest frequency asked for", highest_frequency or 0.0, under.steps_asked
 
 

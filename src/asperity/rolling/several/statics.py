@@ -88,6 +88,8 @@ def at_rest(
         for law, load in zip(laws, statics.loads, strict=True)
     ]
     x, most = statics.guess(np.array([approach for approach, _ in known])), FIRST_MOVE
+    if len(laws) == len(bodies) and statics.loads.min() > 0.0:  # each contact carries what presses its body
+        return Rest(x[: statics.held], statics.loads, *np.array(known).T)
     for _ in range(ITERATIONS):
         force, stiffness = _evaluated(laws, statics.approach(x))
         firm = np.maximum(stiffness, scale / LARGEST_STEP)

@@ -11,17 +11,20 @@ from numpy.typing import NDArray
 from asperity.kernels.modal import solve_step
 from asperity.kernels.pointforce import Prepared
 from asperity.kernels.several import (
+    CONTACT_DAMPING,
     SWEEPS,
     Assembly,
     ContactsMotion,
     ContactsRecord,
     begin_step,
+    book,
     complete_contacts,
+    damper_power,
     free_of,
+    observe_contacts,
     roll_contacts,
     take,
 )
-from asperity.kernels.several_records import CONTACT_DAMPING, book, damper_power, observe_contacts
 from asperity.laws.base import Law, SteppedLaw, settles
 from asperity.rolling.outcome import evaluation
 from asperity.rolling.path import Path

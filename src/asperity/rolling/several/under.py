@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.errors import InputError
-from asperity.kernels.several_rail import Channels
+from asperity.errors import InputError, LargeDeflectionWarning
+from asperity.kernels.rail import Channels
 from asperity.rolling.beam import PLACES, alternating_of_modes, most_compliance, resolved_step
 from asperity.rolling.path import Path
 from asperity.rolling.rail import RolledRail
 from asperity.rolling.rolled import Limit
+from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import STATIC, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_bay
 
 Array = NDArray[np.float64]
+
+
+LARGEST_DEFLECTION = 0.02
+"""Share of the length up to which a beam may be displaced: slopes are then below about 0.06."""
 
 
 class Under(Protocol):
@@ -55,6 +61,10 @@ class Under(Protocol):
 
     def alternating(self, paths: Sequence[Path]) -> tuple[float, float]:
         """Least alternating compliance of all contacts at once, and that of what throws bodies apart, m/N."""
+        ...
+
+    def judge(self, displaced: Array) -> None:
+        """Warn of displacements under the contacts (n, steps), m, that it is not made for."""
         ...
 
     def limits(self, resonance: float, stiffness: float, path: Path) -> Iterator[Limit]:
@@ -158,6 +168,21 @@ class OnModes:
         least = float(np.linalg.eigvalsh((shapes * each) @ shapes.transpose(0, 2, 1)).min())
         return least, least
 
+    def judge(self, displaced: Array) -> None:
+        """Compare the deflection of a beam with what beam theory allows."""
+        if not isinstance(self.over, Beam | SupportedBeam):
+            return
+        deflection = float(np.abs(displaced).max())
+        share = deflection / self.over.length
+        if share > LARGEST_DEFLECTION:
+            warnings.warn(
+                f"the beam is displaced by up to {deflection:.3g} m under the contact, "
+                f"{100 * share:.2g} % of its length: beam theory needs small slopes, as up to "
+                f"{100 * LARGEST_DEFLECTION:.0f} %; check load, section, length and support of the beam",
+                LargeDeflectionWarning,
+                stacklevel=4,
+            )
+
     def limits(self, resonance: float, stiffness: float, path: Path) -> Iterator[Limit]:
         """Contacts and modes."""
         yield "the contact resonance", resonance, 10.0
@@ -257,6 +282,9 @@ class OnRail:
     def alternating(self, paths: Sequence[Path]) -> tuple[float, float]:
         """An endless rail carries impacts away."""
         return RolledRail(self.rail.direct).alternating_compliance(paths[0]), 0.0
+
+    def judge(self, displaced: Array) -> None:
+        """Nothing: an endless rail bends little."""
 
     def limits(self, resonance: float, stiffness: float, path: Path) -> Iterator[Limit]:
         """As of one wheel on a rail."""

@@ -15,6 +15,9 @@ from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.usual.textures import recorded_time
 from asperity.store import Checkpoint, Store, content_key
 
+FORMAT = 2
+"""Raise it when a state of motion is laid out anew."""
+
 
 @dataclass(frozen=True, eq=False)
 class Computed:
@@ -65,4 +68,6 @@ def checkpoint_of(
         del case[name]
     surface = prepared.textures.surface
     rows = surface.rows(0, surface.shape[0])
-    return Checkpoint(store, content_key(law.name, __version__, rows, json.dumps(case, sort_keys=True)))
+    return Checkpoint(
+        store, content_key(law.name, FORMAT, __version__, rows, json.dumps(case, sort_keys=True))
+    )

@@ -1,0 +1,120 @@
+"""Whether the working tree gives the answers of a commit: contact forces of small cases of all kinds.
+
+    python benchmarks/same_answers.py ac0672f
+
+Both trees compute the same cases, each with kernels and kept work of its own. Printed is, for each case and
+law, the largest difference of the contact force relative to its rms. Where contact is lost a course is
+chaotic, and rounding alone grows by orders of magnitude within milliseconds.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).parents[1]
+LAWS = ["areal", "shifted", "table", "printed", "hertz-filtered", "linear"]
+TEXTURE = {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "32 um"}
+ON_BEAM = {
+    "laws": LAWS, "start": "0.3 m", "duration": "10 ms", "settling": "5 ms", "surface": TEXTURE,
+    "contact": {"window": "0.4 mm", "spacing": "16 um", "samples": 2, "sample_length": "2 mm"},
+}  # fmt: skip
+PRESSED = {"radius": "10 mm", "load": "20 N"}
+BALL = {"kind": "ball-on-beam", **ON_BEAM, "ball": PRESSED}
+WHEEL = {
+    "kind": "wheel-on-rail", "speed": "30 m/s", "duration": "50 ms", "settling": "20 ms",
+    "laws": ["shifted", "printed", "linear"], "surface": {"spectrum": "iso3095", "level": "-10 dB"},
+    "contact": {"spacing": "0.5 mm", "window": "20 mm"}, "numerics": {"poles": 60},
+}  # fmt: skip
+BODIES = {
+    "kind": "bodies", "over": "track", "speed": "30 m/s", "duration": "50 ms", "settling": "20 ms",
+    "laws": ["hertz-filtered"], "surface": {"spectrum": "iso3095", "level": "-10 dB"},
+    "track": {"name": "nordborg"}, "contact": {"spacing": "0.5 mm", "window": "20 mm"},
+    "numerics": {"highest_frequency": "2.5 kHz"},
+}  # fmt: skip
+BOGIE = {
+    "type": "bogie", "distance": "2.5 m", "radius": "0.46 m", "transverse_radius": "inf", "mass": "600 kg",
+    "masses": ["1500 kg"], "springs": ["0.6 MN/m"], "dampers": ["10 kN s/m"], "load": "60 kN",
+}  # fmt: skip
+GUIDE = {
+    "kind": "bodies", "over": "plane", "speed": 0.5, "duration": 0.02, "laws": ["hertz-filtered"],
+    "surface": {"spectrum": "iso3095", "level": "-48 dB"},
+    "body": {
+        "type": "carriage", "contacts": 3, "distance": "8 mm", "masses": ["0.6 kg"], "mass": "1 g",
+        "radius": "3 mm", "groove_radius": "3.12 mm", "load": "25 N", "inertia": "0.2 g m^2",
+    },
+    "contact": {"spacing": "8 um", "window": "0.9 mm", "damping": "20 N s/m"},
+}  # fmt: skip
+MODES = [[1000.0, 0.01, 300.0], [2500.0, 0.001, 150.0]]  # Hz, damping ratio, kg
+CASES = {
+    "ball": BALL,
+    "ball on a free beam": BALL | {"beam": {"support": "free"}},
+    "ball on a clamped beam": BALL | {"beam": {"support": "clamped", "loss_factor": 0.02}},
+    "ball, hardness and damping": BALL
+    | {"laws": ["areal", "table"], "contact": BALL["contact"] | {"hardness": "3 GPa", "damping": "5 N s/m"}},
+    "ball, direct": BALL | {"laws": ["direct"], "duration": "3 ms", "settling": "0 s"},
+    "ball that is lifted": BALL | {"surface": TEXTURE | {"rms": "0.3 um"}, "duration": "2 ms"},
+    "ball as a body": {"kind": "bodies", "over": "beam", **ON_BEAM, "body": PRESSED},
+    "wheel": WHEEL,
+    "wheel, scattered rail": WHEEL | {"numerics": {"kernel": "scatter"}},
+    "wheel with modes": WHEEL | {"wheel": {"modes": MODES}},
+    "wheel, loss factors": WHEEL | {"track": {"name": "nordborg-loss-factor"}},
+    "wheel, corrugation": WHEEL | {"surface": {"corrugation_wavelength": "50 mm", "corrugation": "5 um"}},
+    "wheel with a flat": WHEEL | {"laws": ["linear", "direct"], "wheel": {"flat_depth": "0.1 mm"}},
+    "bogie": BODIES | {"body": BOGIE},
+    "guide": GUIDE,
+}
+
+
+def forces(folder: str, only: str) -> None:
+    """Compute all cases, and keep their forces (law, …, time) in a folder."""
+    import warnings
+
+    import asperity
+
+    warnings.simplefilter("ignore")
+    for name, case in CASES.items():
+        if only in name:
+            if "modes" in case.get("wheel", {}):
+                case = case | {"wheel": {"modes": np.array(MODES)}}
+            rolling = asperity.run(case)["rolling"].to_dataset()
+            found = rolling["contact_forces" if "contact_forces" in rolling else "contact_force"]
+            np.savez(Path(folder) / f"{name}.npz", force=found.values, law=found["law"].values)
+            print(name, file=sys.stderr, flush=True)
+
+
+def main() -> None:
+    """Compare."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("commit", nargs="?", default="HEAD", help="what the working tree is compared with")
+    parser.add_argument("--only", default="", help="part of the names of the cases that are compared")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        archive = subprocess.run(
+            ["git", "archive", arguments.commit, "src"], cwd=ROOT, check=True, capture_output=True
+        )
+        subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
+        for name, source in (("old", Path(folder) / "src"), ("new", ROOT / "src")):
+            (own := Path(folder) / name).mkdir()
+            places = {"PYTHONPATH": source, "ASPERITY_CACHE": own / "kept"}
+            code = f"import same_answers; same_answers.forces({str(own)!r}, {arguments.only!r})"
+            places["PYTHONPATH"] = f"{source}{os.pathsep}{ROOT / 'benchmarks'}"
+            environment = os.environ | {key: str(value) for key, value in places.items()}
+            subprocess.run([sys.executable, "-c", code], env=environment, check=True)
+        for file in sorted((Path(folder) / "old").glob("*.npz")):
+            old, new = np.load(file), np.load(Path(folder) / "new" / file.name)
+            for law, before, after in zip(old["law"], old["force"], new["force"], strict=True):
+                first = np.s_[..., : min(before.shape[-1], after.shape[-1])]
+                change = np.abs(after[first] - before[first]).max() / np.std(before)
+                lost = 100.0 * np.mean(before <= 0.0)
+                print(f"{file.stem:28} {law:16} {change:9.1e}  out of contact {lost:.0f} %")
+
+
+if __name__ == "__main__":
+    main()
