@@ -20,7 +20,6 @@ from asperity.config.form import Section
 from asperity.decoding import lines_in, lines_of_cells, number_in, read_text
 from asperity.errors import InputError
 from asperity.files import amount
-from asperity.structures.modal_files import LARGEST_FILE, netcdf_numbers
 from asperity.surfaces.readers.guards import hostile
 from asperity.units import factor, unit_in_brackets
 
@@ -203,6 +202,8 @@ def read_columns(file: Path, columns: Sequence[tuple[str, str]]) -> NDArray[np.f
     Each column is a variable of that name, with _ for blanks, along one or more dimensions. Those of the
     table are all of these: a variable that lacks one is the same along it.
     """
+    from asperity.structures.modal_files import LARGEST_FILE
+
     if found := no_file(file):
         raise InputError(str(file), found, "a netCDF-4 file with a table", "Check the path.")
     size = file.stat().st_size
@@ -216,6 +217,8 @@ def read_columns(file: Path, columns: Sequence[tuple[str, str]]) -> NDArray[np.f
 def serve_columns(path: str, columns: list[tuple[str, str]], answers: BinaryIO) -> None:
     """Lay out the table of a netCDF-4 file and send it to the binary file `answers`."""
     import h5netcdf
+
+    from asperity.structures.modal_files import netcdf_numbers
 
     file = Path(path)
     with hostile(file.name, "netCDF-4"), h5netcdf.File(file, "r") as opened:
