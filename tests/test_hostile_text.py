@@ -13,9 +13,9 @@ import xarray as xr
 
 from asperity.arguments import listed, no_file, shown
 from asperity.config.describing import entries
-from asperity.config.keys import Quantity, value_kind
 from asperity.config.parsing import read_toml
 from asperity.config.tables import LEVELS, read_levels, read_table
+from asperity.config.values import Quantity, value_kind
 from asperity.decoding import number_in
 from asperity.errors import CaseError, ComputationError, InputError
 from asperity.files import alone_in, refuse_unwritable, write_bytes

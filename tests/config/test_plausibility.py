@@ -6,7 +6,7 @@ import pytest
 
 from asperity.config.describing import entries
 from asperity.config.form import extra_of
-from asperity.config.keys import Number, Quantity, value_kind
+from asperity.config.values import Number, Quantity, value_kind
 from asperity.errors import CaseError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of

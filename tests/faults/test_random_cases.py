@@ -10,7 +10,7 @@ from program import LONG
 import asperity
 from asperity.config.describing import entries
 from asperity.config.form import extra_of
-from asperity.config.keys import Choice, Number, Quantity, value_kind
+from asperity.config.values import Choice, Number, Quantity, value_kind
 from asperity.errors import AsperityError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import case_of
@@ -57,7 +57,7 @@ def drawn(entry, source):
     if not isinstance(kind, Quantity) or within is None or "tuple" in str(entry.field.annotation):
         return None
     limits = [quantity(limit, kind.dimension) for limit in within[:2]]
-    example = default or extra_of(entry.field)["example"].strip('"')
+    example = default or extra_of(entry.field)["example"]
     if not isinstance(example, str) or example == "inf":
         return None
     value = quantity(example, kind.dimension) * 10.0 ** source.uniform(-0.7, 0.7)

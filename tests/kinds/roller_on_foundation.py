@@ -14,8 +14,8 @@ from pydantic import BeforeValidator
 from asperity.config.case import Case, Law
 from asperity.config.chosen import NominalPatch
 from asperity.config.form import Section, key
-from asperity.config.keys import Choice, Force, Length, Mass, OwnOrNamed, Stiffness
 from asperity.config.sections import ContactCase, Numerics
+from asperity.config.values import Choice, Force, Length, Mass, OwnOrNamed, Stiffness
 from asperity.contact import Hertz
 from asperity.reference.materials import contact_modulus
 from asperity.rolling.ball import RollingBall
@@ -28,16 +28,16 @@ from asperity.structures.body import Ball
 class Roller(Section):
     """What rolls."""
 
-    radius: Length = key("25 mm", "radius", within=("10 um", "10 m", "rollers lie between"))
-    mass: Mass = key("0.5 kg", "mass", within=("1 mg", "1000 t", "rollers lie between"))
-    load: Force = key("30 N", "force that presses it down", within=("1 nN", "1 GN", "loads lie between"))
+    radius: Length = key("25 mm", "radius", "10 um to 10 m: rollers lie between")
+    mass: Mass = key("0.5 kg", "mass", "1 mg to 1000 t: rollers lie between")
+    load: Force = key("30 N", "force that presses it down", "1 nN to 1 GN: loads lie between")
     material: OwnOrNamed = key("steel", "material")
 
 
 class Foundation(Section):
     """What is rolled over."""
 
-    stiffness: Stiffness = key("5 MN/m", "stiffness", within=("1 N/m", "1 TN/m", "foundations lie between"))
+    stiffness: Stiffness = key("5 MN/m", "stiffness", "1 N/m to 1 TN/m: foundations lie between")
     material: OwnOrNamed = key("steel", "material of its surface")
 
 

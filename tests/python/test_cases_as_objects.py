@@ -13,7 +13,7 @@ import asperity
 from asperity import BallOnBeam, Bodies, HeightMap, Material, Profile, WheelOnRail
 from asperity.config.describing import entries
 from asperity.config.form import extra_of
-from asperity.config.keys import Choice, Flag, MaterialOrName, Number, Quantity, is_list, value_kind
+from asperity.config.values import Choice, Flag, MaterialOrName, Number, Quantity, is_list, value_kind
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import case_of, parse_case
 from asperity.units import quantity, written
@@ -217,7 +217,7 @@ def values_of(entry):
             st.sampled_from(["", "a book"]),
         )
         return st.sampled_from(["steel", "aluminium"]) | own
-    usual = extra["default"] if extra["default"] is not None else extra["example"].strip('"')
+    usual = extra["default"] if extra["default"] is not None else extra["example"]
     if isinstance(kind, Number) and not kind.whole and isinstance(usual, int | float):
         return st.floats(0.5, 1.0).map(lambda share: usual * share)
     if isinstance(kind, Quantity) and usual != "inf" and "[" not in str(usual):

@@ -80,7 +80,7 @@ def complete_sweep(context: click.Context, option: click.Parameter, incomplete: 
 def _keys(case: Path | None) -> dict[str, Sequence[str]]:
     """Keys of the kind of a case, of all kinds where that cannot be told, with the words they take."""
     from asperity.config.describing import entries
-    from asperity.config.keys import value_kind
+    from asperity.config.values import value_kind
 
     found: dict[str, Sequence[str]] = {}
     for kind in _kinds(case):

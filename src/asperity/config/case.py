@@ -7,13 +7,11 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import BeforeValidator
-
+from asperity.config import values
 from asperity.config.chosen import NominalPatch, choose_lengths
 from asperity.config.content import described_value
 from asperity.config.describing import in_toml, parameters, refused, toml_text
-from asperity.config.form import Section, key
-from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
+from asperity.config.form import Section, key, optional
 from asperity.config.sections import MOST_CELLS, ContactCase, Index, Numerics, Surface
 from asperity.errors import InputError
 from asperity.laws import names
@@ -27,7 +25,7 @@ RECORDED = 0.5
 STEPS_PER_PERIOD = 20  # of the highest frequency
 SAMPLING = 2.5  # points per period of the highest frequency, at least
 
-Law = Annotated[str, BeforeValidator(Choice(names))]
+Law = Annotated[str, values.Choice(names)]
 
 
 class Case(Section):
@@ -38,33 +36,25 @@ class Case(Section):
     """
 
     kind: str  # each kind declares its own
-    speed: Speed = key(
-        "1 m/s",
-        "rolling speed",
-        within=("0.1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
+    speed: values.Speed = key(
+        "1 m/s", "rolling speed", "0.1 mm/s to 1 km/s: slower rolling is static, and nothing rolls faster"
     )
     laws: tuple[Law, ...]  # each kind names its own
     seed: Index = key(1, "seed of everything random")
-    start: Position | None = key(
-        None,
+    start: values.Position | None = optional(
+        "0.2 m",
         "where on the path the record starts",
-        otherwise="after the run-in, which begins at 0 m",
-        example='"0.2 m"',
-        within=("0 m", "1000 km", "paths are shorter"),
+        "after the run-in, which begins at 0 m",
+        "0 m to 1000 km: paths are shorter",
     )
-    duration: Duration | None = key(
-        None,
-        "time that is recorded",
-        otherwise="0.5 s",
-        example='"1 s"',
-        within=("1 us", "1 h", "records lie between"),
+    duration: values.Duration | None = optional(
+        "1 s", "time that is recorded", "0.5 s", "1 us to 1 h: records lie between"
     )
-    settling: DurationOrZero | None = key(
-        None,
+    settling: values.DurationOrZero | None = optional(
+        "0.2 s",
         "time that is rolled before the record starts, so that the start from rest is forgotten",
-        otherwise="50 ms",
-        example='"0.2 s"',
-        within=("1 us", "1 h", "records lie between"),
+        "50 ms",
+        "1 us to 1 h: records lie between",
     )
     surface: Surface = key({}, "what is rolled over: a measured map, or synthesised roughness")
 

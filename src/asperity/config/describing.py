@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 
 from asperity.config.content import content, described_value, holds_memory
 from asperity.config.form import Section, extra_of, is_active
-from asperity.config.keys import GIVEN, Quantity, allowed_in, name_of_numbers, value_kind
+from asperity.config.values import GIVEN, Quantity, allowed_in, name_of_numbers, value_kind
 from asperity.errors import InputError
 from asperity.reference.materials import MATERIALS, Material
 from asperity.units import written
@@ -218,7 +218,7 @@ def _line(entry: CaseKey, written_out: Mapping[str, str]) -> str:
     lonely = companion and f"{home}.{companion}" not in written_out
     if companion:
         default += f"; goes with {companion}"
-    code = f"{entry.name} = {value if value is not None else extra_of(entry.field)['example']}"
+    code = f"{entry.name} = {_toml(extra_of(entry.field)['example']) if value is None else value}"
     if value is None or lonely:
         code = f"# {code}"
     allowed = allowed_in(entry.field).split(", with its unit")[0]

@@ -14,29 +14,40 @@ from pydantic.fields import FieldInfo
 
 from asperity.arguments import shown
 from asperity.config.content import content, described_value, holds_memory
-from asperity.config.keys import Limit, Problems, is_list, outside_limits, value_kind
+from asperity.config.values import Problems, is_list, outside_limits, value_kind
 from asperity.errors import InputError
 
 
-def key(
-    default: Any,
-    meaning: str,
-    *,
-    otherwise: str = "",
-    example: str = "",
-    goes_with: str = "",
-    within: tuple[Limit, Limit, str] | None = None,
-) -> Any:
-    """Describe a key of a case.
+def key(default: Any, meaning: str, within: str = "", *, goes_with: str = "") -> Any:
+    """Describe a key of a case that has a fixed default.
 
-    The default is as it would be written in TOML; without a fixed one it is None, `otherwise` says what
-    happens without the key, and `example` how it is written. `goes_with` is the key, ``key=value``, or keys
-    with " or " between them, without which this one has no meaning. `within` holds the least and the largest
-    plausible value, as they are written in TOML, and the reason.
+    Parameters
+    ----------
+    default
+        As it would be written in TOML.
+    meaning : str
+        What the key is.
+    within : str
+        The least and the largest plausible value, as they are written in TOML, and the reason:
+        ``"1 mm to 1 km: beams lie between"``.
+    goes_with : str
+        The key, ``key=value``, or keys with " or " between them, without which this one has no meaning.
     """
-    extra = {"otherwise": otherwise, "example": example, "goes_with": goes_with, "default": default}
-    if within is not None:
-        extra["within"] = within
+    return _described(default, meaning, within, goes_with=goes_with)
+
+
+def optional(
+    example: Any, meaning: str, otherwise: str = "", within: str = "", *, goes_with: str = ""
+) -> Any:
+    """Describe a key that may be left out: `otherwise` says what happens then; the rest is as in `key`."""
+    return _described(None, meaning, within, goes_with=goes_with, otherwise=otherwise, example=example)
+
+
+def _described(default: Any, meaning: str, within: str, **told: Any) -> Any:
+    extra = {"default": default, "example": None, "otherwise": "", **told}
+    if within:
+        limits, _, reason = within.partition(": ")
+        extra["within"] = (*limits.split(" to "), reason)
     return Field(default, description=meaning, json_schema_extra=extra)
 
 

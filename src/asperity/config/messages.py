@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel, ValidationError
 
 from asperity.arguments import nearest, shown
-from asperity.config.keys import Problems, allowed_in
+from asperity.config.values import Problems, allowed_in
 from asperity.errors import CaseError, InputError
 
 

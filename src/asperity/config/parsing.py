@@ -15,8 +15,8 @@ from pydantic import ValidationError
 
 from asperity import decoding
 from asperity.config.form import Section
-from asperity.config.keys import BACKSLASH
 from asperity.config.messages import case_error
+from asperity.config.values import BACKSLASH
 from asperity.errors import InputError
 
 C = TypeVar("C", bound=Section)

@@ -6,11 +6,9 @@ import os
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator
-
+from asperity.config import values
 from asperity.config.describing import toml_text
 from asperity.config.form import Section, key
-from asperity.config.keys import Angle, Choice, HeightUnit, Length, Name, Number, Position, YesNo
 from asperity.config.parsing import Origin, read_definition, read_toml, validated
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -23,23 +21,25 @@ STEPS = ("crop", "form", "longest", "shortest", "direction")
 class Recipe(Section):
     """How a measured file is read and prepared; steps are taken in the order of these keys."""
 
-    array: Name | None = key(None, "name of the array in a file that holds several")
-    index: Annotated[int, BeforeValidator(Number(at_least=0, whole=True))] | None = key(
+    array: values.Name | None = key(None, "name of the array in a file that holds several")
+    index: Annotated[int, values.Number(at_least=0, whole=True)] | None = key(
         None, "which one of an ensemble of maps, from 0"
     )
-    height_unit: HeightUnit | None = key(None, "unit of heights that carry none")
-    pixel: Length | None = key(None, "spacing of points that carry none")
-    pixel_unit: HeightUnit | None = key(None, "unit of coordinates that carry none")
-    decimal: Annotated[str, BeforeValidator(Choice((".", ",")))] | None = key(None, "decimal mark of a text")
-    spikes: YesNo = key(False, "take spikes for points without a height")
-    transpose: YesNo = key(False, "exchange x and y")
-    lines: YesNo | None = key(None, "take an array for lines side by side, or for a map")
-    fill: YesNo = key(False, "fill points without a height")
-    crop: tuple[Position, ...] | None = key(None, "x, y and both lengths of the piece of a map that is kept")
-    form: Annotated[str, BeforeValidator(Choice(FORMS))] | None = key(None, "form that is removed")
-    longest: Length | None = key(None, "nesting index of the L-filter: longer waves are removed")
-    shortest: Length | None = key(None, "nesting index of the S-filter: shorter waves are removed")
-    direction: Angle | None = key(None, "direction of rolling, from x towards y")
+    height_unit: values.HeightUnit | None = key(None, "unit of heights that carry none")
+    pixel: values.Length | None = key(None, "spacing of points that carry none")
+    pixel_unit: values.HeightUnit | None = key(None, "unit of coordinates that carry none")
+    decimal: Annotated[str, values.Choice((".", ","))] | None = key(None, "decimal mark of a text")
+    spikes: values.YesNo = key(False, "take spikes for points without a height")
+    transpose: values.YesNo = key(False, "exchange x and y")
+    lines: values.YesNo | None = key(None, "take an array for lines side by side, or for a map")
+    fill: values.YesNo = key(False, "fill points without a height")
+    crop: tuple[values.Position, ...] | None = key(
+        None, "x, y and both lengths of the piece of a map that is kept"
+    )
+    form: Annotated[str, values.Choice(FORMS)] | None = key(None, "form that is removed")
+    longest: values.Length | None = key(None, "nesting index of the L-filter: longer waves are removed")
+    shortest: values.Length | None = key(None, "nesting index of the S-filter: shorter waves are removed")
+    direction: values.Angle | None = key(None, "direction of rolling, from x towards y")
 
     @property
     def steps(self) -> dict[str, Any]:

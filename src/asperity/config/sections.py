@@ -9,98 +9,65 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, PlainValidator, model_validator
+from pydantic import model_validator
 
 from asperity.arguments import FORMS, MOST_PASSES, SHAKEDOWN, shown
+from asperity.config import values
 from asperity.config.content import holds_memory
-from asperity.config.form import Section, key
-from asperity.config.keys import (
-    Angle,
-    Approach,
-    Choice,
-    ChoiceOrFile,
-    ChosenLength,
-    Damping,
-    Duration,
-    File,
-    Frequency,
-    HeightUnit,
-    Length,
-    LengthUnit,
-    Level,
-    LineFile,
-    MapFile,
-    Name,
-    Number,
-    NumberOrWord,
-    Pressure,
-    Problems,
-    Quantity,
-    YesNo,
-)
+from asperity.config.form import Section, key, optional
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.units import factor, written
 
-LATERAL = (0.001, 1000000.0, 'beyond that it is the same all across: write "inf"')
+LATERAL = '0.001 to 1000000.0: beyond that it is the same all across: write "inf"'
 MOST_CELLS = 2048  # along one side of the window
 
-Index = Annotated[int, BeforeValidator(Number(at_least=0, at_most=10**9, whole=True))]
+Index = Annotated[int, values.Number(at_least=0, at_most=10**9, whole=True)]
 
 
 class MeasuredMap(Section):
     """A measured map, or an ensemble of them, and what its file does not say."""
 
-    file: MapFile | None = key(
-        None, "measured map: the samples, and the path where it is long enough", example='"beam.x3p"'
+    file: values.MapFile | None = optional(
+        "beam.x3p", "measured map: the samples, and the path where it is long enough"
     )
-    array: Name | None = key(
-        None,
-        "name of the array in a file that holds several",
-        otherwise="the only one",
-        example='"polished"',
-        goes_with="file",
+    array: values.Name | None = optional(
+        "polished", "name of the array in a file that holds several", "the only one", goes_with="file"
     )
-    height_unit: HeightUnit | None = key(
-        None, "unit of heights that carry none", otherwise="from the file", example='"um"', goes_with="file"
+    height_unit: values.HeightUnit | None = optional(
+        "um", "unit of heights that carry none", "from the file", goes_with="file"
     )
-    pixel: Length | None = key(
-        None,
+    pixel: values.Length | None = optional(
+        "1.5625 um",
         "spacing of points that carry none",
-        otherwise="from the file",
-        example='"1.5625 um"',
-        goes_with="file",
-        within=("0.1 nm", "10 mm", "atoms are 0.1 nm apart, and contacts are smaller than 10 mm"),
-    )
-    index: Index | None = key(
-        None,
-        "which one of an ensemble of maps, from 0",
-        otherwise="all of them",
-        example="0",
+        "from the file",
+        "0.1 nm to 10 mm: atoms are 0.1 nm apart, and contacts are smaller than 10 mm",
         goes_with="file",
     )
-    fill: YesNo = key(False, "fill points without a height", goes_with="file")
-    spikes: YesNo = key(
+    index: Index | None = optional(
+        0, "which one of an ensemble of maps, from 0", "all of them", goes_with="file"
+    )
+    fill: values.YesNo = key(False, "fill points without a height", goes_with="file")
+    spikes: values.YesNo = key(
         False,
         "take points that stand out of their neighbours by 8 standard deviations for points without a height",
         goes_with="file",
     )
-    recipe: Annotated[Path, PlainValidator(File())] | None = key(
-        None,
+    recipe: Annotated[Path, values.File()] | None = optional(
+        "recipe.toml",
         "file that says how the map is read and prepared, before anything else; 'asperity surface FILE "
         "--store recipe.toml' writes it",
-        example='"recipe.toml"',
         goes_with="file",
     )
-    form: Annotated[str, BeforeValidator(Choice(tuple(FORMS), tuple(FORMS.values())))] = key(
+    form: Annotated[str, values.Choice(tuple(FORMS), tuple(FORMS.values()))] = key(
         "plane", "form that is removed from each measured map", goes_with="file"
     )
-    direction: Angle = key(
+    direction: values.Angle = key(
         "0 deg",
         "direction of rolling on measured maps, from their x axis towards their y axis",
+        "-360 deg to 360 deg: more is a full turn and a direction",
         goes_with="file",
-        within=("-360 deg", "360 deg", "more is a full turn and a direction"),
     )
 
     @model_validator(mode="before")
@@ -122,32 +89,22 @@ class MeasuredMap(Section):
 class MeasuredLine(Section):
     """A measured line, and what its file does not say."""
 
-    line: LineFile | None = key(
-        None,
+    line: values.LineFile | None = optional(
+        "line.csv",
         "measured long line for the path; without one, a path longer than the map is synthesised from it",
-        example='"line.csv"',
     )
-    line_array: Name | None = key(
-        None,
-        "name of the array in a file that holds several",
-        otherwise="the only one",
-        example='"lines"',
-        goes_with="line",
+    line_array: values.Name | None = optional(
+        "lines", "name of the array in a file that holds several", "the only one", goes_with="line"
     )
-    line_unit: HeightUnit | None = key(
-        None,
-        "unit of lines that carry none",
-        otherwise="from the file",
-        example='"um"',
-        goes_with="line",
+    line_unit: values.HeightUnit | None = optional(
+        "um", "unit of lines that carry none", "from the file", goes_with="line"
     )
-    line_spacing: Length | None = key(
-        None,
+    line_spacing: values.Length | None = optional(
+        "1 mm",
         "spacing of points along lines that carry none",
-        otherwise="from the file",
-        example='"1 mm"',
+        "from the file",
+        "0.1 nm to 10 mm: atoms are 0.1 nm apart, and contacts are smaller than 10 mm",
         goes_with="line",
-        within=("0.1 nm", "10 mm", "atoms are 0.1 nm apart, and contacts are smaller than 10 mm"),
     )
 
     @model_validator(mode="before")
@@ -176,17 +133,17 @@ def surfaces_from(data: Any, name: str, spacing: str, unit: str, dimensions: tup
         remedy = f"Give {spacing} beside the array, or hand over a map or a line that knows it."
         errors.append(InputError(spacing, "nothing", "the distance of the points of an array", remedy))
     if errors:
-        raise Problems(errors)
+        raise values.Problems(errors)
     try:
-        step = Quantity("m", above=0)(keys.pop(spacing), None)
-        scale = factor(LengthUnit()(keys.pop(unit, None) or "m"), "m")
+        step = values.Quantity("m", above=0)(keys.pop(spacing), None)
+        scale = factor(values.LengthUnit()(keys.pop(unit, None) or "m"), "m")
         maps = heights if heights.ndim == 3 else [heights]
         made = tuple(
             HeightMap(each * scale, (step, step)) if each.ndim == 2 else Profile(each * scale, step)
             for each in maps
         )
     except InputError as error:
-        raise Problems([InputError(name, error.received, error.allowed, error.remedy)]) from None
+        raise values.Problems([InputError(name, error.received, error.allowed, error.remedy)]) from None
     return keys | {name: made if len(made) > 1 else made[0]}
 
 
@@ -202,72 +159,64 @@ def _foreign(section: Section, name: str, keys: tuple[str, ...]) -> Iterator[Inp
 class Surface(MeasuredLine, MeasuredMap):
     """What is rolled over: samples (measured or synthesised), and the line of the path."""
 
-    rms: Length | None = key(
-        None,
+    rms: values.Length | None = optional(
+        "0.5 um",
         "rms height of synthesised samples, instead of a file",
-        example='"0.5 um"',
-        within=("1 pm", "1 mm", "less is smoother than atoms are, more is no roughness"),
+        within="1 pm to 1 mm: less is smoother than atoms are, more is no roughness",
     )
-    hurst: Annotated[float, BeforeValidator(Number(above=0, at_most=1))] = key(
-        0.8,
-        "Hurst exponent of the synthesised texture",
-        goes_with="rms",
-        within=(0.01, 1, "a spectrum has to fall"),
+    hurst: Annotated[float, values.Number(above=0, at_most=1)] = key(
+        0.8, "Hurst exponent of the synthesised texture", "0.01 to 1: a spectrum has to fall", goes_with="rms"
     )
-    longest: Length | None = key(
-        None,
+    longest: values.Length | None = optional(
+        "0.4 mm",
         "longest wavelength of the samples",
-        otherwise="with rms 20 half-widths of the smooth contact, else all they hold",
-        example='"0.4 mm"',
-        within=("10 nm", "10 m", "a texture is made of waves between atoms and bodies"),
+        "with rms 20 half-widths of the smooth contact, else all they hold",
+        "10 nm to 10 m: a texture is made of waves between atoms and bodies",
     )
-    shortest: Length | None = key(
-        None,
+    shortest: values.Length | None = optional(
+        "16 um",
         "shortest wavelength of the samples",
-        otherwise="with rms four times contact.spacing, else all they hold",
-        example='"16 um"',
-        within=("0.1 nm", "1 m", "a texture is made of waves between atoms and bodies"),
+        "with rms four times contact.spacing, else all they hold",
+        "0.1 nm to 1 m: a texture is made of waves between atoms and bodies",
     )
-    anisotropy: Annotated[float, BeforeValidator(Number(above=0, at_most=100))] = key(
+    anisotropy: Annotated[float, values.Number(above=0, at_most=100)] = key(
         1.0,
         "ratio of the correlation lengths along and across the path",
+        "0.01 to 100: a texture more drawn out than that is a line across",
         goes_with="rms",
-        within=(0.01, 100, "a texture more drawn out than that is a line across"),
     )
-    lay: Angle = key(
+    lay: values.Angle = key(
         "0 deg",
         "angle by which a drawn-out texture is turned from the path towards its left",
+        "-360 deg to 360 deg: more is a full turn and an angle",
         goes_with="rms",
-        within=("-360 deg", "360 deg", "more is a full turn and an angle"),
     )
     spectrum: (
         Annotated[
             str | Path | NDArray[np.float64],
-            PlainValidator(ChoiceOrFile(("iso3095",), TABLE_OF_LEVELS, columns=2)),
+            values.ChoiceOrFile(("iso3095",), TABLE_OF_LEVELS, columns=2),
         ]
         | None
-    ) = key(None, "one-third-octave wavelength spectrum of the line of the path", example='"iso3095"')
-    lateral: Annotated[float, BeforeValidator(Number(above=0, infinite=True))] | None = key(
-        None,
+    ) = optional("iso3095", "one-third-octave wavelength spectrum of the line of the path")
+    lateral: Annotated[float, values.Number(above=0, infinite=True)] | None = optional(
+        1.0,
         "correlation length across over that along the path, at every wavelength of the spectrum, from which "
         "samples and path are then synthesised; inf: the same all across",
-        otherwise="nothing is known beside the line",
-        example="1.0",
+        "nothing is known beside the line",
+        LATERAL,
         goes_with="spectrum",
-        within=LATERAL,
     )
-    level: Level = key(
+    level: values.Level = key(
         "+0 dB",
         "level added to the spectrum",
+        "-120 dB to 120 dB: a million times is another texture",
         goes_with="spectrum",
-        within=("-120 dB", "120 dB", "a million times is another texture"),
     )
 
-    continuation: Annotated[str, BeforeValidator(Choice(("mirror", "repeat")))] | None = key(
-        None,
+    continuation: Annotated[str, values.Choice(("mirror", "repeat"))] | None = optional(
+        "mirror",
         "how a measured map or line that is shorter than the run goes on",
-        otherwise="a path is synthesised in the likeness of a map; a line is refused",
-        example='"mirror"',
+        "a path is synthesised in the likeness of a map; a line is refused",
         goes_with="file or line",
     )
 
@@ -318,93 +267,75 @@ class Surface(MeasuredLine, MeasuredMap):
 class ContactCase(Section):
     """How the rough contact is solved and reduced."""
 
-    spacing: ChosenLength = key(
-        None,
+    spacing: values.ChosenLength = optional(
+        "8 um",
         "grid spacing of the contact solution",
-        otherwise="a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
-        example='"8 um"',
-        within=(
-            "1 nm",
-            "10 mm",
-            "an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
-        ),
+        "a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
+        "1 nm to 10 mm: an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
     )
-    window: ChosenLength = key(
-        None,
+    window: values.ChosenLength = optional(
+        "0.5 mm",
         "side of the square window in which contact is solved; wider than the contact",
-        otherwise="that of the smooth contact under three times the load, wider where the surface is rough",
-        example='"0.5 mm"',
-        within=("10 nm", "1 m", "contacts lie between atoms and bodies"),
+        "that of the smooth contact under three times the load, wider where the surface is rough",
+        "10 nm to 1 m: contacts lie between atoms and bodies",
     )
-    samples: Annotated[int, BeforeValidator(Number(at_least=1, at_most=10_000, whole=True))] = key(
+    samples: Annotated[int, values.Number(at_least=1, at_most=10_000, whole=True)] = key(
         8, "number of surface samples for the stiffness and the filters"
     )
-    sample_length: Length | None = key(
-        None,
+    sample_length: values.Length | None = optional(
+        "2 mm",
         "length of the strips from which filters are estimated",
-        otherwise="16 windows, or the length of the map",
-        example='"2 mm"',
-        within=("10 nm", "100 m", "samples lie between contacts and bodies"),
+        "16 windows, or the length of the map",
+        "10 nm to 100 m: samples lie between contacts and bodies",
     )
-    approaches: tuple[Approach, ...] | None = key(
-        None,
+    approaches: tuple[values.Approach, ...] | None = optional(
+        ["-0.5 um", "0 um", "1 um"],
         "increasing approaches at which the contact is reduced, from the plane that the nominal patch feels",
-        otherwise="chosen from the load and the roughness",
-        example='["-0.5 um", "0 um", "1 um"]',
-        within=("-10 mm", "10 mm", "contacts are closer than that"),
+        "chosen from the load and the roughness",
+        "-10 mm to 10 mm: contacts are closer than that",
     )
-    damping: Damping = key(
-        "0 N s/m",
-        "damping of the contact",
-        within=("1e-9 N s/m", "1e9 N s/m", "less damps nothing, more is rigid"),
+    damping: values.Damping = key(
+        "0 N s/m", "damping of the contact", "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid"
     )
-    hardness: Pressure | None = key(
-        None,
-        "largest pressure",
-        otherwise="elastic contact",
-        example='"3 GPa"',
-        within=("1 kPa", "1 TPa", "no solid is as soft, or as hard"),
+    hardness: values.Pressure | None = optional(
+        "3 GPa", "largest pressure", "elastic contact", "1 kPa to 1 TPa: no solid is as soft, or as hard"
     )
     running_in: (
         Annotated[
             int | str,
-            BeforeValidator(NumberOrWord(Number(at_least=1, at_most=MOST_PASSES, whole=True), SHAKEDOWN)),
+            values.NumberOrWord(values.Number(at_least=1, at_most=MOST_PASSES, whole=True), SHAKEDOWN),
         ]
         | None
-    ) = key(
-        None,
+    ) = optional(
+        "shakedown",
         "passes under the working load that samples and path have had before, in which asperities yielded, "
         "or until a pass changes nothing",
-        otherwise="an untouched surface",
-        example='"shakedown"',
+        "an untouched surface",
         goes_with="hardness",
     )
-    datum: Annotated[str, BeforeValidator(Choice(("samples", "path")))] = key(
+    datum: Annotated[str, values.Choice(("samples", "path"))] = key(
         "samples",
         "from whose first touch the state r = approach + d0 counts: that of the samples (as printed), or of "
         "samples and path",
     )
-    normalise: Annotated[str, BeforeValidator(Choice(("low-wavenumber", "tangent")))] | None = key(
-        None,
+    normalise: Annotated[str, values.Choice(("low-wavenumber", "tangent"))] | None = optional(
+        "tangent",
         "what the contact filter is 1 at: its own low wavenumbers (as printed), or the tangent stiffness",
-        otherwise="as printed for the law printed, tangent for every other",
-        example='"tangent"',
+        "as printed for the law printed, tangent for every other",
     )
-    linearise: Annotated[str, BeforeValidator(Choice(("hertz", "rough", "secant")))] = key(
+    linearise: Annotated[str, values.Choice(("hertz", "rough", "secant"))] = key(
         "hertz",
         "stiffness of the linear laws under the load: dF/dr of smooth bodies, dF/dr of rough ones, or F/r",
     )
-    filter_degree: Annotated[int, BeforeValidator(Number(at_least=1, at_most=20, whole=True))] | None = key(
-        None,
+    filter_degree: Annotated[int, values.Number(at_least=1, at_most=20, whole=True)] | None = optional(
+        6,
         "degree of a polynomial that is fitted to each filter, in dB over wavenumber",
-        otherwise="the filter is averaged over a sixth of an octave",
-        example="6",
+        "the filter is averaged over a sixth of an octave",
     )
-    filter_taps: Annotated[int, BeforeValidator(Number(at_least=2, at_most=4096, whole=True))] | None = key(
-        None,
+    filter_taps: Annotated[int, values.Number(at_least=2, at_most=4096, whole=True)] | None = optional(
+        64,
         "order J of the filter (J + 1 taps), even, designed by window",
-        otherwise="the first that meets the fitted filter within 0.3 dB down to -30 dB",
-        example="64",
+        "the first that meets the fitted filter within 0.3 dB down to -30 dB",
     )
 
     @property
@@ -429,23 +360,22 @@ class ContactCase(Section):
 class Numerics(Section):
     """How finely time is resolved."""
 
-    highest_frequency: Frequency = key(
-        "5 kHz", "upper end of the spectra", within=("0.1 Hz", "10 MHz", "rolling is slower than ultrasound")
+    highest_frequency: values.Frequency = key(
+        "5 kHz", "upper end of the spectra", "0.1 Hz to 10 MHz: rolling is slower than ultrasound"
     )
-    time_step: Duration | None = key(
-        None,
+    time_step: values.Duration | None = optional(
+        "8 us",
         "time step",
-        otherwise="near 1/20 of the highest frequency's period, a whole number or fraction of spacing/speed",
-        example='"8 us"',
-        within=("1 ns", "1 s", "the spectra lie between"),
+        "near 1/20 of the highest frequency's period, a whole number or fraction of spacing/speed",
+        "1 ns to 1 s: the spectra lie between",
     )
-    rtol: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
+    rtol: Annotated[float, values.Number(above=0, at_most=0.01)] = key(
         1e-6,
         "tolerance of single contact solutions and of the law direct, relative to the largest overlap",
-        within=(1e-12, 0.01, "double precision carries no more digits"),
+        "1e-12 to 0.01: double precision carries no more digits",
     )
-    force_accuracy: Annotated[float, BeforeValidator(Number(above=0, at_most=0.01))] = key(
+    force_accuracy: Annotated[float, values.Number(above=0, at_most=0.01)] = key(
         1e-4,
         "relative accuracy of the forces of scans and loading curves; of scans for filters a tenth",
-        within=(1e-07, 0.01, "the tables that are interpolated carry no more digits"),
+        "1e-07 to 0.01: the tables that are interpolated carry no more digits",
     )

@@ -10,8 +10,8 @@ from pydantic import TypeAdapter, ValidationError
 from asperity.arguments import nearest, shown
 from asperity.config.case import Case
 from asperity.config.describing import CaseKey, entries
-from asperity.config.keys import Number, Quantity, allowed_in, is_list, value_kind
 from asperity.config.parsing import Origin
+from asperity.config.values import Number, Quantity, allowed_in, is_list, value_kind
 from asperity.errors import InputError
 
 

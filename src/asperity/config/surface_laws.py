@@ -21,10 +21,7 @@ SMOOTH = "hertz-filtered"
 class LawsOfSurface(Case):
     """A case whose laws are those that its surface has the texture for."""
 
-    laws: tuple[Law, ...] = key(
-        ROLLED,
-        "laws of the contact force; the first is the main one",
-    )
+    laws: tuple[Law, ...] = key(ROLLED, "laws of the contact force; the first is the main one")
 
     @model_validator(mode="before")
     @classmethod

@@ -10,13 +10,12 @@ from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator
 
 from asperity.arguments import shown
+from asperity.config import values
 from asperity.config.case import Case, Law
 from asperity.config.describing import commented
-from asperity.config.form import Section, extra_of, key
-from asperity.config.keys import Choice, Length, Level, Number, Quantity
+from asperity.config.form import Section, extra_of, key, optional
 from asperity.config.parsing import Origin, read_definition, read_toml, validated
 from asperity.config.sections import Surface
 from asperity.errors import CaseError, InputError
@@ -133,85 +132,71 @@ _HEAD = """\
 case = "case.toml"
 
 """
-_TEXTURES = ("10 nm", "10 m", "textures lie between")
-_LEVELS = ("-200 dB", "120 dB", "1e-10 um to 1 m in one band")
-Price = Annotated[float, BeforeValidator(Number(at_least=0))]
+_TEXTURES = "10 nm to 10 m: textures lie between"
+_LEVELS = "-200 dB to 120 dB: 1e-10 um to 1 m in one band"
+Price = Annotated[float, values.Number(at_least=0)]
 
 
 class Aim(Section):
     """What the texture of a case shall be."""
 
-    quantity: Annotated[str, BeforeValidator(Choice(MEASURE_NAMES))] = key(
+    quantity: Annotated[str, values.Choice(MEASURE_NAMES)] = key(
         A_WEIGHTED,
         "what it is judged by: sound power of a wheel, else motion; or the unweighted acceleration",
     )
-    limit: Level | None = key(
-        None,
+    limit: values.Level | None = optional(
+        "100 dB",
         "level of the quantity that is kept: the roughest texture is sought, by its price",
-        otherwise="the quantity is made as small as the bounds allow",
-        example='"100 dB"',
-        within=("-400 dB", "400 dB", "levels lie between"),
+        "the quantity is made as small as the bounds allow",
+        "-400 dB to 400 dB: levels lie between",
     )
     law: Law = key("areal", "law of the contact force that is rolled while searching")
     verify: Law = key("table", "law with which the texture is rolled before and after")
-    longest: Length | None = key(
-        None,
-        "longest wavelength that is changed",
-        otherwise="the longest that is heard",
-        example='"10 mm"',
-        within=_TEXTURES,
+    longest: values.Length | None = optional(
+        "10 mm", "longest wavelength that is changed", "the longest that is heard", _TEXTURES
     )
-    shortest: Length | None = key(
-        None,
-        "shortest wavelength that is changed",
-        otherwise="the shortest that is heard",
-        example='"100 um"',
-        within=_TEXTURES,
+    shortest: values.Length | None = optional(
+        "100 um", "shortest wavelength that is changed", "the shortest that is heard", _TEXTURES
     )
-    reach: Annotated[float, BeforeValidator(Quantity("dB", above=0))] = key(
+    reach: Annotated[float, values.Quantity("dB", above=0)] = key(
         "20 dB",
         "how far levels may go from those of the case where no bound is given",
-        within=("0.01 dB", "100 dB", "five powers of ten are another surface"),
+        "0.01 dB to 100 dB: five powers of ten are another surface",
     )
-    lowest: tuple[Level, ...] | None = key(
-        None,
+    lowest: tuple[values.Level, ...] | None = optional(
+        ["-40 dB"],
         "least level of a one-third octave, dB re 1 um: one for all, or one for each from the longest",
-        otherwise="the reach below that of the case",
-        example='["-40 dB"]',
-        within=_LEVELS,
+        "the reach below that of the case",
+        _LEVELS,
     )
-    highest: tuple[Level, ...] | None = key(
-        None,
+    highest: tuple[values.Level, ...] | None = optional(
+        ["+10 dB"],
         "largest level of a one-third octave, dB re 1 um: one for all, or one for each from the longest",
-        otherwise="the reach above that of the case",
-        example='["+10 dB"]',
-        within=_LEVELS,
+        "the reach above that of the case",
+        _LEVELS,
     )
-    rms_at_least: Length | None = key(
-        None,
+    rms_at_least: values.Length | None = optional(
+        "0.5 um",
         "least rms height of these wavelengths together, as friction or oil asks for",
-        otherwise="any",
-        example='"0.5 um"',
-        within=("1 pm", "1 mm", "rms heights lie between"),
+        "any",
+        "1 pm to 1 mm: rms heights lie between",
     )
-    rms_at_most: Length | None = key(
-        None,
+    rms_at_most: values.Length | None = optional(
+        "2 um",
         "largest rms height of these wavelengths together",
-        otherwise="any",
-        example='"2 um"',
-        within=("1 pm", "1 mm", "rms heights lie between"),
+        "any",
+        "1 pm to 1 mm: rms heights lie between",
     )
     price: tuple[Price, ...] = key(
         (1.0,),
         "price of lowering a one-third octave by 1 dB, which raising it saves: one for all, or one for each "
         "from the longest",
     )
-    budget: Price | None = key(None, "largest price of all changes together", otherwise="any", example="30.0")
-    lateral: tuple[Annotated[float, BeforeValidator(Number(above=0))], ...] | None = key(
-        None,
+    budget: Price | None = optional(30.0, "largest price of all changes together", "any")
+    lateral: tuple[Annotated[float, values.Number(above=0)], ...] | None = optional(
+        [0.5, 2.0],
         "least and largest correlation length across over that along: the lay, which is chosen between",
-        otherwise="as it is in the case",
-        example="[0.5, 2.0]",
+        "as it is in the case",
     )
 
     def problems(self) -> Iterator[InputError]:

@@ -13,7 +13,8 @@ from typing import Any
 from asperity.arguments import shown
 from asperity.config.describing import CaseKey, entries, toml_value
 from asperity.config.form import extra_of
-from asperity.config.keys import (
+from asperity.config.single_keys import entry_of
+from asperity.config.values import (
     Choice,
     ChoiceOrFile,
     File,
@@ -25,7 +26,6 @@ from asperity.config.keys import (
     is_list,
     value_kind,
 )
-from asperity.config.single_keys import entry_of
 from asperity.errors import InputError
 from asperity.kinds import KINDS
 from asperity.kinds.cases import kind_named

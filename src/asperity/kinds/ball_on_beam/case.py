@@ -5,23 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated
 
-from pydantic import BeforeValidator
-
+from asperity.config import values
 from asperity.config.case import SETTLED, problem_of_steps, problems_of_sampling
 from asperity.config.chosen import NominalPatch
-from asperity.config.form import Section, key
-from asperity.config.keys import (
-    Choice,
-    Duration,
-    DurationOrZero,
-    Force,
-    Frequency,
-    Length,
-    Mass,
-    Number,
-    OwnOrNamed,
-    Position,
-)
+from asperity.config.form import Section, key, optional
 from asperity.config.sections import ContactCase, Numerics
 from asperity.config.surface_laws import LawsOfSurface, problems_of_surface_laws
 from asperity.errors import InputError
@@ -39,56 +26,52 @@ SETTLING_SHARE = 0.25
 class BallCase(Section):
     """The ball that rolls: a rigid mass with its weight, or a given load."""
 
-    radius: Length = key("25 mm", "radius", within=("10 um", "10 m", "balls that roll on beams lie between"))
-    material: OwnOrNamed = key("steel", "material")
-    mass: Mass | None = key(
-        None,
+    radius: values.Length = key("25 mm", "radius", "10 um to 10 m: balls that roll on beams lie between")
+    material: values.OwnOrNamed = key("steel", "material")
+    mass: values.Mass | None = optional(
+        "0.51 kg",
         "mass",
-        otherwise="from radius and density",
-        example='"0.51 kg"',
-        within=("1e-12 kg", "1000 t", "balls that roll on beams lie between"),
+        "from radius and density",
+        "1e-12 kg to 1000 t: balls that roll on beams lie between",
     )
-    load: Force | None = key(
-        None,
+    load: values.Force | None = optional(
+        "5 N",
         "constant force that presses the ball down",
-        otherwise="its weight",
-        example='"5 N"',
-        within=("1 nN", "1 GN", "adhesion governs smaller loads"),
+        "its weight",
+        "1 nN to 1 GN: adhesion governs smaller loads",
     )
 
 
 class BeamCase(Section):
     """The beam that is rolled over: finite, Euler–Bernoulli."""
 
-    length: Length = key("1 m", "length, along the path", within=("1 mm", "1 km", "beams lie between"))
-    width: Length = key("50 mm", "width of the cross-section", within=("1 um", "10 m", "beams lie between"))
-    height: Length = key("10 mm", "height of the cross-section", within=("1 um", "10 m", "beams lie between"))
-    material: OwnOrNamed = key("steel", "material")
-    support: Annotated[str, BeforeValidator(Choice(("simply-supported", "free", "clamped")))] = key(
+    length: values.Length = key("1 m", "length, along the path", "1 mm to 1 km: beams lie between")
+    width: values.Length = key("50 mm", "width of the cross-section", "1 um to 10 m: beams lie between")
+    height: values.Length = key("10 mm", "height of the cross-section", "1 um to 10 m: beams lie between")
+    material: values.OwnOrNamed = key("steel", "material")
+    support: Annotated[str, values.Choice(("simply-supported", "free", "clamped"))] = key(
         "simply-supported", "both ends"
     )
-    loss_factor: Annotated[float, BeforeValidator(Number(at_least=0, at_most=0.5))] = key(
+    loss_factor: Annotated[float, values.Number(at_least=0, at_most=0.5)] = key(
         0.005, "loss factor of every bending mode"
     )
-    suspension_frequency: Frequency = key(
+    suspension_frequency: values.Frequency = key(
         "5 Hz",
         "natural frequency of the rigid beam on its soft suspension",
+        "1 mHz to 1 kHz: a suspension is softer than the beam",
         goes_with="support=free",
-        within=("1 mHz", "1 kHz", "a suspension is softer than the beam"),
     )
-    modes_up_to: Frequency | None = key(
-        None,
+    modes_up_to: values.Frequency | None = optional(
+        "20 kHz",
         "natural frequency up to which bending modes are kept",
-        otherwise="four times the highest frequency of the spectra",
-        example='"20 kHz"',
-        within=("0.1 Hz", "100 MHz", "rolling is slower than ultrasound"),
+        "four times the highest frequency of the spectra",
+        "0.1 Hz to 100 MHz: rolling is slower than ultrasound",
     )
-    sensors: tuple[Position, ...] | None = key(
-        None,
+    sensors: tuple[values.Position, ...] | None = optional(
+        ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
         "positions of the accelerometers from the beam's start",
-        otherwise="at 20, 35, 50, 65 and 80 % of the length",
-        example='["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"]',
-        within=("0 m", "1 km", "beams are shorter"),
+        "at 20, 35, 50, 65 and 80 % of the length",
+        "0 m to 1 km: beams are shorter",
     )
 
     @property
@@ -143,27 +126,24 @@ class BallOnBeam(LawsOfSurface):
     (400, 100)
     """
 
-    kind: Annotated[str, BeforeValidator(Choice(("ball-on-beam",)))] = key("ball-on-beam", "what rolls")
-    start: Position | None = key(
-        None,
+    kind: Annotated[str, values.Choice(("ball-on-beam",))] = key("ball-on-beam", "what rolls")
+    start: values.Position | None = optional(
+        "0.2 m",
         "where on the beam the record starts",
-        otherwise="after the run-in, which begins at the beam's start",
-        example='"0.2 m"',
-        within=("0 m", "1 km", "beams are shorter"),
+        "after the run-in, which begins at the beam's start",
+        "0 m to 1 km: beams are shorter",
     )
-    duration: Duration | None = key(
-        None,
+    duration: values.Duration | None = optional(
+        "1 s",
         "time that is recorded",
-        otherwise="until the end of the beam, or of the line",
-        example='"1 s"',
-        within=("1 us", "1 h", "records lie between"),
+        "until the end of the beam, or of the line",
+        "1 us to 1 h: records lie between",
     )
-    settling: DurationOrZero | None = key(
-        None,
+    settling: values.DurationOrZero | None = optional(
+        "0.2 s",
         "time that is rolled before the record starts, so that the start from rest is forgotten",
-        otherwise="as long as the record, 50 ms to 0.2 s, as far as there is room before it",
-        example='"0.2 s"',
-        within=("1 us", "1 h", "records lie between"),
+        "as long as the record, 50 ms to 0.2 s, as far as there is room before it",
+        "1 us to 1 h: records lie between",
     )
     ball: BallCase = key({}, "the ball that rolls")
     beam: BeamCase = key({}, "the beam that is rolled over")

@@ -8,25 +8,9 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, PlainValidator
 
-from asperity.config.form import Section, key
-from asperity.config.keys import (
-    Choice,
-    ChoiceOrFile,
-    Damping,
-    File,
-    Force,
-    Length,
-    LengthOrInfinite,
-    Level,
-    Mass,
-    Number,
-    OwnOrNamed,
-    Position,
-    Quantity,
-    Stiffness,
-)
+from asperity.config import values
+from asperity.config.form import Section, key, optional
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
@@ -36,136 +20,120 @@ KINDS_OF_BODY = ("mass", "chain", "bogie", "carriage")
 ROUGHNESSES = ("cast-iron", "composite", "disc")
 
 Roughness = Annotated[
-    str | Path | NDArray[np.float64], PlainValidator(ChoiceOrFile(ROUGHNESSES, TABLE_OF_LEVELS, columns=2))
+    str | Path | NDArray[np.float64], values.ChoiceOrFile(ROUGHNESSES, TABLE_OF_LEVELS, columns=2)
 ]
-TableFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=3))]
-_LIE_BETWEEN = "bodies that roll lie between"
+TableFile = Annotated[Path | NDArray[np.float64], values.File(columns=3)]
 
 
 class BodyCase(Section):
     """What rolls: one body, or several of the same kind behind one another."""
 
-    type: Annotated[str, BeforeValidator(Choice(KINDS_OF_BODY))] = key(
-        "mass",
-        "a rigid mass; a chain of masses above it; a bogie on two; or a carriage on rolling elements",
+    type: Annotated[str, values.Choice(KINDS_OF_BODY)] = key(
+        "mass", "a rigid mass; a chain of masses above it; a bogie on two; or a carriage on rolling elements"
     )
-    positions: tuple[Position, ...] = key(
+    positions: tuple[values.Position, ...] = key(
         ["0 m"],
         "where the bodies are, by their rearmost contacts, ahead of the position of the run",
-        within=("0 m", "100 km", "trains are shorter"),
+        "0 m to 100 km: trains are shorter",
     )
-    radius: Length = key("25 mm", "rolling radius", within=("10 um", "10 m", _LIE_BETWEEN))
-    transverse_radius: LengthOrInfinite | None = key(
-        None,
+    radius: values.Length = key("25 mm", "rolling radius", "10 um to 10 m: bodies that roll lie between")
+    transverse_radius: values.LengthOrInfinite | None = optional(
+        "inf",
         "radius across the path of what rolls",
-        otherwise="the rolling radius: a ball",
-        example='"inf"',
-        within=("10 um", "100 km", 'beyond that it is flat: write "inf"'),
+        "the rolling radius: a ball",
+        '10 um to 100 km: beyond that it is flat: write "inf"',
     )
-    groove_radius: Length | None = key(
-        None,
+    groove_radius: values.Length | None = optional(
+        "26 mm",
         "radius of the groove that it rolls in, across the path",
-        otherwise="what is rolled over is flat; of a track, the head of the rail",
-        example='"26 mm"',
-        within=("10 um", "100 m", "grooves lie between"),
+        "what is rolled over is flat; of a track, the head of the rail",
+        "10 um to 100 m: grooves lie between",
     )
-    groove_width: Length | None = key(
-        None,
+    groove_width: values.Length | None = optional(
+        "4 mm",
         "width of the groove between its edges",
-        otherwise="wider than the contact",
-        example='"4 mm"',
+        "wider than the contact",
+        "10 um to 100 m: grooves lie between",
         goes_with="groove_radius",
-        within=("10 um", "100 m", "grooves lie between"),
     )
-    raceway_radius: Length | None = key(
-        None,
+    raceway_radius: values.Length | None = optional(
+        "50 mm",
         "radius of a curved raceway along the path",
-        otherwise="what is rolled over is straight",
-        example='"50 mm"',
-        within=("10 um", "1 km", "raceways lie between"),
+        "what is rolled over is straight",
+        "10 um to 1 km: raceways lie between",
     )
-    raceway: Annotated[str, BeforeValidator(Choice(("inner", "outer")))] = key(
+    raceway: Annotated[str, values.Choice(("inner", "outer"))] = key(
         "inner", "whether it rolls around the raceway, or inside it", goes_with="raceway_radius"
     )
-    material: OwnOrNamed = key("steel", "material")
-    mass: Mass | None = key(
-        None,
+    material: values.OwnOrNamed = key("steel", "material")
+    mass: values.Mass | None = optional(
+        "600 kg",
         "mass on each contact: of a ball, of a wheel with its share of the axle",
-        otherwise="that of a ball of this radius",
-        example='"600 kg"',
-        within=("1e-12 kg", "1000 t", _LIE_BETWEEN),
+        "that of a ball of this radius",
+        "1e-12 kg to 1000 t: bodies that roll lie between",
     )
-    load: Force | None = key(
-        None,
+    load: values.Force | None = optional(
+        "50 N",
         "static force of each contact, all weights included; evened out over those of one body",
-        otherwise="the weights",
-        example='"50 N"',
-        within=("1 nN", "1 GN", "adhesion governs smaller loads"),
+        "the weights",
+        "1 nN to 1 GN: adhesion governs smaller loads",
     )
-    masses: tuple[Mass, ...] | None = key(
-        None,
+    masses: tuple[values.Mass, ...] | None = optional(
+        ["0.4 kg"],
         "masses above: of a chain from below; the frame of a bogie; the carriage",
-        otherwise="none",
-        example='["0.4 kg"]',
-        within=("1e-12 kg", "1000 t", _LIE_BETWEEN),
+        "none",
+        "1e-12 kg to 1000 t: bodies that roll lie between",
     )
-    springs: tuple[Stiffness, ...] | None = key(
-        None,
+    springs: tuple[values.Stiffness, ...] | None = optional(
+        ["1.2 MN/m"],
         "springs under these masses; of a bogie one for each wheel, of a carriage one for each element",
-        otherwise="of a carriage Hertz's stiffness at rest; else none",
-        example='["1.2 MN/m"]',
-        within=("1e-3 N/m", "1e15 N/m", "springs lie between"),
+        "of a carriage Hertz's stiffness at rest; else none",
+        "1e-3 N/m to 1e15 N/m: springs lie between",
     )
-    dampers: tuple[Damping, ...] | None = key(
-        None,
+    dampers: tuple[values.Damping, ...] | None = optional(
+        ["10 kN s/m"],
         "viscous dampers beside the springs",
-        otherwise="none",
-        example='["10 kN s/m"]',
-        within=("1e-9 N s/m", "1e12 N s/m", "dampers lie between"),
+        "none",
+        "1e-9 N s/m to 1e12 N s/m: dampers lie between",
     )
-    contacts: Annotated[int, BeforeValidator(Number(at_least=1, at_most=MOST_CONTACTS, whole=True))] = key(
+    contacts: Annotated[int, values.Number(at_least=1, at_most=MOST_CONTACTS, whole=True)] = key(
         4, "rolling elements of a carriage", goes_with="type=carriage"
     )
-    distance: Length | None = key(
-        None,
+    distance: values.Length | None = optional(
+        "2.5 m",
         "distance of the contacts of a bogie, its wheelbase, or of a carriage",
-        otherwise="none",
-        example='"2.5 m"',
-        within=("10 um", "100 m", "bodies are shorter"),
+        "none",
+        "10 um to 100 m: bodies are shorter",
     )
-    inertia: Annotated[float, BeforeValidator(Quantity("kg m^2", above=0))] | None = key(
-        None,
+    inertia: Annotated[float, values.Quantity("kg m^2", above=0)] | None = optional(
+        "1500 kg m^2",
         "moment of inertia of a bogie's frame, or of a carriage, in pitch",
-        otherwise="that of a bar as long as the contacts are apart",
-        example='"1500 kg m^2"',
-        within=("1e-15 kg m^2", "1e9 kg m^2", _LIE_BETWEEN),
+        "that of a bar as long as the contacts are apart",
+        "1e-15 kg m^2 to 1e9 kg m^2: bodies that roll lie between",
     )
-    modes: TableFile | None = key(
-        None,
+    modes: TableFile | None = optional(
+        "modes.csv",
         "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
         "modal mass (kg)",
-        otherwise="rigid",
-        example='"modes.csv"',
+        "rigid",
     )
-    receptance: TableFile | None = key(
-        None,
+    receptance: TableFile | None = optional(
+        "receptance.csv",
         "table of the receptance of a mass, which is fitted by modes: frequency (Hz), real and imaginary "
         "part (m/N)",
-        otherwise="rigid",
-        example='"receptance.csv"',
+        "rigid",
     )
-    roughness: Roughness | None = key(
-        None,
+    roughness: Roughness | None = optional(
+        "disc",
         "one-third-octave wavelength spectrum of what rolls, around its circumference, another texture at "
         "each contact",
-        otherwise="smooth",
-        example='"disc"',
+        "smooth",
     )
-    roughness_level: Level = key(
+    roughness_level: values.Level = key(
         "+0 dB",
         "level added to it",
+        "-120 dB to 120 dB: a million times is another texture",
         goes_with="roughness",
-        within=("-120 dB", "120 dB", "a million times is another texture"),
     )
 
     @property

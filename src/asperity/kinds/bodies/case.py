@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from typing import Annotated
 
 import numpy as np
-from pydantic import BeforeValidator
 
+from asperity.config import values
 from asperity.config.case import SETTLED, problem_of_steps, problems_of_sampling, time_step_on_grid
 from asperity.config.chosen import NominalPatch
-from asperity.config.form import key
-from asperity.config.keys import Choice, Duration, DurationOrZero, Position
+from asperity.config.form import key, optional
 from asperity.config.sections import ContactCase, Numerics
 from asperity.config.surface_laws import LawsOfSurface, problems_of_surface_laws
 from asperity.errors import InputError
@@ -43,30 +42,27 @@ class Bodies(LawsOfSurface):
     (0.0, 2.5)
     """
 
-    kind: Annotated[str, BeforeValidator(Choice(("bodies",)))] = key("bodies", "what rolls")
-    over: Annotated[str, BeforeValidator(Choice(STRUCTURES))] = key(
+    kind: Annotated[str, values.Choice(("bodies",))] = key("bodies", "what rolls")
+    over: Annotated[str, values.Choice(STRUCTURES)] = key(
         "beam", "what is rolled over: a rigid plane, or what the section of this name describes"
     )
-    start: Position | None = key(
-        None,
+    start: values.Position | None = optional(
+        "0.2 m",
         "where the record starts",
-        otherwise="after the run-in, which begins at 0 m",
-        example='"0.2 m"',
-        within=("0 m", "100 km", "paths are shorter"),
+        "after the run-in, which begins at 0 m",
+        "0 m to 100 km: paths are shorter",
     )
-    duration: Duration | None = key(
-        None,
+    duration: values.Duration | None = optional(
+        "1 s",
         "time that is recorded",
-        otherwise="until the foremost contact reaches the end of the structure; on a plane or a track 0.5 s",
-        example='"1 s"',
-        within=("1 us", "1 h", "records lie between"),
+        "until the foremost contact reaches the end of the structure; on a plane or a track 0.5 s",
+        "1 us to 1 h: records lie between",
     )
-    settling: DurationOrZero | None = key(
-        None,
+    settling: values.DurationOrZero | None = optional(
+        "0.2 s",
         "time that is rolled before the record starts, so that the start from rest is forgotten",
-        otherwise="50 ms, or a quarter of what there is room for",
-        example='"0.2 s"',
-        within=("1 us", "1 h", "records lie between"),
+        "50 ms, or a quarter of what there is room for",
+        "1 us to 1 h: records lie between",
     )
     body: BodyCase = key({}, "what rolls")
     beam: BeamOnSupports = key({}, "a beam that is rolled over")

@@ -11,20 +11,10 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, PlainValidator
 
+from asperity.config import values
 from asperity.config.content import name_of
-from asperity.config.form import Section, key
-from asperity.config.keys import (
-    Choice,
-    File,
-    LengthUnit,
-    Mass,
-    Number,
-    OwnOrNamed,
-    Position,
-    Quantity,
-)
+from asperity.config.form import Section, key, optional
 from asperity.config.sections import Index
 from asperity.config.tables import Column, read_table
 from asperity.errors import InputError, PhysicsWarning
@@ -36,8 +26,8 @@ from asperity.structures.modal import ModalStructure
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
 
-ModesFile = Annotated[Path | ModalStructure, PlainValidator(File(held=(ModalStructure,)))]
-TableFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=5))]
+ModesFile = Annotated[Path | ModalStructure, values.File(held=(ModalStructure,))]
+TableFile = Annotated[Path | NDArray[np.float64], values.File(columns=5)]
 RECEPTANCES = (
     Column("frequency", "Hz"),
     Column("position of the response", "m"),
@@ -45,26 +35,25 @@ RECEPTANCES = (
     Column("real part", "m/N"),
     Column("imaginary part", "m/N"),
 )
-Axis = Annotated[str, BeforeValidator(Choice(("x", "y", "z")))]
+Axis = Annotated[str, values.Choice(("x", "y", "z"))]
 
 
 class BeamOnSupports(BeamCase):
     """A beam, whose ends are held by `support`, and which has further supports along it."""
 
-    supports: tuple[Position, ...] | None = key(
-        None,
+    supports: tuple[values.Position, ...] | None = optional(
+        ["0.4 m", "0.8 m"],
         "positions of supports beside those of the ends",
-        otherwise="one span",
-        example='["0.4 m", "0.8 m"]',
-        within=("0 m", "1 km", "beams lie between"),
+        "one span",
+        "0 m to 1 km: beams lie between",
     )
-    support_stiffness: Annotated[float, BeforeValidator(Quantity("N/m", above=0, infinite=True))] = key(
+    support_stiffness: Annotated[float, values.Quantity("N/m", above=0, infinite=True)] = key(
         "inf",
         "stiffness of each of these supports",
+        '1 mN/m to 1e15 N/m: stiffer ones are rigid: write "inf"',
         goes_with="supports",
-        within=("1 mN/m", "1e15 N/m", 'stiffer ones are rigid: write "inf"'),
     )
-    support_loss_factor: Annotated[float, BeforeValidator(Number(at_least=0, at_most=1))] = key(
+    support_loss_factor: Annotated[float, values.Number(at_least=0, at_most=1)] = key(
         0.0, "loss factor of these supports", goes_with="supports"
     )
 
@@ -101,84 +90,61 @@ class Rails(TrackParameters):
 class StructureCase(Section):
     """Any structure, by its modes along the path; of a plane, its material alone."""
 
-    file: ModesFile | None = key(
-        None,
+    file: ModesFile | None = optional(
+        "guide.csv",
         "its modes: a text table, netCDF, or a universal file (.uff, .unv); or, from Python, such modes",
-        example='"guide.csv"',
     )
-    along: Axis | None = key(
-        None,
-        "direction of the path in a universal file",
-        otherwise="the file is none",
-        example='"x"',
-        goes_with="file",
+    along: Axis | None = optional(
+        "x", "direction of the path in a universal file", "the file is none", goes_with="file"
     )
-    force: Axis | None = key(
-        None,
-        "direction of the contact force in a universal file",
-        otherwise="the file is none",
-        example='"z"',
-        goes_with="file",
+    force: Axis | None = optional(
+        "z", "direction of the contact force in a universal file", "the file is none", goes_with="file"
     )
-    length_unit: Annotated[str, BeforeValidator(LengthUnit())] | None = key(
-        None,
-        "unit of length of a universal file that states none",
-        otherwise="from the file",
-        example='"mm"',
-        goes_with="file",
+    length_unit: Annotated[str, values.LengthUnit()] | None = optional(
+        "mm", "unit of length of a universal file that states none", "from the file", goes_with="file"
     )
-    force_unit: Annotated[str, BeforeValidator(Choice(("N", "kN", "mN", "lbf")))] | None = key(
-        None,
-        "unit of force of a universal file that states none",
-        otherwise="from the file",
-        example='"N"',
-        goes_with="file",
+    force_unit: Annotated[str, values.Choice(("N", "kN", "mN", "lbf"))] | None = optional(
+        "N", "unit of force of a universal file that states none", "from the file", goes_with="file"
     )
-    damping_ratio: Annotated[float, BeforeValidator(Number(at_least=0, at_most=0.99))] | None = key(
-        None,
+    damping_ratio: Annotated[float, values.Number(at_least=0, at_most=0.99)] | None = optional(
+        0.01,
         "damping ratio of all modes of a universal file that states none",
-        otherwise="from the file",
-        example="0.01",
+        "from the file",
         goes_with="file",
     )
-    nodes: tuple[Index, ...] | None = key(
-        None,
+    nodes: tuple[Index, ...] | None = optional(
+        [1, 2, 3],
         "numbers of the nodes along the path in a universal file",
-        otherwise="all that have mode shapes",
-        example="[1, 2, 3]",
+        "all that have mode shapes",
         goes_with="file",
     )
-    receptances: TableFile | None = key(
-        None,
+    receptances: TableFile | None = optional(
+        "receptances.csv",
         "its measured receptances instead, which are fitted by modes: frequency (Hz), position of the "
         "response (m), position of the force (m), real and imaginary part (m/N)",
-        example='"receptances.csv"',
     )
-    mass: Mass | None = key(
-        None,
+    mass: values.Mass | None = optional(
+        "20 kg",
         "mass of the structure if nothing holds it and its rigid-body modes are not in the file",
-        otherwise="something holds it, or the file has all modes",
-        example='"20 kg"',
+        "something holds it, or the file has all modes",
+        "1 mg to 100000 t: structures that are rolled over lie between",
         goes_with="file or receptances",
-        within=("1 mg", "100000 t", "structures that are rolled over lie between"),
     )
-    inertia: Annotated[float, BeforeValidator(Quantity("kg m^2", above=0))] | None = key(
-        None,
+    inertia: Annotated[float, values.Quantity("kg m^2", above=0)] | None = optional(
+        "1.5 kg m^2",
         "its moment of inertia in pitch",
-        otherwise="it does not pitch",
-        example='"1.5 kg m^2"',
+        "it does not pitch",
+        "1e-12 kg m^2 to 1e12 kg m^2: structures that are rolled over lie between",
         goes_with="mass",
-        within=("1e-12 kg m^2", "1e12 kg m^2", "structures that are rolled over lie between"),
     )
-    sensors: tuple[Position, ...] | None = key(
-        None,
+    sensors: tuple[values.Position, ...] | None = optional(
+        ["0.2 m", "0.5 m"],
         "positions whose acceleration is recorded",
-        otherwise="at 20, 35, 50, 65 and 80 % of the length",
-        example='["0.2 m", "0.5 m"]',
+        "at 20, 35, 50, 65 and 80 % of the length",
+        "0 m to 10 km: structures are shorter",
         goes_with="file or receptances",
-        within=("0 m", "10 km", "structures are shorter"),
     )
-    material: OwnOrNamed = key("steel", "material of its surface")
+    material: values.OwnOrNamed = key("steel", "material of its surface")
 
     @property
     def is_known(self) -> bool:

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 
+from asperity.config import values
 from asperity.config.case import (
     Case,
     Law,
@@ -19,7 +20,6 @@ from asperity.config.case import (
 from asperity.config.chosen import NominalPatch
 from asperity.config.describing import in_words
 from asperity.config.form import Section, key
-from asperity.config.keys import Choice, Duration, DurationOrZero, Position, Speed
 from asperity.config.tables import check_band_levels, read_levels
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.noise_keys import NoiseCase
@@ -55,26 +55,22 @@ class WheelOnRail(Case):
     150000000.0
     """
 
-    kind: Annotated[str, BeforeValidator(Choice(("wheel-on-rail",)))] = key("wheel-on-rail", "what rolls")
-    speed: Speed = key(
-        "56 m/s",
-        "rolling speed",
-        within=("1 mm/s", "1 km/s", "slower rolling is static, and nothing rolls faster"),
+    kind: Annotated[str, values.Choice(("wheel-on-rail",))] = key("wheel-on-rail", "what rolls")
+    speed: values.Speed = key(
+        "56 m/s", "rolling speed", "1 mm/s to 1 km/s: slower rolling is static, and nothing rolls faster"
     )
     laws: tuple[Law, ...] = key(
         ROLLED,
         "laws of the contact force; the first is the main one, direct where a flat or a joint is rolled over",
     )
-    start: Position = key(
-        "0 m",
-        "where the record starts, from a sleeper",
-        within=("0 m", "100 km", "tracks are rolled over for less"),
+    start: values.Position = key(
+        "0 m", "where the record starts, from a sleeper", "0 m to 100 km: tracks are rolled over for less"
     )
-    duration: Duration = key("1 s", "time that is recorded", within=("10 us", "1 h", "records lie between"))
-    settling: DurationOrZero = key(
+    duration: values.Duration = key("1 s", "time that is recorded", "10 us to 1 h: records lie between")
+    settling: values.DurationOrZero = key(
         "0.3 s",
         "time that is rolled before the record starts, so that the start is forgotten",
-        within=("10 us", "1 h", "records lie between"),
+        "10 us to 1 h: records lie between",
     )
     surface: RailSurface = key({}, "texture of the rail: measured or synthesised, with defects on top")
     wheel: WheelCase = key({}, "the wheel that rolls")

@@ -8,60 +8,56 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, PlainValidator
 
-from asperity.config.form import key
-from asperity.config.keys import Choice, File, Length, Number
+from asperity.config import values
+from asperity.config.form import key, optional
 from asperity.config.tables import problems_of_table
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.tables import read_ratios
 from asperity.kinds.wheel_on_rail.train_keys import TrainKeys
 from asperity.reference.cnossos import PAD_CLASSES, WHEEL_TRANSFER
 
-RatiosFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=2))]
+RatiosFile = Annotated[Path | NDArray[np.float64], values.File(columns=2)]
 
 
 class NoiseCase(TrainKeys):
     """What radiates, for the sound power from vibration, and the labels of CNOSSOS-EU for that beside it."""
 
-    axles: Annotated[int, BeforeValidator(Number(at_least=1, at_most=1000, whole=True))] = key(
+    axles: Annotated[int, values.Number(at_least=1, at_most=1000, whole=True)] = key(
         1, "number of axles whose sound power is added; each has two wheels, on two rails"
     )
-    rail_foot_width: Length = key(
-        "150 mm", "width of the rail's foot", within=("10 mm", "1 m", "rails lie between")
+    rail_foot_width: values.Length = key(
+        "150 mm", "width of the rail's foot", "10 mm to 1 m: rails lie between"
     )
-    rail_head_width: Length = key(
-        "72 mm", "width of the rail's head", within=("10 mm", "1 m", "rails lie between")
+    rail_head_width: values.Length = key(
+        "72 mm", "width of the rail's head", "10 mm to 1 m: rails lie between"
     )
-    rail_radiation: RatiosFile | None = key(
-        None,
+    rail_radiation: RatiosFile | None = optional(
+        "rail_radiation.csv",
         "table of the rail's radiation ratio: frequency (Hz), ratio of its sound power per length to "
         "impedance of air, twice the width of its foot and mean square velocity",
-        otherwise="that of a section with the widths of foot and head",
-        example='"rail_radiation.csv"',
+        "that of a section with the widths of foot and head",
     )
-    sleeper_length: Length = key(
-        "2.6 m", "length of a whole sleeper", within=("0.1 m", "10 m", "sleepers lie between")
+    sleeper_length: values.Length = key(
+        "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
     )
-    sleeper_width: Length = key(
+    sleeper_width: values.Length = key(
         "0.25 m",
         "width of a sleeper that radiates: of its top, with its sloping sides",
-        within=("10 mm", "10 m", "sleepers lie between"),
+        "10 mm to 10 m: sleepers lie between",
     )
-    wheel_width: Length = key(
-        "135 mm", "width of the wheel's tread", within=("10 mm", "1 m", "wheels lie between")
+    wheel_width: values.Length = key(
+        "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
     )
-    track_pad: Annotated[str, BeforeValidator(Choice(tuple(PAD_CLASSES)))] | None = key(
-        None,
+    track_pad: Annotated[str, values.Choice(tuple(PAD_CLASSES))] | None = optional(
+        "medium",
         "rail pads of CNOSSOS-EU's transfer to the sound power of the track, on mono-block sleepers",
-        otherwise="those nearest to track.pad_stiffness",
-        example='"medium"',
+        "those nearest to track.pad_stiffness",
     )
-    wheel_transfer: Annotated[str, BeforeValidator(Choice(tuple(WHEEL_TRANSFER)))] | None = key(
-        None,
+    wheel_transfer: Annotated[str, values.Choice(tuple(WHEEL_TRANSFER))] | None = optional(
+        "920 mm",
         "wheel diameter of CNOSSOS-EU's transfer to the sound power of the wheel",
-        otherwise="that nearest to twice wheel.radius",
-        example='"920 mm"',
+        "that nearest to twice wheel.radius",
     )
 
     def problems(self) -> Iterator[InputError]:

@@ -8,10 +8,9 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, PlainValidator
 
-from asperity.config.form import key
-from asperity.config.keys import Choice, ChoiceOrFile, Length, LineFile, MapFile, Number, Position, YesNo
+from asperity.config import values
+from asperity.config.form import key, optional
 from asperity.config.sections import LATERAL, MeasuredLine, Surface
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
@@ -20,22 +19,21 @@ RAIL_SPECTRA = ("iso3095", "cnossos-average")
 PROCESSING = ("fill", "spikes", "curvature")
 
 Spectrum = Annotated[
-    str | Path | NDArray[np.float64], PlainValidator(ChoiceOrFile(RAIL_SPECTRA, TABLE_OF_LEVELS, columns=2))
+    str | Path | NDArray[np.float64], values.ChoiceOrFile(RAIL_SPECTRA, TABLE_OF_LEVELS, columns=2)
 ]
-Step = Annotated[str, BeforeValidator(Choice(PROCESSING))]
+Step = Annotated[str, values.Choice(PROCESSING)]
 
 
 class MeasuredLines(MeasuredLine):
     """Measured lines along a rail or around a tread."""
 
-    line: LineFile | None = key(None, "measured long line, or several side by side", example='"lines.csv"')
-    line_distance: Length | None = key(
-        None,
+    line: values.LineFile | None = optional("lines.csv", "measured long line, or several side by side")
+    line_distance: values.Length | None = optional(
+        "5 mm",
         "distance across between neighbouring lines; a single line holds all across",
-        otherwise="for a single line",
-        example='"5 mm"',
+        "for a single line",
+        "1 um to 1 m: lines lie beside each other on one wheel or rail",
         goes_with="line",
-        within=("1 um", "1 m", "lines lie beside each other on one wheel or rail"),
     )
     processing: tuple[Step, ...] = key(
         (), "steps of EN 15610 that are applied to measured lines", goes_with="line"
@@ -51,76 +49,67 @@ class MeasuredLines(MeasuredLine):
 class RailSurface(MeasuredLines, Surface):
     """Texture of the rail: measured or synthesised, with defects on top; or smooth."""
 
-    file: MapFile | None = key(
-        None, "measured map: the samples, and the path where it is long enough", example='"rail.x3p"'
+    file: values.MapFile | None = optional(
+        "rail.x3p", "measured map: the samples, and the path where it is long enough"
     )
-    longest: Length | None = key(
-        None,
+    longest: values.Length | None = optional(
+        "20 mm",
         "longest wavelength of the samples",
-        otherwise="with rms 20 half-widths of the smooth contact, else all they hold",
-        example='"20 mm"',
-        within=("1 um", "1 km", "waves lie between contacts and tracks"),
+        "with rms 20 half-widths of the smooth contact, else all they hold",
+        "1 um to 1 km: waves lie between contacts and tracks",
     )
-    shortest: Length | None = key(
-        None,
+    shortest: values.Length | None = optional(
+        "1.25 mm",
         "shortest wavelength of the samples",
-        otherwise="with rms four times contact.spacing, else all they hold",
-        example='"1.25 mm"',
-        within=("0.1 um", "10 m", "waves lie between contacts and tracks"),
+        "with rms four times contact.spacing, else all they hold",
+        "0.1 um to 10 m: waves lie between contacts and tracks",
     )
-    spectrum: Spectrum | None = key(
-        None, "one-third-octave wavelength spectrum of the rail", example='"iso3095"'
-    )
-    lateral: Annotated[float, BeforeValidator(Number(above=0, infinite=True))] = key(
+    spectrum: Spectrum | None = optional("iso3095", "one-third-octave wavelength spectrum of the rail")
+    lateral: Annotated[float, values.Number(above=0, infinite=True)] = key(
         1.0,
         "correlation length across over that along the rail, at every wavelength; inf: the same all across",
+        LATERAL,
         goes_with="spectrum",
-        within=LATERAL,
     )
-    continuation: Annotated[str, BeforeValidator(Choice(("refuse", "mirror", "repeat")))] = key(
+    continuation: Annotated[str, values.Choice(("refuse", "mirror", "repeat"))] = key(
         "refuse", "how a record that is shorter than the run goes on"
     )
-    accept_levels: YesNo = key(False, "take levels beyond 60 dB re 1 um as they are")
-    corrugation: Length | None = key(
-        None,
+    accept_levels: values.YesNo = key(False, "take levels beyond 60 dB re 1 um as they are")
+    corrugation: values.Length | None = optional(
+        "25 um",
         "amplitude of a corrugation on top of the rail's texture",
-        example='"25 um"',
-        within=("1 nm", "10 mm", "corrugation lies between"),
+        within="1 nm to 10 mm: corrugation lies between",
     )
-    corrugation_wavelength: Length | None = key(
-        None,
+    corrugation_wavelength: values.Length | None = optional(
+        "40 mm",
         "its wavelength",
-        otherwise="must be given",
-        example='"40 mm"',
+        "must be given",
+        "0.1 mm to 100 m: corrugation lies between",
         goes_with="corrugation",
-        within=("0.1 mm", "100 m", "corrugation lies between"),
     )
-    corrugation_bandwidth: Annotated[float, BeforeValidator(Number(above=0, at_most=3))] | None = key(
-        None,
+    corrugation_bandwidth: Annotated[float, values.Number(above=0, at_most=3)] | None = optional(
+        0.3,
         "its bandwidth in octaves",
-        otherwise="a sine",
-        example="0.3",
+        "a sine",
+        "0.001 to 3: a narrower one is a sine: leave it out",
         goes_with="corrugation",
-        within=(0.001, 3, "a narrower one is a sine: leave it out"),
     )
-    joint_depth: Length | None = key(
-        None,
+    joint_depth: values.Length | None = optional(
+        "1 mm",
         "depth of a dipped joint, which direct and table see",
-        example='"1 mm"',
-        within=("1 um", "100 mm", "dips lie between"),
+        within="1 um to 100 mm: dips lie between",
     )
-    joint_length: Length = key(
-        "1 m", "length of the dip", goes_with="joint_depth", within=("1 mm", "100 m", "dips lie between")
+    joint_length: values.Length = key(
+        "1 m", "length of the dip", "1 mm to 100 m: dips lie between", goes_with="joint_depth"
     )
-    joint_position: Position | None = key(
-        None,
+    joint_position: values.Position | None = optional(
+        "10 m",
         "position of the joint, from the sleeper that start counts from",
-        otherwise="the middle of the run",
-        example='"10 m"',
+        "the middle of the run",
+        "0 m to 100 km: tracks are rolled over for less",
         goes_with="joint_depth",
-        within=("0 m", "100 km", "tracks are rolled over for less"),
     )
-    smooth: YesNo = key(False, "a rail without texture")
+    smooth: values.YesNo = key(False, "a rail without texture")
 
     @property
     def has_texture(self) -> bool:

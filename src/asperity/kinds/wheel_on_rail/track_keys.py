@@ -5,24 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BeforeValidator
-
-from asperity.config.form import Section, key
-from asperity.config.keys import (
-    Choice,
-    ChosenLength,
-    Damping,
-    Duration,
-    Force,
-    Length,
-    Mass,
-    Number,
-    OwnOrNamed,
-    Position,
-    Quantity,
-    SectionFile,
-    Stiffness,
-)
+from asperity.config import values
+from asperity.config.form import Section, key, optional
 from asperity.config.sections import ContactCase, Numerics
 from asperity.errors import InputError
 from asperity.reference.tracks import TRACKS
@@ -30,7 +14,7 @@ from asperity.reference.tracks import TRACKS
 if TYPE_CHECKING:
     from asperity.structures.track import Track
 
-LossFactor = Annotated[float, BeforeValidator(Number(at_least=0, at_most=5))]
+LossFactor = Annotated[float, values.Number(at_least=0, at_most=5)]
 
 
 _NAMED = "of the named set"
@@ -39,96 +23,60 @@ _NAMED = "of the named set"
 class TrackParameters(Section):
     """The track without what a run records of it: a named, cited set; each single key overrides it."""
 
-    name: Annotated[str, BeforeValidator(Choice(tuple(TRACKS)))] = key("x2000", "named set of parameters")
-    bending_stiffness: Annotated[float, BeforeValidator(Quantity("N m^2", above=0))] | None = key(
-        None,
-        "bending stiffness of the rail",
-        otherwise=_NAMED,
-        example='"4.7 MN m^2"',
-        within=("1 kN m^2", "1 GN m^2", "rails lie between"),
+    name: Annotated[str, values.Choice(tuple(TRACKS))] = key("x2000", "named set of parameters")
+    bending_stiffness: Annotated[float, values.Quantity("N m^2", above=0)] | None = optional(
+        "4.7 MN m^2", "bending stiffness of the rail", _NAMED, "1 kN m^2 to 1 GN m^2: rails lie between"
     )
-    mass_per_length: Annotated[float, BeforeValidator(Quantity("kg/m", above=0))] | None = key(
-        None,
-        "mass of the rail per length",
-        otherwise=_NAMED,
-        example='"60 kg/m"',
-        within=("1 kg/m", "1000 kg/m", "rails lie between"),
+    mass_per_length: Annotated[float, values.Quantity("kg/m", above=0)] | None = optional(
+        "60 kg/m", "mass of the rail per length", _NAMED, "1 kg/m to 1000 kg/m: rails lie between"
     )
-    rail_loss_factor: LossFactor | None = key(
-        None, "loss factor of the rail", otherwise=_NAMED, example="0.01"
-    )
-    shear_stiffness: Force | None = key(
-        None,
+    rail_loss_factor: LossFactor | None = optional(0.01, "loss factor of the rail", _NAMED)
+    shear_stiffness: values.Force | None = optional(
+        "243 MN",
         "shear stiffness of the rail; with it, the rail is a Timoshenko beam",
-        otherwise=_NAMED,
-        example='"243 MN"',
-        within=("1 kN", "1 TN", "rails lie between"),
+        _NAMED,
+        "1 kN to 1 TN: rails lie between",
     )
-    rotary_inertia: Annotated[float, BeforeValidator(Quantity("kg m", above=0))] | None = key(
-        None,
+    rotary_inertia: Annotated[float, values.Quantity("kg m", above=0)] | None = optional(
+        "0.24 kg m",
         "rotary inertia of the rail per length",
-        otherwise=_NAMED,
-        example='"0.24 kg m"',
-        within=("1e-6 kg m", "1000 kg m", "rails lie between"),
+        _NAMED,
+        "1e-6 kg m to 1000 kg m: rails lie between",
     )
-    pad_stiffness: Stiffness | None = key(
-        None,
-        "stiffness of a rail pad",
-        otherwise=_NAMED,
-        example='"300 MN/m"',
-        within=("1 kN/m", "1 TN/m", "pads lie between"),
+    pad_stiffness: values.Stiffness | None = optional(
+        "300 MN/m", "stiffness of a rail pad", _NAMED, "1 kN/m to 1 TN/m: pads lie between"
     )
-    pad_damping: Damping | None = key(
-        None,
-        "viscous damping of a pad",
-        otherwise=_NAMED,
-        example='"18 kN s/m"',
-        within=("1e-3 N s/m", "1e9 N s/m", "pads lie between"),
+    pad_damping: values.Damping | None = optional(
+        "18 kN s/m", "viscous damping of a pad", _NAMED, "1e-3 N s/m to 1e9 N s/m: pads lie between"
     )
-    pad_loss_factor: LossFactor | None = key(
-        None,
-        "loss factor of a pad, instead of pad_damping; approximated in time",
-        otherwise=_NAMED,
-        example="0.15",
+    pad_loss_factor: LossFactor | None = optional(
+        0.15, "loss factor of a pad, instead of pad_damping; approximated in time", _NAMED
     )
-    sleeper_mass: Mass | None = key(
-        None,
+    sleeper_mass: values.Mass | None = optional(
+        "150 kg",
         "mass of a sleeper under one rail: half a sleeper",
-        otherwise=_NAMED,
-        example='"150 kg"',
-        within=("1 kg", "100 t", "sleepers lie between"),
+        _NAMED,
+        "1 kg to 100 t: sleepers lie between",
     )
-    ballast_stiffness: Stiffness | None = key(
-        None,
+    ballast_stiffness: values.Stiffness | None = optional(
+        "150 MN/m",
         "stiffness of the ballast under half a sleeper",
-        otherwise=_NAMED,
-        example='"150 MN/m"',
-        within=("1 kN/m", "1 TN/m", "ballast lies between"),
+        _NAMED,
+        "1 kN/m to 1 TN/m: ballast lies between",
     )
-    ballast_damping: Damping | None = key(
-        None,
-        "viscous damping of the ballast",
-        otherwise=_NAMED,
-        example='"48 kN s/m"',
-        within=("1e-3 N s/m", "1e9 N s/m", "ballast lies between"),
+    ballast_damping: values.Damping | None = optional(
+        "48 kN s/m", "viscous damping of the ballast", _NAMED, "1e-3 N s/m to 1e9 N s/m: ballast lies between"
     )
-    ballast_loss_factor: LossFactor | None = key(
-        None,
-        "loss factor of the ballast, instead of ballast_damping; approximated in time",
-        otherwise=_NAMED,
-        example="0.4",
+    ballast_loss_factor: LossFactor | None = optional(
+        0.4, "loss factor of the ballast, instead of ballast_damping; approximated in time", _NAMED
     )
-    sleeper_spacing: Length | None = key(
-        None,
-        "distance of the sleepers",
-        otherwise=_NAMED,
-        example='"0.6 m"',
-        within=("0.1 m", "10 m", "sleepers are as far apart"),
+    sleeper_spacing: values.Length | None = optional(
+        "0.6 m", "distance of the sleepers", _NAMED, "0.1 m to 10 m: sleepers are as far apart"
     )
-    rail_head_radius: Length = key(
-        "0.3 m", "radius of the rail head across the rail", within=("1 mm", "1 km", "rail heads lie between")
+    rail_head_radius: values.Length = key(
+        "0.3 m", "radius of the rail head across the rail", "1 mm to 1 km: rail heads lie between"
     )
-    material: OwnOrNamed = key("steel", "material of the rail")
+    material: values.OwnOrNamed = key("steel", "material of the rail")
 
     @property
     def overrides(self) -> dict[str, float]:
@@ -171,18 +119,15 @@ class TrackParameters(Section):
 class TrackCase(TrackParameters):
     """The track, its rail head, and the points at which its motion is recorded."""
 
-    rail_profile: SectionFile | None = key(
-        None,
-        "measured shape of the rail head across the rail, instead of rail_head_radius",
-        example='"rail.csv"',
+    rail_profile: values.SectionFile | None = optional(
+        "rail.csv", "measured shape of the rail head across the rail, instead of rail_head_radius"
     )
-    points: tuple[Position, ...] | None = key(
-        None,
+    points: tuple[values.Position, ...] | None = optional(
+        ["9 m", "9.3 m"],
         "positions at which the motion of the rail is recorded while it is passed, from the sleeper that "
         "start counts from",
-        otherwise="over a sleeper and at mid-span in the middle of the run",
-        example='["9 m", "9.3 m"]',
-        within=("0 m", "100 km", "tracks are rolled over for less"),
+        "over a sleeper and at mid-span in the middle of the run",
+        "0 m to 100 km: tracks are rolled over for less",
     )
 
     def problems(self) -> Iterator[InputError]:
@@ -215,44 +160,36 @@ OVERRIDES = (
 class RailContact(ContactCase):
     """How the contact of wheel and rail is solved and reduced."""
 
-    spacing: ChosenLength = key(
-        None,
+    spacing: values.ChosenLength = optional(
+        "0.5 mm",
         "grid spacing of the contact solution",
-        otherwise="a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
-        example='"0.5 mm"',
-        within=(
-            "1 um",
-            "10 mm",
-            "an elastic continuum is coarser than grains, and contacts are smaller than 10 mm",
-        ),
+        "a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
+        "1 um to 10 mm: an elastic continuum is coarser than grains, and contacts are smaller than 10 mm",
     )
-    window: ChosenLength = key(
-        None,
+    window: values.ChosenLength = optional(
+        "20 mm",
         "side of the square window in which contact is solved; wider than the contact",
-        otherwise="that of the smooth contact under three times the load, wider by roughness and by a flat",
-        example='"20 mm"',
-        within=("10 um", "1 m", "contacts lie between grains and bodies"),
+        "that of the smooth contact under three times the load, wider by roughness and by a flat",
+        "10 um to 1 m: contacts lie between grains and bodies",
     )
 
 
 class RailNumerics(Numerics):
     """How finely time and the track are resolved."""
 
-    time_step: Duration | None = key(
-        None,
+    time_step: values.Duration | None = optional(
+        "25 us",
         "time step",
-        otherwise="near 1/8 of the highest frequency's period, on the grid of the contact if that is near",
-        example='"25 us"',
-        within=("10 ns", "1 ms", "the spectra lie between"),
+        "near 1/8 of the highest frequency's period, on the grid of the contact if that is near",
+        "10 ns to 1 ms: the spectra lie between",
     )
-    kernel: Annotated[str, BeforeValidator(Choice(("poles", "scatter")))] = key(
+    kernel: Annotated[str, values.Choice(("poles", "scatter"))] = key(
         "poles", "how the track's response is carried on in time: by fitted poles, or by its whole past"
     )
-    poles: Annotated[int, BeforeValidator(Number(at_least=10, at_most=1000, whole=True))] | None = key(
-        None,
+    poles: Annotated[int, values.Number(at_least=10, at_most=1000, whole=True)] | None = optional(
+        100,
         "largest number of poles, even; no more are taken than tell anything of the track",
-        otherwise="100, or a tenth of the time steps that the track remembers if that is less",
-        example="100",
+        "100, or a tenth of the time steps that the track remembers if that is less",
         goes_with="kernel=poles",
     )
 

@@ -6,10 +6,8 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BeforeValidator
-
-from asperity.config.form import Section, key
-from asperity.config.keys import Length, Number, Position
+from asperity.config.form import Section, key, optional
+from asperity.config.values import Length, Number, Position
 from asperity.errors import InputError
 from asperity.units import written
 
@@ -20,28 +18,25 @@ if TYPE_CHECKING:
 class TrainKeys(Section):
     """The axles that pass a receiver beside the track, each with two wheels on two rails."""
 
-    axle_positions: tuple[Position, ...] | None = key(
-        None,
+    axle_positions: tuple[Position, ...] | None = optional(
+        ["0 m", "2.5 m", "19 m", "21.5 m"],
         "axles of the vehicle that passes, behind its first; each has two wheels",
-        otherwise="one axle",
-        example='["0 m", "2.5 m", "19 m", "21.5 m"]',
-        within=("0 m", "1 km", "trains are shorter"),
+        "one axle",
+        "0 m to 1 km: trains are shorter",
     )
-    wheelbase: Length | None = key(
-        None,
+    wheelbase: Length | None = optional(
+        "2.5 m",
         "distance of the two axles of a bogie that passes, instead of axle_positions",
-        otherwise="one axle",
-        example='"2.5 m"',
-        within=("0.1 m", "100 m", "axles are as far apart"),
+        "one axle",
+        "0.1 m to 100 m: axles are as far apart",
     )
-    vehicle_length: Length | None = key(
-        None,
+    vehicle_length: Length | None = optional(
+        "26.4 m",
         "length of the vehicle over its buffers, from which the pass-by time follows",
-        otherwise="half a mean distance of the axles beyond the outer ones",
-        example='"26.4 m"',
-        within=("0.1 m", "1 km", "vehicles lie between"),
+        "half a mean distance of the axles beyond the outer ones",
+        "0.1 m to 1 km: vehicles lie between",
     )
-    vehicles: Annotated[int, BeforeValidator(Number(at_least=1, at_most=100, whole=True))] = key(
+    vehicles: Annotated[int, Number(at_least=1, at_most=100, whole=True)] = key(
         1, "number of such vehicles, one behind the other", goes_with="vehicle_length"
     )
 

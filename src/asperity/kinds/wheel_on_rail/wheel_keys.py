@@ -9,22 +9,9 @@ from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, PlainValidator
 
-from asperity.config.form import Section, key
-from asperity.config.keys import (
-    Choice,
-    ChoiceOrFile,
-    File,
-    Force,
-    Length,
-    LengthOrInfinite,
-    Level,
-    Mass,
-    OwnOrNamed,
-    Position,
-    SectionFile,
-)
+from asperity.config import values
+from asperity.config.form import Section, key, optional
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines
@@ -38,48 +25,38 @@ CLOSE_LENGTH = 0.05  # by which a measured length may differ from that of the ch
 
 WheelRoughness = Annotated[
     str | Path | NDArray[np.float64],
-    PlainValidator(ChoiceOrFile(WHEEL_ROUGHNESS, TABLE_OF_LEVELS, columns=2)),
+    values.ChoiceOrFile(WHEEL_ROUGHNESS, TABLE_OF_LEVELS, columns=2),
 ]
-TableFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=3))]
-ModesFile = Annotated[Path | NDArray[np.float64], PlainValidator(File(columns=3, further=3))]
+TableFile = Annotated[Path | NDArray[np.float64], values.File(columns=3)]
+ModesFile = Annotated[Path | NDArray[np.float64], values.File(columns=3, further=3)]
 
 
 class WheelBody(Section):
     """The wheel without its texture: a mass under a constant load, its shape and its resonances."""
 
-    radius: Length = key("0.46 m", "rolling radius", within=("10 mm", "10 m", "wheels lie between"))
-    mass: Mass = key(
-        "600 kg", "mass on the contact, unsprung", within=("1 kg", "100 t", "wheels lie between")
+    radius: values.Length = key("0.46 m", "rolling radius", "10 mm to 10 m: wheels lie between")
+    mass: values.Mass = key("600 kg", "mass on the contact, unsprung", "1 kg to 100 t: wheels lie between")
+    load: values.Force = key(
+        "65 kN", "static contact force, weight included", "1 N to 10 MN: wheels on rails carry as much"
     )
-    load: Force = key(
-        "65 kN",
-        "static contact force, weight included",
-        within=("1 N", "10 MN", "wheels on rails carry as much"),
+    material: values.OwnOrNamed = key("steel", "material")
+    transverse_radius: values.LengthOrInfinite = key(
+        "inf", "radius of the tread across the rail", '1 mm to 100 km: beyond that it is flat: write "inf"'
     )
-    material: OwnOrNamed = key("steel", "material")
-    transverse_radius: LengthOrInfinite = key(
-        "inf",
-        "radius of the tread across the rail",
-        within=("1 mm", "100 km", 'beyond that it is flat: write "inf"'),
+    profile: values.SectionFile | None = optional(
+        "tread.csv", "measured shape of the tread across the rail, instead of transverse_radius"
     )
-    profile: SectionFile | None = key(
-        None,
-        "measured shape of the tread across the rail, instead of transverse_radius",
-        example='"tread.csv"',
-    )
-    modes: ModesFile | None = key(
-        None,
+    modes: ModesFile | None = optional(
+        "modes.csv",
         "table of the wheel's modes: frequency (Hz), damping ratio, modal mass (kg); its sound needs three "
         "columns more: number of nodal diameters, and rms axial velocity of the disc and rms radial velocity "
         "of the tread, both per radial velocity at the contact",
-        otherwise="a rigid wheel",
-        example='"modes.csv"',
+        "a rigid wheel",
     )
-    receptance: TableFile | None = key(
-        None,
+    receptance: TableFile | None = optional(
+        "receptance.csv",
         "table of the wheel's receptance: frequency (Hz), real and imaginary part (m/N)",
-        otherwise="a rigid wheel",
-        example='"receptance.csv"',
+        "a rigid wheel",
     )
 
     @property
@@ -103,37 +80,32 @@ class WheelBody(Section):
 class WheelCase(MeasuredLines, WheelBody):
     """The wheel: a body, and the texture of its tread."""
 
-    roughness: WheelRoughness | None = key(
-        None, "one-third-octave wavelength spectrum of the tread", example='"disc"'
-    )
-    roughness_level: Level = key(
+    roughness: WheelRoughness | None = optional("disc", "one-third-octave wavelength spectrum of the tread")
+    roughness_level: values.Level = key(
         "+0 dB",
         "level added to it",
+        "-120 dB to 120 dB: a million times is another texture",
         goes_with="roughness",
-        within=("-120 dB", "120 dB", "a million times is another texture"),
     )
-    flat_depth: Length | None = key(
-        None,
+    flat_depth: values.Length | None = optional(
+        "0.5 mm",
         "depth of a flat on the tread, which direct and table see; with flat_length alone, that of its chord",
-        example='"0.5 mm"',
-        within=("10 nm", "100 mm", "flats lie between"),
+        within="10 nm to 100 mm: flats lie between",
     )
-    flat_length: Length | None = key(
-        None,
+    flat_length: values.Length | None = optional(
+        "43 mm",
         "length of the flat: that of its chord, sqrt(8 radius flat_depth); a worn one may be longer",
-        example='"43 mm"',
-        within=("10 um", "1 m", "flats lie between"),
+        within="10 um to 1 m: flats lie between",
     )
-    flat_shape: Annotated[str, BeforeValidator(Choice(("fresh", "worn")))] = key(
+    flat_shape: Annotated[str, values.Choice(("fresh", "worn"))] = key(
         "fresh", "a chord with sharp ends, or rounded", goes_with="flat_depth or flat_length"
     )
-    flat_position: Position | None = key(
-        None,
+    flat_position: values.Position | None = optional(
+        "1 m",
         "where the flat is on the tread, along the circumference from the point that touches at start",
-        otherwise="half a turn on, or half of the record if that is shorter, so that no impact is cut",
-        example='"1 m"',
+        "half a turn on, or half of the record if that is shorter, so that no impact is cut",
+        "0 m to 100 m: wheels are smaller",
         goes_with="flat_depth or flat_length",
-        within=("0 m", "100 m", "wheels are smaller"),
     )
 
     @property

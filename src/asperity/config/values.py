@@ -10,12 +10,9 @@ from typing import Annotated, Any, NoReturn, get_args, get_origin
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import (
-    BeforeValidator,
-    PlainValidator,
-    ValidationInfo,
-)
+from pydantic import GetCoreSchemaHandler, ValidationInfo
 from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, core_schema
 
 from asperity.arguments import nearest, no_file, shown
 from asperity.errors import InputError
@@ -57,8 +54,28 @@ def needs_units(info: ValidationInfo | None) -> bool:
     return bool(info is not None and (info.context or {}).get("units"))
 
 
+class ValueKind:
+    """A kind of value, as `Quantity`: it reads what stands behind a key, or raises an `InputError`."""
+
+    is_whole = False  # whether nothing is left to check of what it returns
+
+    @property
+    def allowed(self) -> str:
+        """What may stand behind the key."""
+        raise NotImplementedError
+
+    def __call__(self, value: Any, info: ValidationInfo | None = None) -> Any:
+        """Return the value in SI."""
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        if self.is_whole:
+            return core_schema.with_info_plain_validator_function(self)
+        return core_schema.with_info_before_validator_function(self, handler(source))
+
+
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(ValueKind):
     """A number with a unit, written as a string; from Python also a number in SI.
 
     Parameters
@@ -85,7 +102,7 @@ class Quantity:
         infinite = ', or "inf"' if self.infinite else ""
         return f'{word}{_range(self.above, self.at_least)}{infinite}, with its unit, as "{example}"'
 
-    def __call__(self, value: object, info: ValidationInfo | None) -> float:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> float:
         """Return the value in SI."""
         number = self._number(value.item() if isinstance(value, np.generic) else value, info)
         if not math.isfinite(number) and not (self.infinite and number > 0):
@@ -119,13 +136,13 @@ class Quantity:
 class Chosen(Quantity):
     """A quantity that is chosen where nothing is given: it is not a number until then."""
 
-    def __call__(self, value: object, info: ValidationInfo | None) -> float:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> float:
         """Return the value in SI; NaN for nothing."""
         return math.nan if value is None else super().__call__(value, info)
 
 
 @dataclass(frozen=True)
-class Number:
+class Number(ValueKind):
     """A pure number."""
 
     above: float | None = None
@@ -140,7 +157,7 @@ class Number:
         limits = _range(self.above, self.at_least, self.at_most)
         return ("a whole number" if self.whole else "a number") + limits + (', or "inf"' * self.infinite)
 
-    def __call__(self, value: object) -> float | int:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> float | int:
         """Return the number."""
         value = value.item() if isinstance(value, np.generic) else value
         if self.infinite and isinstance(value, str | float) and value in ("inf", math.inf):
@@ -156,7 +173,7 @@ class Number:
 
 
 @dataclass(frozen=True)
-class NumberOrWord:
+class NumberOrWord(ValueKind):
     """A pure number, or one word."""
 
     number: Number
@@ -167,7 +184,7 @@ class NumberOrWord:
         """What may stand behind the key."""
         return f'{self.number.allowed}, or "{self.word}"'
 
-    def __call__(self, value: object) -> float | int | str:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> float | int | str:
         """Return the number or the word."""
         if isinstance(value, str) and value == self.word:
             return value
@@ -187,7 +204,7 @@ class Problems(ValueError):
 
 
 @dataclass(frozen=True)
-class Choice:
+class Choice(ValueKind):
     """One of a few words, or of those that a registry holds when it is asked."""
 
     words: tuple[str, ...] | Callable[[], tuple[str, ...]]
@@ -203,7 +220,7 @@ class Choice:
         """What may stand behind the key."""
         return ", ".join(f'"{word}"' for word in self.known)
 
-    def __call__(self, value: object) -> str:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> str:
         """Return the word."""
         if isinstance(value, int) and not isinstance(value, bool) and value in self.numbers:
             return self.known[self.numbers.index(value)]
@@ -213,12 +230,12 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Flag:
+class Flag(ValueKind):
     """Yes or no."""
 
     allowed = "true or false"
 
-    def __call__(self, value: object) -> bool:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> bool:
         """Return the flag."""
         if not isinstance(value, bool):
             raise InputError("flag", shown(value), self.allowed, "Write it without quotes.")
@@ -226,12 +243,12 @@ class Flag:
 
 
 @dataclass(frozen=True)
-class Text:
+class Text(ValueKind):
     """A word, as the name of an array."""
 
     allowed = "a text in quotes"
 
-    def __call__(self, value: object) -> str:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> str:
         """Return the text."""
         if not isinstance(value, str) or not value.strip() or not _is_text(value):
             raise InputError("text", shown(value), self.allowed)
@@ -239,12 +256,12 @@ class Text:
 
 
 @dataclass(frozen=True)
-class LengthUnit:
+class LengthUnit(ValueKind):
     """The unit of heights in a file that does not name it."""
 
     allowed = 'a unit of length, as "um"'
 
-    def __call__(self, value: object) -> str:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> str:
         """Return the unit, once it is known to be one."""
         if not isinstance(value, str):
             raise InputError("unit", shown(value), self.allowed)
@@ -256,7 +273,7 @@ class LengthUnit:
 
 
 @dataclass(frozen=True)
-class File:
+class File(ValueKind):
     """An existing file, whose path starts at the folder of the case; from Python also what it would hold.
 
     Parameters
@@ -272,13 +289,14 @@ class File:
     held: tuple[type, ...] = ()
     columns: int = 0
     further: int = 0
+    is_whole = True
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
         return "the path of an existing file, relative to the case"
 
-    def __call__(self, value: object, info: ValidationInfo) -> Any:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> Any:
         """Return the path, absolute, or what stands in its place."""
         if self.held and isinstance(value, self.held):
             return value
@@ -299,11 +317,11 @@ class File:
         table.flags.writeable = False
         return table
 
-    def _path(self, value: object, info: ValidationInfo) -> Path:
+    def _path(self, value: object, info: ValidationInfo | None) -> Path:
         if not isinstance(value, str | Path) or "\0" in str(value) or not str(value):
             held = "" if needs_units(info) else "".join(f", or a {each.__name__}" for each in self.held)
             raise InputError("file", shown(value), self.allowed + held)
-        path = (Path((info.context or {}).get("folder", ".")) / value).absolute()
+        path = (Path(((info and info.context) or {}).get("folder", ".")) / value).absolute()
         if reason := no_file(path):
             remedy = f"It is {reason}."
             if reason == "no such file":
@@ -314,19 +332,20 @@ class File:
 
 
 @dataclass(frozen=True)
-class ChoiceOrFile:
+class ChoiceOrFile(ValueKind):
     """One of a few words, or else an existing file."""
 
     words: tuple[str, ...]
     content: str
     columns: int = 0  # of an array that Python may hand over
+    is_whole = True
 
     @property
     def allowed(self) -> str:
         """What may stand behind the key."""
         return f"{Choice(self.words).allowed}, or the path of {self.content}"
 
-    def __call__(self, value: object, info: ValidationInfo) -> Any:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> Any:
         """Return the word, the path or the array."""
         if isinstance(value, str) and value in self.words:
             return value
@@ -338,7 +357,7 @@ class ChoiceOrFile:
 
 
 @dataclass(frozen=True)
-class MaterialOrName:
+class MaterialOrName(ValueKind):
     """A named material, or one of its own by numbers."""
 
     @property
@@ -349,7 +368,7 @@ class MaterialOrName:
             'poisson_ratio = 0.33, density = "2700 kg/m^3" }'
         )
 
-    def __call__(self, value: object, info: ValidationInfo | None) -> Material:
+    def __call__(self, value: object, info: ValidationInfo | None = None) -> Material:
         """Return the material."""
         if isinstance(value, Material):
             known = MATERIALS.get(value.name) == value
@@ -361,7 +380,6 @@ class MaterialOrName:
         return MATERIALS[value]
 
 
-Limit = str | float
 _OF_A_MATERIAL: dict[str, Quantity | Number] = {
     "youngs_modulus": Quantity("Pa", above=0),
     "poisson_ratio": Number(above=-1, at_most=0.5),
@@ -369,7 +387,7 @@ _OF_A_MATERIAL: dict[str, Quantity | Number] = {
 }
 
 
-_PLAUSIBLE: dict[str, tuple[Limit, Limit, str]] = {
+_PLAUSIBLE: dict[str, tuple[str, str, str]] = {
     "youngs_modulus": ("1 kPa", "10 TPa", "solids that roll lie between"),
     "density": ("1 kg/m^3", "100000 kg/m^3", "solids that roll lie between"),
 }
@@ -398,7 +416,7 @@ def _own_material(given: Mapping[Any, Any], info: ValidationInfo | None) -> Mate
             continue
         try:
             value = given[name]
-            found[name] = kind(value, info) if isinstance(kind, Quantity) else kind(value)
+            found[name] = kind(value, info)
             errors += outside_limits(name, found[name], kind, _PLAUSIBLE.get(name))
         except InputError as error:
             errors.append(InputError(name, error.received, error.allowed, error.remedy))
@@ -413,25 +431,11 @@ def _own_material(given: Mapping[Any, Any], info: ValidationInfo | None) -> Mate
     return Material(words["name"], **found, citation=words["citation"])
 
 
-Kind = (
-    Quantity
-    | Number
-    | NumberOrWord
-    | Choice
-    | Flag
-    | Text
-    | LengthUnit
-    | File
-    | ChoiceOrFile
-    | MaterialOrName
-)
-
-
-def value_kind(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> Kind | None:
+def value_kind(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> ValueKind | None:
     """Find the kind inside an annotation such as ``tuple[Length, ...] | None``."""
     for item in metadata:
-        if isinstance(item, BeforeValidator | PlainValidator) and isinstance(item.func, Kind):
-            return item.func
+        if isinstance(item, ValueKind):
+            return item
     for inner in get_args(annotation):
         found = value_kind(inner, getattr(annotation, "__metadata__", ()))
         if found is not None:
@@ -453,14 +457,14 @@ def is_list(annotation: Any) -> bool:
 
 
 def outside_limits(
-    name: str, value: object, kind: Kind | None, within: tuple[Limit, Limit, str] | None
+    name: str, value: object, kind: ValueKind | None, within: tuple[str, str, str] | None
 ) -> Iterator[InputError]:
     """Error about a number out of its limits; zero, infinity and NaN, where they may stand, may."""
     if within is None or not isinstance(value, int | float) or value in (0.0, math.inf) or value != value:
         return
     low, high, reason = within
     unit = kind.dimension if isinstance(kind, Quantity) else ""
-    least, most = (quantity(limit, unit) if isinstance(limit, str) else limit for limit in (low, high))
+    least, most = (quantity(limit, unit) if unit else float(limit) for limit in (low, high))
     if not least <= value <= most:
         received = written(value, unit, unit) if unit else f"{value:.4g}"
         yield InputError(name, received, f"{low} to {high}", _sentence(reason))
@@ -499,26 +503,26 @@ def _range(above: float | None, at_least: float | None, at_most: float | None = 
     return " " + " and ".join(limits) if limits else ""
 
 
-Length = Annotated[float, BeforeValidator(Quantity("m", above=0))]
-ChosenLength = Annotated[float, BeforeValidator(Chosen("m", above=0))]
-Position = Annotated[float, BeforeValidator(Quantity("m", at_least=0))]
-Approach = Annotated[float, BeforeValidator(Quantity("m"))]
-Duration = Annotated[float, BeforeValidator(Quantity("s", above=0))]
-DurationOrZero = Annotated[float, BeforeValidator(Quantity("s", at_least=0))]
-Speed = Annotated[float, BeforeValidator(Quantity("m/s", above=0))]
-Mass = Annotated[float, BeforeValidator(Quantity("kg", above=0))]
-Force = Annotated[float, BeforeValidator(Quantity("N", above=0))]
-Pressure = Annotated[float, BeforeValidator(Quantity("Pa", above=0))]
-Frequency = Annotated[float, BeforeValidator(Quantity("Hz", above=0))]
-Damping = Annotated[float, BeforeValidator(Quantity("N s/m", at_least=0))]
-Level = Annotated[float, BeforeValidator(Quantity("dB"))]
-Angle = Annotated[float, BeforeValidator(Quantity("rad"))]
-LengthOrInfinite = Annotated[float, BeforeValidator(Quantity("m", above=0, infinite=True))]
-Stiffness = Annotated[float, BeforeValidator(Quantity("N/m", above=0))]
-OwnOrNamed = Annotated[Material, BeforeValidator(MaterialOrName())]
-MapFile = Annotated[Path | HeightMap | tuple[HeightMap, ...], PlainValidator(File(held=(HeightMap,)))]
-LineFile = Annotated[Path | HeightMap | Profile, PlainValidator(File(held=(HeightMap, Profile)))]
-SectionFile = Annotated[Path | Profile, PlainValidator(File(held=(Profile,)))]
-Name = Annotated[str, BeforeValidator(Text())]
-HeightUnit = Annotated[str, BeforeValidator(LengthUnit())]
-YesNo = Annotated[bool, BeforeValidator(Flag())]
+Length = Annotated[float, Quantity("m", above=0)]
+ChosenLength = Annotated[float, Chosen("m", above=0)]
+Position = Annotated[float, Quantity("m", at_least=0)]
+Approach = Annotated[float, Quantity("m")]
+Duration = Annotated[float, Quantity("s", above=0)]
+DurationOrZero = Annotated[float, Quantity("s", at_least=0)]
+Speed = Annotated[float, Quantity("m/s", above=0)]
+Mass = Annotated[float, Quantity("kg", above=0)]
+Force = Annotated[float, Quantity("N", above=0)]
+Pressure = Annotated[float, Quantity("Pa", above=0)]
+Frequency = Annotated[float, Quantity("Hz", above=0)]
+Damping = Annotated[float, Quantity("N s/m", at_least=0)]
+Level = Annotated[float, Quantity("dB")]
+Angle = Annotated[float, Quantity("rad")]
+LengthOrInfinite = Annotated[float, Quantity("m", above=0, infinite=True)]
+Stiffness = Annotated[float, Quantity("N/m", above=0)]
+OwnOrNamed = Annotated[Material, MaterialOrName()]
+MapFile = Annotated[Path | HeightMap | tuple[HeightMap, ...], File(held=(HeightMap,))]
+LineFile = Annotated[Path | HeightMap | Profile, File(held=(HeightMap, Profile))]
+SectionFile = Annotated[Path | Profile, File(held=(Profile,))]
+Name = Annotated[str, Text()]
+HeightUnit = Annotated[str, LengthUnit()]
+YesNo = Annotated[bool, Flag()]
