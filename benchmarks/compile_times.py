@@ -89,14 +89,14 @@ def compile_case(kind: str, folder: Path, *, ahead: bool) -> None:
     """Run a default case, or compile its kernels ahead only, from nothing kept, in this process."""
     os.environ |= {"ASPERITY_KERNELS": str(folder / "kernels"), "ASPERITY_CACHE": str(folder / "cache")}
     tempfile.tempdir = str(folder)  # kernels are looked for there, too
-    from asperity.kinds.cases import as_case, demo_case, kind_of, template
+    from asperity.kinds.cases import as_case, demo_case, template
     from asperity.running import run
-    from asperity.scenarios import second_process
+    from asperity.scenarios import compiling
 
-    second_process.processors = lambda: 1  # else another takes its share
+    compiling.processors = lambda: 1  # else another takes its share
     case = demo_case() if kind == "demo" else as_case(tomllib.loads(template(kind)))
     if ahead:
-        kind_of(case).compile_kernels(lambda *_: None)
+        compiling.compile_kernels(lambda *_: None)
     else:
         run(case)
 

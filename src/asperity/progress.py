@@ -29,10 +29,6 @@ class Progress(Protocol):
         """Report that `done` of `total` steps of the work called `message` are finished."""
 
 
-def _nothing() -> None:
-    """Do nothing."""
-
-
 class Compilation:
     """Time that the compiler took in this process: its first use of a kernel, never that of the work."""
 
@@ -40,7 +36,6 @@ class Compilation:
         self.functions = 0  # that were compiled
         self._told: Callable[[], None] | None = None
         self._said = False
-        self.hear: Callable[[], None] = _nothing  # called as compilation goes on
         self._spent, self._begun = 0.0, 0.0  # s
         self._open: set[str] = set()
         self._lock = threading.Lock()
@@ -60,16 +55,6 @@ class Compilation:
             self._open.add(name)
         if told is not None:
             told()
-        self.hear()
-
-    @contextmanager
-    def heard_by(self, hear: Callable[[], None]) -> Iterator[None]:
-        """Call a function as compilation goes on, while the ``with`` statement runs."""
-        before, self.hear = self.hear, hear
-        try:
-            yield
-        finally:
-            self.hear = before
 
     @contextmanager
     def told_to(self, tell: Callable[[str], None]) -> Iterator[None]:
@@ -92,7 +77,6 @@ class Compilation:
                 self.functions += 1
                 if not self._open:
                     self._spent += time.monotonic() - self._begun
-        self.hear()
 
 
 COMPILING = "compiling functions, once: later runs load them …"

@@ -12,7 +12,7 @@ import time
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -30,6 +30,8 @@ LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is n
 _HOLDING = threading.Lock()
 PATIENCE = 0.02  # how often is looked for what another process makes, s
 MOST_HELD = 2**26  # bytes; what no disk takes is held in memory up to here
+KERNELS = "ASPERITY_KERNELS"
+"""Names the folder of compiled kernels; by default they lie in the cache."""
 
 
 def content_key(name: str, *parts: object) -> str:
@@ -260,6 +262,14 @@ def default_root() -> Path:
 def temporary_folder() -> Path:
     """Folder of this user's own among the temporary files; it need not exist."""
     return Path(tempfile.gettempdir()).absolute() / f"asperity-{_user()}"
+
+
+def kernel_folders() -> Iterator[Path]:
+    """Folders to try for compiled kernels: ``$ASPERITY_KERNELS`` or the cache, then the temporary files."""
+    with suppress(OSError, ValueError):
+        yield Path(os.environ.get(KERNELS) or default_root() / "kernels").absolute()
+    with suppress(OSError):
+        yield temporary_folder() / "kernels"
 
 
 def _user() -> int:

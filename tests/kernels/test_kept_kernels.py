@@ -2,7 +2,6 @@
 
 import importlib.util
 import os
-import select
 import subprocess
 import sys
 import warnings
@@ -10,7 +9,7 @@ import warnings
 import pytest
 
 from asperity import store
-from asperity.kernels import kept, turns
+from asperity.kernels import options
 
 MODULE = """
 from asperity.kernels.options import LOOP, compiled
@@ -28,7 +27,7 @@ def thrice(x):
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """Where kernels are kept for this test."""
-    monkeypatch.setenv(kept.VARIABLE, str(tmp_path / "kernels"))
+    monkeypatch.setenv(store.KERNELS, str(tmp_path / "kernels"))
     return tmp_path / "kernels"
 
 
@@ -51,7 +50,7 @@ def fresh(path):
 
 
 def files(folder):
-    return sorted(path for path in folder.rglob("*") if path.is_file() and path.name != turns.FILE)
+    return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
 def test_a_kernel_is_compiled_once(folder, module):
@@ -85,57 +84,12 @@ def again(folder, tmp_path, monkeypatch):
     path.write_text(CALLING)
 
     def import_again():
-        monkeypatch.setattr(kept, "_CALLED", {})
         spec = importlib.util.spec_from_file_location("calling_kernel", path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         return module
 
     return import_again
-
-
-def kept_file(folder, name):
-    (found,) = folder.rglob(f"calling_kernel.{name}-*")
-    return found
-
-
-def compiled_and_loaded(module, name):
-    stats = getattr(module, name).stats
-    return sum(stats.cache_misses.values()), sum(stats.cache_hits.values())
-
-
-def test_a_kernel_calls_another_one_as_it_was_compiled(folder, again):
-    """It holds nothing of it: without its file it is worth nothing, and both are compiled again."""
-    assert again().calling(1.0) == 5.0
-    assert len(files(folder)) == 3
-    module = again()
-    assert module.calling(1.0) == 5.0
-    assert compiled_and_loaded(module, "calling") == (0, 1)
-    assert [name.partition("-")[0] for name in kept._CALLED] == [
-        "calling_kernel.called",
-        "calling_kernel.calling",
-    ]
-    kept_file(folder, "called").unlink()
-    module = again()
-    assert module.calling(1.0) == 5.0
-    assert compiled_and_loaded(module, "calling") == (1, 0)
-
-
-def test_a_kernel_whose_callee_was_compiled_anew_is_compiled_again(folder, again):
-    """The callee has another symbol then; where none is found the linker ends the process."""
-    assert again().calling(1.0) == 5.0
-    kept_file(folder, "called").unlink()
-    assert again().called(1.0) == 4.0  # another entry of it, which Python can call
-    assert len(list(folder.rglob("calling_kernel.called-*"))) == 1
-    for file in folder.rglob("calling_kernel.called-*"):
-        file.unlink()
-    calling = kept_file(folder, "calling").read_bytes()
-    kept_file(folder, "calling").unlink()
-    assert again().calling(1.0) == 5.0
-    kept_file(folder, "calling").write_bytes(calling)
-    module = again()
-    assert module.calling(1.0) == 5.0
-    assert compiled_and_loaded(module, "calling") == (1, 0)
 
 
 def test_a_kernel_that_kernels_call_can_be_called_from_python(folder, again):
@@ -145,14 +99,14 @@ def test_a_kernel_that_kernels_call_can_be_called_from_python(folder, again):
     assert (module.called(1.0), module.inlined(1.0)) == (4.0, 2.0)
     module = again()
     assert (module.called(2.0), module.inlined(2.0), module.calling(2.0)) == (6.0, 3.0, 7.0)
-    assert len(files(folder)) == 5
+    assert len(files(folder)) == 3  # entries alone
 
 
 def test_a_kept_kernel_is_dropped_when_a_source_changes(folder, module, monkeypatch):
     fresh(module)
     module.write_text(MODULE + "\n")
     assert fresh(module) == (0, 1)
-    monkeypatch.setattr(kept, "SOURCES", "another version")
+    monkeypatch.setattr(options, "SOURCES", "another version")
     assert fresh(module) == (0, 1)
 
 
@@ -205,7 +159,7 @@ def test_a_folder_that_others_can_write_to_is_not_trusted(folder, module, tmp_pa
 
 def test_where_the_cache_cannot_be_written_kernels_lie_in_a_temporary_folder(module, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("no folder")
-    monkeypatch.setenv(kept.VARIABLE, str(tmp_path / "file" / "kernels"))
+    monkeypatch.setenv(store.KERNELS, str(tmp_path / "file" / "kernels"))
     monkeypatch.setattr(store.tempfile, "gettempdir", lambda: str(tmp_path / "temporary"))
     assert fresh(module) == (0, 1)
     assert fresh(module) == (1, 0)
@@ -214,13 +168,13 @@ def test_where_the_cache_cannot_be_written_kernels_lie_in_a_temporary_folder(mod
 
 def test_where_nothing_can_be_written_kernels_are_compiled_with_one_warning(module, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("no folder")
-    monkeypatch.setenv(kept.VARIABLE, str(tmp_path / "file" / "kernels"))
+    monkeypatch.setenv(store.KERNELS, str(tmp_path / "file" / "kernels"))
 
     def nowhere():
         raise FileNotFoundError("No usable temporary directory found")
 
     monkeypatch.setattr(store.tempfile, "gettempdir", nowhere)
-    kept._warn_unkept.cache_clear()
+    options._warn_unkept.cache_clear()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         assert fresh(module) == (0, 1)
@@ -234,7 +188,7 @@ def test_where_nothing_can_be_written_kernels_are_compiled_with_one_warning(modu
 def test_kernels_kept_by_another_are_read_where_nothing_can_be_written(folder, module, tmp_path, monkeypatch):
     """As in a container whose image brings them along."""
     fresh(module)
-    monkeypatch.setattr(kept, "_written", lambda *_: pytest.fail("nothing is to be written"))
+    monkeypatch.setattr(options, "_written", lambda *_: pytest.fail("nothing is to be written"))
     assert fresh(module) == (1, 0)
 
 
@@ -251,7 +205,7 @@ def test_without_a_home_and_an_entry_of_the_user(tmp_path):
         "from asperity.store import default_root\n"
         "print(foundation_approach(np.zeros((2, 2)), 1.0, 1.0, 1.0, 9.0) > 0.0, default_root())"
     )
-    environment = {k: v for k, v in os.environ.items() if k not in ("HOME", "ASPERITY_CACHE", kept.VARIABLE)}
+    environment = {k: v for k, v in os.environ.items() if k not in ("HOME", "ASPERITY_CACHE", store.KERNELS)}
     command = [sys.executable, "-c", code]
     done = subprocess.run(
         command, env=environment | {"TMPDIR": str(tmp_path)}, capture_output=True, text=True, check=False
@@ -262,108 +216,22 @@ def test_without_a_home_and_an_entry_of_the_user(tmp_path):
     assert files(private / "kernels")
 
 
-SLOW = """
-import sys, time
+WITHOUT = """
+import sys, warnings
 sys.path.insert(0, sys.argv[1])
-from asperity.kernels import kept
-keep = kept.Kept._keep
-
-def slowly(*arguments):
-    print("compiling", flush=True)
-    sys.stdin.readline()
-    keep(*arguments)
-
-kept.Kept._keep = slowly
-import kept_kernel
-kept_kernel.twice(2.0)
+from numba.core.compiler import CompileResult
+del CompileResult._rebuild
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    import calling_kernel
+assert (calling_kernel.calling(1.0), calling_kernel.inlined(1.0)) == (5.0, 2.0)
+print(*[each.message for each in caught])
 """
 
 
-@pytest.fixture
-def other(folder, module, tmp_path, monkeypatch):
-    """Another process that compiles the first kernel of the module, and keeps it when it gets a line."""
-    monkeypatch.syspath_prepend(tmp_path)  # what is kept names its module
-    command = [sys.executable, "-c", SLOW, str(tmp_path)]
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen(command, **pipes) as process:
-        assert process.stdout.readline() == "compiling\n"
-        yield process
-        process.kill()
-    sys.modules.pop("kept_kernel", None)
-
-
-needs_locks = pytest.mark.skipif(turns.fcntl is None, reason="nothing can be locked")
-
-
-@needs_locks
-def test_what_another_process_compiles_is_waited_for_and_loaded(other, module, monkeypatch):
-    waited = []
-
-    def sleep(seconds):
-        if not waited:
-            other.communicate("keep it\n")
-        waited.append(seconds)
-
-    monkeypatch.setattr(turns.time, "sleep", sleep)
-    assert fresh(module) == (1, 0)
-    assert waited
-
-
-@needs_locks
-def test_nobody_waits_for_a_process_that_was_killed(other, module, monkeypatch):
-    monkeypatch.setattr(turns.time, "sleep", lambda seconds: (other.kill(), other.wait()))
-    assert fresh(module) == (0, 1)
-
-
-@needs_locks
-def test_nobody_waits_for_ever(other, module, monkeypatch):
-    monkeypatch.setattr(turns, "PATIENCE", 0.0)
-    assert fresh(module) == (0, 1)
-    assert other.poll() is None
-
-
-CROSSING = """
-import sys
-from pathlib import Path
-from asperity.kernels.turns import take_turn
-folder, own, wanted = Path(sys.argv[1]), *sys.argv[2:]
-take_turn(folder, own, lambda: None)
-print("own", flush=True)
-input()
-take_turn(folder, wanted, lambda: None)
-print("both", flush=True)
-input()
-"""
-
-
-@needs_locks
-def test_no_two_wait_for_each_other(tmp_path):
-    """Each compiles what the other's kernel calls: one of them compiles it, too, the other waits for that."""
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    command = [sys.executable, "-c", CROSSING, str(tmp_path)]
-    with (
-        subprocess.Popen([*command, "x", "y"], **pipes) as one,
-        subprocess.Popen([*command, "y", "x"], **pipes) as two,
-    ):
-        processes = [one, two]
-        for process in processes:
-            assert process.stdout.readline() == "own\n"
-        for process in processes:
-            process.stdin.write("\n")
-            process.stdin.flush()
-        going, _, _ = select.select([process.stdout for process in processes], [], [], turns.PATIENCE / 4)
-        assert len(going) == 1
-        first, second = processes if going[0] is one.stdout else processes[::-1]
-        assert first.stdout.readline() == "both\n"
-        assert second.poll() is None
-        first.communicate("\n")
-        assert second.stdout.readline() == "both\n"
-        second.communicate("\n")
-
-
-def test_without_locks_nobody_waits(folder, module, monkeypatch):
-    monkeypatch.setattr(turns, "fcntl", None)
-    turns._opened.cache_clear()
-    assert fresh(module) == (0, 1)
-    assert fresh(module) == (1, 0)
-    turns._opened.cache_clear()
+def test_without_private_names_of_numba_plain_kernels_serve_and_that_is_told(folder, again, tmp_path):
+    command = [sys.executable, "-c", WITHOUT, str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "lacks what asperity needs to keep compiled functions" in done.stdout
+    assert not files(folder)

@@ -7,9 +7,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from asperity.files import amount, discard
-from asperity.kernels.folders import folders, kept_files
-from asperity.store import Store
+from asperity.files import amount, discard, left_overs
+from asperity.store import Store, is_private, kernel_folders
 from asperity.terminal import say
 
 
@@ -31,13 +30,22 @@ def _kept() -> Iterator[tuple[str, Path, list[Path]]]:
     store = Store()
     yield "results", store.root, store.files()
     left = {store.root: store.left_overs()}
-    for folder in folders():
-        kernels, left[folder] = kept_files(folder)
+    for folder in kernel_folders():
+        kernels, left[folder] = _kernels(folder)
         if kernels:
             yield "compiled functions", folder, kernels
     for folder, parts in left.items():
         if parts:
             yield "files left by interrupted runs", folder, parts
+
+
+def _kernels(folder: Path) -> tuple[list[Path], list[Path]]:
+    """Compiled kernels of all versions in a folder, and parts that interrupted writes left."""
+    places: list[Path] = []
+    with suppress(OSError):  # a name that is too long
+        places = [place for place in folder.glob("[0-9a-f]" * 16) if is_private(place)]
+    kernels = [file for place in places for file in place.iterdir() if not file.name.startswith(".")]
+    return sorted(kernels), sorted(part for place in places for part in left_overs(place))
 
 
 def _size(files: list[Path]) -> int:

@@ -21,7 +21,6 @@ from asperity.files import (
 )
 from asperity.memory import give_back
 from asperity.progress import COMPILATION, duration, progress_bar
-from asperity.scenarios.second_process import contact_compiled_beside
 from asperity.schema import provenance, rolling, spectra
 from asperity.terminal import detail, remark, say
 
@@ -99,16 +98,14 @@ def prepared_case(case: Case, source: str) -> PreparedCase:
 def _run_alone(case: Case, directory: Path, source: str, *, report: bool, converge: bool) -> DataTree:
     """Compute a case and write its results, while no other run does into this folder."""
     from asperity.cli.planning import announce_scan
+    from asperity.running import run
     from asperity.store import Store
 
     before, name = (time.monotonic(), COMPILATION.seconds), name_of_run(case)
-    with contact_compiled_beside():
-        from asperity.running import run
-
-        prepared = prepared_case(case, source)
-        with progress_bar() as progress:
-            announce_scan(prepared, progress)
-            tree: DataTree = run(prepared, progress=progress)
+    prepared = prepared_case(case, source)
+    with progress_bar() as progress:
+        announce_scan(prepared, progress)
+        tree: DataTree = run(prepared, progress=progress)
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name
     _warn(tree)

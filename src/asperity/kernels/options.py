@@ -1,38 +1,81 @@
-"""How kernels of the time loops are compiled.
+"""How kernels are compiled, and kept on disk: the one place that knows private names of numba.
 
-They get named tuples of arrays; counting references to those arrays at every call costs ten times the
-arithmetic. Functions that allocate nothing do not need to count (``_nrt``), and inside one compiled loop
-nothing is left of the calls (``forceinline``).
+Kernels of time loops get named tuples of arrays; counting references to those arrays at every call costs ten
+times the arithmetic. Functions that allocate nothing do not need to count (``_nrt``), and inside one compiled
+loop nothing is left of the calls (``forceinline``).
 
 Entries take the compiler longer than most kernels: numba makes two, for Python and for C, and unpacks
 every array of every named tuple in them. So only what Python calls has one, and none has one for C.
 
-``_nrt``, ``forceinline`` and the options without entries are not documented by numba, ``_cache`` of a kernel
-is private. They are tested with numba 0.60 to 0.68: the oldest that is allowed and the newest there is.
+What numba would keep are pickles, and machine code that is run as it is. So only files are read that are
+as they were written, by their seal, in a folder that nobody but the user can write to; a file is named by all
+that it depends on. What is damaged, incomplete or of another version counts as missing, and is compiled anew.
+
+For this `_nrt`, `forceinline`, the options without entries, `_cache` of a kernel and the parts of a
+compilation are needed, which numba does not document. They are tested with numba 0.60 to 0.68: the oldest
+that is allowed and the newest there is. Where one is missing plain `numba.njit` serves, which a warning says.
 """
 
 from __future__ import annotations
 
+import hashlib
+import pickle
+import re
+import sys
+import warnings
 from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 from numba import njit
-from numba.core.registry import CPUDispatcher
 
-from asperity.kernels.kept import Kept
+from asperity.files import is_sealed, replace
+from asperity.progress import COMPILATION
+from asperity.store import KERNELS, is_private, kernel_folders
 
 LOOP: dict[str, Any] = {"cache": True, "_nrt": False}
-"""For a loop over time steps, called from Python."""
+"""For what Python calls, as a loop over time steps; it is kept on disk with all that it calls."""
 ENTERED: dict[str, Any] = {**LOOP, "forceinline": True}
 """For what such a loop calls, and Python in every run; it allocates nothing."""
-INNER: dict[str, Any] = {**ENTERED, "no_cpython_wrapper": True}
+INNER: dict[str, Any] = {"_nrt": False, "forceinline": True, "no_cpython_wrapper": True}
 """For what only kernels call, or rarely Python, for which it is compiled once more."""
-CALLED: dict[str, Any] = {**LOOP, "no_cpython_wrapper": True}
-"""Likewise, for what takes long to compile or is called in several places: they share one machine code."""
-ONCE: dict[str, Any] = {**LOOP, "inline": "always"}
+CALLED: dict[str, Any] = {"_nrt": False, "no_cpython_wrapper": True}
+"""Likewise, for what takes long to compile or is called in several places of a kernel."""
+ONCE: dict[str, Any] = {"_nrt": False, "inline": "always"}
 """For what is called in one place and contains much: it is compiled there, not before and there again."""
 REASSOCIATE: dict[str, Any] = {"fastmath": {"reassoc", "contract", "nsz"}}
 """Lets sums over poles be vectorised; NaN stays NaN."""
+DOCUMENTED = ("fastmath", "inline", "nogil")
+HIDDEN = ("_nrt", "forceinline", "no_cpython_wrapper", "no_cfunc_wrapper")
+
+
+def _tell_plain() -> None:
+    warnings.warn(
+        f"numba {version('numba')} lacks what asperity needs to keep compiled functions: every start "
+        "compiles them again, and they are slower. Install numba 0.60 to 0.68.",
+        RuntimeWarning,
+        stacklevel=2,
+    )
+
+
+try:
+    from numba.core.compiler import CompileResult
+    from numba.core.cpu import CPUTargetOptions
+    from numba.core.registry import CPUDispatcher
+    from numba.core.runtime.nrt import rtsys
+    from numba.core.serialize import dumps
+
+    PLAIN = not all(
+        [hasattr(CPUTargetOptions, name) for name in HIDDEN]
+        + [hasattr(CompileResult, name) for name in ("_reduce", "_rebuild")]
+    )
+except ImportError:
+    CPUDispatcher, PLAIN = object, True  # type: ignore[assignment,misc]
+if PLAIN:
+    _tell_plain()
 
 
 class _Inner(CPUDispatcher):
@@ -41,35 +84,131 @@ class _Inner(CPUDispatcher):
     def __call__(self, *arguments: Any) -> Any:
         """Call it from Python: compiled once more, with an entry."""
         if not hasattr(self, "_entered"):
-            options = {k: v for k, v in self.targetoptions.items() if k in ("fastmath", "nogil", "_nrt")}
+            options = {k: v for k, v in self.targetoptions.items() if k in (*DOCUMENTED, "_nrt")}
             self._entered = compiled(**options, cache=True)(self.py_func)
         return self._entered(*arguments)
-
-
-class _Apart(_Inner):
-    """One that is not compiled into those that call it."""
-
-    def add_overload(self, result: Any) -> None:
-        """Let callers find it by its name, where numba would hand them a copy to link and optimise again."""
-        super().add_overload(result)
-        context = result.target_context
-        context.remove_user_function(result.entry_point)
-        context.insert_user_function(result.entry_point, result.fndesc, ())
 
 
 def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a kernel as `numba.njit` does; with ``cache`` it is kept until any kernel's source changes."""
     keep = options.pop("cache", False)
-    entry = not options.get("no_cpython_wrapper", False)
-    inlined = options.get("forceinline", False) or options.get("inline") == "always"
-    options["no_cfunc_wrapper"] = True
+    if PLAIN:
+        return njit(**{name: value for name, value in options.items() if name in DOCUMENTED})
 
     def decorate(function: Callable[..., Any]) -> Any:
-        kernel = njit(**options)(function)
-        if not entry:
-            kernel.__class__ = _Inner if inlined else _Apart
+        kernel: Any = njit(**options | {"no_cfunc_wrapper": True})(function)
+        if "no_cpython_wrapper" in options:
+            kernel.__class__ = _Inner
         if keep:
-            kernel._cache = Kept(function, inlined=inlined, entry=entry)  # what ``cache=True`` would set
+            kernel._cache = Kept(function)  # what ``cache=True`` would set
         return kernel
 
     return decorate
+
+
+def stamp() -> str:
+    """Name of the folder of these kernels: by what they are made of, as one is compiled into another."""
+    versions = f"{version('numba')} {version('llvmlite')} {sys.version}"
+    digest = hashlib.sha256(versions.encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+SOURCES = stamp()
+"""Folder of this version."""
+
+
+def is_kept(kernel: str) -> bool:
+    """Whether machine code of a kernel lies in one of the folders."""
+    with suppress(OSError):
+        return any(any((folder / SOURCES).glob(f"{kernel}-*")) for folder in kernel_folders())
+    return False
+
+
+class Kept:
+    """What numba asks for the machine code of a function, and hands it to, signature by signature.
+
+    Stands for `numba.core.caching.FunctionCache`, which trusts what it finds and fails where it cannot write.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.name = re.sub(r"[^\w.]", "", f"{function.__module__}.{function.__qualname__}")
+        own = Path(function.__code__.co_filename)
+        self.source = own.read_bytes() if own.is_file() else b""
+
+    @property
+    def cache_path(self) -> str:
+        """The first of the folders."""
+        return str(next(kernel_folders(), ""))
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """Load the machine code of a signature; None if it has to be compiled."""
+        name = self.file_name(signature, context.codegen())
+        for folder in kernel_folders():
+            data = _read(folder / SOURCES, name)
+            if data is not None:
+                rtsys.initialize(context)  # what machine code calls
+                return CompileResult._rebuild(context, *data)
+        COMPILATION.begin(name)
+        return None
+
+    def save_overload(self, signature: Any, result: Any) -> None:
+        """Keep the machine code of a signature, in the first folder that takes it."""
+        name = self.file_name(signature, result.codegen)
+        COMPILATION.end(name)
+        if result.lifted or result.library.has_dynamic_globals:  # holds objects or addresses of this process
+            return
+        bare = result._replace(type_annotation="")  # types beside each line of the source, for people
+        payload = dumps((name, bare._reduce()))
+        if not any(_written(folder / SOURCES, name, payload) for folder in kernel_folders()):
+            _warn_unkept()
+
+    def file_name(self, signature: Any, codegen: Any) -> str:
+        """Name of a signature's file: the function's name, and a digest of all that the code depends on."""
+        known = repr((self.name, str(signature), codegen.magic_tuple())).encode()
+        return f"{self.name}-{hashlib.sha256(known + self.source).hexdigest()[:24]}"
+
+    def enable(self) -> None:
+        """Do nothing: it is always enabled."""
+
+    def disable(self) -> None:
+        """Do nothing: it is always enabled."""
+
+    def flush(self) -> None:
+        """Do nothing: what is out of date is not found."""
+
+
+def _read(folder: Path, name: str) -> Any:
+    """Read what a file holds; None if there is none, or none that can be trusted."""
+    if not (is_private(folder) and (folder / name).is_file()):  # a pipe might never end
+        return None
+    with suppress(OSError), open(folder / name, "rb") as file:
+        if is_sealed(file):
+            kept_name, data = pickle.load(file)  # noqa: S301 (our own, see above)
+            return data if kept_name == name else None
+    return None
+
+
+def _written(folder: Path, name: str, payload: bytes) -> bool:
+    """Write a file completely or not at all; return whether it is there."""
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if not is_private(folder):
+            return False
+        replace(folder / name, lambda file: file.write(payload), sealed=True, lasting=False)
+    except OSError:
+        return False
+    return True
+
+
+@cache
+def _warn_unkept() -> None:
+    """Warn, once."""
+    tried = " or ".join(str(folder) for folder in kernel_folders()) or "any folder"
+    warnings.warn(
+        f"compiled functions cannot be kept in {tried}: every start compiles them again, some 10 s. Let "
+        f"${KERNELS} name a folder that you alone can write to.",
+        RuntimeWarning,
+        stacklevel=2,
+    )

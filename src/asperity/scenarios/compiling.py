@@ -2,79 +2,91 @@
 
 from __future__ import annotations
 
-import math
-import time
+import os
+import subprocess
+import sys
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
-import numba
 import numpy as np
 
 from asperity.contact import HalfSpace
 from asperity.errors import PhysicsWarning
-from asperity.kernels import along, overlap, pointforce, projected_cg, scanning
-from asperity.kernels.box import Box
-from asperity.kernels.census import Census
-from asperity.kernels.convolution import Convolution
-from asperity.kernels.projected_cg import Task
+from asperity.kernels import overlap, pointforce
+from asperity.kernels.options import is_kept
 from asperity.laws import HertzLaw
-from asperity.progress import COMPILATION, COMPILED, Progress
+from asperity.progress import COMPILED, Progress
 from asperity.reduction.texture import StateTexture
-from asperity.scenarios.second_process import contact_compiled_beside
+from asperity.reference.materials import material
+from asperity.rolling.several import roll_bodies
+from asperity.structures.beam import Beam
+from asperity.structures.body import Body
+from asperity.threads import processors
 
-CONTACT = (
-    scanning.solve_positions,
-    overlap.foundation_approach,
+CONTACT = "asperity.kernels.scanning.solve_positions"
+BESIDE = (
+    "from asperity.apart import end_with_parent; end_with_parent(); "
+    "from asperity.scenarios.compiling import press_once; press_once()"
 )
-LAWS = pointforce.evaluate_all, along.splines_along
-FIRST = 0.07
-"""Share of the time that passes before the first kernel is there: the compiler gets ready."""
-INTERVAL = 0.1  # s between looks at what is compiled
+"""What a second process does."""
+PATIENCE = 300.0  # s that it is waited for
 
 
-def call_kernels(progress: Progress, stepping: Iterable[Any], rolling: Callable[[], None]) -> None:
-    """Call every kernel of a kind of case once on next to nothing: it is compiled now, or loaded from disk.
+def compile_kernels(progress: Progress) -> None:
+    """Call every kernel once on next to nothing: it is compiled now, or loaded from disk.
 
-    `stepping` are the kernels by which `rolling` rolls a few steps. A second process takes its share.
+    On more than one processor a second process compiles the contact meanwhile: a third of the time less.
     """
-    with warnings.catch_warnings():
+    parts = (roll_once, evaluate_once, estimate_once, press_once)
+    with warnings.catch_warnings(), _contact_compiled_beside() as wait:
         warnings.simplefilter("ignore", PhysicsWarning)
-        with COMPILATION.heard_by(Telling(progress, stepping)), contact_compiled_beside():
-            iterate_never()  # the second process needs it as the last but one
-            rolling()
-            evaluate_once()
-            estimate_once()
-            press_once()
-        progress(100, 100, COMPILED)
+        for done, part in enumerate(parts):
+            progress(done, len(parts), COMPILED)
+            if part is press_once:
+                wait()
+            part()
+    progress(len(parts), len(parts), COMPILED)
 
 
-class Telling:
-    """Tells in percent how far compilation is, whoever compiles; nothing where all is on disk."""
+@contextmanager
+def _contact_compiled_beside() -> Iterator[Callable[[], None]]:
+    """Compile the contact in a second process, unless it is on disk; yields what waits for its end."""
+    other = _started() if processors() > 1 and not is_kept(CONTACT) else None
+    if other is None:
+        yield lambda: None
+        return
 
-    def __init__(self, progress: Progress, stepping: Iterable[Any]) -> None:
-        self.progress, self.stepping = progress, stepping
-        self.census: Census | None = None
-        self.before, self.told = 0.0, -math.inf  # share that was there before, time of the last look, s
+    def wait() -> None:
+        with suppress(subprocess.TimeoutExpired):
+            other.wait(PATIENCE)
 
-    def __call__(self) -> None:
-        """Look what is there, unless that was done just now."""
-        if time.monotonic() - self.told < INTERVAL:
-            return
-        if self.census is None:
-            self.census = Census((*CONTACT, *LAWS, *self.stepping))
-            self.before = self.census.done()
-        share = (self.census.done() - self.before) / max(1.0 - self.before, 1e-9)
-        percent = 100.0 * (FIRST + (1.0 - FIRST) * share) if share > 0.0 else 0.0
-        self.progress(int(percent), 100, COMPILED)
-        self.told = time.monotonic()
+    with other:
+        try:
+            yield wait
+        finally:
+            other.kill()
 
 
-def compile_beside() -> None:
-    """What the second process compiles; where it comes to the iteration, the first one has done that."""
-    evaluate_once()
-    press_once()
-    estimate_once()
+def _started() -> subprocess.Popen[bytes] | None:
+    """Start it; None where no process can be started, as inside another program."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    streams: dict[str, Any] = {"stdin": subprocess.PIPE}
+    streams |= {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    try:
+        return subprocess.Popen([sys.executable, "-W", "ignore", "-c", BESIDE], env=environment, **streams)
+    except OSError:
+        return None
+
+
+def roll_once() -> None:
+    """Roll two masses a few steps over a beam."""
+    beam = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=100.0)
+    law = HertzLaw(1e10, StateTexture.unfiltered(np.zeros(8), 0.2))
+    bodies, laws = [Body.rigid(0.5, 5.0)] * 2, [law] * 2
+    where = {"start": 0.2, "positions": [0.0, 0.1]}
+    roll_bodies(beam, bodies, laws, speed=1.0, duration=1e-4, time_step=1e-5, **where)  # type: ignore[arg-type]
 
 
 def press_once() -> None:
@@ -82,17 +94,6 @@ def press_once() -> None:
     half_space, x = HalfSpace((9, 9), (1.0, 1.0), 1.0), np.arange(-4.0, 5.0) ** 2
     half_space.solve(np.add.outer(x, x), approach=5.0)
     half_space.solve(np.add.outer(x, x), load=5.0)
-
-
-def iterate_never() -> None:
-    """Compile the iteration of a contact for a process that compiles all around it meanwhile.
-
-    Python never calls it: that would take an entry of its own. Types are those with which the contact does.
-    """
-    whole, field = np.zeros(1, np.int64), np.zeros(1)
-    convolved = Convolution(whole, whole, field, field, field, field, field)
-    box, task = Box(1, 1, 1, *[field] * 11), Task(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1)
-    projected_cg.solve.compile(tuple(map(numba.typeof, (convolved, field, box, task, 1))))
 
 
 def estimate_once() -> None:

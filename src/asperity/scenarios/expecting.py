@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from asperity.config.case import Case
 from asperity.laws import Need, needs_of, spec_of
 from asperity.progress import Progress
+from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import STATES
 from asperity.scenarios.running_in import running_in_passes, running_in_positions
@@ -64,7 +65,7 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     """
     case, trial = prepared.case, None
     with one_thread_in_linear_algebra():
-        prepared.kind.compile_kernels(progress)
+        compile_kernels(progress)
         pace = _pace()
         scans = scan_sizes(case, prepared.shape, prepared.textures)
         seconds = {"textures": prepared.processor}
@@ -81,7 +82,7 @@ def expected_path_scan(prepared: PreparedCase, progress: Progress) -> Expected:
     """Expect the size and time of the scan of a path alone, of a case that has one."""
     case = prepared.case
     with one_thread_in_linear_algebra():
-        prepared.kind.compile_kernels(progress)
+        compile_kernels(progress)
         size = scan_sizes(case, prepared.shape, prepared.textures)["path"]
         return _timed_scan("path", size, try_contacts(prepared, progress))
 

@@ -59,7 +59,6 @@ class Kind:
                    ``square_transfer(bodies, stiffness, frequency)``, of their linear contact force
         geometry   ``geometry_of(case)``, what presses on what on the contact grid
         textures   ``textures_of(case)``; ``warn_of(case, shape, textures)``, before anything is computed
-        compiling  ``compile_kernels(progress)``, of all that is stepped
         compute    ``compute(prepared, progress)``, from textures to runs
         result     ``layout(computed, caught, brief)``, the tree of a run
         schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
@@ -129,10 +128,6 @@ class Kind:
     def warn_of(self, case: Case, shape: Geometry, textures: Textures) -> None:
         """Warn of what is doubtful before anything is computed."""
         self.offers("textures", "warn_of")(case, shape, textures)
-
-    def compile_kernels(self, progress: Progress) -> None:
-        """Compile all that is stepped, or load it."""
-        self.offers("compiling", "compile_kernels")(progress)
 
     def computed(
         self,

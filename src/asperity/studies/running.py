@@ -25,7 +25,6 @@ from asperity.arguments import shown, whole
 from asperity.config.case import Case
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
-from asperity.kinds.cases import kind_of
 from asperity.progress import shown_progress
 from asperity.studies.cluster import Heart
 from asperity.studies.definition import Member, Study, load_study, study_of
@@ -239,6 +238,7 @@ def study(
     plan = _planned(definition, sweep)
     if workers is not None:
         workers = whole("workers", workers, "a whole number greater than 0, or None", at_least=1)
+    from asperity.scenarios.compiling import compile_kernels
     from asperity.studies.table import tabulated
 
     members = plan.members()
@@ -247,7 +247,7 @@ def study(
         if executor is not None:
             return through(executor, waiting)
         if waiting and waiting[0].case is not None:  # once here, and not in every process
-            kind_of(waiting[0].case).compile_kernels(told)
+            compile_kernels(told)
         return locally(waiting, workers)
 
     with shown_progress(progress) as told:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from asperity.kinds.ball_on_beam.bodies import Bodies
 from asperity.kinds.ball_on_beam.case import BallOnBeam
-from asperity.kinds.ball_on_beam.compiling import compile_kernels
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import Law
 from asperity.progress import Progress
 from asperity.rolling.several import FirstContact
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
+from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.usual.compute import checkpoint_of
 from asperity.scenarios.usual.textures import recorded_time
 from asperity.store import Store

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from asperity.kinds.wheel_on_rail.bodies import Bodies
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.compiling import compile_kernels
 from asperity.kinds.wheel_on_rail.passing import passed_points
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import Law
 from asperity.progress import Progress
 from asperity.rolling.several import FirstContact
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
+from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.usual.compute import checkpoint_of
 from asperity.store import Store
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel

@@ -11,6 +11,7 @@ from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.rolling.pair import RolledPair, roll_pair
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
+from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.usual.textures import recorded_time
 from asperity.store import Checkpoint, Store, content_key
@@ -31,7 +32,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Reduce and roll a case from `asperity.running.prepare_case`."""
     case, bodies, textures = prepared.case, prepared.bodies, prepared.textures
     store, watch = Store(), Stopwatch(textures=prepared.seconds)
-    prepared.kind.compile_kernels(progress)  # not before the files are known to be right
+    compile_kernels(progress)  # not before the files are known to be right
     watch.lap("compiled functions")
     duration = recorded_time(case, textures)
 
