@@ -371,3 +371,9 @@ def uncertain(share, laws=("areal", "table", "linear-filtered", "linear")):
     product = 10.0 * 10 ** ((np.arange(bands) - share * bands) / 10)
     tree["spectra"]["band_time_product"].values[:] = product
     return tree, product < 10.0
+
+
+def laws_in(chart):
+    """Laws that can be shown or not."""
+    found = {getattr(mark, "law", "") for panel in chart.panels for mark in panel.marks}
+    return found - {""}

@@ -1,15 +1,16 @@
-"""Write the report of a run again, or a summary of it, and say where it is."""
+"""What is made of a finished run: its page, figures as files, sounds."""
 
 from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
-
 from asperity.files import refuse_unwritable, together
 from asperity.kinds.report import PAGE, SUMMARY, write_page, write_summary
 from asperity.results import read_result
 from asperity.terminal import say
-
+from collections.abc import Sequence
+from asperity.kinds.report import parts_of
+from asperity.reporting.part import chosen_parts, write_figures
+from asperity.reporting.sound import TABLE, listen
 
 def report_into(run: Path, folder: Path | None, *, summary: bool) -> dict[str, Any]:
     """Write the page of the run in a file or folder, by default beside it, or its summary alone."""
@@ -22,3 +23,36 @@ def report_into(run: Path, folder: Path | None, *, summary: bool) -> dict[str, A
     what = "summary" if summary else "report"
     say(f"{what.capitalize()}: {(target / name).absolute()}")
     return {"run": str(run.resolve()), "warnings": [], "files": {what: str((target / name).resolve())}}
+
+
+def figures_into(run: Path, folder: Path | None, format: str, names: Sequence[str]) -> dict[str, Any]:
+    """Draw figures of the run in a file or folder, by default into ``figures`` beside it, all or none."""
+    target = folder or (run if run.is_dir() else run.parent) / "figures"
+    refuse_unwritable(target, "folder of the figures", "Choose another folder with -o.")
+    tree = read_result(run)
+    parts = chosen_parts(parts_of(tree), names)
+    with together(target, last="") as new:
+        files = [target / path.name for path in write_figures(tree, parts, new, format)]
+    say(f"Figures: {target.absolute()}, {', '.join(path.name for path in files) or 'none'}")
+    return {
+        "run": str(run.resolve()),
+        "file_format": format,
+        "titles": {part.name: part.title for part in parts},
+        "warnings": [],
+        "files": {part.name: str(path.resolve()) for part, path in zip(parts, files, strict=True)},
+    }
+
+
+def listen_into(run: Path, folder: Path | None, what: str | None, *, matched: bool) -> dict[str, Any]:
+    """Write the sounds of the run in a file or folder, by default into ``sounds`` beside it."""
+    tree = read_result(run)
+    target = folder or (run if run.is_dir() else run.parent) / "sounds"
+    files = listen(tree, target, what=what, matched=matched)
+    scale = "all as loud as each other" if matched else "all on one scale"
+    say(f"Sounds: {target.absolute()}, {len(files)} files, {scale}; {TABLE} says which is which")
+    return {
+        "run": str(run.resolve()),
+        "matched": matched,
+        "warnings": [],
+        "files": {path.name: str(path.resolve()) for path in files},
+    }

@@ -1,9 +1,9 @@
-"""Piecewise polynomials of many columns at rising places, compiled."""
+"""Piecewise cubics, compiled: monotone interpolation, and evaluation."""
 
 from __future__ import annotations
-
 from asperity.kernels.options import LOOP, compiled
-
+import numpy as np
+from numpy.typing import NDArray
 
 @compiled(**LOOP, fastmath={"contract"})
 def evaluate_pieces(coefficients, breaks, places, values, slopes):  # type: ignore[no-untyped-def]
@@ -28,3 +28,115 @@ def evaluate_pieces(coefficients, breaks, places, values, slopes):  # type: igno
             for j in range(columns):
                 slopes[i, j] = slopes[i, j] * t + values[i, j]
                 values[i, j] = values[i, j] * t + coefficients[piece, p, j]
+
+
+def monotone_slopes(knots: NDArray, values: NDArray) -> NDArray:
+    """Slopes at the knots (k,), k ≥ 2, that keep piecewise cubics through rows (..., k) monotone.
+
+    The rows do not fall. Inside: the weighted harmonic mean of the neighbouring secants (Fritsch and Butland,
+    SIAM J. Sci. Stat. Comput. 5 (1984) 300-304, with the weights of Brodlie). At both ends: the three-point
+    formula, held between half and twice the end secant, so that a continuation beyond the ends goes on
+    rising.
+    """
+    width = np.diff(knots)
+    secant = np.diff(values, axis=-1) / width
+    slopes = np.empty(np.shape(values))
+    if len(knots) == 2:
+        slopes[...] = secant
+        return slopes
+    slopes[..., 1:-1] = _inner_slopes(width, secant)
+    slopes[..., 0] = _end_slope(width[0], width[1], secant[..., 0], secant[..., 1])
+    slopes[..., -1] = _end_slope(width[-1], width[-2], secant[..., -1], secant[..., -2])
+    return slopes
+
+
+def shape_preserving(knots: NDArray, values: NDArray, places: NDArray) -> NDArray:
+    """Rows (..., k), k ≥ 3, of any shape at places (n,) within their knots (k,), by cubic pieces: (..., n).
+
+    They rise and fall where the rows do, and turn only at knots. Slopes as in `monotone_slopes`, but for the
+    ends: there the three-point formula has to agree with the end secant in sign, and is held within thrice it
+    where the rows turn (C. Moler, Numerical Computing with MATLAB (2004), Sec. 3.6).
+    """
+    width, secant = np.diff(knots), np.diff(values, axis=-1) / np.diff(knots)
+    first = _turning_end_slope(width[0], width[1], secant[..., 0], secant[..., 1])
+    last = _turning_end_slope(width[-1], width[-2], secant[..., -1], secant[..., -2])
+    slopes = np.concatenate([first[..., None], _inner_slopes(width, secant), last[..., None]], axis=-1)
+    piece = np.clip(np.searchsorted(knots, places, side="right") - 1, 0, len(knots) - 2)
+    s, h = places - knots[piece], width[piece]
+    start, end = slopes[..., piece] - secant[..., piece], slopes[..., piece + 1] - secant[..., piece]
+    rest = start - (2.0 * start + end) * (s / h) + (start + end) * (s / h) ** 2
+    return np.asarray(values[..., piece] + s * (secant[..., piece] + rest))
+
+
+def continued_to_touch(knots: NDArray, root: NDArray, least: float = 0.0) -> NDArray:
+    """Replace the zeros before first touch in rows (n, k) of g = F^(2/3) by the continuation of what follows.
+
+    With this root of the force, contact starts on a straight line (exactly so for Hertz). Where that line is
+    flatter than the one to the last sample without contact, the latter is taken; so every zero becomes a
+    value of zero or less, and first touch lies where g crosses zero. A value below the share `least` of the
+    next one counts as zero.
+    """
+    rows = np.arange(len(root))
+    following = np.concatenate([root[:, 1:], np.zeros((len(root), 1))], axis=1)
+    first = np.argmax(root > least * following, axis=1)
+    before, after, second = first - 1, first + 1, first + 2
+    last = len(knots) - 1
+
+    def secant(low: NDArray, high: NDArray) -> NDArray:
+        low, high = np.clip(low, 0, last), np.clip(high, 0, last)
+        width = np.where(high > low, knots[high] - knots[low], 1.0)
+        return (root[rows, high] - root[rows, low]) / width
+
+    steepness = secant(first, after)
+    outer = knots[np.minimum(after, last)] - knots[first]
+    inner = knots[np.minimum(second, last)] - knots[np.minimum(after, last)]
+    # where there is no interval behind, the straight line is taken: only the division must not fail
+    curved = _end_slope(outer, np.maximum(inner, 1e-300), steepness, secant(after, second))
+    slope = np.maximum(np.where(second <= last, curved, steepness), secant(before, first))
+    line = root[rows, first][:, None] + slope[:, None] * (knots - knots[first][:, None])
+    return np.where(np.arange(len(knots)) < first[:, None], np.minimum(line, root), root)
+
+
+def zero_crossing(knots: NDArray, root: NDArray) -> NDArray:
+    """Where non-decreasing rows (n, k) cross zero, along the straight line between the knots beside it.
+
+    Rows that are positive throughout are continued downwards by their first slope; those that are nowhere
+    positive cross at the last knot.
+    """
+    first = np.clip(np.argmax(root > 0.0, axis=1), 1, len(knots) - 1)
+    rows = np.arange(len(root))
+    low, high = root[rows, first - 1], root[rows, first]
+    width = knots[first] - knots[first - 1]
+    crossing = knots[first] - high * width / np.where(high > low, high - low, 1.0)
+    return np.where(root[:, -1] > 0.0, crossing, knots[-1])
+
+
+def _inner_slopes(width: NDArray, secant: NDArray) -> NDArray:
+    left, right = secant[..., :-1], secant[..., 1:]
+    weight_left, weight_right = width[:-1] + 2.0 * width[1:], 2.0 * width[:-1] + width[1:]
+    goes_on = np.sign(left) * np.sign(right) > 0.0
+    safe_left, safe_right = np.where(goes_on, left, 1.0), np.where(goes_on, right, 1.0)
+    mean = (weight_left + weight_right) / (weight_left / safe_left + weight_right / safe_right)
+    return np.where(goes_on, mean, 0.0)
+
+
+def _end_slope(outer: NDArray, inner: NDArray, secant: NDArray, inner_secant: NDArray) -> NDArray:
+    estimate = ((2.0 * outer + inner) * secant - outer * inner_secant) / (outer + inner)
+    return np.clip(estimate, 0.5 * secant, 2.0 * secant)
+
+
+def cubic_coefficients(knots: NDArray, values: NDArray, slopes: NDArray) -> NDArray:
+    """Coefficients (k − 1, 4) of (s − knot)³, ², ¹, ⁰ of the cubics with values and slopes at k knots."""
+    width = np.diff(knots)
+    secant = np.diff(values) / width
+    # what a straight line leaves; exactly zero when values and slopes lie on one
+    start, end = slopes[:-1] - secant, slopes[1:] - secant
+    cubic = (start + end) / width**2
+    square = -(2.0 * start + end) / width
+    return np.stack([cubic, square, slopes[:-1], values[:-1]], axis=1)
+
+
+def _turning_end_slope(outer: NDArray, inner: NDArray, secant: NDArray, inner_secant: NDArray) -> NDArray:
+    estimate = ((2.0 * outer + inner) * secant - outer * inner_secant) / (outer + inner)
+    turns = (np.sign(secant) != np.sign(inner_secant)) & (np.abs(estimate) > 3.0 * np.abs(secant))
+    return np.where(np.sign(estimate) != np.sign(secant), 0.0, np.where(turns, 3.0 * secant, estimate))

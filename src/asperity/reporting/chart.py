@@ -260,12 +260,6 @@ class Chart:
     # no diagram: drawn once, as it is, and not zoomed; an axis without a label is not drawn
     drawing: bool = False
 
-    @property
-    def laws(self) -> list[str]:
-        """Laws that can be shown or not, in the order of the marks."""
-        found = (getattr(mark, "law", "") for panel in self.panels for mark in panel.marks)
-        return [law for law in dict.fromkeys(found) if law]
-
 
 MARGIN = 0.04
 """Share of the height of a panel that is left free above and below its marks."""

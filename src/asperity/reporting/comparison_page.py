@@ -33,6 +33,7 @@ from asperity.reporting.data import (
     engineering,
     json_attribute,
     json_list,
+    moment,
     nominal_band,
     stated,
     written_units,
@@ -458,26 +459,16 @@ def _contact_table(table: xarray.Dataset) -> ReportTable:
 
 
 def _provenance_table(runs: Sequence[NamedRun]) -> ReportTable:
+    told = (provenance.TITLE, provenance.KIND, provenance.ASPERITY_VERSION, provenance.CREATED)
     rows = [
-        [
-            text_cell(run.name),
-            *(
-                text_cell("" if (value := stated(run.tree, attribute)) is None else value)
-                for attribute in (
-                    provenance.TITLE,
-                    provenance.KIND,
-                    provenance.ASPERITY_VERSION,
-                    provenance.CREATED,
-                    provenance.SEED,
-                )
-            ),
-        ]
+        [run.name, *(moment(stated(run.tree, each)) for each in told), stated(run.tree, provenance.SEED)]
         for run in runs
     ]
+    cells = [[text_cell("" if each is None else each) for each in row] for row in rows]
     head = ["run", "what was rolled", "kind", "asperity", "made", "seed"]
     note = (
         f"“{MAIN}” stands for the first law of each run."
         if len({r.laws[0] for r in runs if r.laws}) > 1
         else ""
     )
-    return ReportTable("runs", "Runs", head, rows, note)
+    return ReportTable("runs", "Runs", head, cells, note)

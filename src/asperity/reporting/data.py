@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from contextlib import suppress
 from typing import Any
 
@@ -206,3 +207,10 @@ def typed_words(key: DataArray) -> list[str]:
     """Values of a swept key in words, each with its unit: ``"50 km/h"``."""
     unit = typed_unit(key).removesuffix("1")
     return [value if isinstance(value, str) else f"{value:.6g} {unit}".strip() for value in typed_values(key)]
+
+
+def moment(instant: object) -> str:
+    """A moment of ISO 8601 in universal time as people write it; other words as they are."""
+    words = str(instant or "")
+    found = re.fullmatch(r"(\d{4}-\d\d-\d\d)T(\d\d:\d\d):\d\d\+00:00", words)
+    return f"{found[1]}, {found[2]} UTC" if found else words

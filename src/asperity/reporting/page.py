@@ -17,7 +17,7 @@ from asperity import __version__
 from asperity.printable import printable
 from asperity.reporting.chapter import Chapter
 from asperity.reporting.chart import Chart, Line, colour_variables
-from asperity.reporting.data import json_attribute, json_list, missing, stated
+from asperity.reporting.data import json_attribute, json_list, missing, moment, stated
 from asperity.reporting.drawing import svg_of
 from asperity.reporting.headline import Answers, lights, validity
 from asperity.reporting.law_entries import law_colours, law_entries, page_colours
@@ -215,12 +215,6 @@ def _law_key(tree: DataTree) -> list[dict[str, str]]:
     ]
 
 
-def _readable(instant: str) -> str:
-    """A moment of ISO 8601 in universal time as people write it; other words as they are."""
-    found = re.fullmatch(r"(\d{4}-\d\d-\d\d)T(\d\d:\d\d):\d\d\+00:00", instant)
-    return f"{found[1]}, {found[2]} UTC" if found else instant
-
-
 def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
     """Parameters by the table of the case file they stand in, in their order."""
     groups: dict[str, list[dict[str, Any]]] = {}
@@ -273,7 +267,7 @@ def page(
         validity=validity(checks),
         lights=checks,
         version=stated(tree, provenance.ASPERITY_VERSION) or "unknown",
-        created=_readable(str(stated(tree, provenance.CREATED) or "")),
+        created=moment(stated(tree, provenance.CREATED)),
         seed="" if (seed := stated(tree, provenance.SEED)) is None else seed,
         case=stated(tree, provenance.CASE) or "",
         converged=bool(setting_names(tree)),

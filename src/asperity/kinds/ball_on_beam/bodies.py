@@ -1,16 +1,17 @@
 """The ball and the beam of a case."""
 
 from __future__ import annotations
-
 from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
-
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
 from asperity.structures.modal import driving_point
+from asperity.contact import Hertz
+from asperity.errors import InputError
+from asperity.reference.materials import contact_modulus
+from asperity.scenarios.geometry import Geometry, geometry, parabola
 
 MODES_BEYOND = 4.0
 """Beam modes are kept up to this multiple of the highest frequency, where the case says nothing."""
@@ -70,3 +71,27 @@ def ball_transfer(
     carried = 1.0 / stiffness - 1.0 / (bodies.ball.mass * (2.0 * np.pi * frequency) ** 2)
     found: NDArray[np.complex128] = 1.0 / (carried + driving_point(bodies.beam, frequency, places))
     return found
+
+
+def geometry_of(case: BallOnBeam) -> Geometry:
+    """Lay out the ball of a case on the contact grid, under its load."""
+    modulus = contact_modulus(case.ball.material, case.beam.material)
+    return ball_geometry(case, ball_of(case).static_load, modulus)
+
+
+def ball_geometry(case: BallOnBeam, load: float, modulus: float) -> Geometry:
+    """Lay out the ball of a case on the contact grid, under a load, N, with a contact modulus E*, Pa.
+
+    Refused is a contact that is not small against the ball, wider than the beam's section, or not held by the
+    window.
+    """
+    radius, contact = case.ball.radius, case.contact
+    hertz = Hertz(modulus, radius, radius)
+    shape = geometry(contact, parabola(contact, radius), hertz, load, smallest_radius=radius, body="ball")
+    width = 2.0 * max(shape.semi_axes)
+    for key, side in (("beam.width", case.beam.width), ("beam.height", case.beam.height)):
+        if side < width:
+            allowed = f"at least {width * 1e6:.3g} um, the width of the smooth contact under {load:.3g} N"
+            remedy = "A beam smaller than its contact is no elastic half-space: enlarge it, or press less."
+            raise InputError(key, f"{side * 1e6:.3g} um", allowed, remedy)
+    return shape.within_window()

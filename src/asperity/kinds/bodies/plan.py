@@ -1,11 +1,8 @@
 """What rolling bodies on several contacts takes, from a few steps of it."""
 
 from __future__ import annotations
-
 from typing import Any
-
 import numpy as np
-
 from asperity.config.case import Case
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
@@ -18,7 +15,14 @@ from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
 from asperity.structures.rail_poles import DECIMALS, POLES, RailBetween, RailPoles
 from asperity.structures.track import Track
 from asperity.threads import thread_count
-
+from asperity.kinds.bodies.bodies import highest_beam_mode
+from asperity.kinds.bodies.case import Bodies
+from asperity.scenarios.refining import Setting, Way
+from asperity.units import written
+from numpy.typing import NDArray
+from xarray import DataTree
+from asperity.kinds.bodies import schema
+from asperity.scenarios.measure import A_WEIGHTED, Measure, a_weighted, density_of
 
 def rows(case: Any) -> list[tuple[str, str]]:
     """The contacts, in words."""
@@ -84,3 +88,23 @@ def _rail_like(prepared: PreparedCase, track: Track) -> RailBetween:
     return RailBetween(
         RailPoles(kernel, poles, np.full((STARTS, len(poles)), 1e-20 + 0j), 0.0, 0.0), {}, reach=0.0
     )
+
+
+def settings_of(case: Bodies) -> list[Setting]:
+    """Modes up to twice the frequency, where there are any."""
+    if case.over != "beam":
+        return []
+    before, after = highest_beam_mode(case), 2.0 * highest_beam_mode(case)
+    words = f"up to {written(before, 'Hz', 'kHz')} → up to {written(after, 'Hz', 'kHz')}"
+    return [Setting("modes", (Way(words, {"beam.modes_up_to": after}),), scans_kept=True)]
+
+
+def _force(tree: DataTree, law: str) -> NDArray[np.float64]:
+    return density_of(tree, schema.FORCE_PSDS, law)
+
+
+MEASURES = {
+    A_WEIGHTED: Measure(
+        "contact force level, energy mean over the contacts, A-weighted", "dB(A) re 1 N", a_weighted(_force)
+    ),
+}

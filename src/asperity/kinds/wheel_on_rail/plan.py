@@ -1,11 +1,8 @@
 """What rolling a wheel on a rail takes, from small pieces of it."""
 
 from __future__ import annotations
-
 from typing import Any
-
 import numpy as np
-
 from asperity.kinds.wheel_on_rail.labels import findings_of_labels, track_label, wheel_label
 from asperity.kinds.wheel_on_rail.losses import (
     described_losses,
@@ -24,6 +21,22 @@ from asperity.scenarios.validity import warn_of_findings
 from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
 from asperity.structures.rail_poles import POLES, RailPoles
 from asperity.threads import thread_count
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.scenarios.refining import Setting, Way
+from asperity.structures.rail_poles import POLES
+from numpy.typing import NDArray
+from xarray import DataTree
+from asperity.errors import ComputationError
+from asperity.kinds.wheel_on_rail import schema
+from asperity.scenarios.measure import (
+    A_WEIGHTED,
+    ACCELERATION,
+    Measure,
+    a_weighted,
+    density_of,
+    line_frequencies,
+)
+from asperity.schema import spectra
 
 REPORT = 4.0
 """Time of starting the program, and of drawing and writing a report, s."""
@@ -90,3 +103,52 @@ def _rail_like(prepared: PreparedCase) -> RailPoles | MovingKernel:
     count = min(case.numerics.poles or POLES, POLES) // 2
     poles = 0.5 * np.exp(1j * np.linspace(0.1, 3.0, count))
     return RailPoles(kernel, poles, np.full((STARTS, count), 1e-20 + 0j), 0.0, 0.0)
+
+
+def settings_of(case: WheelOnRail) -> list[Setting]:
+    """The kernel itself, which any number of poles can only come near to."""
+    if case.numerics.kernel != "poles":
+        return [Setting("poles", (), "the rail is scattered from its kernel, without poles")]
+    words = f"up to {case.numerics.poles or POLES} → the kernel that they are fitted to"
+    scattered = Way(words, {"numerics.kernel": "scatter", "numerics.poles": None})
+    return [Setting("poles", (scattered,), scans_kept=True)]
+
+
+ACCELERATION_REFERENCE = 1e-6
+"""Of acceleration levels, m/s²."""
+
+
+def _sound_power(tree: DataTree, law: str) -> NDArray[np.float64]:
+    """Energy of a band, shared out over its lines as the force is: it has no finer spectrum."""
+    held = tree[schema.SOUND_POWER_LEVEL.group].to_dataset()
+    if schema.SOUND_POWER_LEVEL.name not in held:
+        what = "the sound power of rolling is not known"
+        raise ComputationError(what, "a rough rail, and bands between 50 Hz and 10 kHz")
+    power = held[schema.SOUND_POWER_LEVEL.name].sel(law=law, source="total").values
+    centre, frequency = held[schema.NOISE_BAND.name].values, line_frequencies(tree)
+    force = density_of(tree, spectra.FORCE_PSD, law)
+    step = frequency[1] - frequency[0]
+    density = np.zeros_like(force)
+    for middle, level in zip(centre, power, strict=True):
+        inside = np.abs(np.log10(frequency / middle)) <= 0.05
+        if inside.any() and force[inside].sum() > 0.0 and np.isfinite(level):
+            density[inside] = 10.0 ** (level / 10.0) * force[inside] / (force[inside].sum() * step)
+    return density
+
+
+def _acceleration(tree: DataTree, law: str) -> NDArray[np.float64]:
+    """Of the rail at the points that are passed by."""
+    velocity = density_of(tree, schema.POINT_VELOCITY_PSD, law)
+    return velocity * (2.0 * np.pi * line_frequencies(tree) / ACCELERATION_REFERENCE) ** 2
+
+
+MEASURES = {
+    A_WEIGHTED: Measure(
+        "sound power level of rolling, A-weighted", "dB(A) re 1 pW", a_weighted(_sound_power), ("linear",)
+    ),
+    ACCELERATION: Measure(
+        "acceleration level of the rail at the points passed by, energy mean",
+        "dB re 1e-6 m/s²",
+        _acceleration,
+    ),
+}

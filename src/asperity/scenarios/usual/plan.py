@@ -1,15 +1,19 @@
 """What rolling takes, from a few steps of it."""
 
 from __future__ import annotations
-
 from typing import Any
-
 from asperity.config.case import Case
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.rolling.pair import roll_pair
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.trial import STEPS, timed
+from asperity.scenarios.refining import Setting
+import numpy as np
+from numpy.typing import NDArray
+from xarray import DataTree
+from asperity.scenarios.measure import A_WEIGHTED, Measure, a_weighted, density_of
+from asperity.schema import spectra
 
 REPORT = 2.5
 """Time of starting the program, and of drawing and writing a report, s."""
@@ -38,3 +42,17 @@ def step_seconds(prepared: PreparedCase) -> float:
     path: dict[str, Any] = {"speed": case.speed, "start": case.record_start, "time_step": case.time_step}
     _, taken = timed(lambda: roll_pair(bodies.over, bodies.rolls, law, duration=duration, **path))
     return taken / max(1.0, duration / case.time_step)
+
+
+def settings_of(case: Case) -> list[Setting]:
+    """List them."""
+    return []
+
+
+def _force(tree: DataTree, law: str) -> NDArray[np.float64]:
+    return density_of(tree, spectra.FORCE_PSD, law)
+
+
+MEASURES = {
+    A_WEIGHTED: Measure("contact force level, A-weighted", "dB(A) re 1 N", a_weighted(_force)),
+}

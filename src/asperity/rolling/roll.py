@@ -1,13 +1,14 @@
-"""Bodies roll over a structure on several contacts, which feel each other."""
+"""The energy balance of bodies on several contacts: where the work of the loads went."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 from dataclasses import dataclass
-
 import numpy as np
+from numpy.typing import NDArray
+from asperity.kernels.pointforce import Prepared, evaluate_all
+from asperity.rolling.outcome import warn_if_beyond, warn_if_unconverged
+from asperity.rolling.stepper import ContactsStepper
+from collections.abc import Sequence
 from numpy.typing import ArrayLike, NDArray
-
 from asperity.errors import Outcome
 from asperity.kernels.several import (
     BODY_DAMPING,
@@ -20,20 +21,76 @@ from asperity.kernels.several import (
 )
 from asperity.laws.base import Law
 from asperity.progress import Progress
+from asperity.rolling.assembly import Stand, stand
 from asperity.rolling.events import ContactLoss, contact_losses
 from asperity.rolling.momentum import displaced_in_contact, free_motion, refuse_missed_load
 from asperity.rolling.outcome import flying
 from asperity.rolling.path import Path
 from asperity.rolling.rolled import Rolled
-from asperity.rolling.several.energy import Ledger
-from asperity.rolling.several.stand import Stand, stand
-from asperity.rolling.several.stepper import Remembered
-from asperity.rolling.several.warned import warn_after_contacts
+from asperity.rolling.stepper import Remembered
 from asperity.rolling.stepping import advance_to_end, restore
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
+
+@dataclass(frozen=True)
+class Ledger:
+    """Energies gained and work done since the start, J, in run-in and run.
+
+    The work of the loads equals the sum of the others, up to what the time step leaves open: the integrals
+    are taken by the trapezoidal rule from the motion, the energies from the states at start and end. On a
+    rail, of which displacements alone are known, `contact` holds what goes into contacts and rail together,
+    and the terms of the structure are zero.
+    """
+
+    loads: float  # work of the constant forces that press the bodies down
+    bodies: float  # kinetic and elastic energy gained by the bodies
+    body_damping: float  # dissipated in their dampers and modes
+    structure: float  # kinetic and elastic energy gained by what is rolled over
+    structure_damping: float  # dissipated there
+    contact: float  # work on the contacts: stored, damped, less what textures feed in
+    slope: float  # work against the slope of the bent structure, given up to the drive that keeps the speed
+    contact_damping: float  # the part of `contact` that their dampers took
+    throughput: float  # time integral of the moduli of the powers at both sides of all contacts
+
+    @property
+    def residual(self) -> float:
+        """What the balance leaves open, relative to the throughput."""
+        gained = self.bodies + self.body_damping + self.structure + self.structure_damping
+        left = self.loads - gained - self.contact - self.slope
+        return abs(left) / self.throughput if self.throughput > 0.0 else 0.0
+
+    def shares(self) -> dict[str, float]:
+        """The terms by their names in results, J; the first equals the sum of the others."""
+        return {
+            "work of the loads": self.loads,
+            "bodies": self.bodies,
+            "damping of the bodies": self.body_damping,
+            "structure": self.structure,
+            "damping of the structure": self.structure_damping,
+            "contacts": self.contact,
+            "slope of the structure": self.slope,
+        }
+
+
+def warn_after_contacts(stepper: ContactsStepper, approach: NDArray[np.float64]) -> None:
+    """Warn of forces that missed the tolerance, and of laws that were continued beyond their data.
+
+    The approach (n, steps), m, is that which the laws saw. Contacts under laws of one name count together.
+    """
+    counts = stepper.motion.counts
+    names = [law.name for law in stepper.laws]
+    warn_if_unconverged(", ".join(dict.fromkeys(names)), counts, stacklevel=5)
+    beyond = dict.fromkeys(names, 0)
+    for name, law, seen in zip(names, stepper.prepared, approach, strict=True):
+        if isinstance(law, Prepared):
+            beyond[name] += int(evaluate_all(law, seen, 0)[2])
+        else:
+            law.warn_of_flaws()
+    for name, count in beyond.items():
+        warn_if_beyond(name, count, names.count(name) * approach.shape[1], stacklevel=5)
+
 
 Array = NDArray[np.float64]
 
