@@ -26,7 +26,7 @@ from asperity.contact import HalfSpace, Hertz
 from asperity.contact.batched import Device, gpu, processor
 from asperity.contact.scan import BLOCK, ScanJob, scan_forces
 from asperity.errors import InputError
-from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum
+from asperity.kernels.convolution import convolve_padded, padded_length, padded_spectrum
 from asperity.surfaces.strip import Rows
 from asperity.surfaces.synthesis import self_affine
 

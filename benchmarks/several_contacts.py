@@ -35,7 +35,7 @@ from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel

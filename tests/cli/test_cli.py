@@ -19,7 +19,7 @@ from click.testing import CliRunner
 
 import asperity
 from asperity.cli import main
-from asperity.cli.finished import earlier_run, name_of_run
+from asperity.cli.running import earlier_run, name_of_run
 from asperity.kinds.cases import load_case, parse_case
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
 from asperity.results import read_result

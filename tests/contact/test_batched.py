@@ -10,7 +10,7 @@ import pytest
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.batched import find_device, gpu, processor, solve_batched
 from asperity.errors import ComputationError, InputError
-from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum
+from asperity.kernels.convolution import convolve_padded, padded_length, padded_spectrum
 from asperity.surfaces.synthesis import self_affine
 
 MODULUS = 115e9

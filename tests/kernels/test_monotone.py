@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from asperity.kernels.monotone import shape_preserving
+from asperity.kernels.piecewise import shape_preserving
 
 
 @pytest.mark.parametrize("count", [3, 4, 10, 60])

@@ -10,7 +10,7 @@ import xarray
 import asperity
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kinds.ball_on_beam import compute as ball_on_beam
-from asperity.kinds.ball_on_beam.geometry import ball_geometry
+from asperity.kinds.ball_on_beam.bodies import ball_geometry
 from asperity.kinds.cases import parse_case
 from asperity.laws.layout import force
 from asperity.reporting.tables import homogeneity_table

@@ -16,10 +16,8 @@ from asperity.errors import (
     ShortRecordWarning,
     UnconvergedWarning,
 )
-from asperity.kinds.bodies.bodies import bodies_of
-from asperity.kinds.bodies.geometry import geometry_of
+from asperity.kinds.bodies.bodies import bodies_of, geometry_of, smooth_contact
 from asperity.kinds.bodies.result import passing_frequencies
-from asperity.kinds.bodies.smooth import smooth_contact
 from asperity.kinds.bodies.textures import contacts_of, textures_of
 from asperity.kinds.cases import parse_case, template
 from asperity.kinds.wheel_on_rail.bodies import wheel_of

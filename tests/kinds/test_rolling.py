@@ -25,9 +25,9 @@ from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.ball import RollingBall
 from asperity.rolling.beam import RolledBeam
-from asperity.rolling.events import contact_losses
+from asperity.rolling.outcome import contact_losses
 from asperity.rolling.pair import roll_pair
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 

@@ -12,7 +12,7 @@ import asperity
 from asperity.contact import Hertz
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.kinds.cases import parse_case
-from asperity.kinds.wheel_on_rail.geometry import geometry_of
+from asperity.kinds.wheel_on_rail.bodies import geometry_of
 from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses, relaxed
 from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.reference.cnossos import rail_roughness

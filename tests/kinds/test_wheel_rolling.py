@@ -251,7 +251,7 @@ class TestCheckpoint:
         settings = {"start": 0.0, "duration": 0.1, "settling": 0.1}
         whole = roll_wheel(poles, WHEEL, law, **settings)
         kept = Checkpoint(Store(tmp_path), "run")
-        monkeypatch.setattr("asperity.rolling.several.stepper.LONGEST", 700)
+        monkeypatch.setattr("asperity.rolling.stepper.LONGEST", 700)
 
         def stop(done, total, message):
             if done >= 1400:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from asperity.errors import ComputationError
 from asperity.rolling.beam import most_compliance
-from asperity.rolling.momentum import free_motion, refuse_missed_load
+from asperity.rolling.outcome import free_motion, refuse_missed_load
 from asperity.rolling.path import Path
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body

@@ -12,7 +12,7 @@ from asperity.rolling import stepping
 from asperity.rolling.ball import RollingBall
 from asperity.rolling.beam import RolledBeam
 from asperity.rolling.pair import roll_pair
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel

@@ -13,7 +13,7 @@ from asperity.laws import Direct, HertzLaw, Linear
 from asperity.laws.layout import force as force_of
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 

@@ -17,8 +17,9 @@ from asperity.kernels import several as kernels
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.several import roll_bodies, stepper
-from asperity.rolling.several.statics import at_rest
+from asperity.rolling import stepper
+from asperity.rolling.rest import at_rest
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body
 

@@ -10,7 +10,7 @@ from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import SUPPORTS, Beam
 from asperity.structures.body import Body
 from asperity.structures.modal import ModalStructure

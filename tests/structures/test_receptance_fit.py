@@ -12,7 +12,7 @@ from asperity.errors import CoarseSamplingWarning, EnergyWarning, Grade, InputEr
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
 from asperity.spectra import psd
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body, carriage

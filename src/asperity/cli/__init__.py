@@ -153,7 +153,7 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
     Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
     which law to take and how far the others are off.
     """
-    from asperity.cli.checking import show_plan
+    from asperity.cli.planning import show_plan
     from asperity.cli.running import refuse_folder
     from asperity.kinds.cases import load_case
 
@@ -468,7 +468,7 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
 
     A name is that of a CSV file, which holds the numbers of the figure, or its title in the report.
     """
-    from asperity.cli.picturing import figures_into
+    from asperity.cli.reporting import figures_into
 
     return figures_into(run, directory, format, names)
 
@@ -501,7 +501,7 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
 )
 def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> dict[str, Any]:
     """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz."""
-    from asperity.cli.listening import listen_into
+    from asperity.cli.reporting import listen_into
 
     return listen_into(run, directory, what, matched=matched)
 

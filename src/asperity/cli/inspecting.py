@@ -1,30 +1,33 @@
 """Spectra of what a measured file holds: those that its picture draws, and their CSV file."""
 
 from __future__ import annotations
-from collections.abc import Sequence
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+from asperity.arguments import shown
+from asperity.errors import InputError
+from asperity.files import atomic_write
 from asperity.reporting.part import write_columns
 from asperity.surfaces.en15610 import full_lines
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import nearly_complete
-from asperity.surfaces.spectra import psd_1d, psd_radial
-import math
-import re
-from collections.abc import Iterable
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
-from asperity.arguments import shown
-from asperity.errors import InputError
-from asperity.files import atomic_write
 from asperity.surfaces.readers.headers import on_command_line, spelled
+from asperity.surfaces.spectra import psd_1d, psd_radial
 from asperity.terminal import say
 from asperity.units import quantity
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
     from asperity.config.recipe import Recipe
     from asperity.surfaces.en15610 import ThirdOctaves
     from asperity.surfaces.heightmap import HeightMap, Profile
@@ -152,7 +155,7 @@ def _inspect_first(
     surfaces: list[HeightMap | Profile], title: str, picture: Path, steps: Recipe, *, psd: bool
 ) -> dict[str, Any]:
     """Print what is in the first of maps, or in a line, and draw it."""
-    from asperity.cli.surface_spectra import spectra_of
+    from asperity.cli.inspecting import spectra_of
     from asperity.surfaces.heightmap import Profile
 
     say(f"{title}: {described(surfaces)}")
@@ -182,7 +185,7 @@ def _written_spectra(
     spectra: Spectra, surface: HeightMap | Profile | None, picture: Path, *, wanted: bool
 ) -> dict[str, str]:
     """Write the spectra beside the picture, where that is wanted; they need complete heights."""
-    from asperity.cli.surface_spectra import write_spectra
+    from asperity.cli.inspecting import write_spectra
 
     if not wanted:
         return {}
@@ -256,7 +259,7 @@ def _inspect_lines(
     """Print what is in lines side by side, and draw them."""
     import numpy as np
 
-    from asperity.cli.surface_spectra import spectra_of_lines
+    from asperity.cli.inspecting import spectra_of_lines
     from asperity.reporting.part import write_chart
     from asperity.reporting.texture_figures import lines_chart
     from asperity.surfaces.statistics import line_statistics

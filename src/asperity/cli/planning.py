@@ -1,29 +1,32 @@
 """What a case will compute, said; and said again at once while nothing that it depends on has changed."""
 
 from __future__ import annotations
+
 import json
 import os
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-from asperity.config.case import Case
-from asperity.config.content import content, file_digest
-from asperity.store import Store, content_key
-from asperity.terminal import say, say_table
-from asperity.threads import THREADS, processors
 import warnings
 from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from asperity.config.case import Case
+from asperity.config.content import content, file_digest
 from asperity.config.sections import MeasuredLine
 from asperity.errors import Grade, PhysicsWarning
 from asperity.laws import spec_of
 from asperity.progress import Progress, duration, progress_bar
-from asperity.terminal import say
+from asperity.store import Store, content_key
+from asperity.terminal import say, say_table
+from asperity.threads import THREADS, processors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
     from asperity.scenarios.expecting import Work
     from asperity.scenarios.law_choice import LawChoice
     from asperity.scenarios.preparing import PreparedCase
     from asperity.scenarios.scan_sizes import Expected
+
 
 def show_plan(case: Case, source: str, *, converge: bool = False) -> dict[str, Any]:
     """Print the values of a case, and what will be computed from it, with convergence if it is asked for.

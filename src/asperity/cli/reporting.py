@@ -1,16 +1,18 @@
 """What is made of a finished run: its page, figures as files, sounds."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
 from asperity.files import refuse_unwritable, together
-from asperity.kinds.report import PAGE, SUMMARY, write_page, write_summary
-from asperity.results import read_result
-from asperity.terminal import say
-from collections.abc import Sequence
-from asperity.kinds.report import parts_of
+from asperity.kinds.report import PAGE, SUMMARY, parts_of, write_page, write_summary
 from asperity.reporting.part import chosen_parts, write_figures
 from asperity.reporting.sound import TABLE, listen
+from asperity.results import read_result
+from asperity.terminal import say
+
 
 def report_into(run: Path, folder: Path | None, *, summary: bool) -> dict[str, Any]:
     """Write the page of the run in a file or folder, by default beside it, or its summary alone."""

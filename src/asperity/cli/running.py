@@ -1,23 +1,21 @@
 """Whether a case has been run already: by the same program, from files that hold the same."""
 
 from __future__ import annotations
+
 import hashlib
 import json
 import os
 import re
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
 import asperity
 from asperity.arguments import no_file
 from asperity.config.case import Case
 from asperity.config.content import content, file_digest
 from asperity.errors import InputError
-from asperity.schema import provenance
-from asperity.store import content_key
-import time
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
 from asperity.files import (
     alone_in,
     discard,
@@ -29,10 +27,12 @@ from asperity.files import (
 from asperity.memory import give_back
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import provenance, rolling, spectra
+from asperity.store import content_key
 from asperity.terminal import detail, remark, say
 
 if TYPE_CHECKING:
     from xarray import DataTree
+
     from asperity.scenarios.preparing import PreparedCase
 
 _LINKED = re.compile(r'href="([\w.-]+\.(?:csv|svg))"')

@@ -1,36 +1,34 @@
 """What a study writes beside its table: means over seeds, an ensemble's band, a page of figures."""
 
 from __future__ import annotations
+
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
 import xarray
+
+from asperity.arguments import shown
 from asperity.comma_separated import write_csv
-from asperity.files import lasting, write_bytes
+from asperity.errors import InputError
+from asperity.files import alone_in, discard, lasting, refuse_unwritable, together, write_bytes
 from asperity.laws import spec_of
+from asperity.progress import progress_bar
 from asperity.reporting.law_entries import line_style, read_entries
 from asperity.reporting.page import PageFigure, figures_page
 from asperity.reporting.payload import chart_tables
 from asperity.reporting.study_figures import ensemble_chart, key_caption, key_chart
-from asperity.studies.ensemble import FEWEST, SCATTER, prediction_band
-from asperity.studies.table import columns_of, long_columns
-from asperity.terminal import say
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext, suppress
-from typing import TYPE_CHECKING, Any
-from asperity.arguments import shown
-from asperity.errors import InputError
-from asperity.files import alone_in, discard, lasting, refuse_unwritable, together
-from asperity.progress import progress_bar
 from asperity.studies.definition import Study, separated, study_of
-from asperity.studies.ensemble import SCATTER, mean_and_scatter
+from asperity.studies.ensemble import FEWEST, SCATTER, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES, names_kept
-from asperity.studies.table import OVER, axes_of, chosen, columns_of, usual, usual_in_figures
+from asperity.studies.table import OVER, axes_of, chosen, columns_of, long_columns, usual, usual_in_figures
 from asperity.terminal import line_width, remark, say, say_table
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+
     import xarray
 
 SEED = "seed"
@@ -84,7 +82,7 @@ def write_study_page(
         figures.append(PageFigure("ensemble", *told, chart, chart_tables(chart), "ensemble.csv"))
     if not figures:
         return {}
-    swept = " × ".join(f"{table.sizes[name]} {name}" for name in json.loads(table.attrs["sweep"]))
+    swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
     done, count = int(table["completed"].sum()), table["completed"].size
     summary = swept if done == count else f"{swept}; {done} of {count} members completed"
     held = {

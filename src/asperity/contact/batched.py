@@ -14,7 +14,7 @@ from asperity.arguments import shown
 from asperity.contact.halfspace import MAX_ITERATIONS, HalfSpace
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.batched_cg import first_guess, solve_batch
-from asperity.kernels.padded import padded_length, padded_spectrum
+from asperity.kernels.convolution import padded_length, padded_spectrum
 
 DEVICES = ("cpu", "gpu")
 """What `device` may be."""

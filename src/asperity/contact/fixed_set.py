@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kernels.batched_cg import apply_stencil
-from asperity.kernels.padded import convolve_padded, padded_length, padded_spectrum
+from asperity.kernels.convolution import convolve_padded, padded_length, padded_spectrum
 
 
 def displaced(table: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:

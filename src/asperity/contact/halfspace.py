@@ -16,10 +16,9 @@ from asperity.contact.fixed_set import displaced, unit_indentation
 from asperity.errors import InputError, Outcome, UnconvergedWarning
 from asperity.kernels.contact import REACH, room
 from asperity.kernels.fourier import smooth_length
-from asperity.kernels.influence import Influence, influence, prepared
-from asperity.kernels.love import influence_table
+from asperity.kernels.influence import Influence, influence, influence_table, prepared
 from asperity.kernels.overlap import foundation_approach
-from asperity.kernels.preconditioner import inverse_stencil
+from asperity.kernels.projected_cg import inverse_stencil
 from asperity.kernels.scanning import Block, solve_positions
 from asperity.progress import Progress
 from asperity.store import Cache

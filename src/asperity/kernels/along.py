@@ -1,9 +1,10 @@
 """What lies along a path, compiled: splines, and waves by angle addition."""
 
 from __future__ import annotations
+
 import numpy as np
-from asperity.kernels.options import CALLED, compiled
-from asperity.kernels.options import LOOP, compiled
+
+from asperity.kernels.options import CALLED, LOOP, compiled
 
 BLOCK = 512
 """Points whose coefficients are found at once."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from asperity.kernels.padded import convolve_padded
+from asperity.kernels.convolution import convolve_padded
 from asperity.kernels.projected_cg import LEAST, MOST, OFTEN, PATIENCE, WHOLE
 
 Array = Any

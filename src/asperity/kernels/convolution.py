@@ -4,13 +4,14 @@ Written on an array module `xp` (numpy or CuPy), for batches on a device.
 """
 
 from __future__ import annotations
-from typing import Any
-import numpy as np
-from numpy.typing import NDArray
-from asperity.kernels.fourier import smooth_length
+
 from functools import lru_cache
 from typing import Any, NamedTuple
-from asperity.kernels.fourier import roots, transform
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.kernels.fourier import roots, smooth_length, transform
 from asperity.kernels.lanes import lanes, load, store, transpose
 from asperity.kernels.options import CALLED, INNER, compiled
 

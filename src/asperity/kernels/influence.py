@@ -1,10 +1,12 @@
 """Love's influence coefficients: displacement of a half-space under pressure on one rectangular cell."""
 
 from __future__ import annotations
-import numpy as np
-from numpy.typing import NDArray
+
 from typing import NamedTuple
+
+import numpy as np
 from numpy.typing import DTypeLike, NDArray
+
 from asperity.kernels.convolution import Convolution, quarter_turn, spectrum, whole_vectors
 from asperity.kernels.fourier import factors, roots, smooth_length
 from asperity.kernels.lanes import lanes, width

@@ -1,9 +1,12 @@
 """Piecewise cubics, compiled: monotone interpolation, and evaluation."""
 
 from __future__ import annotations
-from asperity.kernels.options import LOOP, compiled
+
 import numpy as np
 from numpy.typing import NDArray
+
+from asperity.kernels.options import LOOP, compiled
+
 
 @compiled(**LOOP, fastmath={"contract"})
 def evaluate_pieces(coefficients, breaks, places, values, slopes):  # type: ignore[no-untyped-def]

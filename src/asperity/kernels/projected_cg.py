@@ -1,16 +1,17 @@
 """Approximate inverse of the influence of pressure, as a short stencil on a set of cells."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
-from asperity.kernels.box import Box
-from asperity.kernels.convolution import quarter_spectrum
-from asperity.kernels.options import INNER, REASSOCIATE, compiled
-from typing import NamedTuple
+
 from asperity.kernels.at_load import balance_load, find_level, mark_free, project_at_load, rounding
 from asperity.kernels.box import REACH, Box
-from asperity.kernels.convolution import Convolution, convolve
+from asperity.kernels.convolution import Convolution, convolve, quarter_spectrum
 from asperity.kernels.options import CALLED, INNER, REASSOCIATE, compiled
+
 
 def inverse_stencil(table: NDArray[np.float64]) -> NDArray[np.float64]:
     """Fit a 13-point stencil whose symbol approximates the inverse of that of a kernel (≥ 32, ≥ 32).

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.kernels.monotone import continued_to_touch, monotone_slopes, zero_crossing
+from asperity.kernels.piecewise import continued_to_touch, monotone_slopes, zero_crossing
 from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.base import Law
 from asperity.reduction.stiffness import ForceCurve

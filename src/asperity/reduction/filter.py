@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from asperity.errors import InputError
-from asperity.kernels.monotone import shape_preserving
+from asperity.kernels.piecewise import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
 from asperity.spectra import hann_window
 from asperity.threads import one_thread_in_linear_algebra

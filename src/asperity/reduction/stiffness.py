@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.contact import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import InputError
-from asperity.kernels.monotone import continued_to_touch, cubic_coefficients, monotone_slopes
+from asperity.kernels.piecewise import continued_to_touch, cubic_coefficients, monotone_slopes
 from asperity.progress import Progress
 from asperity.threads import in_order
 

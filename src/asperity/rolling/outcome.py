@@ -1,16 +1,19 @@
 """How a run went: contact lost, load carried, steps not converged, laws continued beyond their data."""
 
 from __future__ import annotations
-from dataclasses import dataclass
-import numpy as np
-from numpy.typing import NDArray
-from asperity.errors import ComputationError
-from asperity.structures.body import Body
+
 import warnings
 from collections.abc import Callable
-from asperity.errors import ExtrapolationWarning, Grade, UnconvergedWarning, percent
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import ComputationError, ExtrapolationWarning, Grade, UnconvergedWarning, percent
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.base import SteppedLaw
+from asperity.structures.body import Body
+
 
 @dataclass(frozen=True)
 class ContactLoss:

@@ -1,15 +1,15 @@
 """The energy balance of bodies on several contacts: where the work of the loads went."""
 
 from __future__ import annotations
-from dataclasses import dataclass
-import numpy as np
-from numpy.typing import NDArray
-from asperity.kernels.pointforce import Prepared, evaluate_all
-from asperity.rolling.outcome import warn_if_beyond, warn_if_unconverged
-from asperity.rolling.stepper import ContactsStepper
+
 from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
 from asperity.errors import Outcome
+from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.several import (
     BODY_DAMPING,
     CONTACT_DAMPING,
@@ -22,17 +22,25 @@ from asperity.kernels.several import (
 from asperity.laws.base import Law
 from asperity.progress import Progress
 from asperity.rolling.assembly import Stand, stand
-from asperity.rolling.events import ContactLoss, contact_losses
-from asperity.rolling.momentum import displaced_in_contact, free_motion, refuse_missed_load
-from asperity.rolling.outcome import flying
+from asperity.rolling.outcome import (
+    ContactLoss,
+    contact_losses,
+    displaced_in_contact,
+    flying,
+    free_motion,
+    refuse_missed_load,
+    warn_if_beyond,
+    warn_if_unconverged,
+)
 from asperity.rolling.path import Path
 from asperity.rolling.rolled import Rolled
-from asperity.rolling.stepper import Remembered
+from asperity.rolling.stepper import ContactsStepper, Remembered
 from asperity.rolling.stepping import advance_to_end, restore
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
+
 
 @dataclass(frozen=True)
 class Ledger:

@@ -15,9 +15,16 @@ from asperity.kernels.pointforce import Prepared
 from asperity.laws.base import Law
 from asperity.progress import Progress
 from asperity.rolling.equilibrium import static_approach
-from asperity.rolling.events import ContactLoss, contact_losses
-from asperity.rolling.momentum import displaced_in_contact, refuse_missed_load
-from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation, flying, warn_after
+from asperity.rolling.outcome import (
+    STEPPED_EQUILIBRIUM,
+    ContactLoss,
+    contact_losses,
+    displaced_in_contact,
+    evaluation,
+    flying,
+    refuse_missed_load,
+    warn_after,
+)
 from asperity.rolling.path import Path
 from asperity.rolling.stability import (
     largest_force,
@@ -79,7 +86,7 @@ def roll_along(
     apart, m/N (`asperity.rolling.stability`). `judge` looks at the bodies at the end, also at that of a
     motion that runs away, and may warn. `free` holds the mass, kg, of a body that nothing but its contact
     holds, and the largest static compliance, m/N, of what deflects on the path: a run that misses the load in
-    the mean is then refused (`asperity.rolling.momentum`). A checkpoint keeps the state about every 10 s, at
+    the mean is then refused (`asperity.rolling.outcome`). A checkpoint keeps the state about every 10 s, at
     the end and when interrupted, to go on from there.
 
     Warned of are a coarse time step, a law that was continued beyond its data, and forces that missed the

@@ -1,19 +1,22 @@
 """Laws of several contacts, handed to the kernel together, piece by piece of the path."""
 
 from __future__ import annotations
+
 from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
-from asperity.kernels.pointforce import Prepared
-from asperity.kernels.several import Laws
-from typing import Any
+
 from asperity.kernels.modal import solve_step
+from asperity.kernels.pointforce import Prepared
 from asperity.kernels.several import (
     CONTACT_DAMPING,
     SWEEPS,
     Assembly,
     ContactsMotion,
     ContactsRecord,
+    Laws,
     begin_step,
     book,
     complete_contacts,
@@ -28,6 +31,7 @@ from asperity.rolling.outcome import evaluation
 from asperity.rolling.path import Path
 from asperity.rolling.stepping import STEPPED_BLOCK, copied, put_back, solve_from_python
 from asperity.structures.modal import Modal
+
 
 class Stack:
     """`Prepared` laws of all contacts, padded to the largest: one kernel serves any number and mix."""

@@ -1,11 +1,14 @@
 """What several bodies roll over: the modes of a structure, a rigid plane, or a rail."""
 
 from __future__ import annotations
+
 import warnings
 from collections.abc import Iterator, Sequence
 from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
+
 from asperity.errors import InputError, LargeDeflectionWarning
 from asperity.kernels.rail import Channels
 from asperity.rolling.beam import PLACES, alternating_of_modes, most_compliance, resolved_step

@@ -16,7 +16,7 @@ from asperity.contact.scan import ScannedForces
 from asperity.errors import PhysicsWarning, ShortRecordWarning
 from asperity.laws import Law, Need, needs_of
 from asperity.progress import Progress
-from asperity.rolling.events import ContactLoss
+from asperity.rolling.outcome import ContactLoss
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import Workshop
 from asperity.scenarios.line_filters import normalisations

@@ -20,7 +20,7 @@ from asperity.laws import HertzLaw
 from asperity.progress import COMPILED, Progress
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body
 from asperity.threads import processors

@@ -56,19 +56,19 @@ class Kind:
         ========== ===================================================================================
         case       ``CASE``, the class of its cases; ``WORDS`` and ``ROLLING``, the section of what rolls
         bodies     ``bodies_of(case)``, built from the case; as usual what is rolled over and what rolls;
-                   ``square_transfer(bodies, stiffness, frequency)``, of their linear contact force
-        geometry   ``geometry_of(case)``, what presses on what on the contact grid
+                   ``square_transfer(bodies, stiffness, frequency)``, of their linear contact force;
+                   ``geometry_of(case)``, what presses on what on the contact grid
         textures   ``textures_of(case)``; ``warn_of(case, shape, textures)``, before anything is computed
         compute    ``compute(prepared, progress)``, from textures to runs
         result     ``layout(computed, caught, brief)``, the tree of a run
         schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
                    entries, each with the place on its dimensions if not all of it; ``SHOWN``, names of
                    what it shows of them unasked
-        refining   ``settings_of(case)``, how finely its bodies are resolved
-        measures   ``MEASURES``, by name what textures are judged by
         chapters   ``CHAPTERS`` of its report
         plan       ``rows(case)``, what will be computed, in words; ``seconds(prepared, progress, pace)`` by
-                   part of the work, s; ``step_seconds(prepared)``; ``records(case)``; ``REPORT``, s
+                   part of the work, s; ``step_seconds(prepared)``; ``records(case)``; ``REPORT``, s;
+                   ``settings_of(case)``, how finely its bodies are resolved; ``MEASURES``, by name what
+                   textures are judged by
         ========== ===================================================================================
     """
 
@@ -117,7 +117,7 @@ class Kind:
 
     def geometry_of(self, case: Case) -> Geometry:
         """Lay out the bodies of a case on the contact grid."""
-        found: Geometry = self.offers("geometry", "geometry_of")(case)
+        found: Geometry = self.offers("bodies", "geometry_of")(case)
         return found
 
     def textures_of(self, case: Case) -> Textures:
@@ -168,7 +168,7 @@ class Kind:
     @property
     def measures(self) -> Mapping[str, Measure]:
         """What its textures are judged by, by name."""
-        found: Mapping[str, Measure] = self.offers("measures", "MEASURES")
+        found: Mapping[str, Measure] = self.offers("plan", "MEASURES")
         return found
 
     @property
@@ -181,7 +181,7 @@ class Kind:
 
     def settings_of(self, case: Case) -> list[Setting]:
         """How finely its bodies are resolved, beside what all kinds have."""
-        found: list[Setting] = self.offers("refining", "settings_of")(case)
+        found: list[Setting] = self.offers("plan", "settings_of")(case)
         return found
 
     def plan(self, name: str) -> Any:

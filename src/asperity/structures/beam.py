@@ -17,7 +17,7 @@ from scipy.linalg import eigh, qr
 
 from asperity.arguments import real
 from asperity.errors import InputError
-from asperity.kernels.waves import STRIDE, add_near_fields, turn_on
+from asperity.kernels.along import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
 from asperity.structures.modal import Pieces, modal_receptance, pieces_of, shapes_at
 

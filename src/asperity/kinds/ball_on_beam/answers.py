@@ -1,9 +1,11 @@
 """What the report of a ball, or of bodies, says first: how what they roll over vibrates."""
 
 from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 from xarray import DataTree
+
 from asperity.kinds.ball_on_beam.schema import ACCELERATION, ACCELERATION_LEVEL
 from asperity.reporting.data import engineering, laws, of_law, present, stored_variable, values
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands

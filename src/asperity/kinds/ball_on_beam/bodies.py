@@ -1,17 +1,20 @@
 """The ball and the beam of a case."""
 
 from __future__ import annotations
+
 from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
+
+from asperity.contact import Hertz
+from asperity.errors import InputError
 from asperity.kinds.ball_on_beam.case import BallOnBeam
+from asperity.reference.materials import contact_modulus
+from asperity.scenarios.geometry import Geometry, geometry, parabola
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
 from asperity.structures.modal import driving_point
-from asperity.contact import Hertz
-from asperity.errors import InputError
-from asperity.reference.materials import contact_modulus
-from asperity.scenarios.geometry import Geometry, geometry, parabola
 
 MODES_BEYOND = 4.0
 """Beam modes are kept up to this multiple of the highest frequency, where the case says nothing."""

@@ -10,7 +10,7 @@ from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import Law
 from asperity.progress import Progress
-from asperity.rolling.several import FirstContact
+from asperity.rolling.roll import FirstContact
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.usual.compute import checkpoint_of

@@ -1,21 +1,25 @@
 """What rolling a ball over a beam takes, from a few steps of it."""
 
 from __future__ import annotations
+
 from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.kinds.ball_on_beam import schema
+from asperity.kinds.ball_on_beam.bodies import highest_mode
+from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
-from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.trial import STEPS, timed
-from asperity.kinds.ball_on_beam.bodies import highest_mode
-from asperity.kinds.ball_on_beam.case import BallOnBeam
-from asperity.scenarios.refining import Setting, Way
-from asperity.units import written
-from numpy.typing import NDArray
-from xarray import DataTree
-from asperity.kinds.ball_on_beam import schema
 from asperity.scenarios.measure import A_WEIGHTED, ACCELERATION, Measure, a_weighted, density_of
+from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.refining import Setting, Way
+from asperity.scenarios.trial import STEPS, timed
+from asperity.units import written
+
 
 def records(case: Any) -> int:
     """Histories that a law leaves behind."""

@@ -1,25 +1,29 @@
-"""The contact of the smooth bodies of a case."""
+"""What rolls and what it is rolled over, built from the case, and laid out on the contact grid."""
 
 from __future__ import annotations
+
 import math
-from asperity.contact import Hertz
-from asperity.contact.hertz import relative_radius
-from asperity.errors import InputError
-from asperity.kinds.bodies.case import Bodies
-from asperity.reference.materials import Material, contact_modulus
-from asperity.structures.body import GRAVITY
 import warnings
 from dataclasses import dataclass
 from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+from asperity.contact import Hertz
+from asperity.contact.hertz import check_half_space, groove_gap, relative_radius
+from asperity.errors import InputError
+from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.wheel_on_rail.tables import fitted_to, read_modes, read_receptance
+from asperity.reference.materials import Material, contact_modulus
+from asperity.scenarios.geometry import Geometry, across_window, geometry, parabola
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
 from asperity.structures.modal import Modal, driving_point
 from asperity.structures.modal_fit import warn_of_short_band
 from asperity.structures.receptance_fit import fit_body
 from asperity.structures.track import Track
+
 
 def smooth_contact(case: Bodies) -> Hertz:
     """Contact of the smooth bodies, by their relative curvatures along and across the path."""
@@ -228,3 +232,49 @@ def body_transfer(
 
 def square_transfer(bodies: RolledCase, stiffness: float, frequency: Any) -> None:
     """Nothing is said of the linear contact force of bodies that are coupled."""
+
+
+def loads_of(bodies: list[Body]) -> NDArray[np.float64]:
+    """Static forces of all contacts (c,), N."""
+    return np.concatenate([body.static_loads for body in bodies])
+
+
+def geometry_of(case: Bodies) -> Geometry:
+    """Lay out what rolls on the contact grid, under the static load of its first contact."""
+    load = float(loads_of(bodies_of(case).rolling)[0])
+    return body_geometry(case, load)
+
+
+def body_geometry(case: Bodies, load: float) -> Geometry:
+    """Lay out what rolls on the contact grid, under a load, N.
+
+    In a groove the gap is that of circle in circle, and the half-space is asked for the angle that it fills.
+    """
+    body, hertz = case.body, smooth_contact(case)
+    groove = body.groove_radius
+    if groove is None:
+        smallest = min(body.radius, body.across, radius_across(case), abs(raceway_radius(case)))
+        section = parabola(case.contact, hertz.radius_y)
+    else:
+        smallest = math.inf  # looked at below
+        section = groove_gap(across_window(case.contact), body.across, groove)
+        _check_groove(case, load, groove)
+    shape = geometry(case.contact, section, hertz, load, smallest_radius=smallest, body="body")
+    return shape.within_window()
+
+
+def _check_groove(case: Bodies, load: float, groove: float) -> None:
+    """Hold the contact under the load, and in the highest state given, to the half-space in a groove."""
+    hertz, top = smooth_contact(case), case.contact.approaches
+    asked = [(hertz.approach(load), f"a working load of {load:.3g} N")]
+    if top is not None:
+        asked.append((top[-1], f"an approach of {top[-1] * 1e6:.3g} µm"))
+    for approach, cause in asked:
+        check_half_space(
+            hertz.semi_axes(approach),
+            case.body.across,
+            groove_radius=groove,
+            raceway_radius=raceway_radius(case),
+            groove_width=case.body.groove_width,
+            cause=cause,
+        )

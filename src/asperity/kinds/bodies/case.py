@@ -74,7 +74,7 @@ class Bodies(LawsOfSurface):
     @property
     def nominal_patch(self) -> NominalPatch:
         """Smooth contact of each body, from which grid and window are chosen."""
-        from asperity.kinds.bodies.smooth import load_of, smooth_contact
+        from asperity.kinds.bodies.bodies import load_of, smooth_contact
 
         hertz = smooth_contact(self)
         return NominalPatch.of(hertz.modulus, hertz.radius_x, hertz.radius_y, load_of(self))
@@ -117,7 +117,7 @@ class Bodies(LawsOfSurface):
     @property
     def contact_resonance(self) -> float:
         """Natural frequency, Hz, of the mass on a contact between smooth bodies at rest."""
-        from asperity.kinds.bodies.smooth import static_stiffness
+        from asperity.kinds.bodies.bodies import static_stiffness
 
         return float(np.sqrt(static_stiffness(self) / self.body.contact_mass) / (2.0 * np.pi))
 
@@ -135,7 +135,7 @@ class Bodies(LawsOfSurface):
 
     def problems(self) -> Iterator[InputError]:
         """What must fit together across the sections: bodies that touch in a point first."""
-        from asperity.kinds.bodies.smooth import static_stiffness
+        from asperity.kinds.bodies.bodies import static_stiffness
 
         try:
             static_stiffness(self)

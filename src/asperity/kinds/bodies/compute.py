@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from asperity.kinds.bodies.bodies import RolledCase
+from asperity.kinds.bodies.bodies import RolledCase, loads_of
 from asperity.kinds.bodies.case import Bodies
-from asperity.kinds.bodies.textures import contacts_of, loads_of
+from asperity.kinds.bodies.textures import contacts_of
 from asperity.laws import Law
 from asperity.progress import Progress
-from asperity.rolling.several import FirstContact, first_contact, roll_bodies
+from asperity.rolling.roll import FirstContact, first_contact, roll_bodies
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.preparing import PreparedCase

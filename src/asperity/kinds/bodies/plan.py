@@ -1,28 +1,32 @@
 """What rolling bodies on several contacts takes, from a few steps of it."""
 
 from __future__ import annotations
+
 from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
+from xarray import DataTree
+
 from asperity.config.case import Case
+from asperity.kinds.bodies import schema
+from asperity.kinds.bodies.bodies import highest_beam_mode
+from asperity.kinds.bodies.case import Bodies
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.several import roll_bodies
+from asperity.rolling.roll import roll_bodies
+from asperity.scenarios.measure import A_WEIGHTED, Measure, a_weighted, density_of
 from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.refining import Setting, Way
 from asperity.scenarios.trial import STEPS, timed
 from asperity.scenarios.trial_track import POLE_TIME, try_track
 from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
 from asperity.structures.rail_poles import DECIMALS, POLES, RailBetween, RailPoles
 from asperity.structures.track import Track
 from asperity.threads import thread_count
-from asperity.kinds.bodies.bodies import highest_beam_mode
-from asperity.kinds.bodies.case import Bodies
-from asperity.scenarios.refining import Setting, Way
 from asperity.units import written
-from numpy.typing import NDArray
-from xarray import DataTree
-from asperity.kinds.bodies import schema
-from asperity.scenarios.measure import A_WEIGHTED, Measure, a_weighted, density_of
+
 
 def rows(case: Any) -> list[tuple[str, str]]:
     """The contacts, in words."""

@@ -11,9 +11,8 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity.kinds.bodies import schema
-from asperity.kinds.bodies.bodies import body_transfer
+from asperity.kinds.bodies.bodies import body_transfer, loads_of
 from asperity.kinds.bodies.compute import Computed
-from asperity.kinds.bodies.textures import loads_of
 from asperity.scenarios.contact_group import contact_group
 from asperity.scenarios.surface_group import surface_group
 from asperity.scenarios.tree import assembled, drawn, force_spectra, rolling_group, spectrum_segment

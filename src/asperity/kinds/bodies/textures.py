@@ -18,7 +18,6 @@ from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.records import Grid, spectrum_strip
 from asperity.scenarios.textures import Textures
 from asperity.scenarios.usual.textures import gather
-from asperity.structures.body import Body
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import raised
 
@@ -70,11 +69,6 @@ def contacts_of(case: Bodies, loads: NDArray[np.float64]) -> tuple[list[int], li
             others.append(Further(partial(_of_contact, case, texture), float(load)))
         which.append(found)
     return which, others
-
-
-def loads_of(bodies: list[Body]) -> NDArray[np.float64]:
-    """Static forces of all contacts (c,), N."""
-    return np.concatenate([body.static_loads for body in bodies])
 
 
 def _of_contact(case: Bodies, contact: int, first: Textures) -> Textures:

@@ -1,24 +1,28 @@
 """The wheel and the track of a case."""
 
 from __future__ import annotations
+
 from dataclasses import dataclass
+from pathlib import Path
+
 import numpy as np
+import scipy
 from numpy.typing import NDArray
+
+from asperity.contact import Hertz
+from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.linear_reference import force_transfer, mean_square_transfer
 from asperity.kinds.wheel_on_rail.tables import fitted_to, read_modes, read_receptance
-from asperity.structures.modal_fit import REACH, warn_of_short_band
-from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
-from pathlib import Path
-import scipy
-from asperity.contact import Hertz
-from asperity.errors import InputError
 from asperity.reference.materials import contact_modulus
 from asperity.scenarios.geometry import Geometry, across_window, geometry
 from asperity.scenarios.records import read_section
+from asperity.structures.modal_fit import REACH, warn_of_short_band
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
+
 
 @dataclass(frozen=True, eq=False)
 class Bodies:

@@ -14,7 +14,7 @@ from asperity.kinds.wheel_on_rail.passing import passed_points
 from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import Law
 from asperity.progress import Progress
-from asperity.rolling.several import FirstContact
+from asperity.rolling.roll import FirstContact
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.usual.compute import checkpoint_of

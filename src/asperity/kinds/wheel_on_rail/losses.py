@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from asperity.errors import Grade, LossFactorWarning, PhysicsWarning
 from asperity.kinds.wheel_on_rail import schema
-from asperity.kinds.wheel_on_rail.bodies import wheel_of
+from asperity.kinds.wheel_on_rail.bodies import geometry_of, wheel_of
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.compute import Computed
-from asperity.kinds.wheel_on_rail.geometry import geometry_of
 from asperity.kinds.wheel_on_rail.linear_reference import WheelReceptance
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.validity import Finding

@@ -1,8 +1,16 @@
 """What rolling a wheel on a rail takes, from small pieces of it."""
 
 from __future__ import annotations
+
 from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
+from xarray import DataTree
+
+from asperity.errors import ComputationError
+from asperity.kinds.wheel_on_rail import schema
+from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.labels import findings_of_labels, track_label, wheel_label
 from asperity.kinds.wheel_on_rail.losses import (
     described_losses,
@@ -14,20 +22,6 @@ from asperity.kinds.wheel_on_rail.sound import silent_wheel
 from asperity.laws import HertzLaw, Role, in_role
 from asperity.progress import Progress
 from asperity.reduction.texture import StateTexture
-from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.trial import STEPS, timed
-from asperity.scenarios.trial_track import POLE_TIME, try_track
-from asperity.scenarios.validity import warn_of_findings
-from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
-from asperity.structures.rail_poles import POLES, RailPoles
-from asperity.threads import thread_count
-from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.scenarios.refining import Setting, Way
-from asperity.structures.rail_poles import POLES
-from numpy.typing import NDArray
-from xarray import DataTree
-from asperity.errors import ComputationError
-from asperity.kinds.wheel_on_rail import schema
 from asperity.scenarios.measure import (
     A_WEIGHTED,
     ACCELERATION,
@@ -36,7 +30,15 @@ from asperity.scenarios.measure import (
     density_of,
     line_frequencies,
 )
+from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.refining import Setting, Way
+from asperity.scenarios.trial import STEPS, timed
+from asperity.scenarios.trial_track import POLE_TIME, try_track
+from asperity.scenarios.validity import warn_of_findings
 from asperity.schema import spectra
+from asperity.structures.moving_kernel import SHORTEST, STARTS, MovingKernel
+from asperity.structures.rail_poles import POLES, RailPoles
+from asperity.threads import thread_count
 
 REPORT = 4.0
 """Time of starting the program, and of drawing and writing a report, s."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from asperity.laws.base import Law
-from asperity.rolling.several import FirstContact, first_contact, roll_bodies
+from asperity.rolling.roll import FirstContact, first_contact, roll_bodies
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import RailBetween, RailPoles
 from asperity.structures.wheel import Wheel
@@ -15,7 +15,7 @@ def roll_wheel(rail: RailPoles | MovingKernel, wheel: Wheel, law: Law, **path: A
     """Roll a wheel along a track at constant speed, and keep what follows the run-in.
 
     The track is given for one speed and time step, as poles, or scattered; the contact is at `start` at time
-    zero, m from a sleeper. All else as of `asperity.rolling.several.roll_bodies`, of which this is one body.
+    zero, m from a sleeper. All else as of `asperity.rolling.roll.roll_bodies`, of which this is one body.
     """
     between = RailBetween(rail, {})
     kernel = between.kernel

@@ -1,18 +1,21 @@
 """What rolling takes, from a few steps of it."""
 
 from __future__ import annotations
+
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from xarray import DataTree
+
 from asperity.config.case import Case
 from asperity.laws import HertzLaw
 from asperity.progress import Progress
 from asperity.rolling.pair import roll_pair
-from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.trial import STEPS, timed
-from asperity.scenarios.refining import Setting
-import numpy as np
-from numpy.typing import NDArray
-from xarray import DataTree
 from asperity.scenarios.measure import A_WEIGHTED, Measure, a_weighted, density_of
+from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.refining import Setting
+from asperity.scenarios.trial import STEPS, timed
 from asperity.schema import spectra
 
 REPORT = 2.5
