@@ -58,10 +58,10 @@ Timed = dict[str, float]
 
 def rolled(name: str) -> tuple[Any, Callable[[Clock], Any]]:
     """Prepare a case; its law, and what rolls it."""
-    from asperity.kinds.ball_on_beam import compute as ball
     from asperity.kinds.cases import parse_case
-    from asperity.kinds.wheel_on_rail import compute as wheel
     from asperity.running import prepare_case
+    from asperity.scenes import compute as ball
+    from asperity.scenes import compute as wheel
 
     prepared = prepare_case(parse_case(CASES[name]))
     case, quiet = prepared.case, lambda *_: None

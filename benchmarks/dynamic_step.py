@@ -29,13 +29,13 @@ from numpy.typing import ArrayLike
 from step_clock import Clock
 
 from asperity.errors import PhysicsWarning
-from asperity.kinds.ball_on_beam.compute import Computed, compute
-from asperity.kinds.ball_on_beam.roll import Rolling, roll_ball
 from asperity.kinds.cases import parse_case
 from asperity.laws import Law
 from asperity.progress import progress_bar
+from asperity.rolling.one_body import Rolling, roll_ball
 from asperity.running import prepare_case
 from asperity.scenarios.laws import Workshop
+from asperity.scenes.compute import Computed, compute
 from asperity.store import Store
 
 COMPILED = ["linear", "hertz", "printed", "shifted", "areal", "table"]

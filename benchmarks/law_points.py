@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import time
 import warnings
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +27,7 @@ from asperity.reference.law_accuracy import HIGH, LOW
 from asperity.running import prepare_case
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.law_choice import place_of
+from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 
@@ -145,7 +144,6 @@ def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
 
 def chain_of(case: Case, progress: Progress) -> Chain[Any]:
     """Roll all laws of a case."""
-    compute = importlib.import_module(f"asperity.kinds.{case.kind.replace('-', '_')}.compute").compute
     return compute(prepare_case(case), progress).chain  # type: ignore[no-any-return]
 
 
@@ -207,7 +205,7 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
 def place_on_map(point: Point, seed: int) -> dict[str, float]:
     """Place of one path of a point on the map."""
     prepared = prepare_case(case_of(point, seed, LAWS))
-    transfer = partial(prepared.kind.square_transfer, prepared.bodies)
+    transfer = prepared.bodies.square_transfer
     place = place_of(prepared.textures.path, prepared.shape, prepared.case.speed, transfer)
     assert place is not None
     return asdict(place)

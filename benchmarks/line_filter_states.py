@@ -13,7 +13,6 @@ the slope of its regression on the force of `direct`, and its mean over that of 
 
 from __future__ import annotations
 
-import importlib
 import sys
 import warnings
 from dataclasses import replace
@@ -27,6 +26,7 @@ from asperity.laws.layout import force
 from asperity.progress import progress_bar
 from asperity.reference.cnossos import rail_roughness
 from asperity.running import prepare_case
+from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
 
 FILTERED, OLD = ("shifted", "hertz-filtered"), "-mean-plane"
@@ -76,7 +76,6 @@ def levels(signal, step):
 
 def rolled(case):
     """Roll a case: what was computed."""
-    compute = importlib.import_module(f"asperity.kinds.{case.kind.replace('-', '_')}.compute").compute
     with progress_bar() as progress:
         return compute(prepare_case(case), progress).chain
 

@@ -15,14 +15,14 @@ from typing import Any
 import numpy as np
 
 from asperity import Track, Wheel
-from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
-from asperity.kinds.wheel_on_rail.sound import rolling_sound_power
 from asperity.radiation.track import SPEED_OF_SOUND, RailSection, SleeperTop, effective_length
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
 from asperity.reporting.axes import frequency_axis
 from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, Line, Panel
 from asperity.reporting.part import write_chart
+from asperity.scenarios.linear_force import force_transfer
+from asperity.scenes.sound import rolling_sound_power
 from asperity.spectra import nominal
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))

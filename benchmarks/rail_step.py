@@ -25,13 +25,13 @@ from numpy.typing import ArrayLike
 from step_clock import Clock
 
 from asperity.contact import Hertz as HertzContact
-from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw, Law, Linear, Shifted, Table
 from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
+from asperity.rolling.one_body import roll_wheel
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailPoles, rail_poles
 from asperity.structures.track import Track

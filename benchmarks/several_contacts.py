@@ -30,11 +30,10 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from step_clock import Clock
 
-from asperity.kinds.ball_on_beam.roll import roll_ball
-from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
+from asperity.rolling.one_body import roll_ball, roll_wheel
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body

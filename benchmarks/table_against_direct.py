@@ -25,10 +25,10 @@ import numpy as np
 
 from asperity.errors import PhysicsWarning
 from asperity.kinds.ball_on_beam.case import BallOnBeam
-from asperity.kinds.ball_on_beam.compute import Computed, compute
 from asperity.kinds.cases import parse_case
 from asperity.progress import progress_bar
 from asperity.running import prepare_case
+from asperity.scenes.compute import Computed, compute
 from asperity.spectra import band_levels, psd
 
 LAWS = [

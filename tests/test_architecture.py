@@ -99,8 +99,8 @@ def test_nothing_is_pickled_and_no_text_is_evaluated():
 
 
 KIND = {
-    "Bodies", "Computed", "bodies_of", "compute", "geometry_of", "layout", "records",
-    "rows", "seconds", "settings_of", "square_transfer", "step_seconds", "textures_of", "warn_of",
+    "Computed", "bodies_of", "compute", "contacts_of", "geometry_of", "layout", "rows", "settings_of",
+    "textures_of", "warn_of",
 }  # fmt: skip
 """What each kind of case offers under the same name, see `asperity.scenarios.kind.Kind`."""
 

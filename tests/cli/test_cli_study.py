@@ -225,9 +225,9 @@ def test_names_in_a_table_are_no_formulas_and_no_markup():
 
 def test_columns_and_figures_are_those_that_are_asked_for(out):
     """With the words of --show, bands too; a wrong name is refused before anything is computed."""
-    asked = ["--show", "rms_force, force_level", "--show", "transit exposure level"]
+    asked = ["--show", "rms_force, force_level", "--show", "transit exposure levels"]
     message = call("study", "study.toml", "-o", "out", *asked, code=2).stderr
-    assert "--show: received 'transit_exposure_level'; allowed: names of what a study keeps: " in message
+    assert "--show: received 'transit_exposure_levels'; allowed: names of what a study keeps: " in message
     outcome = call("study", "study.toml", "-o", "out", "--workers", "1", *asked[:2], "--json")
     document = json.loads(outcome.stdout)
     assert {title.split()[0] for title in document["columns"]} == {

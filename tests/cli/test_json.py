@@ -105,7 +105,8 @@ def test_numbers_of_a_run_are_those_of_its_file(ran):
 
 def test_a_check_says_how_long_a_run_takes(ran):
     found, _ = document("check", "small.toml", "-o", "a")
-    assert found["work"]["seconds"] == pytest.approx(sum(found["work"]["parts"].values()))
+    assert set(found["work"]) == {"seconds", "solutions", "steps", "bytes"}
+    assert found["work"]["steps"] > 0
     speed = next(item for item in found["parameters"] if item["key"] == "speed")
     assert (speed["value"], speed["is_default"]) == ("1 m/s", True)
 

@@ -10,13 +10,13 @@ from asperity.config.tables import read_levels
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import load_case, parse_case, template
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.tables import (
+from asperity.laws import names
+from asperity.scenes.tables import (
     read_mode_shapes,
     read_modes,
     read_ratios,
     read_receptance,
 )
-from asperity.laws import names
 
 INTERFACE = """
 kind = "wheel-on-rail"

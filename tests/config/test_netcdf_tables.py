@@ -8,7 +8,7 @@ from asperity.config import tables
 from asperity.config.tables import read_table
 from asperity.errors import InputError
 from asperity.kinds.bodies.structure_keys import RECEPTANCES
-from asperity.kinds.wheel_on_rail.tables import read_receptance
+from asperity.scenes.tables import read_receptance
 from asperity.structures.receptance_fit import receptances_in
 
 RNG = np.random.default_rng(1)

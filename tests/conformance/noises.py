@@ -9,9 +9,9 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
-from asperity.kinds.wheel_on_rail.sound import SoundPower, rolling_sound_power
 from asperity.reference import cnossos
+from asperity.scenarios.linear_force import force_transfer
+from asperity.scenes.sound import SoundPower, rolling_sound_power
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 

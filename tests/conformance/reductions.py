@@ -10,13 +10,13 @@ from ledger import Check
 from scipy.integrate import cumulative_trapezoid
 
 from asperity.contact import HalfSpace, Hertz
-from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import HertzLaw, Linear, Printed, Shifted
 from asperity.laws.layout import force
 from asperity.reduction.filter import punch_taps, response
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.reference.materials import material
+from asperity.rolling.one_body import roll_ball
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
 

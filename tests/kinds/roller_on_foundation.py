@@ -18,11 +18,11 @@ from asperity.config.sections import ContactCase, Numerics
 from asperity.config.values import Choice, Force, Length, Mass, OwnOrNamed, Stiffness
 from asperity.contact import Hertz
 from asperity.reference.materials import contact_modulus
-from asperity.rolling.ball import RollingBall
 from asperity.scenarios.geometry import geometry, parabola
 from asperity.scenarios.kind import Words
-from asperity.scenarios.usual.bodies import Bodies
-from asperity.structures.body import Ball
+from asperity.scenarios.scene import Scene
+from asperity.structures.body import Body
+from asperity.structures.modal import STATIC, STATIC_DAMPING
 
 
 class Roller(Section):
@@ -68,47 +68,28 @@ WORDS = Words("A roller on an elastic foundation.", " in [surface]", {"surface.r
 
 @dataclass(frozen=True)
 class ElasticFoundation:
-    """A spring at rest, of a stiffness, N/m: rolled over."""
+    """A massless foundation of a stiffness, N/m: one mode that answers at once, the same everywhere."""
 
     stiffness: float
 
-    def laid(self, path, load):
-        return Sunk(self.stiffness, path.time_step, load)
+    extent = (0.0, 1e6)
+    natural_frequencies = np.array([STATIC])
+    damping_ratios = np.array([STATIC_DAMPING])
 
-    def alternating_compliance(self, path):
-        return 1.0 / self.stiffness
+    def shapes(self, x):
+        """φ = ω/√k, so that φ²/ω² is the compliance 1/k; and its slope."""
+        shape = 2.0 * np.pi * STATIC / np.sqrt(self.stiffness)
+        return np.full((np.size(x), 1), shape), np.zeros((np.size(x), 1))
 
-
-class Sunk:
-    """The foundation under the contact."""
-
-    def __init__(self, stiffness, time_step, load):
-        self.stiffness, self.time_step = stiffness, time_step
-        self.displacement, self.velocity = load / stiffness, 0.0
-
-    def free(self, step, before):
-        return 0.0
-
-    def compliance(self, step):
-        return 1.0 / self.stiffness
-
-    def complete(self, step, before, force):
-        self.displacement, self.velocity = (
-            force / self.stiffness,
-            (force - before) / (self.stiffness * self.time_step),
-        )
-
-    def state(self):
-        return {"sunk": np.array([self.displacement, self.velocity])}
-
-    def restore(self, state):
-        self.displacement, self.velocity = state["sunk"]
+    def shapes_along(self, start, spacing, count):
+        """At equally spaced positions."""
+        return self.shapes(np.zeros(count))
 
 
 def bodies_of(case):
-    """Build the bodies of a case."""
-    roller = Ball(case.roller.radius, case.roller.material, case.roller.load, case.roller.mass)
-    return Bodies(ElasticFoundation(case.foundation.stiffness), RollingBall(roller))
+    """Build the scene of a case."""
+    roller = Body.rigid(case.roller.mass, case.roller.load)
+    return Scene(ElasticFoundation(case.foundation.stiffness), (roller,), "A roller on an elastic foundation")
 
 
 def geometry_of(case):

@@ -9,13 +9,13 @@ import xarray
 
 import asperity
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.kinds.ball_on_beam import compute as ball_on_beam
 from asperity.kinds.ball_on_beam.bodies import ball_geometry
 from asperity.kinds.cases import parse_case
 from asperity.laws.layout import force
 from asperity.reporting.tables import homogeneity_table
 from asperity.running import prepare_case, run
-from asperity.scenarios.usual.textures import gather
+from asperity.scenes import compute as ball_on_beam
+from asperity.scenes.textures import gather
 from asperity.spectra import nominal_frequency
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")

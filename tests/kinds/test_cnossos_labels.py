@@ -4,9 +4,10 @@ import pytest
 
 from asperity import WheelOnRail
 from asperity.errors import Grade, InputError, OutOfRangeWarning
-from asperity.kinds.wheel_on_rail.labels import findings_of_labels, track_label, wheel_label
-from asperity.kinds.wheel_on_rail.plan import rows
 from asperity.reference.cnossos import nearest_pad_class, nearest_wheel_transfer
+from asperity.running import prepare_case
+from asperity.scenes.cnossos_labels import findings_of_labels, track_label, wheel_label
+from asperity.scenes.plan import rows
 
 
 def case(noise=None, track=None, wheel=None):
@@ -89,10 +90,13 @@ def test_what_is_not_positive_has_no_class(nearest, message):
 
 
 def test_a_check_says_whose_sound_power_is_computed():
-    found = dict(rows(case()))
+    found = dict(rows(prepare_case(case())))
     assert found["sound power"] == (
         "of rail and sleepers, for the wheel is rigid; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
     )
     with pytest.warns(OutOfRangeWarning, match='those of the class "hard"'):
-        rows(case({"track_pad": "hard"}))
-    assert "CNOSSOS" not in dict(rows(case({"track_pad": "hard"}).with_(laws=["hertz"])))["sound power"]
+        rows(prepare_case(case({"track_pad": "hard"})))
+    assert (
+        "CNOSSOS"
+        not in dict(rows(prepare_case(case({"track_pad": "hard"}).with_(laws=["hertz"]))))["sound power"]
+    )

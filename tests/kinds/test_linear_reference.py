@@ -8,12 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail import spectra
-from asperity.kinds.wheel_on_rail.linear_reference import (
+from asperity.scenarios.linear_force import (
     force_transfer,
     linear_force_psd,
     mean_square_transfer,
 )
+from asperity.scenes import track as spectra
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
@@ -113,7 +113,9 @@ def test_between_cells_the_reference_passes_the_texture_that_the_laws_follow(mon
     textures = SimpleNamespace(start=0.0, line=line, followed=line)
     chain = SimpleNamespace(runs={"linear": run}, textures=textures, shape=None, reduction=None)
     monkeypatch.setattr(spectra, "working_point", lambda *_: (0.0, STIFFNESS))
-    computed = SimpleNamespace(case=case, chain=chain, wheel=WHEEL, track=Spring(), kernel=None)
+    computed = SimpleNamespace(
+        case=case, chain=chain, scene=SimpleNamespace(first=WHEEL, offsets=(0.0,)), track=Spring()
+    )
     frequency = np.fft.rfftfreq(1024, 25e-6)
     _, texture = spectra.linear_reference(computed, frequency, 1024)
     assert 10 * np.log10(texture.sum() * frequency[1] / 0.5e-12) == pytest.approx(0.0, abs=0.1)

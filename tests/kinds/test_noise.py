@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.sound import SOURCES, SoundPower, rolling_sound_power
 from asperity.reference import cnossos
+from asperity.scenes.sound import SOURCES, SoundPower, rolling_sound_power
 
 RAIL = cnossos.rail_roughness("iso3095")
 DISC = cnossos.wheel_roughness("disc")

@@ -7,9 +7,9 @@ D. J. Thompson, Railway Noise and Vibration (Elsevier, 2009).
 import numpy as np
 import pytest
 
-from asperity.kinds.wheel_on_rail.linear_reference import force_transfer, linear_force_psd
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.reference import cnossos
+from asperity.scenarios.linear_force import force_transfer, linear_force_psd
 from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
 from asperity.structures.decay_rate import decay_rate
 from asperity.structures.track import Track

@@ -8,15 +8,15 @@ import pytest
 
 import asperity
 from asperity.errors import MissingSourceWarning, PhysicsWarning
-from asperity.kinds.wheel_on_rail.answers import noise_answers
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.figures.radiated import (
+from asperity.radiation.track import SleeperTop, squared_point_mobility
+from asperity.reporting.chart import Line
+from asperity.scenes.figures.radiated import (
     RADIATED,
     radiated_table,
 )
-from asperity.kinds.wheel_on_rail.sound import RADIATORS, rail_section, silent_wheel
-from asperity.radiation.track import SleeperTop, squared_point_mobility
-from asperity.reporting.chart import Line
+from asperity.scenes.sound import RADIATORS, rail_section, silent_wheel
+from asperity.scenes.sound_answers import noise_answers
 from asperity.spectra import HALF_BAND, band_energies, psd
 
 CASE = {

@@ -7,11 +7,11 @@ import pytest
 
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.kinds.cases import parse_case
-from asperity.kinds.wheel_on_rail.compute import compute
-from asperity.kinds.wheel_on_rail.linear_reference import force_transfer
 from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.running import prepare_case, run
 from asperity.scenarios.laws import working_point
+from asperity.scenarios.linear_force import force_transfer
+from asperity.scenes.compute import compute
 from like_measured import either, wheel_lines, where_measured
 
 CASE = """
@@ -179,7 +179,7 @@ def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, measured, 
     _, stiffness = working_point(computed.case.contact, chain.shape, chain.reduction)
     step = computed.case.time_step
     transfer = force_transfer(
-        np.fft.rfftfreq(len(mirrored), step), computed.wheel, computed.track, stiffness, [struck % 0.6]
+        np.fft.rfftfreq(len(mirrored), step), computed.scene.first, computed.track, stiffness, [struck % 0.6]
     )
     still = 65e3 + np.fft.irfft(np.fft.rfft(mirrored) * transfer[0], len(mirrored))[: len(texture)]
     assert wheel.contact_force.max() == pytest.approx(still.max(), rel=0.1)

@@ -17,7 +17,6 @@ from asperity.errors import (
     Outcome,
     UnconvergedWarning,
 )
-from asperity.kinds.ball_on_beam.roll import roll_ball
 from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
@@ -25,6 +24,7 @@ from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
 from asperity.rolling.ball import RollingBall
 from asperity.rolling.beam import RolledBeam
+from asperity.rolling.one_body import roll_ball
 from asperity.rolling.outcome import contact_losses
 from asperity.rolling.pair import roll_pair
 from asperity.rolling.roll import roll_bodies

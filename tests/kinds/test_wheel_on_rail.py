@@ -13,11 +13,13 @@ from asperity.contact import Hertz
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail.bodies import geometry_of
-from asperity.kinds.wheel_on_rail.losses import described_losses, expected_error_of_losses, relaxed
 from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.reference.cnossos import rail_roughness
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.running import prepare_case, run
+from asperity.scenes.loss_factors import described_losses, loss_factor_error, relaxed
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
 from asperity.studies.running import study
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
@@ -191,13 +193,15 @@ class TestLossFactors:
         assert "of the nominal one: rail 0.9" in numerics["stiffness at rest"]
 
     def test_a_large_one_is_warned_of(self, tree, monkeypatch):
-        monkeypatch.setattr("asperity.kinds.wheel_on_rail.losses.DOUBTFUL", 0.01)
+        monkeypatch.setattr("asperity.scenes.loss_factors.DOUBTFUL", 0.01)
         again = run(case(laws=["linear"]))  # the same track, kept
         assert "LossFactorWarning" in [entry["category"] for entry in json.loads(again.attrs["warnings"])]
         assert "LossFactorWarning" not in tree.attrs["warnings"]
 
     def test_viscous_tracks_have_nothing_to_tell(self):
-        viscous = expected_error_of_losses(case(track='name = "nordborg"\nrail_loss_factor = 0.0'))
+        viscous = loss_factor_error(
+            Track.named("nordborg", rail_loss_factor=0.0), Wheel.rigid(600.0, 65e3), 1.2e9, 2e3
+        )
         assert relaxed(viscous) == {}
         assert list(described_losses(viscous, 65e3)) == []
 

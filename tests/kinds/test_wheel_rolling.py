@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.kinds.wheel_on_rail.linear_reference import linear_force_psd
-from asperity.kinds.wheel_on_rail.passing import _Path, passed_points
-from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw, Linear
+from asperity.radiation.passing import _Path, passed_points
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
+from asperity.rolling.one_body import roll_wheel
+from asperity.scenarios.linear_force import linear_force_psd
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store
 from asperity.structures.moving_kernel import HatResponse, moving_kernel

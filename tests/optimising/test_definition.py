@@ -45,7 +45,7 @@ def test_a_line_has_no_lay():
 
 def test_a_quantity_that_a_kind_does_not_know_is_refused(monkeypatch):
     from asperity.kinds.cases import as_case, kind_of
-    from asperity.scenarios.usual.plan import MEASURES
+    from asperity.scenes.plan import MEASURES
 
     monkeypatch.setattr(type(kind_of(as_case(CASE))), "measures", property(lambda kind: MEASURES))
     refused('"rms acceleration" of ball-on-beam', rms_at_least="1 um", quantity="rms acceleration")

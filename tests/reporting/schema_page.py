@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from asperity.kinds import KINDS
 from asperity.scenarios.kind import SHARED
+from asperity.scenes import schema
 from asperity.schema import VERSION, contents_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "result_file.md"
@@ -41,9 +41,8 @@ def page():
     """Text of the page."""
     parts = [HEAD, "## All kinds of case\n", table(*contents_of(*SHARED)), ""]
     shared = [item for items in contents_of(*SHARED) for item in items]
-    for name, kind in KINDS.items():
-        own = ([item for item in items if item not in shared] for items in contents_of(*kind.schema))
-        parts += [f"## {name}, beside these\n", table(*own), ""]
+    own = ([item for item in items if item not in shared] for items in contents_of(schema))
+    parts += ["## What depends on the scene\n", table(*own), ""]
     return "\n".join(parts)
 
 

@@ -14,15 +14,15 @@ from asperity.cli.studying import _show
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import chapters_of, page_of, parts_of
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
-from asperity.kinds.wheel_on_rail.figures.force import AROUND_PEAK, around_peak
-from asperity.kinds.wheel_on_rail.figures.motion import point_labels
-from asperity.kinds.wheel_on_rail.figures.noise import sound_power_table
 from asperity.laws import spec_of
 from asperity.reporting.chapter import UNCERTAINTY
 from asperity.reporting.chart import Boxes, Line, Note, Rules
 from asperity.reporting.study_figures import key_chart
+from asperity.scenes.figures.force import AROUND_PEAK, around_peak
+from asperity.scenes.figures.noise import sound_power_table
+from asperity.scenes.figures.rail_motion import point_labels
 from asperity.studies.member import kept, names_kept
-from asperity.studies.table import chosen, columns_of, usual, usual_in_figures
+from asperity.studies.table import USUAL, USUAL_IN_FIGURES, chosen, columns_of
 
 PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
 
@@ -334,7 +334,7 @@ def study(tree):
 
 def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(study, capsys):
     """In the terminal; what is missing throughout, as the sound of a rigid wheel, only if it is asked for."""
-    _show(study[0], usual("wheel-on-rail"), asked=False)
+    _show(study[0], USUAL, asked=False)
     said = " ".join(capsys.readouterr().out.replace("┃", " ").replace("│", " ").split())
     for words in ("rail", "sleepers", "total", "pass by", "maximum level"):
         assert words in said
@@ -346,7 +346,7 @@ def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(stud
 def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(study):
     table = study[1]
     assert not table["contact_loss_share"].values.any()
-    chart = key_chart(table, None, "speed", {}, usual_in_figures("wheel-on-rail"))
+    chart = key_chart(table, None, "speed", {}, USUAL_IN_FIGURES)
     panels = {panel.title: panel for panel in chart.panels}
     assert panels["L_pAFmax"].y.label == "dB(A) re 20 µPa"
     assert not any("without contact" in title for title in panels)
@@ -359,10 +359,10 @@ def test_the_figure_of_a_study_draws_sound_and_nothing_that_is_zero_throughout(s
 
 def test_what_a_study_of_wheels_may_be_asked_to_show_is_what_it_keeps(tree):
     found = {str(name) for name in kept(tree).data_vars}
-    known = names_kept("wheel-on-rail")
+    known = names_kept()
     assert found - {"point_position", "force_level_difference_to_reference_a"} <= set(known)
-    assert set(usual("wheel-on-rail")) <= set(known)
-    assert chosen(["peak_force, pass by maximum level"], "wheel-on-rail") == (
+    assert set(USUAL) <= set(known)
+    assert chosen(["peak_force, pass by maximum level"]) == (
         "peak_force",
         "pass_by_maximum_level",
     )

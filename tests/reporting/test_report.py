@@ -16,7 +16,6 @@ from report_tree import DATUM, LAWS, LOAD, report_tree, uncertain, with_force
 
 from asperity.convergence.group import sentence
 from asperity.errors import ComputationError, InputError
-from asperity.kinds.ball_on_beam.answers import acceleration_answers
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import page_of, parts_of, report
 from asperity.laws import spec_of
@@ -28,6 +27,7 @@ from asperity.reporting.part import write_columns
 from asperity.reporting.payload import chart_script
 from asperity.reporting.tables import practice_table, reference_table
 from asperity.reporting.uncertainty import uncertainty_table
+from asperity.scenes.acceleration_answers import acceleration_answers
 from asperity.spectra import a_weighting, nominal_frequency
 
 PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.parts]

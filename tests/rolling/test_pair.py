@@ -9,12 +9,11 @@ from scipy.integrate import solve_ivp
 from shelf import Shelf
 
 from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.kinds.ball_on_beam import roll as ball_on_beam
-from asperity.kinds.wheel_on_rail import roll as wheel_on_rail
 from asperity.laws import HertzLaw, Linear
 from asperity.laws.layout import force
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
+from asperity.rolling import one_body
 from asperity.rolling.ball import FreeMass, RollingBall
 from asperity.rolling.beam import RolledBeam
 from asperity.rolling.pair import roll_pair
@@ -108,7 +107,7 @@ def test_a_ball_on_a_beam_is_that_of_the_compiled_stepper(support):
     beam = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3, support=support)
     law = HertzLaw(2.4e10, rough(1e-7, 1e-5, 0.29), damping=2.0)
     path = {"speed": 1.0, "start": 0.3, "duration": 0.02, "time_step": 1e-5, "settling": 0.005}
-    compiled = ball_on_beam.roll_ball(beam, BALL, law, sensors=[0.5], **path)
+    compiled = one_body.roll_ball(beam, BALL, law, sensors=[0.5], **path)
     pair = roll_pair(RolledBeam(beam), RollingBall(BALL), law, **path)
     assert np.std(compiled.contact_force) > 0.2 * BALL.static_load
     same(pair.contact_force, compiled.contact_force)
@@ -117,7 +116,7 @@ def test_a_ball_on_a_beam_is_that_of_the_compiled_stepper(support):
     same(pair.relative_displacement, compiled.relative_displacement)
     # flights multiply what rounding leaves: a shorter run of a rougher path
     law, path = HertzLaw(2.4e10, rough(3e-7, 1e-5, 0.29)), path | {"duration": 0.004, "settling": 0.0}
-    compiled = ball_on_beam.roll_ball(beam, BALL, law, sensors=[0.5], **path)
+    compiled = one_body.roll_ball(beam, BALL, law, sensors=[0.5], **path)
     pair = roll_pair(RolledBeam(beam), RollingBall(BALL), law, **path)
     assert compiled.contact_loss
     assert pair.contact_loss == compiled.contact_loss
@@ -129,7 +128,7 @@ def test_a_wheel_on_a_rail_is_that_of_the_compiled_stepper(kernel, poles, wheel,
     rail = kernel if scattered else poles
     law = HertzLaw(9.4e10, rough(2e-5, 1e-3, -0.5))
     where = {"start": 0.53, "duration": 0.03, "settling": 0.011}
-    compiled = wheel_on_rail.roll_wheel(rail, wheel, law, **where)
+    compiled = one_body.roll_wheel(rail, wheel, law, **where)
     pair = roll_pair(RolledRail(rail), RollingWheel(wheel), law, speed=56.0, time_step=50e-6, **where)
     assert np.std(compiled.contact_force) > 0.1 * wheel.load
     same(pair.contact_force, compiled.contact_force)
@@ -140,7 +139,7 @@ def test_a_wheel_on_a_rail_is_that_of_the_compiled_stepper(kernel, poles, wheel,
 def test_a_law_that_python_steps(poles):
     law = HertzLaw(9.4e10, rough(1e-5, 1e-3, -0.5))
     where = {"start": 0.53, "duration": 0.005, "settling": 0.001}
-    compiled = wheel_on_rail.roll_wheel(poles, RINGING, Stepped(law), **where)
+    compiled = one_body.roll_wheel(poles, RINGING, Stepped(law), **where)
     pair = roll_pair(
         RolledRail(poles), RollingWheel(RINGING), Stepped(law), speed=56.0, time_step=50e-6, **where
     )
@@ -472,7 +471,7 @@ def test_a_pair_that_is_interrupted_amid_a_step_goes_on_bit_by_bit(poles):
 @pytest.mark.parametrize("scattered", [False, True], ids=["poles", "scattered"])
 def test_a_wheel_that_is_interrupted_amid_a_step_goes_on_bit_by_bit(kernel, poles, scattered):
     def rolled(law, checkpoint):
-        return wheel_on_rail.roll_wheel(
+        return one_body.roll_wheel(
             kernel if scattered else poles, RINGING, law, start=0.53, duration=0.003, settling=0.001,
             checkpoint=checkpoint,
         )  # fmt: skip

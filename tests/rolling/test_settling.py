@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from asperity.contact import HalfSpace
-from asperity.kinds.ball_on_beam.roll import roll_ball
-from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import Direct
 from asperity.reference.materials import material
 from asperity.rolling import stepping
 from asperity.rolling.ball import RollingBall
 from asperity.rolling.beam import RolledBeam
+from asperity.rolling.one_body import roll_ball, roll_wheel
 from asperity.rolling.pair import roll_pair
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam

@@ -7,9 +7,9 @@ import pytest
 from shelf import Shelf
 
 from asperity.errors import ComputationError, InputError
-from asperity.kinds.wheel_on_rail.roll import roll_wheel
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
+from asperity.rolling.one_body import roll_wheel
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import moving_kernel

@@ -9,12 +9,10 @@ from hypothesis import strategies as st
 
 from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflectionWarning
 from asperity.kernels.modal import modal_coefficients
-from asperity.kinds.ball_on_beam import roll as ball_on_beam
-from asperity.kinds.wheel_on_rail import roll as wheel_on_rail
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling import stability
+from asperity.rolling import one_body, stability
 from asperity.rolling.ball import RollingBall
 from asperity.rolling.beam import modal_alternating_compliance, resolved_step
 from asperity.rolling.path import Path
@@ -58,7 +56,7 @@ def test_no_step_of_a_ball_grows(mass, stiffness, damping, time_step):
     law = Linear(5.0, stiffness, 0.0, texture, damping)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)
-        run = ball_on_beam.roll_ball(
+        run = one_body.roll_ball(
             BEAM, ball, law, speed=speed, start=0.3, duration=(STEPS - 2) * time_step,
             time_step=time_step, sensors=[0.5],
         )  # fmt: skip
@@ -78,7 +76,7 @@ def test_no_flight_of_a_ball_grows(mass, stiffness, time_step, flight):
     law = HertzLaw(stiffness, StateTexture.unfiltered(texture, speed * time_step, 0.3))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        run = ball_on_beam.roll_ball(
+        run = one_body.roll_ball(
             BEAM, Ball(0.025, STEEL, load, mass), law, speed=speed, start=0.3,
             duration=(STEPS - 2) * time_step, time_step=time_step, sensors=[0.5],
         )  # fmt: skip
@@ -126,7 +124,7 @@ def test_no_step_of_a_wheel_grows(poles, data):
     texture = bump(56.0 * 50e-6, 0.0, 1.0 / stiffness)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)
-        run = wheel_on_rail.roll_wheel(
+        run = one_body.roll_wheel(
             poles, wheel, Linear(65e3, stiffness, 0.0, texture, damping),
             start=0.0, duration=(STEPS - 2) * 50e-6, settling=0.0,
         )  # fmt: skip
@@ -205,7 +203,7 @@ def test_softened_contact_has_the_frequency_of_newmark():
     heavy = Beam(1.0, 4e12, 1e8, highest_frequency=5e3)
     texture = bump(1e-3 * h, 0.3, 1e-3 / stiffness)
     with pytest.warns(CoarseSamplingWarning):
-        run = ball_on_beam.roll_ball(
+        run = one_body.roll_ball(
             heavy, Ball(0.025, STEEL, 5.0, mass), Linear(5.0, stiffness, 0.0, texture), speed=1e-3, start=0.3,
             duration=(STEPS - 2) * h, time_step=h, sensors=[0.5],
         )  # fmt: skip
@@ -221,7 +219,7 @@ def test_a_motion_that_runs_away_is_told():
         pytest.warns(LargeDeflectionWarning),
         pytest.raises(ComputationError, match=r"the motion runs away: at step \d+.*under a load of 5 N"),
     ):
-        ball_on_beam.roll_ball(
+        one_body.roll_ball(
             BEAM, Ball(0.025, STEEL, 5.0, 0.5), HertzLaw(1e12, texture), speed=1.0, start=0.3, duration=9e-4,
             time_step=1e-5, sensors=[0.5],
         )  # fmt: skip
@@ -238,7 +236,7 @@ def test_a_strong_damper_stays_below_what_a_rigid_contact_does():
     for damping in (1e8, 1e10):
         law = HertzLaw(9.413e10, texture, damping)
         with pytest.warns(CoarseSamplingWarning, match=r"softening the contact by 2.2 %"):
-            run = wheel_on_rail.roll_wheel(
+            run = one_body.roll_wheel(
                 pole_model, Wheel.rigid(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0
             )
         assert run.contact_loss_share == 0.0
@@ -252,7 +250,7 @@ def test_a_beam_that_bends_too_far_is_told():
     with pytest.warns(
         LargeDeflectionWarning, match=f"up to {static:.3g} m under the contact, 43 % of its length"
     ):
-        ball_on_beam.roll_ball(
+        one_body.roll_ball(
             soft, Ball(0.025, STEEL, 20.0), HertzLaw(1e10), speed=1.0, start=15.0, duration=1e-3,
             time_step=1e-5, sensors=[0.5],
         )  # fmt: skip

@@ -7,7 +7,7 @@ import pytest
 
 from asperity.config.content import content
 from asperity.kinds.cases import as_case
-from asperity.scenarios.usual.compute import checkpoint_of
+from asperity.scenes.compute import TOLD_OF, checkpoint_of
 from small_cases import CASES
 
 DIRECT = SimpleNamespace(name="direct")
@@ -17,7 +17,7 @@ PATH = SimpleNamespace(rows=lambda first, last: FLAT[first:last], shape=FLAT.sha
 
 def name(monkeypatch, values):
     """Name of what is kept of a case, by all that it says, on the same path."""
-    monkeypatch.setattr("asperity.scenarios.usual.compute.content", lambda *_: dict(values))
+    monkeypatch.setattr("asperity.scenes.compute.content", lambda *_: dict(values))
     prepared = SimpleNamespace(case=None, textures=SimpleNamespace(path=PATH, surface=PATH))
     return checkpoint_of(DIRECT, prepared, None).key
 
@@ -28,8 +28,10 @@ def test_every_key_of_a_case_but_its_laws_names_another_checkpoint(monkeypatch, 
     case = content(as_case(CASES[kind]))
     names = {name(monkeypatch, case), name(monkeypatch, case | {"laws": ["direct"]})}
     assert len(names) == 1
-    changed = [case | {key: "other"} for key in case if key != "laws"]
-    for section in (key for key in case if isinstance(case[key], dict)):
+    told_of = [case | {key: "other"} for key in case.keys() & set(TOLD_OF)]
+    assert {name(monkeypatch, each) for each in told_of} == names
+    changed = [case | {key: "other"} for key in case.keys() - set(TOLD_OF)]
+    for section in (key for key in case if isinstance(case[key], dict) and key not in TOLD_OF):
         changed += [case | {section: case[section] | {key: "other"}} for key in case[section]]
     found = [name(monkeypatch, each) for each in changed]
     assert len(found) > 40

@@ -9,15 +9,15 @@ import pytest
 
 from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
-from asperity.kinds.ball_on_beam import compute as ball_on_beam
 from asperity.kinds.cases import parse_case
 from asperity.kinds.report import parts_of
-from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
 from asperity.laws import Printed, Shifted
 from asperity.laws.layout import force
 from asperity.reduction.filter import response
 from asperity.running import prepare_case, run
 from asperity.scenarios.reducing import patch_planes
+from asperity.scenes import compute as ball_on_beam
+from asperity.scenes import compute as wheel_on_rail
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
 

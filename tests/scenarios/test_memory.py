@@ -5,11 +5,11 @@ import weakref
 
 import pytest
 
-from asperity.kinds.ball_on_beam import compute as ball_on_beam
 from asperity.kinds.cases import as_case
-from asperity.kinds.wheel_on_rail import compute as wheel_on_rail
 from asperity.running import prepare_case, run
 from asperity.scenarios.laws import Workshop
+from asperity.scenes import compute as ball_on_beam
+from asperity.scenes import compute as wheel_on_rail
 from small_cases import BALL, WHEEL
 
 pytestmark = [

@@ -14,7 +14,7 @@ from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
 from asperity.store import Store
 from asperity.studies.member import kept
-from asperity.studies.table import usual
+from asperity.studies.table import USUAL
 from asperity.surfaces.synthesis import self_affine
 
 BALL = {
@@ -130,7 +130,7 @@ class TestBallOnBeam:
         assert table["yielded_share"] == contact.attrs["yielded_share"] > 0.0
         assert table["working_stiffness"] == contact.attrs["working_stiffness"]
         shown = {"track_rms", "track_stiffness", "running_in_lowering", "yielded_share"}
-        assert shown <= set(usual("ball-on-beam"))
+        assert shown <= set(USUAL)
         assert not shown & set(kept(untouched))
 
     def test_another_pass_is_elastic(self):

@@ -7,11 +7,11 @@ import pytest
 
 from asperity.contact.scan import ScanJob, first_touch
 from asperity.errors import PhysicsWarning
-from asperity.kinds.ball_on_beam.compute import compute
 from asperity.kinds.cases import parse_case
 from asperity.running import prepare_case
 from asperity.scenarios import laws, reducing
 from asperity.scenarios.laws import table_stride
+from asperity.scenes.compute import compute
 
 pytestmark = pytest.mark.usefixtures("own_cache")
 

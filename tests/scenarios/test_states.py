@@ -1,7 +1,6 @@
 """States of the contact: chosen by the load that places carry."""
 
 import warnings
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -11,6 +10,7 @@ from asperity.kinds.cases import parse_case
 from asperity.laws.layout import force
 from asperity.running import prepare_case
 from asperity.scenarios.reducing import touched_places
+from asperity.scenes.compute import compute
 
 HEAVY_BALL = """
 kind = "ball-on-beam"
@@ -57,7 +57,6 @@ poles = 60
 @pytest.fixture(scope="module", params=[HEAVY_BALL, ROUGH_WHEEL], ids=["ball", "wheel"])
 def chain(request):
     case = parse_case(request.param)
-    compute = import_module(f"asperity.kinds.{case.kind.replace('-', '_')}.compute").compute
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)  # windows are small
         return compute(prepare_case(case), lambda *_: None).chain

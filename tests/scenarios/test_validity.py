@@ -22,7 +22,7 @@ from asperity.surfaces.synthesis import self_affine
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")
 
-NO_WORK = Work({}, {})
+NO_WORK = Work({}, {}, 0, None, 0.0)
 MAPS = Path(__file__).parents[3] / "shared" / "data" / "aa5754_um.npz"
 CASE = """
 kind = "ball-on-beam"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,8 +12,7 @@ from asperity.config.case import Case
 from asperity.config.content import content, file_digest
 from asperity.config.sections import MeasuredLine
 from asperity.errors import Grade, PhysicsWarning
-from asperity.laws import spec_of
-from asperity.progress import Progress, duration, progress_bar
+from asperity.progress import duration, progress_bar
 from asperity.store import Store, content_key
 from asperity.terminal import say, say_table
 from asperity.threads import THREADS, processors
@@ -76,9 +74,7 @@ def _key(case: Case, *, converge: bool) -> str:
     return content_key("plan", files, converge, machine, program)
 
 
-ANNOUNCED = 60.0  # s of a scan that is announced before it starts
-ANNOUNCED_SOLUTIONS = 100_000  # of a scan that is tried to find out
-SMALL_PART = 0.05  # of the work: shorter parts are not named
+ANNOUNCED = 1_000_000  # contact solutions of a scan that is announced before it starts
 
 
 def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]:
@@ -92,10 +88,15 @@ def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]
         tried = expected.tried
         given = prepared.case, prepared.shape, prepared.textures
         faults = [] if tried is None else foreseen(*given, tried, _law_choice(prepared))
-        more = [("convergence", _described_convergence(prepared, expected, progress))] if converge else []
+        more = [("convergence", _described_convergence(prepared, expected))] if converge else []
     return {
         "plan": [{"name": name, "value": value} for name, value in [*rows, *more]],
-        "work": {"seconds": expected.total, "parts": expected.seconds},
+        "work": {
+            "seconds": expected.seconds,
+            "solutions": expected.solutions,
+            "steps": expected.steps,
+            "bytes": sum(scan.bytes for scan in expected.scans.values()),
+        },
         "warnings": [
             {"grade": getattr(each.message, "grade", Grade.WARNING).value, "message": str(each.message)}
             for each in prepared.caught
@@ -119,7 +120,6 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
     list of (str, str)
         Name and value, with units.
     """
-    from asperity.scenarios.expecting import steps_of
     from asperity.scenarios.reducing import STATES
 
     choice = _law_choice(prepared)
@@ -128,26 +128,22 @@ def plan(prepared: PreparedCase, expected: Work) -> list[tuple[str, str]]:
     states = STATES if contact.approaches is None else len(contact.approaches)
     first, last = case.rolled_range
     points = round((last - first) / contact.spacing) + 1
-    steps = steps_of(case)
     run_in = f", and {settling:g} s before it" if settling else ""
-    solves = {f"scan for the {name}": scan.solutions for name, scan in expected.scans.items()}
-    solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    solves |= dict.fromkeys(solved, steps)
     scanned = expected.scans.get("path")
     return [
         *_measured(case),
         ("textures", prepared.textures.origin),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
-        ("time", f"{case.rolled_time:g} s{run_in}, {steps} steps of {case.time_step * 1e6:.4g} µs"),
-        *prepared.kind.plan("rows")(case),
+        ("time", f"{case.rolled_time:g} s{run_in}, {expected.steps} steps of {case.time_step * 1e6:.4g} µs"),
+        *prepared.kind.plan("rows")(prepared),
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
         *_running_in(prepared),
         *_real_contact(expected),
         *(choice.rows() if choice is not None else ()),
-        *((f"contact solutions, {name}", f"at most {count}") for name, count in solves.items()),
+        *((f"contact solutions, {name}", f"at most {count}") for name, count in expected.solutions.items()),
         *([("scan of the path", described_scan(scanned))] if scanned else []),
-        ("work", _described_work(expected)),
+        ("work", f"{about(expected.seconds)}, less what the cache holds"),
     ]
 
 
@@ -155,8 +151,7 @@ def _law_choice(prepared: PreparedCase) -> LawChoice | None:
     """Which law to take, and how far the laws are expected from `direct`."""
     from asperity.scenarios.law_choice import law_choice
 
-    transfer = partial(prepared.kind.square_transfer, prepared.bodies)
-    return law_choice(prepared.case, prepared.shape, prepared.textures, transfer)
+    return law_choice(prepared.case, prepared.shape, prepared.textures, prepared.bodies)
 
 
 def _running_in(prepared: PreparedCase) -> list[tuple[str, str]]:
@@ -182,53 +177,42 @@ def _real_contact(expected: Work) -> list[tuple[str, str]]:
     return [("real contact", f"about {100 * expected.tried.area_ratio:.0f} % of the area of smooth bodies")]
 
 
-def _described_work(expected: Work) -> str:
-    """Time of a run, and of its longest parts."""
-    from asperity.contact.batched import find_device
-
-    parts = sorted(expected.seconds.items(), key=lambda part: -part[1])
-    longest = [(name, part) for name, part in parts if part >= max(SMALL_PART * expected.total, 0.5)]
-    named = ", ".join(f"{name} {duration(part)}" for name, part in longest)
-    where = "" if find_device() is None else " if the processor solves all contacts"
-    return f"about {duration(expected.total)}{where}, less what the cache holds" + f": {named}" * bool(named)
+def about(seconds: float) -> str:
+    """Write a coarse time, s, for people, to one digit or two: ``"about 20 s"``."""
+    return f"about {duration(float(f'{seconds:.1g}'))}"
 
 
-def _described_convergence(prepared: PreparedCase, work: Work, progress: Progress) -> str:
-    """Time of computing a case again with each of its settings made finer."""
-    from asperity.convergence.cost import expected_convergence
+def _described_convergence(prepared: PreparedCase, work: Work) -> str:
+    """Which settings will be made finer, in one run more each, and which cannot be."""
+    import numpy as np
 
-    parts = expected_convergence(prepared, work, progress)
-    times = {name: part for name, part in parts.items() if not isinstance(part, str)}
-    named = ", ".join(f"{name} {duration(part)}" for name, part in times.items())
-    text = f"about {duration(sum(times.values()))} more: {named}"
-    unchanged = [f"{name} ({part})" for name, part in parts.items() if isinstance(part, str)]
+    from asperity.convergence.running import unchangeable
+
+    states = np.zeros(0) if work.tried is None else work.tried.approaches
+    found = unchangeable(prepared, states)
+    finer = [name for name, reason in found.items() if not reason]
+    text = f"{len(finer)} runs more, each about as long or a few times that: {', '.join(finer)}"
+    unchanged = [f"{name} ({reason})" for name, reason in found.items() if reason]
     return f"{text}; not changed: {', '.join(unchanged)}" if unchanged else text
 
 
 def described_scan(scan: Expected) -> str:
-    """Describe the scan of a path in a sentence: its size, time, disk use, and what an interruption costs."""
-    from asperity.store import Store
-    from asperity.threads import thread_count
-
+    """Describe the scan of a path in a sentence: its size, disk use, and what an interruption costs."""
     root, size = Store().root, f"{scan.bytes / 2**20:.1f} MiB"
     return (
         f"{scan.positions} positions {scan.step * 1e6:.4g} µm apart × {scan.states} approaches, "
         f"solved in {'single' if scan.single else 'double'} precision, "
-        f"about {duration(scan.seconds)} on {thread_count()} threads, {size} in {root}; "
+        f"at most {scan.solutions} solutions, {size} in {root}; "
         "if interrupted or killed, it goes on after its last finished block"
     )
 
 
-def announce_scan(prepared: PreparedCase, progress: Progress) -> None:
-    """Before a long scan of a path starts, say what it takes; a few contacts are tried for that."""
-    from asperity.scenarios.expecting import expected_path_scan
+def announce_scan(prepared: PreparedCase) -> None:
+    """Before a long scan of a path starts, say how long it is."""
     from asperity.scenarios.scan_sizes import scan_sizes
 
-    size = scan_sizes(prepared.case, prepared.shape, prepared.textures).get("path")
-    if size is None or size.solutions < ANNOUNCED_SOLUTIONS:
-        return
-    scan = expected_path_scan(prepared, progress)
-    if scan.seconds > ANNOUNCED:
+    scan = scan_sizes(prepared.case, prepared.shape, prepared.textures).get("path")
+    if scan is not None and scan.solutions >= ANNOUNCED:
         say(f"Scan of the path: {described_scan(scan)}.", err=True)
 
 

@@ -169,7 +169,7 @@ def _run_alone(case: Case, directory: Path, source: str, *, report: bool, conver
     before, name = (time.monotonic(), COMPILATION.seconds), name_of_run(case)
     prepared = prepared_case(case, source)
     with progress_bar() as progress:
-        announce_scan(prepared, progress)
+        announce_scan(prepared)
         tree: DataTree = run(prepared, progress=progress)
     if name and name == name_of_run(case):  # no file was changed meanwhile
         tree.attrs[provenance.RUN.name] = name

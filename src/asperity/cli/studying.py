@@ -23,7 +23,7 @@ from asperity.reporting.study_figures import ensemble_chart, key_caption, key_ch
 from asperity.studies.definition import Study, separated, study_of
 from asperity.studies.ensemble import FEWEST, SCATTER, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES, names_kept
-from asperity.studies.table import OVER, axes_of, chosen, columns_of, long_columns, usual, usual_in_figures
+from asperity.studies.table import OVER, USUAL, USUAL_IN_FIGURES, axes_of, chosen, columns_of, long_columns
 from asperity.terminal import line_width, remark, say, say_table
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def study_into(
     scheduler at an address. `overwrite` says whether another study in the folder may be replaced, `show`
     names what is printed and drawn instead of what is usual.
     """
-    asked = chosen(show, str(study.data.get("kind")))
+    asked = chosen(show)
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
     refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
@@ -159,7 +159,6 @@ def _study_alone(
     from asperity.studies.cluster import cluster
     from asperity.studies.running import study as computed
 
-    kind = str(study.data.get("kind"))
     remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
     place: AbstractContextManager[Executor | None] = nullcontext()
     if scheduler is not None:
@@ -167,12 +166,12 @@ def _study_alone(
     with place as executor, progress_bar() as progress:
         table = computed(study, executor=executor, workers=workers, progress=progress)
     means = mean_and_scatter(table) if table.sizes.get(SEED, 0) > 1 else None
-    names = asked or usual(kind)
+    names = asked or USUAL
     _show(table if means is None else means, names, asked=bool(asked))
     for name in asked:
         if name not in table:
             say(
-                f"{name}: no member has it; there {names_kept(kind)[name] or 'are no bands to add up'}",
+                f"{name}: no member has it; there {names_kept()[name] or 'are no bands to add up'}",
                 err=True,
             )
     _report(table)
@@ -183,7 +182,7 @@ def _study_alone(
         say(f"Table:   {lasting(files['table']).resolve()}")
         bands = band_over_seeds(table)
         files |= write_mean(means, new) | write_ensemble(bands, new)
-        files |= write_study_page(table, means, bands, asked or usual_in_figures(kind), new)
+        files |= write_study_page(table, means, bands, asked or USUAL_IN_FIGURES, new)
         for file in (each for pattern in NOT_ALWAYS for each in directory.glob(pattern)):
             if not (new / file.name).exists():
                 discard(file)

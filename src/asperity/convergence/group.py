@@ -11,10 +11,9 @@ import xarray
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.scenarios.kind import Kind
-from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.tree import spectrum_segment
 from asperity.scenarios.validity import compared_bands
+from asperity.scenes import schema as scene
 from asperity.schema import Entry, attributes, contact, convergence, rolling, spectra, variables
 from asperity.spectra import band_levels, nominal_frequency, psd
 
@@ -29,13 +28,13 @@ class Levels:
     stiffness: float  # mean contact stiffness under the load, N/m
 
     @classmethod
-    def of_result(cls, tree: DataTree, kind: Kind) -> Levels:
-        """Take them from the result of a run of a kind."""
+    def of_result(cls, tree: DataTree) -> Levels:
+        """Take them from the result of a run."""
         held = tree[spectra.FORCE_LEVEL.group].to_dataset()
         force = held[spectra.FORCE_LEVEL.name].values
-        recorded = motion_entry(kind)
+        recorded = motion_entry(held)
         motion = np.full(force.shape, np.nan)
-        if recorded is not None and recorded.name in held:
+        if recorded is not None:
             power = 10.0 ** (held[recorded.name].values / 10.0)
             with np.errstate(divide="ignore"):
                 motion = 10.0 * np.log10(power.mean(axis=tuple(range(1, power.ndim - 1))))
@@ -76,9 +75,9 @@ class Levels:
         return found
 
 
-def motion_entry(kind: Kind) -> Entry | None:
-    """The level of a recorded motion that a study keeps of a kind, by law and band; None if there is none."""
-    fitting = (entry for entry in kind.kept if entry.dims[0] == "law" and entry.dims[-1] == "band")
+def motion_entry(held: Mapping[Any, Any]) -> Entry | None:
+    """The level of a motion that spectra hold, by law and band; None if there is none."""
+    fitting = (e for e in scene.KEPT if e.dims[0] == "law" and e.dims[-1] == "band" and e.name in held)
     return next(fitting, None)
 
 
@@ -111,9 +110,7 @@ class Comparison:
     change: Levels  # of the finer computation over the coarser, on the bands of the result
 
 
-def convergence_group(
-    prepared: PreparedCase, result: DataTree, found: Sequence[Comparison]
-) -> xarray.Dataset:
+def convergence_group(result: DataTree, found: Sequence[Comparison]) -> xarray.Dataset:
     """Lay out comparisons: changes by setting, law and band, the largest of the main law, and a sentence."""
     held = result[spectra.BAND.group].to_dataset()
     band, laws = held[spectra.BAND.name].values, [str(law) for law in held[spectra.LAW.name].values]
@@ -131,7 +128,7 @@ def convergence_group(
         convergence.LARGEST_CHANGE: [size for size, _ in largest],
         convergence.LARGEST_BAND: [band[at] if at is not None else np.nan for _, at in largest],
     }
-    if (motion := motion_entry(prepared.kind)) is not None:
+    if (motion := motion_entry(held)) is not None:
         entry = convergence.MOTION_LEVEL_CHANGE
         values = [change.motion for change in changes]
         laid_out[entry] = entry.variable(values, quantity=motion.long_name)

@@ -54,7 +54,7 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
             progress(number, len(settings), "convergence")
             found.append(_compared(prepared, result, setting, _named(setting, progress)))
         progress(len(settings), len(settings), "convergence")
-    group = convergence_group(prepared, result, found)
+    group = convergence_group(result, found)
     told = [str(result.attrs[provenance.VERDICT.name]), str(group.attrs[convergence.SENTENCE.name])]
     if told[1].startswith(NOT_CONVERGED):
         told.reverse()
@@ -70,6 +70,33 @@ def settings_for(prepared: PreparedCase, states: np.ndarray) -> list[Setting]:
     return [*first, *prepared.kind.settings_of(prepared.case), *last]
 
 
+def unchangeable(prepared: PreparedCase, states: np.ndarray) -> dict[str, str]:
+    """Why each setting that is to be computed anew cannot be changed; empty of those that can.
+
+    States of the case (k,), m.
+    """
+    found: dict[str, str] = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)
+        for setting in settings_for(prepared, states):
+            if setting.name != convergence.PATH_LENGTH:
+                found[setting.name] = _refusal(prepared, setting)
+    return found
+
+
+def _refusal(prepared: PreparedCase, setting: Setting) -> str:
+    """Why no way of changing a setting can be computed; empty where one can."""
+    reason = setting.limit
+    for way in setting.ways:
+        try:
+            changed_case(prepared, way)
+        except InputError as error:
+            reason = reason or brief(error)
+            continue
+        return ""
+    return reason
+
+
 def _named(setting: Setting, progress: Progress) -> Progress:
     """Say for which setting a piece of work is done."""
 
@@ -82,7 +109,7 @@ def _named(setting: Setting, progress: Progress) -> Progress:
 
 def _compared(prepared: PreparedCase, result: DataTree, setting: Setting, progress: Progress) -> Comparison:
     """Take the first way of changing a setting that can be computed."""
-    base = Levels.of_result(result, prepared.kind)
+    base = Levels.of_result(result)
     if setting.name == convergence.PATH_LENGTH:
         whole, half = halves(result, prepared.case.time_step, prepared.case.numerics.highest_frequency)
         return Comparison(setting.name, setting.ways[0].words, "", half.over(whole, base.band))
@@ -134,7 +161,7 @@ def _levels(case: Case, textures_of: str, make: Callable[[], PreparedCase], prog
     if found is not None:
         return Levels.unpacked(found)
     prepared = make()
-    levels = Levels.of_result(prepared.kind.computed(prepared, progress, []), prepared.kind)
+    levels = Levels.of_result(prepared.kind.computed(prepared, progress, []))
     store.put(key, levels.packed())
     return levels
 

@@ -13,14 +13,12 @@ from asperity.arguments import file_path, shown
 from asperity.comma_separated import csv_text
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
-from asperity.kinds import KINDS
 from asperity.printable import printable
 from asperity.reporting.comparison import NamedRun, compared
 from asperity.reporting.comparison_page import MOST_RUNS, comparison_page, table_rows
-from asperity.reporting.data import stated
 from asperity.results import read_result
+from asperity.scenes.schema import KEPT
 from asperity.schema import Entry
-from asperity.schema.provenance import KIND
 from asperity.schema.spectra import FORCE_LEVEL
 
 TABLE = "comparison.csv"
@@ -124,11 +122,10 @@ def _place(result: object, number: int) -> tuple[str, ...]:
 
 
 def compared_levels(runs: Sequence[NamedRun]) -> list[Entry]:
-    """Levels over bands that any of the runs' kinds keeps."""
-    kinds = dict.fromkeys(stated(run.tree, KIND) for run in runs)
-    own = (entry for kind in kinds if kind in KINDS for entry in KINDS[kind].kept)
-    levels = (entry for entry in own if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"))
-    return list(dict.fromkeys((FORCE_LEVEL, *levels)))
+    """Levels over bands that any of the runs has."""
+    held = {name for run in runs for group in run.tree.children.values() for name in group.data_vars}
+    levels = (e for e in KEPT if e.units.startswith(LEVEL) and e.dims[-1].endswith("band"))
+    return [FORCE_LEVEL, *(entry for entry in levels if entry.name in held)]
 
 
 def write_comparison(

@@ -1,35 +1,27 @@
-"""What a run will take: contact solutions, disk, and time, expected from small pieces of it."""
+"""What a run will take: contacts to solve, time steps, disk; and a coarse time."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from asperity.config.case import Case
-from asperity.laws import Need, needs_of, spec_of
+from asperity.laws import spec_of
 from asperity.progress import Progress
 from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.reducing import STATES
 from asperity.scenarios.running_in import running_in_passes, running_in_positions
 from asperity.scenarios.scan_sizes import Expected, scan_sizes
-from asperity.scenarios.trial import ContactTrial, timed, try_contacts
+from asperity.scenarios.trial import ContactTrial, try_contacts
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 
-SINGLE_TIME = 0.65
-"""Time of a contact solution in single precision to that in double."""
-STATE_TIME = 1.5e-7
-"""Time of laying a state function out for a time step, s."""
-NUMBER_TIME = 5e-7
-"""Time of making a spectrum of a number of a record and of writing it, s."""
-POINT_TIME = 3e-7
-"""Time of a point of the path in its statistics, s."""
-LAID_OUT = 0.5
-"""Time of laying out the rest of a result, s."""
-SINGLE_COMPILED = 10.0
-"""Time of compiling the contact in single precision, where that is not kept yet, s."""
-COUNTING_TIME = 12e-3
-"""Time of adding up the first 200 000 squares on the processor on which those were measured, s."""
+NEIGHBOUR = 0.4
+"""Time of a contact that starts from its neighbour's pressure to that of one that does not."""
+STEP_TIME = 1e-6
+"""Time of a step of one contact by a law that looks its force up, and of its spectra and record, s."""
+TRACK_TIME = 2.0
+"""Time of the moving kernels of a track, for each of its distances, s."""
+START_TIME = 2.0
+"""Time of starting the program, of laying out a result and of writing its report, s."""
 
 
 @dataclass(frozen=True)
@@ -38,108 +30,48 @@ class Work:
 
     # ``"filters"`` where samples are scanned, ``"path"`` where a law looks its scan up
     scans: dict[str, Expected]
-    seconds: dict[str, float]  # by part of the work
-    tried: ContactTrial | None = None  # contacts of a sample; None without samples
-
-    @property
-    def total(self) -> float:
-        """Time of all parts, s."""
-        return sum(self.seconds.values())
+    solutions: dict[str, int]  # contacts to solve, at most, by what for
+    steps: int  # time steps of a law, with its run-in
+    tried: ContactTrial | None  # contacts of a sample; None without samples
+    seconds: float  # a coarse time on all threads, nothing of it found in the cache, s
 
 
 def expect(prepared: PreparedCase, progress: Progress) -> Work:
-    """Expect the work of a case, from small pieces of it that are computed here.
+    """Count the work of a case; a few contacts of its samples are solved for that.
 
     Parameters
     ----------
     prepared : PreparedCase
         The case.
     progress : Progress
-        Called between the pieces.
+        Called meanwhile.
 
     Returns
     -------
     Work
-        On all threads of this machine, while nothing else is done on it and nothing is found in the cache;
-        most often within a third.
+        Its time within a factor of three or so: that of one contact, times their number.
     """
     case, trial = prepared.case, None
     with one_thread_in_linear_algebra():
-        compile_kernels(progress)
-        pace = _pace()
-        scans = scan_sizes(case, prepared.shape, prepared.textures)
-        seconds = {"textures": prepared.processor}
         if prepared.textures.maps:
+            compile_kernels(progress)
             trial = try_contacts(prepared, progress)
-            scans = {name: _timed_scan(name, scan, trial) for name, scan in scans.items()}
-            seconds |= _contact_seconds(prepared, trial, scans, pace)
-        seconds |= prepared.kind.plan("seconds")(prepared, progress, pace)
-        seconds |= _rolling_seconds(prepared, pace)
-    return Work(scans, seconds, trial)
-
-
-def expected_path_scan(prepared: PreparedCase, progress: Progress) -> Expected:
-    """Expect the size and time of the scan of a path alone, of a case that has one."""
-    case = prepared.case
-    with one_thread_in_linear_algebra():
-        compile_kernels(progress)
-        size = scan_sizes(case, prepared.shape, prepared.textures)["path"]
-        return _timed_scan("path", size, try_contacts(prepared, progress))
-
-
-def _timed_scan(name: str, scan: Expected, trial: ContactTrial) -> Expected:
-    """Time of a scan: that of its positions, on as many threads as it has blocks."""
-    position = trial.filters if name == "filters" else trial.path
-    seconds = scan.positions * position * (SINGLE_TIME if scan.single else 1.0)
-    return replace(scan, seconds=seconds / min(thread_count(), scan.blocks))
-
-
-def _contact_seconds(
-    prepared: PreparedCase, trial: ContactTrial, scans: dict[str, Expected], pace: float
-) -> dict[str, float]:
-    """Time of pressing the samples, of the scans, and of textures averaged under the patch."""
-    case, textures = prepared.case, prepared.textures
-    samples, needs = case.contact.samples, needs_of(case.laws)
-    rows = 0 if textures.path is None else textures.path.shape[0]
-    touched = rows * (1 + (Need.SCAN in needs and textures.defects is not None)) + sum(
-        strip.shape[0] for strip in textures.strips
-    )
-    averaged = rows * (1 + (Need.AREAL in needs) * len(trial.approaches))
-    found = {
-        "pressing the samples": samples * trial.load + samples * trial.curve / min(thread_count(), samples),
-        "averaging under the patch": touched * trial.touch + averaged * trial.average,
-    }
-    found |= {f"scanning for the {name}": scan.seconds for name, scan in scans.items()}
+    scans, steps = scan_sizes(case, prepared.shape, prepared.textures), steps_of(case)
+    solutions = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
     if case.contact.running_in is not None:
-        rolled = running_in_passes(case) * running_in_positions(prepared.shape, textures)
-        found["running in"] = rolled * trial.rolled / thread_count()
-    if any(scan.single for scan in scans.values()):
-        found["compiling"] = SINGLE_COMPILED * pace
+        rolled = running_in_positions(prepared.shape, prepared.textures)
+        solutions["running in"] = running_in_passes(case) * rolled
+    contacts = len(prepared.bodies.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    found |= dict.fromkeys(solved, steps_of(case) * trial.direct)
-    return found
-
-
-def _rolling_seconds(prepared: PreparedCase, pace: float) -> dict[str, float]:
-    """Time of rolling all laws, of their spectra and statistics, and of writing the report."""
-    case = prepared.case
-    steps, laws, states = steps_of(case), len(case.laws), STATES
-    plan = prepared.kind.plan
-    path = prepared.textures.path
-    points = len(prepared.textures.line) if path is None else math.prod(path.shape)
-    written = steps * laws * plan("records")(case) * NUMBER_TIME + points * POINT_TIME
-    return {
-        "rolling": steps * laws * (plan("step_seconds")(prepared) + states * STATE_TIME * pace),
-        "spectra and statistics": (written + LAID_OUT) * pace,
-        "report": plan("REPORT") * pace,
-    }
+    seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.bodies.points)
+    seconds += STEP_TIME * steps * contacts * len(case.laws)
+    if trial is not None:
+        one = NEIGHBOUR * trial.solution
+        seconds += case.contact.samples * len(trial.approaches) * trial.solution
+        seconds += one * sum(solutions.values()) / thread_count() + one * len(solved) * steps * contacts
+    return Work(scans, solutions | dict.fromkeys(solved, steps * contacts), steps, trial, seconds)
 
 
 def steps_of(case: Case) -> int:
     """Time steps of a law, with its run-in."""
     return round((case.settled_time + case.rolled_time) / case.time_step)
-
-
-def _pace() -> float:
-    """How much slower this processor is than the one on which constants of this module were measured."""
-    return min(timed(lambda: sum(i * i for i in range(200_000)))[1] for _ in range(3)) / COUNTING_TIME

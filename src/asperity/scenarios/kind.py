@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from asperity.memory import give_back
-from asperity.schema import Entry, contact, convergence, provenance, rolling, spectra, surface
+from asperity.schema import contact, convergence, provenance, rolling, spectra, surface
 
 if TYPE_CHECKING:
     import warnings
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from asperity.config.case import Case
     from asperity.progress import Progress
     from asperity.reporting.chapter import Chapter
+    from asperity.scenarios.chain import Further
     from asperity.scenarios.geometry import Geometry
     from asperity.scenarios.measure import Measure
     from asperity.scenarios.preparing import PreparedCase
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 SHARED = (provenance, surface, contact, rolling, spectra, convergence)
 """What the results of all kinds hold."""
-USUAL = "asperity.scenarios.usual"
+USUAL = "asperity.scenes"
 """What a kind offers that says nothing of its own."""
 
 
@@ -51,22 +52,17 @@ class Kind:
     ----------
     folder : str
         Its package, in which these modules stand, or one module with all their names. Where one body rolls
-        over another the first three are enough: the folder `asperity.scenarios.usual` has the others.
+        over another the first three are enough: `asperity.scenes` has the others.
 
         ========== ===================================================================================
         case       ``CASE``, the class of its cases; ``WORDS`` and ``ROLLING``, the section of what rolls
-        bodies     ``bodies_of(case)``, built from the case; as usual what is rolled over and what rolls;
-                   ``square_transfer(bodies, stiffness, frequency)``, of their linear contact force;
+        bodies     ``bodies_of(case)``, the scene: what rolls and what is rolled over;
                    ``geometry_of(case)``, what presses on what on the contact grid
         textures   ``textures_of(case)``; ``warn_of(case, shape, textures)``, before anything is computed
         compute    ``compute(prepared, progress)``, from textures to runs
         result     ``layout(computed, caught, brief)``, the tree of a run
-        schema     what its result holds beside what all results hold; ``KEPT``, what of it a study keeps:
-                   entries, each with the place on its dimensions if not all of it; ``SHOWN``, names of
-                   what it shows of them unasked
         chapters   ``CHAPTERS`` of its report
-        plan       ``rows(case)``, what will be computed, in words; ``seconds(prepared, progress, pace)`` by
-                   part of the work, s; ``step_seconds(prepared)``; ``records(case)``; ``REPORT``, s;
+        plan       ``rows(prepared)``, what will be computed, in words;
                    ``settings_of(case)``, how finely its bodies are resolved; ``MEASURES``, by name what
                    textures are judged by
         ========== ===================================================================================
@@ -103,21 +99,17 @@ class Kind:
         """Build the bodies of a case."""
         return self.offers("bodies", "bodies_of")(case)
 
-    def square_transfer(
-        self, bodies: Any, stiffness: float, frequency: NDArray[np.float64]
-    ) -> NDArray[np.float64] | None:
-        """Mean square of the linear contact force per height of the texture (f,), (N/m)², if it is known.
-
-        Stiffness of the contact, N/m; frequencies (f,), Hz.
-        """
-        found: NDArray[np.float64] | None = self.offers("bodies", "square_transfer")(
-            bodies, stiffness, frequency
-        )
-        return found
-
     def geometry_of(self, case: Case) -> Geometry:
         """Lay out the bodies of a case on the contact grid."""
         found: Geometry = self.offers("bodies", "geometry_of")(case)
+        return found
+
+    def contacts_of(self, case: Case, loads: NDArray[np.float64]) -> tuple[list[int], list[Further]]:
+        """Which law each contact rolls by: 0 for that of the first, k for that of the k-th that differs.
+
+        Static loads (c,), N. With the contacts that differ from the first.
+        """
+        found: tuple[list[int], list[Further]] = self.offers("textures", "contacts_of")(case, loads)
         return found
 
     def textures_of(self, case: Case) -> Textures:
@@ -150,20 +142,8 @@ class Kind:
 
     @property
     def schema(self) -> tuple[ModuleType, ...]:
-        """Modules with the entries of its result, its own the last."""
-        return (*SHARED, _module(f"{self.folder}.schema") or importlib.import_module(f"{USUAL}.schema"))
-
-    @property
-    def kept(self) -> Mapping[Entry, Mapping[str, str]]:
-        """What a study keeps of its results beside what it keeps of all, and where of it."""
-        found: Mapping[Entry, Mapping[str, str]] = self.offers("schema", "KEPT")
-        return found
-
-    @property
-    def shown(self) -> tuple[str, ...]:
-        """Names of what a study shows of that unasked."""
-        found: tuple[str, ...] = self.offers("schema", "SHOWN")
-        return found
+        """Modules with the entries of its result."""
+        return (*SHARED, importlib.import_module(f"{USUAL}.schema"))
 
     @property
     def measures(self) -> Mapping[str, Measure]:

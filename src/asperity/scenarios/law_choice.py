@@ -17,6 +17,7 @@ from asperity.errors import percent
 from asperity.reduction.texture import areal_texture
 from asperity.reference.law_accuracy import HIGH, LOW, LawMap, MappedPoint, Place, law_map
 from asperity.scenarios.geometry import Geometry
+from asperity.scenarios.scene import Scene
 from asperity.scenarios.textures import Textures
 from asperity.spectra import psd
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
@@ -32,16 +33,16 @@ STEEPNESS = 8
 RESOLUTION = 10.0
 """Step of the frequencies at which the linear force is summed, Hz, where the path is long enough."""
 
-SquareTransfer = Callable[[float, NDArray[np.float64]], NDArray[np.float64] | None]
+SquareTransfer = Callable[[float, NDArray[np.float64]], NDArray[np.float64]]
 """Mean square of the linear contact force per height of the texture (f,), (N/m)², by contact stiffness, N/m,
-and frequencies (f,), Hz; None of bodies for which it is not known."""
+and frequencies (f,), Hz."""
 
 
 def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: SquareTransfer) -> Place | None:
     """Find the place of a texture under the bodies of a case on the map, if there is one.
 
     Waves that excite less than 100 Hz at the speed, m/s, are left out: the bodies follow them. Smooth paths
-    have no place, nor have bodies of which no linear force is known.
+    have no place.
     """
     heights, felt = _heard(path, shape, speed)
     if not heights.any():
@@ -50,8 +51,6 @@ def place_of(path: Strip, shape: Geometry, speed: float, square_transfer: Square
     along, across = correlation_lengths(heights, shape.spacing)
     a, b = shape.semi_axes
     force = _linear_force(felt, shape, speed, square_transfer)
-    if force is None:
-        return None
     return Place(
         roughness=float(np.sqrt(np.mean(heights**2))) / approach,
         correlation=along / (2.0 * a),
@@ -128,7 +127,7 @@ def _fallen(products: NDArray[np.float64], step: float) -> float:
 
 def _linear_force(
     felt: NDArray[np.float64], shape: Geometry, speed: float, square_transfer: SquareTransfer
-) -> float | None:
+) -> float:
     """Rms force, N, of the linear contact that follows the felt plane (rows,), m, up to 10 kHz."""
     dx = shape.spacing[0]
     wavenumber, density = psd(felt, dx, segment=min(len(felt), round(speed / RESOLUTION / dx)))
@@ -136,8 +135,6 @@ def _linear_force(
     among = (frequency >= LOW) & (frequency <= 2.0 * HIGH)
     stiffness = shape.hertz.tangent_stiffness(shape.hertz.approach(shape.load))
     transfer = square_transfer(stiffness, frequency[among])
-    if transfer is None:
-        return None
     return float(np.sqrt(density[among] @ transfer * (wavenumber[1] - wavenumber[0])))
 
 
@@ -265,15 +262,16 @@ def law_to_take(choice: LawChoice | None) -> str:
     return UNMAPPED if choice is None else choice.taken
 
 
-def law_choice(
-    case: Case, shape: Geometry, textures: Textures, square_transfer: SquareTransfer
-) -> LawChoice | None:
-    """Ask the map about a case; it knows nothing of lines alone, smooth paths, defects and other bodies."""
+def law_choice(case: Case, shape: Geometry, textures: Textures, scene: Scene) -> LawChoice | None:
+    """Ask the map about a case; it knows nothing of lines alone, smooth paths and defects.
+
+    It holds wheels on rails, which stand for all that rolls over a track, and balls on beams, for all else.
+    """
     path = textures.path
-    if path is None or textures.defects is not None or not textures.areal:
+    if path is None or textures.defects is not None or not (textures.areal and scene.like):
         return None
-    place = place_of(path, shape, case.speed, square_transfer)
-    return None if place is None else choose(law_map(), case.kind, place, case.laws)
+    place = place_of(path, shape, case.speed, scene.square_transfer)
+    return None if place is None else choose(law_map(), scene.like, place, case.laws)
 
 
 def choose(mapped: LawMap, kind: str, place: Place, laws: Sequence[str]) -> LawChoice:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,8 +31,6 @@ class Expected:
     step: float  # distance of the positions, m
     bytes: int  # on disk
     single: bool  # whether the iteration will be in single precision
-    blocks: int  # that threads may solve beside each other
-    seconds: float = math.nan  # on all threads, nothing of it found in the cache; NaN before it was tried
 
     @property
     def solutions(self) -> int:
@@ -71,7 +68,6 @@ def _sized(
         step=stride * shape.spacing[0],
         bytes=sum(job.bytes for job in jobs),
         single=any(job.single for job in jobs),
-        blocks=sum(len(job.starts) for job in jobs),
     )
 
 

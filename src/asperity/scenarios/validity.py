@@ -16,8 +16,9 @@ from asperity.errors import Grade, OutOfRangeWarning, percent
 from asperity.laws import baselines, names, spec_of
 from asperity.scenarios.chain import Chain, Run
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.law_choice import WANTED, LawChoice, SquareTransfer, law_choice, law_to_take
+from asperity.scenarios.law_choice import WANTED, LawChoice, law_choice, law_to_take
 from asperity.scenarios.population import EFFECT, answers
+from asperity.scenarios.scene import Scene
 from asperity.scenarios.textures import Textures
 from asperity.scenarios.tree import difference_to
 from asperity.scenarios.trial import ContactTrial
@@ -85,11 +86,11 @@ def findings(chain: Chain[Any], choice: LawChoice | None = None) -> list[Finding
     ]
 
 
-def choice_of(chain: Chain[Any], square_transfer: SquareTransfer, *, brief: bool) -> LawChoice | None:
+def choice_of(chain: Chain[Any], scene: Scene, *, brief: bool) -> LawChoice | None:
     """What the map of law errors says of a case; in brief only where the real contact asks for it."""
     if brief and (chain.reduction is None or chain.reduction.area_ratio >= AREA[0]):
         return None
-    return law_choice(chain.case, chain.shape, chain.textures, square_transfer)
+    return law_choice(chain.case, chain.shape, chain.textures, scene)
 
 
 def foreseen(

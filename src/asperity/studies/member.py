@@ -14,10 +14,9 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity.errors import TOO_MUCH_MEMORY, AsperityError, ComputationError
-from asperity.kinds import KINDS
 from asperity.results import variable
+from asperity.scenes import schema as scene
 from asperity.schema import Entry, contact, provenance, rolling, spectra
-from asperity.schema.provenance import KIND
 from asperity.spectra import a_weighted_total
 
 if TYPE_CHECKING:
@@ -35,7 +34,7 @@ KEPT = (
     contact.TRACK_RMS,
     contact.TRACK_STIFFNESS,
 )
-"""What is kept of the results of all kinds; what is kept beside it stands in the schema of a kind."""
+"""What is kept of all results, beside what the schema of a scene says."""
 FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE)
 """Attributes of a result that are kept."""
 FORCES = {
@@ -54,11 +53,11 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
 
     With citations and warnings as attributes.
     """
-    own = KINDS[tree[KIND.group].attrs[KIND.name]].kept
+    own = scene.KEPT
     found = {
         entry.name: tree[entry.path].sel(own.get(entry, {}), drop=True)
         for entry in (*KEPT, *own)
-        if entry.name in tree[entry.group]
+        if entry.group in tree.children and entry.name in tree[entry.group]
     }
     force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name]
     for (name, what), of in zip(FORCES.items(), (force.mean, force.std, force.max), strict=True):
@@ -80,9 +79,9 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
     return table.assign_attrs({name: tree.attrs[name] for name in told})
 
 
-def names_kept(kind: str) -> dict[str, str]:
-    """Names that the table of a study of a kind may have, each with which results have it, if not all."""
-    entries = (*KEPT, contact.RUNNING_IN_LOWERING, *KINDS[kind].kept)
+def names_kept() -> dict[str, str]:
+    """Names that the table of a study may have, each with which results have it, if not all."""
+    entries = (*KEPT, contact.RUNNING_IN_LOWERING, *scene.KEPT)
     found = dict.fromkeys(FORCES, "") | {entry.name: entry.condition for entry in entries}
     found |= {fact.name: fact.condition for fact in FACTS}
     for entry in entries:

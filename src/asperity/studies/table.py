@@ -16,9 +16,9 @@ from asperity import __version__
 from asperity.arguments import nearest, shown
 from asperity.config.content import described_value
 from asperity.errors import InputError
-from asperity.kinds import KINDS
 from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
+from asperity.scenes.schema import SHOWN
 from asperity.schema import contact, rolling, spectra
 from asperity.studies.definition import Member, Study
 from asperity.studies.ensemble import SCATTER
@@ -249,22 +249,18 @@ _THEN = (
 )
 
 
-def usual(kind: str) -> tuple[str, ...]:
-    """Names of what a study of a kind of case shows unasked, where its table has it."""
-    return (*_FIRST, *KINDS[kind].shown, *_THEN)
+USUAL = (*_FIRST, *SHOWN, *_THEN)
+"""Names of what a study shows unasked, where its table has it."""
+USUAL_IN_FIGURES = tuple(name for name in USUAL if not name.startswith(OVER))
+"""Names of what its figures show unasked."""
 
 
-def usual_in_figures(kind: str) -> tuple[str, ...]:
-    """Names of what its figures show unasked."""
-    return tuple(name for name in usual(kind) if not name.startswith(OVER))
-
-
-def chosen(words: Iterable[str], kind: str) -> tuple[str, ...]:
+def chosen(words: Iterable[str]) -> tuple[str, ...]:
     """Names that words of the command line ask for, each word with commas between names.
 
     Spaces may stand for underscores, as in the headings that are printed.
     """
-    known = names_kept(kind)
+    known = names_kept()
     names = ["_".join(name.split()) for word in words for name in word.split(",")]
     for name in names:
         if name not in known:

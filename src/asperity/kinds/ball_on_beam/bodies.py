@@ -2,35 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
-
 from asperity.contact import Hertz
 from asperity.errors import InputError
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.reference.materials import contact_modulus
 from asperity.scenarios.geometry import Geometry, geometry, parabola
+from asperity.scenarios.scene import Scene
+from asperity.scenes import schema
 from asperity.structures.beam import Beam
-from asperity.structures.body import Ball
-from asperity.structures.modal import driving_point
+from asperity.structures.body import Ball, Body
 
 MODES_BEYOND = 4.0
 """Beam modes are kept up to this multiple of the highest frequency, where the case says nothing."""
-PLACES = (0.3, 0.37, 0.45, 0.5, 0.6)
-"""Places on the beam, in its lengths, over which a linear force is averaged: no mode has nodes at all."""
 
 
-@dataclass(frozen=True, eq=False)
-class Bodies:
-    """What is rolled in a case."""
-
-    ball: Ball
-    beam: Beam
-
-
-def bodies_of(case: BallOnBeam) -> Bodies:
+def bodies_of(case: BallOnBeam) -> Scene:
     """Build ball and beam of a case; a beam without natural frequency in the range is refused."""
     beam = Beam.rectangular(
         case.beam.length,
@@ -42,7 +28,13 @@ def bodies_of(case: BallOnBeam) -> Bodies:
         highest_frequency=highest_mode(case),
         suspension_frequency=case.beam.suspension_frequency,
     )
-    return Bodies(ball_of(case), beam)
+    ball, of, over = ball_of(case), case.ball.material.name, case.beam.material.name
+    article = "an" if over[0].lower() in "aeiou8" else "a"
+    title = f"{of[0].upper()}{of[1:]} ball on {article} {over} beam"
+    rolling = (Body.rigid(ball.mass, ball.static_load),)
+    names = (schema.BEAM_DISPLACEMENT, schema.BALL_DISPLACEMENT)
+    sensors = case.beam.sensor_positions
+    return Scene(beam, rolling, title, sensors=sensors, displacements=names, like=case.kind)
 
 
 def ball_of(case: BallOnBeam) -> Ball:
@@ -53,27 +45,6 @@ def ball_of(case: BallOnBeam) -> Ball:
 def highest_mode(case: BallOnBeam) -> float:
     """Frequency up to which beam modes are kept, Hz."""
     return case.beam.modes_up_to or MODES_BEYOND * case.numerics.highest_frequency
-
-
-def square_transfer(bodies: Bodies, stiffness: float, frequency: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean square along the beam of the linear contact force per height of the texture (f,), (N/m)².
-
-    The ball at rest at each of `PLACES`; stiffness of the contact, N/m; frequencies (f,), Hz.
-    """
-    places = bodies.beam.length * np.array(PLACES)
-    return np.asarray(np.mean(np.abs(ball_transfer(bodies, stiffness, places, frequency)) ** 2, axis=0))
-
-
-def ball_transfer(
-    bodies: Bodies, stiffness: float, places: NDArray[np.float64], frequency: NDArray[np.float64]
-) -> NDArray[np.complex128]:
-    """Force of the linear contact per height of the texture (p, f), N/m, the ball at rest at places (p,), m.
-
-    F/z = 1/(α_ball + 1/k + α_beam); stiffness k of the contact, N/m; frequencies (f,), Hz.
-    """
-    carried = 1.0 / stiffness - 1.0 / (bodies.ball.mass * (2.0 * np.pi * frequency) ** 2)
-    found: NDArray[np.complex128] = 1.0 / (carried + driving_point(bodies.beam, frequency, places))
-    return found
 
 
 def geometry_of(case: BallOnBeam) -> Geometry:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from asperity.kinds.ball_on_beam.answers import acceleration_answers
-from asperity.kinds.ball_on_beam.figures.acceleration import ACCELERATION
-from asperity.kinds.ball_on_beam.figures.energy import energy_table
-from asperity.kinds.ball_on_beam.figures.scene import BEAM_SCENE
 from asperity.reporting.chapter import CONTACT, LAWS, Chapter
-from asperity.scenarios.usual.chapters import FORCE, TEXTURE
+from asperity.scenes.acceleration_answers import acceleration_answers
+from asperity.scenes.chapters import FORCE, TEXTURE
+from asperity.scenes.figures.acceleration import ACCELERATION
+from asperity.scenes.figures.beam_scene import BEAM_SCENE
+from asperity.scenes.figures.energy import energy_table
 
 CHAPTERS = (
     Chapter(

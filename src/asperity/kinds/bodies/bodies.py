@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from asperity.contact import Hertz
 from asperity.contact.hertz import check_half_space, groove_gap, relative_radius
 from asperity.errors import InputError
 from asperity.kinds.bodies.case import Bodies
-from asperity.kinds.wheel_on_rail.tables import fitted_to, read_modes, read_receptance
 from asperity.reference.materials import Material, contact_modulus
 from asperity.scenarios.geometry import Geometry, across_window, geometry, parabola
+from asperity.scenarios.scene import Scene
+from asperity.scenes.tables import fitted_to, read_modes, read_receptance
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
-from asperity.structures.modal import Modal, driving_point
+from asperity.structures.modal import Modal
 from asperity.structures.modal_fit import warn_of_short_band
 from asperity.structures.receptance_fit import fit_body
 from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
 
 
 def smooth_contact(case: Bodies) -> Hertz:
@@ -91,19 +88,7 @@ MODES_BEYOND = 4.0
 """Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
 
 
-@dataclass(frozen=True, eq=False)
-class RolledCase:
-    """What is rolled in a case."""
-
-    over: Modal | Track | None  # None for a rigid plane
-    rolling: list[Body]  # in the order of their positions
-    sensors: tuple[float, ...]  # positions of accelerometers on what is rolled over, m
-    # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m
-    degrees: dict[str, float]
-    title: str
-
-
-def bodies_of(case: Bodies) -> RolledCase:
+def bodies_of(case: Bodies) -> Scene:
     """Build the bodies of a case, and what they roll over."""
     body, count = body_of(case), len(case.body.positions)
     names = {
@@ -111,7 +96,27 @@ def bodies_of(case: Bodies) -> RolledCase:
         for number in range(1, count + 1)
         for name, lever in degrees_of(case).items()
     }
-    return RolledCase(structure_of(case), [body] * count, sensors_of(case), names, title_of(case))
+    over, on_track = structure_of(case), case.over == "track"
+    middle = case.record_start + 0.5 * case.speed * case.rolled_time
+    return Scene(
+        over,
+        (body,) * count,
+        title_of(case),
+        points=case.track.points_or(middle) if on_track else (),
+        wheel=tread_of(case) if on_track else None,
+        positions=case.body.positions,
+        sensors=sensors_of(case),
+        degrees=names,
+        like="wheel-on-rail" if on_track else "ball-on-beam",
+    )
+
+
+def tread_of(case: Bodies) -> Wheel:
+    """What touches a rail at each contact, by itself: its mass and its modes."""
+    mass, load = case.body.contact_mass, load_of(case)
+    if case.body.modes is None:
+        return Wheel.rigid(mass, load)
+    return Wheel.from_modes(mass, load, *read_modes(case.body.modes))
 
 
 def degrees_of(case: Bodies) -> dict[str, float]:
@@ -214,34 +219,9 @@ def highest_beam_mode(case: Bodies) -> float:
     return case.beam.modes_up_to or MODES_BEYOND * case.numerics.highest_frequency
 
 
-def body_transfer(
-    bodies: RolledCase, stiffness: float, places: NDArray[np.float64], frequency: NDArray[np.float64]
-) -> NDArray[np.complex128]:
-    """Force of the linear contact per height of the texture (p, f), N/m, of the first contact alone.
-
-    At places (p,), m, by the stiffness of the contact, N/m, and frequencies (f,), Hz.
-    """
-    over = bodies.over
-    carried = bodies.rolling[0].receptance(frequency)[:, 0, 0] + 1.0 / stiffness
-    if isinstance(over, Track):
-        carried = carried + over.receptance(frequency, places, places)
-    elif over is not None:
-        carried = carried + driving_point(over, frequency, places)
-    return 1.0 / np.atleast_2d(carried)
-
-
-def square_transfer(bodies: RolledCase, stiffness: float, frequency: Any) -> None:
-    """Nothing is said of the linear contact force of bodies that are coupled."""
-
-
-def loads_of(bodies: list[Body]) -> NDArray[np.float64]:
-    """Static forces of all contacts (c,), N."""
-    return np.concatenate([body.static_loads for body in bodies])
-
-
 def geometry_of(case: Bodies) -> Geometry:
     """Lay out what rolls on the contact grid, under the static load of its first contact."""
-    load = float(loads_of(bodies_of(case).rolling)[0])
+    load = float(bodies_of(case).loads[0])
     return body_geometry(case, load)
 
 

@@ -13,7 +13,7 @@ from asperity.config import values
 from asperity.config.form import Section, key, optional
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
+from asperity.scenes.tables import read_modes, read_receptance
 
 MOST_CONTACTS = 200
 KINDS_OF_BODY = ("mass", "chain", "bogie", "carriage")
@@ -23,6 +23,7 @@ Roughness = Annotated[
     str | Path | NDArray[np.float64], values.ChoiceOrFile(ROUGHNESSES, TABLE_OF_LEVELS, columns=2)
 ]
 TableFile = Annotated[Path | NDArray[np.float64], values.File(columns=3)]
+ModesFile = Annotated[Path | NDArray[np.float64], values.File(columns=3, further=3)]
 
 
 class BodyCase(Section):
@@ -111,10 +112,10 @@ class BodyCase(Section):
         "that of a bar as long as the contacts are apart",
         "1e-15 kg m^2 to 1e9 kg m^2: bodies that roll lie between",
     )
-    modes: TableFile | None = optional(
+    modes: ModesFile | None = optional(
         "modes.csv",
         "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
-        "modal mass (kg)",
+        "modal mass (kg); the sound of wheels needs three columns more, as in wheel.modes",
         "rigid",
     )
     receptance: TableFile | None = optional(

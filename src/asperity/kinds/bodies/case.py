@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -15,9 +15,15 @@ from asperity.config.sections import ContactCase, Numerics
 from asperity.config.surface_laws import LawsOfSurface, problems_of_surface_laws
 from asperity.errors import InputError
 from asperity.kinds.bodies.body_keys import BodyCase
-from asperity.kinds.bodies.structure_keys import BeamOnSupports, Rails, StructureCase
+from asperity.kinds.bodies.structure_keys import BeamOnSupports, StructureCase
+from asperity.kinds.wheel_on_rail.noise_keys import NoiseOfBodies
+from asperity.kinds.wheel_on_rail.track_keys import PassedTrack
 from asperity.scenarios.kind import Words
 from asperity.units import written
+
+if TYPE_CHECKING:
+    from asperity.radiation.pass_by import Passage
+    from asperity.structures.track import Track
 
 STRUCTURES = ("plane", "beam", "track", "structure")
 """What may be rolled over; but for the plane, each is a section of the case."""
@@ -66,10 +72,11 @@ class Bodies(LawsOfSurface):
     )
     body: BodyCase = key({}, "what rolls")
     beam: BeamOnSupports = key({}, "a beam that is rolled over")
-    track: Rails = key({}, "a track that is rolled over")
+    track: PassedTrack = key({}, "a track that is rolled over")
     structure: StructureCase = key({}, "any other structure that is rolled over, by its modes or receptances")
     contact: ContactCase = key({}, "how the rough contact is solved and reduced")
     numerics: Numerics = key({}, "how finely time is resolved")
+    noise: NoiseOfBodies = key({}, "what radiates, where a track is rolled over")
 
     @property
     def nominal_patch(self) -> NominalPatch:
@@ -78,6 +85,41 @@ class Bodies(LawsOfSurface):
 
         hertz = smooth_contact(self)
         return NominalPatch.of(hertz.modulus, hertz.radius_x, hertz.radius_y, load_of(self))
+
+    @property
+    def tread(self) -> BodyCase:
+        """What touches a rail."""
+        return self.body
+
+    @property
+    def tread_name(self) -> str:
+        """Section that describes what touches a rail."""
+        return "body"
+
+    @property
+    def rolling_radius(self) -> float:
+        """Radius of what rolls, m."""
+        return self.body.radius
+
+    @property
+    def axles(self) -> int:
+        """Number of axles whose sound power is added: the contacts."""
+        return len(self.body.offsets)
+
+    @property
+    def axles_behind(self) -> tuple[float, ...]:
+        """Places of all axles behind the foremost, m."""
+        ahead = sorted(self.body.offsets, reverse=True)
+        return tuple(ahead[0] - place for place in ahead)
+
+    @property
+    def passage(self) -> Passage:
+        """The axles that pass a receiver beside the track."""
+        return self.noise.passing(self.axles_behind, self.speed)
+
+    def track_model(self) -> Track:
+        """Build the track of this case."""
+        return self.track.model()
 
     @property
     def room(self) -> float | None:
@@ -163,8 +205,15 @@ def _problems_of_structure(case: Bodies) -> Iterator[InputError]:
     if case.over == "structure" and not case.structure.is_known:
         remedy = 'As file = "guide.csv".'
         yield InputError("structure.file", "nothing", "the file of its modes, or receptances", remedy)
-    if case.over == "track":
-        yield from case.track.problems_at(case.speed)
+    if case.over != "track":
+        if given := case.noise.given():
+            received = f"a [noise] of what is rolled over a {case.over}: {', '.join(sorted(given))}"
+            yield InputError("noise", received, 'over = "track"', "Remove it: a track alone sounds here.")
+        return
+    yield from case.track.problems_at(case.speed)
+    ahead, rolled = case.record_start + min(case.body.offsets), case.speed * case.rolled_time
+    yield from case.track.problems_of_points(ahead, ahead + rolled + max(case.body.offsets))
+    yield from case.noise.problem_of_length(case.axles_behind, "noise.vehicle_length")
 
 
 def _problems_of_room(case: Bodies) -> Iterator[InputError]:

@@ -19,7 +19,6 @@ from asperity.config.sections import Index
 from asperity.config.tables import Column, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.kinds.ball_on_beam.case import BeamCase
-from asperity.kinds.wheel_on_rail.track_keys import TrackParameters
 from asperity.structures.beam import Support
 from asperity.structures.modal import ModalStructure
 
@@ -81,10 +80,6 @@ class BeamOnSupports(BeamCase):
         elif len(places) < 2:
             remedy = "A beam on one support rocks: add another."
             yield InputError("supports", f"{len(places)} of a free beam", "two supports or more", remedy)
-
-
-class Rails(TrackParameters):
-    """A track."""
 
 
 class StructureCase(Section):

@@ -17,7 +17,7 @@ from asperity.scenarios.chain import Further, warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.records import Grid, spectrum_strip
 from asperity.scenarios.textures import Textures
-from asperity.scenarios.usual.textures import gather
+from asperity.scenes.textures import gather
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import raised
 

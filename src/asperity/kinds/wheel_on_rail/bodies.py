@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,29 +11,32 @@ from numpy.typing import NDArray
 from asperity.contact import Hertz
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
-from asperity.kinds.wheel_on_rail.linear_reference import force_transfer, mean_square_transfer
-from asperity.kinds.wheel_on_rail.tables import fitted_to, read_modes, read_receptance
 from asperity.reference.materials import contact_modulus
 from asperity.scenarios.geometry import Geometry, across_window, geometry
 from asperity.scenarios.records import read_section
+from asperity.scenarios.scene import Scene
+from asperity.scenes import schema
+from asperity.scenes.tables import fitted_to, read_modes, read_receptance
 from asperity.structures.modal_fit import REACH, warn_of_short_band
-from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
 
 
-@dataclass(frozen=True, eq=False)
-class Bodies:
-    """What is rolled in a case."""
-
-    wheel: Wheel
-    track: Track
-
-
-def bodies_of(case: WheelOnRail) -> Bodies:
+def bodies_of(case: WheelOnRail) -> Scene:
     """Build wheel and track of a case."""
-    return Bodies(wheel_of(case), case.track_model())
+    wheel, title = wheel_of(case), f"Wheel on rail at {case.speed:.3g} m/s"
+    return Scene(
+        case.track_model(),
+        (wheel.body,),
+        title,
+        points=case.point_positions,
+        displacements=(schema.RAIL_DISPLACEMENT, schema.WHEEL_DISPLACEMENT),
+        like=case.kind,
+        wheel=wheel,
+        scattered=case.numerics.kernel == "scatter",
+        most_poles=case.numerics.poles,
+    )
 
 
 def wheel_of(case: WheelOnRail) -> Wheel:
@@ -51,24 +53,6 @@ def wheel_of(case: WheelOnRail) -> Wheel:
                 section.mass, section.load, *measured, highest_frequency=REACH * highest
             )
     return Wheel.rigid(section.mass, section.load)
-
-
-def transfer_at(
-    bodies: Bodies, stiffness: float, places: NDArray[np.float64], frequency: NDArray[np.float64]
-) -> NDArray[np.complex128]:
-    """Force of the linear contact per height of the texture (p, f), N/m, the wheel at rest at places (p,), m.
-
-    Stiffness of the contact, N/m; frequencies (f,), Hz.
-    """
-    return force_transfer(frequency, bodies.wheel, bodies.track, stiffness, places)
-
-
-def square_transfer(bodies: Bodies, stiffness: float, frequency: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean square over a bay of the linear contact force per height of the texture (f,), (N/m)².
-
-    Stiffness of the contact, N/m; frequencies (f,), Hz.
-    """
-    return mean_square_transfer(frequency, bodies.wheel, bodies.track, stiffness, positions=4)
 
 
 _FINE = 10

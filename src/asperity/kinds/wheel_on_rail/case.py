@@ -31,6 +31,7 @@ from asperity.scenarios.kind import Words
 from asperity.units import written
 
 if TYPE_CHECKING:
+    from asperity.radiation.pass_by import Passage
     from asperity.structures.track import Track
 
 STEPS_PER_PERIOD = 8  # of the highest frequency
@@ -114,6 +115,31 @@ class WheelOnRail(Case):
         return NominalPatch.of(modulus, wheel.radius, across, wheel.load)
 
     @property
+    def tread(self) -> WheelCase:
+        """What touches the rail."""
+        return self.wheel
+
+    @property
+    def tread_name(self) -> str:
+        """Section that describes what touches the rail."""
+        return "wheel"
+
+    @property
+    def rolling_radius(self) -> float:
+        """Radius of what rolls, m."""
+        return self.wheel.radius
+
+    @property
+    def axles(self) -> int:
+        """Number of axles whose sound power is added."""
+        return self.noise.axles
+
+    @property
+    def passage(self) -> Passage:
+        """The axles that pass a receiver beside the track."""
+        return self.noise.passage(self.speed)
+
+    @property
     def time_step(self) -> float:
         """Time step in s: as given, or near 1/(8 f_max).
 
@@ -146,11 +172,7 @@ class WheelOnRail(Case):
     @property
     def point_positions(self) -> tuple[float, ...]:
         """Positions in m at which the rail's motion is recorded, with the default filled in."""
-        if self.track.points is not None:
-            return self.track.points
-        bay = self.track_model().sleeper_spacing
-        sleeper = bay * round((self.start + self.speed * self.duration / 2) / bay)
-        return sleeper, sleeper + bay / 2
+        return self.track.points_or(self.start + self.speed * self.duration / 2)
 
     def track_model(self) -> Track:
         """Build the track of this case: the named set with the case's own keys in it."""
@@ -227,10 +249,7 @@ def _problems_of_path(case: WheelOnRail) -> Iterator[InputError]:
     if joint is not None and not first <= joint <= last:
         allowed = f"a position that is rolled over, {first:g} m to {last:g} m"
         yield InputError("surface.joint_position", f"{joint:g} m", allowed)
-    for point in case.track.points or ():
-        if not case.start <= point <= last:
-            allowed = f"positions that are passed, {case.start:g} m to {last:g} m"
-            yield InputError("track.points", f"{point:g} m", allowed)
+    yield from case.track.problems_of_points(case.start, last)
 
 
 CASE = WheelOnRail

@@ -10,22 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config import values
-from asperity.config.form import key, optional
+from asperity.config.form import Section, key, optional
 from asperity.config.tables import problems_of_table
 from asperity.errors import InputError
-from asperity.kinds.wheel_on_rail.tables import read_ratios
-from asperity.kinds.wheel_on_rail.train_keys import TrainKeys
+from asperity.kinds.wheel_on_rail.train_keys import TrainKeys, VehicleKeys
 from asperity.reference.cnossos import PAD_CLASSES, WHEEL_TRANSFER
+from asperity.scenes.tables import read_ratios
 
 RatiosFile = Annotated[Path | NDArray[np.float64], values.File(columns=2)]
 
 
-class NoiseCase(TrainKeys):
+class RadiationKeys(Section):
     """What radiates, for the sound power from vibration, and the labels of CNOSSOS-EU for that beside it."""
 
-    axles: Annotated[int, values.Number(at_least=1, at_most=1000, whole=True)] = key(
-        1, "number of axles whose sound power is added; each has two wheels, on two rails"
-    )
     rail_foot_width: values.Length = key(
         "150 mm", "width of the rail's foot", "10 mm to 1 m: rails lie between"
     )
@@ -57,10 +54,26 @@ class NoiseCase(TrainKeys):
     wheel_transfer: Annotated[str, values.Choice(tuple(WHEEL_TRANSFER))] | None = optional(
         "920 mm",
         "wheel diameter of CNOSSOS-EU's transfer to the sound power of the wheel",
-        "that nearest to twice wheel.radius",
+        "that nearest to twice the rolling radius",
+    )
+
+
+class NoiseCase(RadiationKeys, TrainKeys):
+    """The sound of a wheel, and of a train of such."""
+
+    axles: Annotated[int, values.Number(at_least=1, at_most=1000, whole=True)] = key(
+        1, "number of axles whose sound power is added; each has two wheels, on two rails"
     )
 
     def problems(self) -> Iterator[InputError]:
-        """A table of ratios that can be read."""
+        """A train that can pass, and a table of ratios that can be read."""
         yield from self.problems_of_train()
+        yield from problems_of_table(self, "rail_radiation", read_ratios)
+
+
+class NoiseOfBodies(RadiationKeys, VehicleKeys):
+    """The sound of all that rolls: each contact is that of an axle with two wheels, on two rails."""
+
+    def problems(self) -> Iterator[InputError]:
+        """A table of ratios that can be read."""
         yield from problems_of_table(self, "rail_radiation", read_ratios)

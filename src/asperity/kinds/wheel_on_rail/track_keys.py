@@ -116,12 +116,9 @@ class TrackParameters(Section):
                 yield InputError(viscous, received, "one of them", remedy)
 
 
-class TrackCase(TrackParameters):
-    """The track, its rail head, and the points at which its motion is recorded."""
+class PassedTrack(TrackParameters):
+    """The track, and the points at which its motion is recorded."""
 
-    rail_profile: values.SectionFile | None = optional(
-        "rail.csv", "measured shape of the rail head across the rail, instead of rail_head_radius"
-    )
     points: tuple[values.Position, ...] | None = optional(
         ["9 m", "9.3 m"],
         "positions at which the motion of the rail is recorded while it is passed, from the sleeper that "
@@ -130,14 +127,41 @@ class TrackCase(TrackParameters):
         "0 m to 100 km: tracks are rolled over for less",
     )
 
+    def points_or(self, middle: float) -> tuple[float, ...]:
+        """The points, m; by default over the sleeper nearest to a position, m, and at mid-span after it."""
+        if self.points is not None:
+            return self.points
+        bay = self.model().sleeper_spacing
+        sleeper = bay * round(middle / bay)
+        return sleeper, sleeper + bay / 2
+
+    def problems_of_points(self, first: float, last: float) -> Iterator[InputError]:
+        """Points that are passed in the record, from and to positions, m."""
+        for point in self.points or ():
+            if not first <= point <= last:
+                allowed = f"positions that are passed, {first:g} m to {last:g} m"
+                yield InputError("track.points", f"{point:g} m", allowed)
+
     def problems(self) -> Iterator[InputError]:
-        """Dampings as of all tracks, one rail head, and at least one point."""
+        """Dampings as of all tracks, and at least one point."""
         yield from super().problems()
-        if {"rail_head_radius", "rail_profile"} <= self.model_fields_set:
-            yield InputError("", "both rail_head_radius and rail_profile", "one of them", "Remove one.")
         if self.points == ():
             remedy = "Remove the key for the default."
             yield InputError("points", "an empty list", "at least one position", remedy)
+
+
+class TrackCase(PassedTrack):
+    """The track, its points, and its rail head."""
+
+    rail_profile: values.SectionFile | None = optional(
+        "rail.csv", "measured shape of the rail head across the rail, instead of rail_head_radius"
+    )
+
+    def problems(self) -> Iterator[InputError]:
+        """As of all tracks, and one rail head."""
+        yield from super().problems()
+        if {"rail_head_radius", "rail_profile"} <= self.model_fields_set:
+            yield InputError("", "both rail_head_radius and rail_profile", "one of them", "Remove one.")
 
 
 OVERRIDES = (

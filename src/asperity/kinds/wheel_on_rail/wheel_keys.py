@@ -15,7 +15,7 @@ from asperity.config.form import Section, key, optional
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
 from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines
-from asperity.kinds.wheel_on_rail.tables import read_modes, read_receptance
+from asperity.scenes.tables import read_modes, read_receptance
 from asperity.structures.body import GRAVITY
 from asperity.units import written
 

@@ -1,1 +1,0 @@
-"""Figures and tables of the report that only a ball on a beam has."""

@@ -1,0 +1,147 @@
+"""The linear reference in the frequency domain: roughness moved between a wheel and a rail at rest.
+
+The force is F = −h/(α_W + α_C + α_R) with the receptances of wheel, contact spring and rail, and the texture
+h positive away from contact: F = z/(α_W + α_C + α_R) of heights z. P. J. Remington, Wheel/rail
+rolling noise, I: Theoretical analysis, J. Acoust. Soc. Am. 81 (1987); D. J. Thompson, Railway Noise and
+Vibration (Elsevier, 2009).
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import InputError
+
+MOST_COUPLED = 8
+"""Contacts that the linear reference takes as coupled: the work grows with their square."""
+
+
+class WheelReceptance(Protocol):
+    """A wheel, as far as the linear reference knows it."""
+
+    def receptance(self, frequency: ArrayLike, /) -> NDArray[np.complex128]:
+        """Displacement per force at the contact point, m/N."""
+
+
+class OverReceptance(Protocol):
+    """What is rolled over, as far as the linear reference knows it."""
+
+    def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike, /) -> NDArray[np.complex128]:
+        """Displacement at places `x` (n,) per force at `x0` (n,), (n, f), or the same at all, (f,), m/N."""
+
+
+class RailReceptance(OverReceptance, Protocol):
+    """A rail on equal supports."""
+
+    @property
+    def sleeper_spacing(self) -> float:
+        """Length of a bay, m."""
+
+
+def force_transfer(
+    frequency: ArrayLike, wheel: WheelReceptance, track: OverReceptance, stiffness: float, x: ArrayLike
+) -> NDArray[np.complex128]:
+    """Contact force per height of the texture, the wheel at given positions on the rail: (n, f), N/m.
+
+    F/z = 1/(α_W + α_C + α_R), force compressive, height out of the material, e^{+iωt}. Frequencies (f,), Hz,
+    zero or above: at zero the force is zero, since the wheel is free. Stiffness of the contact at the static
+    load, N/m, infinite for a rigid one; positions (n,), m from a sleeper.
+    """
+    f = np.atleast_1d(np.asarray(frequency, dtype=float))
+    if not (f >= 0.0).all():
+        raise InputError("frequency (Hz)", float(np.min(f)), "zero or above")
+    if not stiffness > 0.0:
+        raise InputError("contact stiffness (N/m)", stiffness, "a positive number")
+    positions, moving = np.atleast_1d(np.asarray(x, dtype=float)), f > 0.0
+    transfer = np.zeros((positions.size, f.size), dtype=complex)
+    carried = wheel.receptance(f[moving]) + 1.0 / stiffness
+    transfer[:, moving] = 1.0 / (carried + track.receptance(f[moving], positions, positions))
+    return transfer
+
+
+def mean_square_transfer(
+    frequency: ArrayLike,
+    wheel: WheelReceptance,
+    track: RailReceptance,
+    stiffness: float,
+    positions: int = 12,
+) -> NDArray[np.float64]:
+    """Mean square over a bay of the contact force per height of the texture, |F/z|², (f,), (N/m)².
+
+    As `force_transfer`, at the midpoints of `positions` equal parts of half a bay, which is its own mirror
+    image.
+    """
+    if positions < 1:
+        raise InputError("positions in a bay", positions, "one or more")
+    x = (np.arange(positions) + 0.5) * 0.5 * track.sleeper_spacing / positions
+    return np.mean(np.abs(force_transfer(frequency, wheel, track, stiffness, x)) ** 2, axis=0)
+
+
+def linear_force_psd(
+    frequency: ArrayLike,
+    texture_psd: ArrayLike,
+    speed: float,
+    wheel: WheelReceptance,
+    track: RailReceptance,
+    stiffness: float,
+    positions: int = 12,
+) -> NDArray[np.float64]:
+    """One-sided power spectral density of the linear contact force, (f,), N²/Hz.
+
+    The mean of |F/z|² times W(f/v)/v, where W is the one-sided PSD per cycle/m of the texture that the
+    contact feels (wheel and rail added, filtered where a filter belongs), (f,), m³, at the wavenumbers
+    frequency/speed; frequency in Hz, speed in m/s; the rest as in `mean_square_transfer`.
+
+    Without motion: at each position the structures answer as if the wheel stood there. Valid while the speed
+    is far below that of waves in the rail, and away from the pinned-pinned frequency, whose peak motion
+    splits and lowers; without the tones of the sleepers.
+    """
+    f, texture = np.atleast_1d(np.asarray(frequency, dtype=float)), np.atleast_1d(np.asarray(texture_psd))
+    if not (np.isfinite(speed) and speed > 0.0):
+        raise InputError("speed (m/s)", speed, "a finite positive number")
+    if f.shape != texture.shape:
+        raise InputError("texture_psd", f"shape {texture.shape}", f"one value per frequency, {f.shape}")
+    return mean_square_transfer(f, wheel, track, stiffness, positions) * texture / speed
+
+
+class Coupled(Protocol):
+    """A scene, as far as the linear reference of several contacts knows it."""
+
+    @property
+    def offsets(self) -> tuple[float, ...]:
+        """Contacts ahead of the position of the run, m."""
+
+    def coupled_transfer(
+        self, stiffness: float, place: float, frequency: NDArray[np.float64], count: int, /
+    ) -> NDArray[np.complex128]:
+        """Forces per height under each contact (count, count, f), N/m, the run at a place, m."""
+
+
+def coupled_force_psd(
+    frequency: NDArray[np.float64],
+    path_psd: NDArray[np.float64],
+    own_psd: NDArray[np.float64],
+    speed: float,
+    scene: Coupled,
+    stiffness: float,
+    places: ArrayLike,
+) -> NDArray[np.float64]:
+    """One-sided PSD of the force of the first of several linear contacts, (f,), N²/Hz.
+
+    The contacts pass the same path one after the other, and each has a texture of its own: of these are the
+    PSDs (f,), m²/Hz. With T_1j = F_1/z_j it is |Σ T_1j exp(iω d_j/v)|² S_path + Σ |T_1j|² S_own, d_j ahead of
+    the first, as a mean over the places (p,) of the run, m. Frequencies (f,), Hz, above zero; speed, m/s. As
+    `linear_force_psd` without motion; of the contacts those `MOST_COUPLED` that are numbered first.
+    """
+    count = min(len(scene.offsets), MOST_COUPLED)
+    ahead = np.array(scene.offsets[:count]) - scene.offsets[0]
+    delay = np.exp(2j * np.pi * np.outer(ahead, frequency) / speed)
+    found, at = np.zeros(len(frequency)), np.atleast_1d(np.asarray(places, dtype=float))
+    for place in at:
+        transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)[0]
+        found += np.abs(np.sum(transfer * delay, axis=0)) ** 2 * path_psd
+        found += np.sum(np.abs(transfer) ** 2, axis=0) * own_psd
+    return np.asarray(found / at.size)

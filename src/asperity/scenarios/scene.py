@@ -1,0 +1,130 @@
+"""The scene of a case: what rolls, what it is rolled over, where both are looked at; and its linear force."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.scenarios.linear_force import force_transfer
+from asperity.schema import Entry
+from asperity.structures.body import Body
+from asperity.structures.modal import Modal, modal_receptance
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+
+PLACES = (0.3, 0.37, 0.45, 0.5, 0.6)
+"""Places on a structure, in its lengths, over which a linear force is averaged: no mode has nodes at all."""
+POSITIONS = 4
+"""Places in half a bay of a track, which is its own mirror image, over which a linear force is averaged."""
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BodyAtContact:
+    """What rolls, as one of its contacts feels it."""
+
+    body: Body
+    contact: int = 0
+
+    def receptance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Displacement of the contact per harmonic force there (f,), m/N, e^{+iωt}; frequencies in Hz."""
+        return self.body.receptance(frequency)[:, self.contact, self.contact]
+
+
+@dataclass(frozen=True)
+class StructureAtContact:
+    """What is rolled over, as a force on it feels it: modes, a track, or None for a plane."""
+
+    over: Modal | Track | None
+
+    def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike) -> NDArray[np.complex128]:
+        """Displacement at places `x` (p,), m, per harmonic force at `x0` (p,), (p, f), m/N, e^{+iωt}."""
+        if isinstance(self.over, Track):
+            return self.over.receptance(frequency, x, x0)
+        pairs = list(zip(np.atleast_1d(x), np.atleast_1d(x0), strict=True))
+        found = np.zeros((len(pairs), np.size(frequency)), dtype=complex)
+        if self.over is not None:
+            found[:] = [modal_receptance(self.over, frequency, *pair) for pair in pairs]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Bodies on a structure."""
+
+    over: Modal | Track | None  # None for a rigid plane
+    rolling: tuple[Body, ...]  # in the order of their positions
+    title: str
+    positions: tuple[float, ...] = (0.0,)  # of the bodies ahead of that of the run, m
+    sensors: tuple[float, ...] = ()  # positions of accelerometers on what is rolled over, m
+    points: tuple[float, ...] = ()  # positions at which the rail of a track is looked at, m
+    # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m
+    degrees: Mapping[str, float] = field(default_factory=dict)
+    # what its displacements at a contact are called: of what is rolled over, and of what rolls
+    displacements: tuple[Entry, ...] = ()
+    like: str = ""  # kind of case whose errors of laws are its own, as far as a map knows
+    wheel: Wheel | None = None  # what touches a rail, by itself: its mass and its modes
+    scattered: bool = False  # a track is carried on by its whole past, not by poles
+    most_poles: int | None = None  # that are fitted to a track
+
+    @property
+    def offsets(self) -> tuple[float, ...]:
+        """All contacts ahead of the position of the run, m, body by body."""
+        pairs = zip(self.positions, self.rolling, strict=True)
+        return tuple(float(at + place) for at, body in pairs for place in body.places)
+
+    @property
+    def loads(self) -> Array:
+        """Static forces of all contacts (c,), N."""
+        return np.concatenate([body.static_loads for body in self.rolling])
+
+    @property
+    def first(self) -> BodyAtContact:
+        """What rolls, as the first contact feels it."""
+        return BodyAtContact(self.rolling[0])
+
+    def transfer(self, stiffness: float, places: ArrayLike, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Force of the linear contact per height of the texture (p, f), N/m, see `force_transfer`.
+
+        Of the first contact by itself, at rest at places (p,), m, by its stiffness, N/m, and frequencies
+        (f,), Hz; other contacts of its body bear their static load.
+        """
+        return force_transfer(frequency, self.first, StructureAtContact(self.over), stiffness, places)
+
+    def coupled_transfer(
+        self, stiffness: float, place: float, frequency: Array, count: int
+    ) -> NDArray[np.complex128]:
+        """Forces of the first contacts per height under each of them (count, count, f), N/m, e^{+iωt}.
+
+        All at rest, the run at a place, m; frequencies (f,), Hz, above zero. What rolls on the contacts left
+        out moves freely.
+        """
+        at = place + np.array(self.offsets)[:count]
+        to, of = np.repeat(at, count), np.tile(at, count)
+        over = StructureAtContact(self.over).receptance(frequency, to, of)
+        answer = over.reshape(count, count, -1).transpose(2, 0, 1) + np.eye(count) / stiffness
+        first = 0
+        for body in self.rolling:
+            within = slice(first, first + len(body.places))
+            shared = min(within.stop, count) - first
+            if shared > 0:
+                answer[:, within, within] += body.receptance(frequency)[:, :shared, :shared]
+            first = within.stop
+        return np.asarray(np.moveaxis(np.linalg.inv(answer), 0, -1))
+
+    def square_transfer(self, stiffness: float, frequency: ArrayLike) -> Array:
+        """Mean square of `transfer` along what is rolled over (f,), (N/m)²."""
+        return np.asarray(np.mean(np.abs(self.transfer(stiffness, self._places, frequency)) ** 2, axis=0))
+
+    @property
+    def _places(self) -> Array:
+        if isinstance(self.over, Track):
+            return (np.arange(POSITIONS) + 0.5) * 0.5 * self.over.sleeper_spacing / POSITIONS
+        if self.over is None:
+            return np.zeros(1)
+        begin, end = self.over.extent
+        return begin + (end - begin) * np.array(PLACES)
