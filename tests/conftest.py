@@ -6,6 +6,7 @@ import signal
 import tempfile
 from pathlib import Path
 
+import hypothesis
 import pytest
 
 from browser import chromium
@@ -16,6 +17,9 @@ _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_er
 os.environ["ASPERITY_CACHE"] = _cache.name
 
 from asperity import results  # noqa: E402
+
+hypothesis.settings.register_profile("untimed", deadline=None)
+hypothesis.settings.load_profile("untimed")
 
 
 def pytest_configure():

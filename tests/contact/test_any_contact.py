@@ -68,7 +68,7 @@ def contacts(draw):
     return HalfSpace(shape, spacing, MODULUS, hardness), gap, gap.min() + depth, peak, start
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(contacts())
 def test_approach_against_an_active_set_method(contact):
     half_space, gap, approach, peak, start = contact
@@ -79,7 +79,7 @@ def test_approach_against_an_active_set_method(contact):
     assert found.pressure.max() <= half_space.pressure_cap
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(contacts(), st.floats(0.02, 0.99))
 def test_load_against_an_active_set_method(contact, share):
     half_space, gap, approach, peak, start = contact
@@ -106,7 +106,7 @@ def test_a_load_that_leaves_every_cell_at_a_bound(hardness):
     assert lack[found.pressure > 0.0].min() >= 0.0 >= lack[found.pressure == 0.0].max()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000), st.floats(-2.0, 2.0), st.booleans(), st.sampled_from(["none", "full", "any"]))
 def test_rough_contacts_of_many_asperities(seed, cap, under_load, start):
     """Complementarity on a grid too large for the dense method, from bad starts."""

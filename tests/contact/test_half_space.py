@@ -125,7 +125,7 @@ class TestConservation:
         contact = HalfSpace((64, 64), (h, h), 1.0).solve(np.where(inside, 0.0, 1.0), approach=1e-3)
         assert contact.force == pytest.approx(2 * 0.5 * 1e-3, rel=0.02)
 
-    @settings(max_examples=15, deadline=None)
+    @settings(max_examples=15)
     @given(st.integers(0, 10_000), st.floats(0.1, 3.0))
     def test_complementarity_and_tangent(self, seed, depth):
         gap, h = rough_gap(24, seed)
@@ -152,7 +152,7 @@ class TestConservation:
         taps, inside = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0), np.ones((4, 4), dtype=bool)
         assert not unit_indentation(np.full((4, 4), np.nan), taps, inside, 1e-9, 5)[1]
 
-    @settings(max_examples=15, deadline=None)
+    @settings(max_examples=15)
     @given(st.integers(0, 10_000), st.floats(0.2, 2.0), st.floats(1e-3, 0.5))
     def test_force_is_monotone(self, seed, depth, rise):
         gap, h = rough_gap(20, seed)
@@ -162,7 +162,7 @@ class TestConservation:
         assert high.force > low.force
         assert high.area >= low.area
 
-    @settings(max_examples=15, deadline=None)
+    @settings(max_examples=15)
     @given(st.integers(0, 10_000), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
     def test_scale_invariance(self, seed, length, modulus):
         """All lengths × s and modulus × m: force × s² m."""

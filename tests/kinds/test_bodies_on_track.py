@@ -1,4 +1,4 @@
-"""Bodies over a track have what a wheel on a rail has: its answers, where one wheel rolls, and coupled ones."""
+"""Bodies over a track have what a wheel on a rail has: its answers, and those of coupled wheels."""
 
 import numpy as np
 import pytest

@@ -22,11 +22,8 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.ball import RollingBall
-from asperity.rolling.beam import RolledBeam
 from asperity.rolling.one_body import roll_ball
 from asperity.rolling.outcome import contact_losses
-from asperity.rolling.pair import roll_pair
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
@@ -382,16 +379,12 @@ def by_ball(beam, **path):
     return roll_ball(beam, BALL, HertzLaw(K), sensors=[], **path).over_displacement
 
 
-def by_pair(beam, **path):
-    return roll_pair(RolledBeam(beam), RollingBall(BALL), HertzLaw(K), **path).over_displacement
-
-
 def by_bodies(beam, **path):
     body = Body.rigid(BALL.mass, BALL.static_load)
     return roll_bodies(beam, [body], [HertzLaw(K)], positions=[0.0], **path).over_displacement[0]
 
 
-@pytest.mark.parametrize("roll", [by_ball, by_pair, by_bodies])
+@pytest.mark.parametrize("roll", [by_ball, by_bodies])
 def test_a_start_on_the_beam_does_not_ring(roll):
     """The forced part of Frýba's series, each mode with its damping: nothing is left of a sudden start."""
     beam = replace(BEAM, highest_frequency=1e3)

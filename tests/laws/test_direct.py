@@ -12,8 +12,8 @@ from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import areal_texture
-from asperity.rolling.equilibrium import static_approach
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM
+from asperity.rolling.rest import static_approach
 from asperity.surfaces.strip import Rows
 
 DX, N, RADIUS, MODULUS, LOAD = 5e-6, 31, 10e-3, 115e9, 2.0

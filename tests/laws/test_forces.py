@@ -14,7 +14,7 @@ from asperity.laws.layout import force, on_curve
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.equilibrium import static_approach
+from asperity.rolling.rest import static_approach
 
 K = 2.4e10  # N/m^1.5, a steel ball of 25 mm on steel
 LOAD = 5.0
@@ -66,7 +66,7 @@ def test_slope_is_the_derivative_of_the_force(law):
 
 
 @given(st.floats(-1e-6, 2.5e-6), st.floats(1e-9, 1e-6), st.integers(0, 59))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_force_never_falls_with_the_approach(approach, more, step):
     for prepared in PREPARED:
         low, high = evaluate(prepared, step, approach)[0], evaluate(prepared, step, approach + more)[0]
@@ -166,7 +166,7 @@ def test_arguments_beyond_the_data_are_counted():
 
 
 @given(st.floats(1e-3, 1e4))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_static_approach_carries_the_load(load):
     law = Shifted(HERTZ, waves())
     prepared = law.prepare(np.array([7e-4]))

@@ -21,7 +21,7 @@ weights = st.lists(st.floats(-4.0, 4.0), min_size=3, max_size=12).map(lambda x: 
 
 
 @given(weights, st.integers(0, 2**32 - 1))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_limit_gives_each_band_its_share_by_price(weight, seed):
     """Closed form of the inverse: weight 10^(L/10) = price (E − floor)/Σ price."""
     price = np.random.default_rng(seed).uniform(0.2, 5.0, len(weight))
@@ -33,7 +33,7 @@ def test_a_limit_gives_each_band_its_share_by_price(weight, seed):
 
 
 @given(weights)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_budget_buys_silence_where_all_bands_are_heard_alike(weight):
     """Closed form: the geometric mean of all energies is fixed, the sum least where they are equal."""
     n = len(weight)
@@ -44,7 +44,7 @@ def test_a_budget_buys_silence_where_all_bands_are_heard_alike(weight):
 
 
 @given(weights, st.floats(0.2, 0.9))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_least_rms_is_borne_where_it_is_heard_least(weight, share):
     """A linear programme in the energies: the solver of another library has the same level."""
     n = len(weight)

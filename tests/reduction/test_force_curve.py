@@ -62,7 +62,7 @@ def test_secant_of_a_quadratic_force_is_the_printed_stiffness():
 
 
 @given(curves)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_curve_is_monotone_smooth_and_inverted(curve):
     low, high = curve.knots[0], curve.knots[-1]
     s = np.sort(np.concatenate([np.linspace(low - 1e-7, high + 1e-6, 301), curve.knots]))
@@ -79,7 +79,7 @@ def test_curve_is_monotone_smooth_and_inverted(curve):
 
 
 @given(curves)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_stiffness_is_the_derivative(curve):
     width = np.diff(curve.knots)
     s = (curve.knots[:-1] + np.outer([0.3, 0.6], width)).ravel()
@@ -89,7 +89,7 @@ def test_stiffness_is_the_derivative(curve):
 
 
 @given(st.floats(0.0, 0.999), st.integers(1, 4))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_first_touch_is_found_between_samples(offset, zeros):
     s = 1e-6 * (np.arange(8) - zeros + offset + 1e-3)
     curve = ForceCurve.from_samples(s, K * np.maximum(s, 0.0) ** 1.5)

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from asperity.errors import ComputationError
-from asperity.rolling.beam import most_compliance
 from asperity.rolling.outcome import free_motion, refuse_missed_load
 from asperity.rolling.path import Path
+from asperity.rolling.steps import most_compliance
 from asperity.structures.beam import Beam
 from asperity.structures.body import Body
 
@@ -55,7 +55,7 @@ def test_a_mean_of_several_loads_is_outside_any_scatter():
 
 
 @given(seed=st.integers(0, 10**6), count=st.integers(2, 3000))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_bounded_motion_is_never_refused_however_short(seed, count):
     judge(force_of(noise(seed, count)), reach=0.05 * STEP * 3)
 
@@ -66,7 +66,7 @@ def test_a_bounded_motion_is_never_refused_however_short(seed, count):
     amplitude=st.floats(0.0, 0.9),
     count=st.integers(300, 3000),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_slow_oscillation_is_never_refused_however_short(periods, phase, amplitude, count):
     """In contact throughout, with what it deflects and no more."""
     angle = 2 * np.pi * periods * np.arange(count) / count + phase
@@ -75,7 +75,7 @@ def test_a_slow_oscillation_is_never_refused_however_short(periods, phase, ampli
 
 
 @given(restitution=st.floats(0.3, 0.95), height=st.floats(1e-4, 1e-2), count=st.integers(50, 5000))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_flights_are_never_refused(restitution, height, count):
     """It hops, thrown anew whenever it has come to rest."""
     pull = LOAD / MASS

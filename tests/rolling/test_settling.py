@@ -6,11 +6,8 @@ import pytest
 from asperity.contact import HalfSpace
 from asperity.laws import Direct
 from asperity.reference.materials import material
-from asperity.rolling import stepping
-from asperity.rolling.ball import RollingBall
-from asperity.rolling.beam import RolledBeam
+from asperity.rolling import stepper as stepping
 from asperity.rolling.one_body import roll_ball, roll_wheel
-from asperity.rolling.pair import roll_pair
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
@@ -50,10 +47,6 @@ PATH = {"speed": 1.0, "start": START, "duration": STEPS * 1e-5, "time_step": 1e-
 
 def ball_on_beam(law):
     return roll_ball(BEAM, BALL, law, sensors=[], **PATH)
-
-
-def pair(law):
-    return roll_pair(RolledBeam(BEAM), RollingBall(BALL), law, **PATH)
 
 
 def wheel_on_rail(law):
@@ -99,7 +92,6 @@ CASES = {
     "damped, with losses": (ball_on_beam, under_the_ball(0.05e-6, 2e-6, damping=50.0)),
     "wheel": (wheel_on_rail, under_the_wheel(5e-6)),
     "wheel, with losses": (wheel_on_rail, under_the_wheel(5e-6, 200e-6)),
-    "any bodies": (pair, under_the_ball(0.05e-6)),
 }
 
 

@@ -98,7 +98,7 @@ def test_kramers_and_kronig_give_the_static_deflection(x):
 losses = st.just(0.0) | st.floats(1e-3, 3.0)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(rail=st.just(0.0) | st.floats(1e-4, 0.1), pad=losses, ballast=losses)
 def test_it_is_passive_and_not_too_soft_at_rest(rail, pad, ballast):
     assume(rail + pad > 0.0)  # ballast alone damps no wave of the rail by what a number can hold

@@ -121,7 +121,7 @@ def test_rail_without_support_force_is_the_free_rail():
 
 
 @given(x=st.floats(-5.0, 5.0), x0=st.floats(-5.0, 5.0), frequency=st.floats(20.0, 5000.0))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_reciprocity_and_mirror_symmetry(x, x0, frequency):
     for rail in (track(), timoshenko()):
         here = rail.receptance(frequency, x, x0)

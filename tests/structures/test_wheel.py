@@ -152,7 +152,7 @@ def test_fit_of_a_rigid_wheel_has_no_modes():
     assert wheel.fit_error < 1e-9
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     st.lists(
         st.tuples(st.floats(100.0, 6e3), st.floats(1e-4, 0.5), st.floats(10.0, 1e4)), min_size=1, max_size=6

@@ -302,7 +302,7 @@ def test_valid_files_are_valid(valid_files, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(data=st.data())
 def test_truncated_files(valid_files, name, data):
     folder, files = valid_files
@@ -318,14 +318,14 @@ def flipped(content, data):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(data=st.data())
 def test_flipped_bits(valid_files, name, data):
     folder, files = valid_files
     survives(folder, name, flipped(files[name], data))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(data=st.data())
 def test_flipped_bits_behind_the_checksums_of_x3p(valid_files, data):
     folder, _ = valid_files

@@ -13,19 +13,19 @@ from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.pointforce import Prepared
 from asperity.kernels.several import Assembly, ContactsRecord
 from asperity.laws.base import Law, SteppedLaw
-from asperity.rolling.beam import resolved_step
-from asperity.rolling.body_steps import BodySteps, body_steps
 from asperity.rolling.path import Path
 from asperity.rolling.rest import Rest, Resting
-from asperity.rolling.rolled import Limit, warn_if_coarse
 from asperity.rolling.stability import (
+    Limit,
     contact_resonance,
     largest_force,
     largest_stiffness,
-    softening_told,
+    softening,
     stiffness_in_impacts,
+    warn_if_coarse,
 )
 from asperity.rolling.stepper import ContactsStepper
+from asperity.rolling.steps import BodySteps, body_steps, resolved_step
 from asperity.rolling.support import OnModes, OnRail, Under
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
@@ -180,7 +180,7 @@ def _softened(
         stiffest, strongest = largest_stiffness(laid, (float(rest.approach[k]), stiffness))
         stiff = stiffest, stiffness_in_impacts(laid, stiffest, stiffness)
         least = float(alternating[0][k]), float(alternating[1][k])
-        softer[k], message = softening_told(least, stiff, law.damping, stiffness, time_step)
+        softer[k], message = softening(least, stiff, law.damping, stiffness, time_step)
         told += [(softer[k] * stiffness, message)] if message else []
         largest = max(largest, largest_force(float(rest.force[k]), strongest))
     if told:

@@ -135,22 +135,8 @@ def flying(
     return np.asarray(force <= 0.0)
 
 
-def warn_after(
-    name: str, counts: NDArray[np.int64], prepared: Prepared | SteppedLaw, approach: NDArray[np.float64]
-) -> None:
-    """Warn of forces that missed the tolerance, and of a law that was continued beyond its data.
-
-    `counts` holds steps done, steps not converged and evaluations; approach (n,) at every step, m.
-    """
-    warn_if_unconverged(name, counts, stacklevel=5)
-    if not isinstance(prepared, Prepared):
-        prepared.warn_of_flaws()
-        return
-    warn_if_beyond(name, int(evaluate_all(prepared, approach, 0)[2]), max(int(counts[0]), 1), stacklevel=5)
-
-
 def warn_if_unconverged(name: str, counts: NDArray[np.int64], *, stacklevel: int) -> None:
-    """Warn of forces that missed the tolerance; `counts` as of `warn_after`."""
+    """Warn of forces that missed the tolerance; counts are of steps done, not converged, and evaluations."""
     if not counts[1]:
         return
     steps = max(int(counts[0]), 1)

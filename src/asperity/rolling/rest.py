@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from asperity.errors import ComputationError
+from asperity.kernels.modal import refine
 from asperity.kernels.pointforce import Prepared
 from asperity.kernels.rail import preload_channels
 from asperity.kernels.several import POWERS, Assembly, ContactsMotion
 from asperity.laws.base import SteppedLaw
-from asperity.rolling.beam import carried
-from asperity.rolling.body_steps import BodySteps
-from asperity.rolling.equilibrium import LARGEST_STEP, static_approach
 from asperity.rolling.outcome import STEPPED_EQUILIBRIUM, evaluation
 from asperity.rolling.path import Path
-from asperity.rolling.rail import PRELOAD
+from asperity.rolling.steps import BodySteps, carried
 from asperity.rolling.support import Under
 from asperity.structures.body import Body
 
@@ -28,6 +26,8 @@ Array = NDArray[np.float64]
 Evaluation = Callable[[float], tuple[float, float]]
 FIRST_MOVE = 1e-6  # m, of the contacts; doubled until they are at rest
 ITERATIONS = 200
+PRELOAD = 2.0
+"""Kernel lengths for which the load has rolled before the path."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,3 +262,39 @@ def _yielding(steps: BodySteps) -> Array:
 def _held(push: Array, stiffness: Array) -> Array:
     """Static displacement of modes; none of those that nothing holds."""
     return np.divide(push, stiffness, out=np.zeros_like(push), where=stiffness > 0.0)
+
+
+FIRST_STEP = 1e-7  # m, doubled until the load is bracketed
+LARGEST_STEP = 1.0  # m
+
+
+def static_approach(
+    evaluate: Callable[[float], tuple[float, float]], load: float, relative: float = 1e-9
+) -> tuple[float, float]:
+    """Approach, m, at which a law carries the load, N, and the stiffness there, N/m.
+
+    `evaluate` gives force, N, and stiffness, N/m, of an approach, m; `relative` is the tolerance on the
+    force, relative to the load. A `ComputationError` says that no approach up to a metre carries it.
+    """
+    low, high = -np.inf, np.inf
+    approach, step = 0.0, FIRST_STEP
+    for iteration in range(200):
+        force, stiffness = evaluate(approach)
+        if abs(force - load) <= relative * load:
+            return approach, stiffness
+        scale = max(stiffness, load / LARGEST_STEP)
+        low, high, trial = refine.py_func(  # not compiled once more, for so few calls
+            low, high, approach, (force - load) / scale, max(stiffness / scale, 1.0), iteration
+        )
+        if np.isinf(low) or np.isinf(high):
+            # not bracketed yet: never leap far beyond what has been seen
+            trial = approach + np.clip(trial - approach, -step, step)
+            step *= 2.0
+        if step > LARGEST_STEP or high - low <= 1e-15 * abs(approach):
+            break
+        approach = trial
+    raise ComputationError(
+        f"no approach carries the load of {load:.6g} N at the start of the path; "
+        f"the last, {approach:.6g} m, gives {force:.6g} N",
+        "a smaller load, or contact.approaches that reach higher forces",
+    )

@@ -33,9 +33,7 @@ from asperity.rolling.outcome import (
     warn_if_unconverged,
 )
 from asperity.rolling.path import Path
-from asperity.rolling.rolled import Rolled
-from asperity.rolling.stepper import ContactsStepper, Remembered
-from asperity.rolling.stepping import advance_to_end, restore
+from asperity.rolling.stepper import ContactsStepper, Remembered, advance_to_end, restore
 from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
@@ -127,12 +125,31 @@ class RolledBodies:
 
 
 @dataclass(frozen=True, eq=False)
-class FirstContact(Rolled):
+class FirstContact:
     """What the first contact of bodies that have rolled recorded, and beside it what all of them did."""
 
+    time: Array  # (n,), s, uniform from zero, after the run-in
+    position: Array  # (n,), of the contact, m
+    contact_force: Array  # (n,), N, compression positive
+    relative_displacement: Array  # (n,), approach of the mean surfaces, m, positive closing
+    in_contact: NDArray[np.bool_]  # (n,), whether the bodies touch
+    contact_loss: list[ContactLoss]  # flights
+    evaluations: int  # of the law, in run-in and run
+    unconverged_steps: int  # time steps whose contact force missed the tolerance, of run-in and run
+    outcome: Outcome  # whether all steps converged
     over_displacement: Array  # (n,), of what is rolled over, at the contact, m, positive downwards
     rolling_displacement: Array  # (n,), of what rolls, at the contact, m, positive downwards
     every: RolledBodies
+
+    @property
+    def contact_loss_share(self) -> float:
+        """Share of the time out of contact."""
+        return 1.0 - float(np.mean(self.in_contact))
+
+    @property
+    def longest_loss(self) -> float:
+        """Duration of the longest flight, s."""
+        return max((event.duration for event in self.contact_loss), default=0.0)
 
     @property
     def acceleration(self) -> Array:

@@ -4,7 +4,7 @@ For a force that is linear over each step the bodies move exactly. A force that 
 meets their *alternating compliance*: inertia makes it negative, −h²/12m for a free mass. As the poles of
 bodies and contact interlace on the unit circle, the coupled step is stable while 1/K + (alternating
 compliance) is positive, K being what the contact opposes to an alternating approach. Each body states its
-own (`asperity.rolling.bodies`); those of both add up. Where a strong damper on a light body violates that,
+own; those of both add up. Where a strong damper on a light body violates that,
 the contact is softened by this compliance in series, and a tenth more, since on the bound itself nothing
 damps the alternation: then the step is stable whatever K is. For a free mass that is Newmark's method with
 β = 0.258 instead of 1/6.
@@ -22,6 +22,7 @@ such masses; an endless rail carries impacts away.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -41,6 +42,8 @@ NEGLIGIBLE = 0.01
 """Share of the contact's compliance that may be added without a word."""
 RUNAWAY = 1e4
 """Times the load, or the largest force that the law was made for, that no contact force reaches."""
+Limit = tuple[str, float, float]
+"""What must be resolved: its name, its frequency, Hz, and the time steps in a period that it takes."""
 RISE = 4.0
 """How much stiffer than at rest a contact may become: Hertz's does under 64 times the load."""
 
@@ -70,23 +73,6 @@ def stiffness_in_impacts(prepared: Prepared | SteppedLaw, largest: float, at_res
 
 
 def softening(
-    alternating: tuple[float, float],
-    stiffness: tuple[float, float],
-    damping: float,
-    at_rest: float,
-    time_step: float,
-) -> float:
-    """Compliance in series with the contact, m/N, that keeps a time step stable, s, and impacts elastic.
-
-    As `softening_told`, with a warning.
-    """
-    softer, message = softening_told(alternating, stiffness, damping, at_rest, time_step)
-    if message:
-        warnings.warn(message, CoarseSamplingWarning, stacklevel=3)
-    return softer
-
-
-def softening_told(
     alternating: tuple[float, float],
     stiffness: tuple[float, float],
     damping: float,
@@ -128,3 +114,16 @@ def contact_resonance(stiffness: float, direct: float, alternating: float, time_
 def largest_force(load: float, force: float) -> float:
     """Contact force, N, that makes no sense any more, by the load and the largest force of the law, N."""
     return RUNAWAY * max(load, force)
+
+
+def warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:
+    """Compare the time step with the periods that it must resolve."""
+    for what, frequency, least in limits:
+        if frequency * time_step * least > 1.0:
+            warnings.warn(
+                f"{what}, {frequency:.4g} Hz, has {1.0 / (frequency * time_step):.3g} time steps in a "
+                f"period, fewer than {least:.0f}: its response is distorted; "
+                f"take a time step of at most {1.0 / (least * frequency):.2g} s",
+                CoarseSamplingWarning,
+                stacklevel=4,
+            )

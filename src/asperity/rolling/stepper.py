@@ -1,15 +1,17 @@
-"""Laws of several contacts, handed to the kernel together, piece by piece of the path."""
+"""Advancing bodies on their contacts to the end of the path: compiled or from Python, resumable."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.modal import solve_step
-from asperity.kernels.pointforce import Prepared
+from asperity.errors import ComputationError, InputError
+from asperity.kernels.modal import refine, solve_step, tolerance
+from asperity.kernels.pointforce import Prepared, with_damping
 from asperity.kernels.several import (
     CONTACT_DAMPING,
     SWEEPS,
@@ -26,10 +28,11 @@ from asperity.kernels.several import (
     roll_contacts,
     take,
 )
-from asperity.laws.base import Law, SteppedLaw, settles
+from asperity.laws.base import Law, SettlingLaw, SteppedLaw, settles
+from asperity.progress import Progress
 from asperity.rolling.outcome import evaluation
 from asperity.rolling.path import Path
-from asperity.rolling.stepping import STEPPED_BLOCK, copied, put_back, solve_from_python
+from asperity.store import Checkpoint
 from asperity.structures.modal import Modal
 
 
@@ -84,6 +87,13 @@ class Stack:
 
 
 Array = NDArray[np.float64]
+STEPPED_BLOCK = 8  # steps between looks at the clock when the law is evaluated from Python
+SAVE_EVERY = 10.0  # s
+STEPPED_TOLERANCE = 1e-6  # of the force plus the load; a law stepped from Python iterates itself
+STEPPED_ITERATIONS = 40
+MOTION, LAW = "motion.", "law."  # prefixes of what is kept
+
+Free = tuple[float, float, float, float]
 PIECE = 2**18
 """Mode shapes that are held at once, of all contacts: they stay in the processor's cache."""
 LONGEST, LEAST = 2048, 64
@@ -91,7 +101,7 @@ LONGEST, LEAST = 2048, 64
 
 
 class ContactsStepper:
-    """Structure and bodies behind the protocol of `asperity.rolling.stepping.Advanced`."""
+    """Structure and bodies that contact forces couple, advanced step by step."""
 
     def __init__(
         self,
@@ -190,11 +200,12 @@ class ContactsStepper:
 
     def state(self) -> dict[str, NDArray[Any]]:
         """Of the motion."""
-        return copied(self.motion)
+        return {name: value.copy() for name, value in self.motion._asdict().items()}
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
-        put_back(self.motion, state)
+        for name in self.motion._fields:
+            getattr(self.motion, name)[...] = state[name]
 
 
 class Remembered:
@@ -244,3 +255,118 @@ class ShapesUnder:
         """Shapes (n, m) at a step, kg^-1/2, and slopes, kg^-1/2 per metre."""
         self.hold(step)
         return self.shapes[step - self.offset], self.slopes[step - self.offset]
+
+
+def advance_to_end(
+    stepper: ContactsStepper,
+    laws: Remembered,
+    advance: Callable[[], bool],
+    largest: float,
+    progress: Progress | None,
+    checkpoint: Checkpoint | None,
+) -> None:
+    """Call `advance` to the end of the path; it says False from a force larger than `largest`, N, or NaN."""
+    motion, saved = stepper.motion, time.monotonic()
+    held = _state(stepper, laws)
+    try:
+        while motion.counts[0] < stepper.total:
+            if not advance():
+                step, forces = int(motion.counts[0]), np.atleast_1d(motion.force[0])
+                raise ComputationError(
+                    f"the motion runs away: at step {step}, {stepper.where(step)}, the contact force is "
+                    f"{forces[np.argmax(np.abs(forces))]:.3g} N under a load of {stepper.load:.4g} N",
+                    "what a warning asks for, as a smaller numerics.time_step; without one, other masses, "
+                    "damping or texture there, or a track without poles",
+                )
+            held = _state(stepper, laws)
+            if progress is not None:
+                progress(int(motion.counts[0]), stepper.total, "rolling")
+            if checkpoint is not None and time.monotonic() - saved > SAVE_EVERY:
+                checkpoint.save(held | _histories(stepper, held))
+                saved = time.monotonic()
+    finally:
+        # at the end, and whatever stopped the run, maybe amid a step: it goes on from the last steps done
+        if checkpoint is not None and np.all(np.abs(motion.force[0]) <= largest):
+            checkpoint.save(held | _histories(stepper, held))
+
+
+def solve_from_python(
+    law: SteppedLaw, step: int, free: Free, load: float, guess: float, damping: float
+) -> tuple[float, int, bool]:
+    """The iteration of `asperity.kernels.modal.solve_step` for a law that Python evaluates.
+
+    A law that settles with the bodies does without, but where its damper engages or lets go.
+    """
+    if settles(law):
+        settled = _settled(law, step, free, damping)
+        if settled is not None:
+            return settled, 1, True
+    free_approach, rate, compliance, rate_compliance = free
+    low, high, approach = -np.inf, np.inf, free_approach - compliance * guess
+    for iteration in range(STEPPED_ITERATIONS):
+        elastic, stiffness = law.evaluate(step, approach)
+        force, stiffness = with_damping(elastic, stiffness, rate, rate_compliance, damping, False)
+        residual = approach - free_approach + compliance * force
+        limit = tolerance(free_approach, compliance, force, load, STEPPED_TOLERANCE)
+        if abs(residual) <= limit:
+            return force, iteration + 1, True
+        low, high, approach = refine(low, high, approach, residual, 1.0 + compliance * stiffness, iteration)
+        if damping > 0.0 and abs(high - low) <= limit:
+            return (free_approach - approach) / compliance, iteration + 1, True
+    return (free_approach - approach) / compliance, STEPPED_ITERATIONS, False
+
+
+def _settled(law: SettlingLaw, step: int, free: Free, damping: float) -> float | None:
+    """Contact force, N, found together with what the bodies yield to it; None where its damper decides.
+
+    With the damper in contact, as `asperity.kernels.pointforce.with_damping` has it, the force is still
+    straight in the elastic one. Whether it is in contact is known only then.
+    """
+    free_approach, rate, compliance, rate_compliance = free
+    share = 1.0 / (1.0 + damping * rate_compliance)
+    pushed = share * damping * rate
+    elastic = law.settle(step, free_approach - compliance * pushed, compliance * share)
+    force = share * elastic + pushed
+    if elastic > 0.0:
+        return force if force >= 0.0 else None
+    return 0.0 if pushed <= 0.0 else None
+
+
+def _state(stepper: ContactsStepper, laws: Remembered) -> dict[str, NDArray[Any]]:
+    """What bodies and laws need to go on from here."""
+    found = {f"{MOTION}{name}": value for name, value in stepper.state().items()}
+    return found | {f"{LAW}{name}": value for name, value in laws.state().items()}
+
+
+def _histories(stepper: ContactsStepper, held: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Records up to a state."""
+    done = int(held[f"{MOTION}counts"][0]) + 1
+    return {f"record.{name}": value[..., :done].copy() for name, value in stepper.record._asdict().items()}
+
+
+def restore(checkpoint: Checkpoint | None, stepper: ContactsStepper, laws: Remembered) -> None:
+    """Take a run up where it was saved, if it was: state, histories, and what laws remember."""
+    arrays = checkpoint.load() if checkpoint is not None else None
+    if arrays is None:
+        return
+    record, state = stepper.record, _named(arrays, MOTION)
+    histories = {name: arrays.get(f"record.{name}", np.zeros(0)) for name in record._fields}
+    same = {name: value.shape for name, value in state.items()} == {
+        name: value.shape for name, value in stepper.state().items()
+    } and all(
+        value.shape[:-1] == getattr(record, name).shape[:-1]
+        and value.shape[-1] <= getattr(record, name).shape[-1]
+        for name, value in histories.items()
+    )
+    if not same:
+        remedy = "Clear what was kept, and roll anew."
+        raise InputError("checkpoint", "a run with other modes, sensors or duration", "this run", remedy)
+    stepper.restore(state)
+    for name, value in histories.items():
+        getattr(record, name)[..., : value.shape[-1]] = value
+    laws.restore(_named(arrays, LAW))
+
+
+def _named(arrays: dict[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
+    """Arrays whose names have a prefix, without it."""
+    return {name.removeprefix(prefix): value for name, value in arrays.items() if name.startswith(prefix)}

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from asperity.errors import InputError, LargeDeflectionWarning
 from asperity.kernels.rail import Channels
-from asperity.rolling.beam import PLACES, alternating_of_modes, most_compliance, resolved_step
 from asperity.rolling.path import Path
-from asperity.rolling.rail import RolledRail
-from asperity.rolling.rolled import Limit
+from asperity.rolling.stability import Limit
+from asperity.rolling.steps import PLACES, alternating_of_modes, most_compliance, resolved_step
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import STATIC, Modal
 from asperity.structures.moving_kernel import MovingKernel
@@ -204,7 +203,12 @@ class OnRail:
 
     def refuse(self, paths: Sequence[Path]) -> None:
         """Refuse another speed or time step than that of its kernels."""
-        RolledRail(self.rail.direct).refuse_other(paths[0])
+        path, kernel = paths[0], self.kernel
+        given, made = (path.speed, path.time_step), (kernel.speed, kernel.time_step)
+        if not np.allclose(given, made, rtol=1e-9, atol=0.0):
+            received = f"{given[0]:.6g} m/s in steps of {given[1]:.6g} s"
+            allowed = f"{made[0]:.6g} m/s and {made[1]:.6g} s, for which the rail's kernel was computed"
+            raise InputError("path", received, allowed, "Compute the moving kernel of this path.")
 
     def at_sensors(self, places: Array) -> Array:
         """None: a rail is known under the contacts."""
@@ -280,8 +284,9 @@ class OnRail:
         return float(self.kernel.weights.sum(axis=1).max())
 
     def alternating(self, paths: Sequence[Path]) -> tuple[float, float]:
-        """An endless rail carries impacts away."""
-        return RolledRail(self.rail.direct).alternating_compliance(paths[0]), 0.0
+        """The least of all places in a bay; an endless rail carries impacts away."""
+        signs = (-1.0) ** np.arange(self.memory)
+        return float((self.kernel.weights @ signs).min()), 0.0
 
     def judge(self, displaced: Array) -> None:
         """Nothing: an endless rail bends little."""

@@ -1,4 +1,4 @@
-"""What rolling a ball over a beam takes, from a few steps of it."""
+"""How finely a ball on a beam is resolved, and what its textures are judged by."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What rolling bodies on several contacts takes, from a few steps of it."""
+"""How finely bodies on a beam are resolved, and what their textures are judged by."""
 
 from __future__ import annotations
 

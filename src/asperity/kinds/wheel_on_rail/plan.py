@@ -1,4 +1,4 @@
-"""What rolling a wheel on a rail takes, from small pieces of it."""
+"""How finely a wheel on a rail is resolved, and what its textures are judged by."""
 
 from __future__ import annotations
 

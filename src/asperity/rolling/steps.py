@@ -1,4 +1,4 @@
-"""Bodies that roll, laid out for the compiled step: exact for forces that are linear over it."""
+"""Steps of modes and bodies, laid out for the kernel: exact for forces that are linear over a step."""
 
 from __future__ import annotations
 
@@ -10,12 +10,17 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from asperity.errors import InputError
-from asperity.kernels.modal import exponentials
-from asperity.rolling.beam import alternating_of_modes, resolved_step
+from asperity.kernels.modal import exponentials, modal_coefficients
+from asperity.rolling.path import Path
 from asperity.rolling.stability import RESOLVED
 from asperity.structures.body import Body
+from asperity.structures.modal import Modal
 
 Array = NDArray[np.float64]
+ON_SUPPORT = 1e-9
+"""Distance to a support that counts as none, m."""
+PLACES = 256
+"""Positions at which mode shapes are looked at."""
 ROUNDING = 1e-12
 """Share of the largest squared natural frequency of a body that counts as none."""
 
@@ -60,7 +65,7 @@ def body_steps(bodies: Sequence[Body], time_step: float) -> BodySteps:
     """Lay bodies out for a time step, s, in coordinates z with unit mass and diagonal stiffness, y = V z.
 
     Coordinates and modes that turn by more than RESOLVED in a step only answer statically to the force at
-    its end, as those of `asperity.rolling.beam.beam_step`.
+    its end, as those of `resolved_step`.
     """
     b, d = len(bodies), max(len(body.mass) for body in bodies)
     s, n = max(body.shapes.shape[1] for body in bodies), sum(len(body.places) for body in bodies)
@@ -156,3 +161,60 @@ def _lay_modes(steps: BodySteps, index: int, body: Body, time_step: float) -> No
     steps.flexible_stiffness[index, :count] = natural**2
     steps.flexible_damping[index, :count] = 2.0 * ratio * natural
     steps.flexible_shapes[np.flatnonzero(steps.body == index), :count] = body.shapes
+
+
+def most_compliance(structure: Modal, paths: Sequence[Path]) -> float:
+    """Largest static compliance of a structure on some paths, m/N; infinite if nothing holds it."""
+    natural = 2.0 * np.pi * structure.natural_frequencies
+    if not (natural > 0.0).all():
+        return float("inf")
+    every = (path.positions[:: max(1, len(path.positions) // PLACES)] for path in paths)
+    return float(max(((structure.shapes(at)[0] / natural) ** 2).sum(axis=1).max() for at in every))
+
+
+def carried(
+    stiffness: NDArray[np.float64],
+    shapes: NDArray[np.float64],
+    slopes: NDArray[np.float64],
+    forces: NDArray[np.float64],
+    speed: float,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Modal displacements and rates (modes,) under constant forces (k,), N, that have long moved at a speed.
+
+    Of ω² (modes,) and of shapes and slopes (k, modes) under the forces. Displacements are the static ones:
+    what is left to ring is less by (k v/ω)² than the static displacement of a mode of wavenumber k. A force
+    on a support has just come onto a structure at rest; so are modes that nothing holds.
+    """
+    moving = forces * (
+        np.abs(shapes).max(axis=1, initial=0.0) > ON_SUPPORT * np.abs(slopes).max(axis=1, initial=0.0)
+    )
+    displacement, rate = (
+        np.divide(push, stiffness, out=np.zeros_like(stiffness), where=stiffness > 0.0)
+        for push in (forces @ shapes, speed * (moving @ slopes))
+    )
+    return displacement, rate
+
+
+def resolved_step(
+    natural: NDArray[np.float64], damping_ratio: NDArray[np.float64], time_step: float
+) -> NDArray[np.float64]:
+    """Exact step of modes, (8, modes), as `asperity.kernels.modal.modal_coefficients` has it.
+
+    Of natural angular frequencies (modes,), rad/s, and damping ratios (modes,); time step in s. Of modes that
+    turn by more than RESOLVED in a step only the static answer to the force at its end: sampled, they would
+    seem slow, and move the wrong way.
+    """
+    coefficients = modal_coefficients(natural, damping_ratio, time_step)
+    damped = natural * np.sqrt(np.maximum(1.0 - damping_ratio**2, 0.0))
+    fast = damped * time_step > RESOLVED
+    coefficients[:, fast] = 0.0
+    coefficients[3, fast] = 1.0 / natural[fast] ** 2
+    return coefficients
+
+
+def alternating_of_modes(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Alternating compliance of each mode, of coefficients (8, ...), for a shape of one."""
+    a = coefficients
+    # q and q' change their sign from step to step, as the force does
+    determinant = (1.0 + a[0]) * (1.0 + a[5]) - a[1] * a[4]
+    return np.asarray(((a[3] - a[2]) * (1.0 + a[5]) - a[1] * (a[7] - a[6])) / determinant)
