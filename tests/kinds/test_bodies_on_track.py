@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import asperity
+from asperity.kinds.bodies.textures import contacts_of, textures_of
 from asperity.scenes.schema import (
     LINEAR_REFERENCE_LEVEL,
     PASS_BY_MAXIMUM_LEVEL,
@@ -104,3 +105,57 @@ def test_sound_is_that_of_a_track():
     case = {"kind": "bodies", "over": "plane", "surface": SURFACE, "noise": {"rail_head_width": 0.07}}
     with pytest.raises(asperity.errors.InputError, match=r"noise: .*rolled over a plane.*over = \"track\""):
         asperity.run(case)
+
+
+FLAT = {"flat_depth": 0.1e-3, "flat_position": 1.0}
+
+
+def test_a_flat_is_that_of_a_wheel():
+    laws = {"laws": ["linear"], "duration": 0.1}
+    wheel = asperity.run({"kind": "wheel-on-rail", "wheel": WHEEL | FLAT, "surface": SURFACE} | SHARED | laws)
+    body = asperity.run(
+        {"kind": "bodies", "over": "track", "body": BODY | FLAT, "surface": SURFACE} | SHARED | laws
+    )
+    forces = [tree["rolling/contact_force"].values for tree in (wheel, body)]
+    np.testing.assert_allclose(forces[1], forces[0], rtol=1e-6, atol=1.0)
+    assert forces[0].max() > 80e3
+
+
+def test_one_wheel_of_several_has_a_flat():
+    """It strikes when its own place of the circumference comes down, and the other wheel hardly feels it."""
+    struck = rolled(BOGIE | FLAT | {"flat_contacts": [2]})
+    sound = rolled(BOGIE)
+    change = struck["rolling/contact_forces"] - sound["rolling/contact_forces"]
+    change, time = np.abs(change.sel(law="hertz").values), struck["rolling/time"].values
+    assert change[1].max() > 2.0 * change[0].max() > 0.0
+    assert time[np.argmax(change[1] > 0.1 * change[1].max())] == pytest.approx(1.0 / SPEED, abs=2e-3)
+
+
+def test_each_contact_bears_its_own_measured_line():
+    around = round(2 * np.pi * 0.46 / 1e-3)
+    angle = 2.0 * np.pi * np.arange(around) / around
+    lines = 1e-6 * np.array([np.sin(7 * angle), np.cos(12 * angle)])
+    body = BOGIE | {"line": lines, "line_spacing": 1e-3}
+    case = asperity.Bodies(**{"over": "track", "body": body, "surface": SURFACE} | SHARED)
+    first = textures_of(case)
+    which, others = contacts_of(case, np.array([65e3, 65e3]))
+    second = others[0].textures(first)
+    assert which == [0, 1]
+    for textures, line in zip((first, second), lines, strict=True):
+        turn = textures.parts["wheel"][: 2 * around : 2]  # on every second of the finer points
+        inside = slice(20, around - 20)  # the ends are made to meet
+        np.testing.assert_allclose(turn[inside], (line - line.mean())[inside], atol=1e-8)
+    np.testing.assert_allclose(first.line - first.parts["wheel"], second.line - second.parts["wheel"])
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ({"flat_depth": 1e-4, "flat_contacts": [3]}, r"flat_contacts: received 3; allowed: numbers up to 2"),
+        ({"roughness": "disc", "line": np.zeros(2900), "line_spacing": 1e-3}, "both roughness and line"),
+        ({"line": np.zeros(900), "line_spacing": 1e-3}, r"body.line: received 0.9 m; allowed: a full turn"),
+    ],
+)
+def test_textures_that_a_body_cannot_bear_are_refused(body, message):
+    with pytest.raises((asperity.errors.InputError, asperity.errors.CaseError), match=message):
+        rolled(BOGIE | body)

@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config import values
-from asperity.config.form import Section, key, optional
+from asperity.config.form import key, optional
+from asperity.config.sections import MeasuredLine
 from asperity.config.tables import TABLE_OF_LEVELS, problems_of_table, read_levels
 from asperity.errors import InputError
+from asperity.kinds.wheel_on_rail.wheel_keys import FlatKeys
 from asperity.scenes.tables import read_modes, read_receptance
 
 MOST_CONTACTS = 200
+Number = Annotated[int, values.Number(at_least=1, at_most=MOST_CONTACTS, whole=True)]
+"""Of a contact, body by body, from the rearmost of each."""
 KINDS_OF_BODY = ("mass", "chain", "bogie", "carriage")
 ROUGHNESSES = ("cast-iron", "composite", "disc")
 
@@ -26,7 +30,7 @@ TableFile = Annotated[Path | NDArray[np.float64], values.File(columns=3)]
 ModesFile = Annotated[Path | NDArray[np.float64], values.File(columns=3, further=3)]
 
 
-class BodyCase(Section):
+class BodyCase(MeasuredLine, FlatKeys):
     """What rolls: one body, or several of the same kind behind one another."""
 
     type: Annotated[str, values.Choice(KINDS_OF_BODY)] = key(
@@ -137,6 +141,14 @@ class BodyCase(Section):
         goes_with="roughness",
     )
 
+    line: values.LineFile | None = optional(
+        "wheels.csv",
+        "measured line around what rolls, once around; several side by side: one for each contact in turn",
+    )
+    flat_contacts: tuple[Number, ...] = key(
+        (1,), "contacts whose body has the flat, by number", goes_with="flat_depth or flat_length"
+    )
+
     @property
     def across(self) -> float:
         """Radius across the path, m."""
@@ -167,6 +179,13 @@ class BodyCase(Section):
         if len(self.offsets) > MOST_CONTACTS:
             yield InputError("positions", f"{len(self.offsets)} contacts", f"at most {MOST_CONTACTS}")
         yield from self._problems_of_type()
+        yield from self.problems_of_line()
+        yield from self.problems_of_flat()
+        if self.roughness is not None and self.line is not None:
+            yield InputError("", "both roughness and line", "one of them", "Remove one.")
+        if max(self.flat_contacts, default=0) > len(self.offsets):
+            received, allowed = f"{max(self.flat_contacts)}", f"numbers up to {len(self.offsets)}"
+            yield InputError("flat_contacts", received, allowed)
         ordered = np.sort(self.offsets)
         if len(ordered) > 1 and np.diff(ordered).min() <= 1e-9:
             received = "two contacts in the same place"

@@ -5,21 +5,28 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.config.content import name_of
 from asperity.config.tables import TableSource, read_levels
+from asperity.errors import InputError
 from asperity.kinds.bodies.case import Bodies
+from asperity.kinds.wheel_on_rail.defects import flat_along
+from asperity.kinds.wheel_on_rail.textures import FULL_TURN, JOIN, warn_of_defects
 from asperity.reference import cnossos
 from asperity.scenarios.chain import Further, warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
-from asperity.scenarios.records import Grid, spectrum_strip
+from asperity.scenarios.records import Grid, read_lines, spectrum_strip
 from asperity.scenarios.textures import Textures
 from asperity.scenes.textures import gather
-from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import level, resample
+from asperity.surfaces.parallel_lines import lines_of
 from asperity.surfaces.strip import raised
+from asperity.surfaces.synthesis import close
 
 EQUAL = 1e-9
 """Relative difference of loads that are the same."""
@@ -29,20 +36,21 @@ def textures_of(case: Bodies) -> Textures:
     """Gather the texture of the path that all contacts roll over, with that of the first body on it."""
     ahead = max(case.body.offsets)
     textures = gather(case, window_cells(case.contact), ahead)
-    if case.body.roughness is None:
-        return textures
-    turns = [_turn(case, k) for k in range(len(textures.strips) + 1)]
-    strips = tuple(_with_turn(strip, turn) for strip, turn in zip(textures.strips, turns[1:], strict=True))
-    maps = strips if textures.maps is textures.strips else textures.maps
-    name = _levels(case)[2]
-    origin = f"{textures.origin}; what rolls: {name}, around its circumference"
-    sampled = replace(textures, maps=maps, strips=strips, origin=origin)
-    return _raised(sampled, _around(case, textures, 0))
+    if case.body.roughness is not None or case.body.line is not None:
+        turns = [_turn(case, k) for k in range(len(textures.strips) + 1)]
+        pairs = zip(textures.strips, turns[1:], strict=True)
+        strips = tuple(_with_turn(strip, turn) for strip, turn in pairs)
+        maps = strips if textures.maps is textures.strips else textures.maps
+        origin = f"{textures.origin}; what rolls: {_named(case)}, around its circumference"
+        textures = replace(textures, maps=maps, strips=strips, origin=origin)
+    return _of_contact(case, 0, textures)
 
 
 def warn_of(case: Bodies, shape: Geometry, textures: Textures) -> None:
-    """Warn of a record that holds the start."""
+    """Warn of a record that holds the start, and of laws that do not see a flat."""
     warn_of_start(case, "set settling, or start farther on")
+    if case.body.flat is not None:
+        warn_of_defects(case, shape, case.body.flat)
 
 
 def contacts_of(case: Bodies, loads: NDArray[np.float64]) -> tuple[list[int], list[Further]]:
@@ -54,7 +62,7 @@ def contacts_of(case: Bodies, loads: NDArray[np.float64]) -> tuple[list[int], li
     others: list[Further] = []
     known: list[tuple[int, float]] = [(0, float(loads[0]))]
     for contact, load in enumerate(loads):
-        texture = contact if case.body.roughness is not None else 0
+        texture = contact if _differs(case, contact) else 0
         found = next(
             (
                 k
@@ -71,11 +79,31 @@ def contacts_of(case: Bodies, loads: NDArray[np.float64]) -> tuple[list[int], li
     return which, others
 
 
+def _differs(case: Bodies, contact: int) -> bool:
+    """Whether the body of a contact bears another texture than that of the first."""
+    body = case.body
+    flat = body.flat is not None and (contact + 1 in body.flat_contacts or 1 in body.flat_contacts)
+    return body.roughness is not None or body.line is not None or flat
+
+
 def _of_contact(case: Bodies, contact: int, first: Textures) -> Textures:
-    """Textures of a contact from those of the first: the turn of its own body stands for the other one's."""
-    if not contact:
-        return first
-    return _raised(first, _around(case, first, contact) - _around(case, first, 0))
+    """Textures of a contact, from those of the path or of the first: the turn of its own body is there."""
+    bare = np.zeros(len(first.line))
+    before, own = first.parts.get("wheel", bare), _around(case, first, contact)
+    turned = _raised(first, own - before)
+    parts = {"rail": first.line - before, "wheel": own}
+    return replace(turned, parts=parts, **_flat(case, contact, first))
+
+
+def _flat(case: Bodies, contact: int, textures: Textures) -> dict[str, Any]:
+    """Heights of a flat on the body of a contact along the path, and of the body's centre rolling over it."""
+    if case.body.flat is None or contact + 1 not in case.body.flat_contacts:
+        return {"defects": None, "trajectory": None}
+    spacing, start = case.contact.spacing, case.record_start + case.body.offsets[contact]
+    position = textures.start + spacing * np.arange(len(textures.line), dtype=np.float64)
+    turn = round(case.body.circumference / spacing)
+    found = flat_along(case.body, position - start, turn * spacing, case.speed * case.rolled_time)
+    return dict(zip(("defects", "trajectory"), found, strict=True))
 
 
 def _raised(textures: Textures, added: NDArray[np.float64]) -> Textures:
@@ -86,20 +114,43 @@ def _raised(textures: Textures, added: NDArray[np.float64]) -> Textures:
 
 def _around(case: Bodies, textures: Textures, contact: int) -> NDArray[np.float64]:
     """Heights of the turning body of a contact at the rows of the path, m."""
+    if case.body.roughness is None and case.body.line is None:
+        return np.zeros(len(textures.line))
     turn = _turn(case, contact)
     return turn[np.arange(len(textures.line)) % len(turn)]
 
 
 def _turn(case: Bodies, contact: int) -> NDArray[np.float64]:
     """Heights around the circumference of the body of a contact, m: another texture of each."""
-    spacing = case.contact.spacing
-    points = round(2.0 * math.pi * case.body.radius / spacing)
-    wavelength, level, name = _levels(case)
+    spacing, around = case.contact.spacing, case.body.circumference
+    points = round(around / spacing)
+    if case.body.line is not None:
+        return _measured_turn(case, contact)
+    wavelength, levels, name = _levels(case)
     seed = int(np.random.SeedSequence([case.seed, 1, contact]).generate_state(1)[0])
     grid = Grid(points, 2, spacing)  # of lines that are alike
-    level = level + case.body.roughness_level
-    strip = spectrum_strip(wavelength, level, grid, lateral=math.inf, seed=seed, name=name)
+    levels = levels + case.body.roughness_level
+    strip = spectrum_strip(wavelength, levels, grid, lateral=math.inf, seed=seed, name=name)
     return np.ascontiguousarray(strip.heights[:, 0])
+
+
+def _measured_turn(case: Bodies, contact: int) -> NDArray[np.float64]:
+    """The measured line of a contact, once around and closed on itself, m."""
+    measured = read_lines(case.body, "body")
+    lines = (measured,) if isinstance(measured, Profile) else lines_of(measured)
+    line, whole, spacing = lines[contact % len(lines)], case.body.circumference, case.contact.spacing
+    length = len(line.heights) * line.spacing
+    if line.missing_share > 0.0 or length < (1.0 - FULL_TURN) * whole:
+        received = f"{length:.4g} m" + ", with gaps" * bool(line.missing_share)
+        allowed = f"a full turn of body.radius, {whole:.4g} m, or up to {100 * FULL_TURN:g} % less, complete"
+        raise InputError("body.line", received, allowed, "Does body.radius fit what was measured?")
+    once = line.heights[: round(whole / line.spacing)] if length > (1.0 + FULL_TURN) * whole else line.heights
+    fine = resample(level(Profile(once, line.spacing), 0), spacing).heights
+    return close(fine[:, None], round(JOIN / spacing))[:, 0]
+
+
+def _named(case: Bodies) -> str:
+    return f"measured, {name_of(case.body.line)}" if case.body.line is not None else _levels(case)[2]
 
 
 def _levels(case: Bodies) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:

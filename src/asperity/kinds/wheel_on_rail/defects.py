@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
+from asperity.kinds.wheel_on_rail.wheel_keys import FlatKeys
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.en15610 import roll_over
 from asperity.surfaces.heightmap import Profile
@@ -50,13 +51,27 @@ def defects(
         geometry += dip
         trajectory += roll_over(Profile(dip, spacing), wheel.radius).heights
     if wheel.flat is not None:
-        depth, length = wheel.flat
-        around, first = turn * spacing, wheel.flat_position
-        if first is None:
-            first = 0.5 * min(around, case.speed * case.duration)
-        along = np.mod(position - case.start - first + 0.5 * around, around) - 0.5 * around
-        shape = cast(FlatShape, wheel.flat_shape)
-        worn = length if shape == "worn" else None
-        geometry += flat_geometry(along, depth, wheel.radius, shape, worn)
-        trajectory += flat_trajectory(along, depth, wheel.radius, shape, worn)
+        heights, centre = flat_along(wheel, position - case.start, turn * spacing, case.speed * case.duration)
+        geometry += heights
+        trajectory += centre
     return (geometry, trajectory) if geometry.any() else (None, None)
+
+
+def flat_along(
+    tread: FlatKeys, rolled: NDArray[np.float64], around: float, recorded: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Heights of a flat, and of the centre of what rolls over it (rows,), m, once in each turn.
+
+    At distances rolled since the record began (rows,), m, of a circumference and a record of so many metres.
+    """
+    assert tread.flat is not None
+    (depth, length), first = tread.flat, tread.flat_position
+    if first is None:
+        first = 0.5 * min(around, recorded)
+    along = np.mod(rolled - first + 0.5 * around, around) - 0.5 * around
+    shape = cast(FlatShape, tread.flat_shape)
+    worn = length if shape == "worn" else None
+    return (
+        flat_geometry(along, depth, tread.radius, shape, worn),
+        flat_trajectory(along, depth, tread.radius, shape, worn),
+    )

@@ -11,6 +11,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.config.case import Case
 from asperity.config.content import name_of
 from asperity.config.tables import TableSource, read_levels
 from asperity.errors import (
@@ -297,8 +298,17 @@ def _wheel_levels(roughness: str | TableSource) -> tuple[NDArray[np.float64], ND
 def warn_of(case: WheelOnRail, shape: Geometry, textures: Textures) -> None:
     """Warn of a record that holds the start, and of a window too short for what a law sees of a defect."""
     warn_of_start(case, "set settling")
+    if textures.defects is not None:
+        warn_of_defects(case, shape, case.wheel.flat)
+
+
+def warn_of_defects(case: Case, shape: Geometry, flat: tuple[float, float] | None) -> None:
+    """Warn of laws that do not see the shape of a defect, and of a window too short for a flat.
+
+    Depth and length of the flat, m, if there is one.
+    """
     seen = [law for law in case.laws if spec_of(law).sees_heights]
-    if textures.defects is not None and case.laws[0] not in seen:
+    if case.laws[0] not in seen:
         warnings.warn(
             f"{case.laws[0]} follows the path of the wheel's centre over a flat or a joint, not their shape: "
             "peaks of the force come out up to a quarter too high, and levels above 1.6 kHz up to 6 dB. Take "
@@ -306,9 +316,9 @@ def warn_of(case: WheelOnRail, shape: Geometry, textures: Textures) -> None:
             OutOfRangeWarning,
             stacklevel=2,
         )
-    if not seen or textures.defects is None or case.wheel.flat is None:
+    if not seen or flat is None:
         return
-    _, length = case.wheel.flat
+    _, length = flat
     window, a = case.contact.window, shape.semi_axes[0]
     if length + 2 * a > window:
         warnings.warn(

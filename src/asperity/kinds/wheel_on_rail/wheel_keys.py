@@ -31,62 +31,11 @@ TableFile = Annotated[Path | NDArray[np.float64], values.File(columns=3)]
 ModesFile = Annotated[Path | NDArray[np.float64], values.File(columns=3, further=3)]
 
 
-class WheelBody(Section):
-    """The wheel without its texture: a mass under a constant load, its shape and its resonances."""
+class FlatKeys(Section):
+    """What rolls on its tread, and a flat on it."""
 
-    radius: values.Length = key("0.46 m", "rolling radius", "10 mm to 10 m: wheels lie between")
-    mass: values.Mass = key("600 kg", "mass on the contact, unsprung", "1 kg to 100 t: wheels lie between")
-    load: values.Force = key(
-        "65 kN", "static contact force, weight included", "1 N to 10 MN: wheels on rails carry as much"
-    )
-    material: values.OwnOrNamed = key("steel", "material")
-    transverse_radius: values.LengthOrInfinite = key(
-        "inf", "radius of the tread across the rail", '1 mm to 100 km: beyond that it is flat: write "inf"'
-    )
-    profile: values.SectionFile | None = optional(
-        "tread.csv", "measured shape of the tread across the rail, instead of transverse_radius"
-    )
-    modes: ModesFile | None = optional(
-        "modes.csv",
-        "table of the wheel's modes: frequency (Hz), damping ratio, modal mass (kg); its sound needs three "
-        "columns more: number of nodal diameters, and rms axial velocity of the disc and rms radial velocity "
-        "of the tread, both per radial velocity at the contact",
-        "a rigid wheel",
-    )
-    receptance: TableFile | None = optional(
-        "receptance.csv",
-        "table of the wheel's receptance: frequency (Hz), real and imaginary part (m/N)",
-        "a rigid wheel",
-    )
+    radius: values.Length
 
-    @property
-    def circumference(self) -> float:
-        """Length of the tread around the wheel in m."""
-        return 2 * math.pi * self.radius
-
-    def problems_of_body(self) -> Iterator[InputError]:
-        """One shape, one set of resonances, and a load that holds the wheel's own weight."""
-        if self.load < (weight := GRAVITY * self.mass) * (1.0 - 1e-9):
-            allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {self.mass:g} kg on the contact"
-            remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
-            yield InputError("load", written(self.load, "N", "kN"), allowed, remedy)
-        for one, other in (("profile", "transverse_radius"), ("modes", "receptance")):
-            if {one, other} <= self.model_fields_set:
-                yield InputError("", f"both {one} and {other}", "one of them", "Remove one.")
-        yield from problems_of_table(self, "modes", read_modes)
-        yield from problems_of_table(self, "receptance", read_receptance)
-
-
-class WheelCase(MeasuredLines, WheelBody):
-    """The wheel: a body, and the texture of its tread."""
-
-    roughness: WheelRoughness | None = optional("disc", "one-third-octave wavelength spectrum of the tread")
-    roughness_level: values.Level = key(
-        "+0 dB",
-        "level added to it",
-        "-120 dB to 120 dB: a million times is another texture",
-        goes_with="roughness",
-    )
     flat_depth: values.Length | None = optional(
         "0.5 mm",
         "depth of a flat on the tread, which direct and table see; with flat_length alone, that of its chord",
@@ -109,9 +58,9 @@ class WheelCase(MeasuredLines, WheelBody):
     )
 
     @property
-    def has_texture(self) -> bool:
-        """Whether the tread has any texture or defect."""
-        return self.roughness is not None or self.line is not None or self.flat is not None
+    def circumference(self) -> float:
+        """Length of the tread around the wheel in m."""
+        return 2 * math.pi * self.radius
 
     @property
     def flat(self) -> tuple[float, float] | None:
@@ -125,17 +74,7 @@ class WheelCase(MeasuredLines, WheelBody):
     def _chord_depth(self, length: float) -> float:
         return length**2 / (8.0 * self.radius)
 
-    def problems(self) -> Iterator[InputError]:
-        """A sound body, one source of texture, and a flat that is small against the wheel."""
-        yield from self.problems_of_body()
-        yield from self.problems_of_line()
-        yield from self.problems_of_processing()
-        if self.roughness is not None and self.line is not None:
-            yield InputError("", "both roughness and line", "one of them", "Remove one.")
-        yield from self._problems_of_flat()
-        yield from problems_of_table(self, "roughness", read_levels)
-
-    def _problems_of_flat(self) -> Iterator[InputError]:
+    def problems_of_flat(self) -> Iterator[InputError]:
         """A flat that is small against the wheel, and whose length belongs to its depth."""
         if self.flat is None:
             return
@@ -169,3 +108,71 @@ class WheelCase(MeasuredLines, WheelBody):
             remedy += ' A worn flat may be longer: flat_shape = "worn".'
         received = f"{written(length, 'm', 'mm')} beside a depth of {written(depth, 'm', 'mm')}"
         yield InputError("flat_length", received, allowed, remedy)
+
+
+class WheelBody(Section):
+    """The wheel without its texture: a mass under a constant load, its shape and its resonances."""
+
+    radius: values.Length = key("0.46 m", "rolling radius", "10 mm to 10 m: wheels lie between")
+    mass: values.Mass = key("600 kg", "mass on the contact, unsprung", "1 kg to 100 t: wheels lie between")
+    load: values.Force = key(
+        "65 kN", "static contact force, weight included", "1 N to 10 MN: wheels on rails carry as much"
+    )
+    material: values.OwnOrNamed = key("steel", "material")
+    transverse_radius: values.LengthOrInfinite = key(
+        "inf", "radius of the tread across the rail", '1 mm to 100 km: beyond that it is flat: write "inf"'
+    )
+    profile: values.SectionFile | None = optional(
+        "tread.csv", "measured shape of the tread across the rail, instead of transverse_radius"
+    )
+    modes: ModesFile | None = optional(
+        "modes.csv",
+        "table of the wheel's modes: frequency (Hz), damping ratio, modal mass (kg); its sound needs three "
+        "columns more: number of nodal diameters, and rms axial velocity of the disc and rms radial velocity "
+        "of the tread, both per radial velocity at the contact",
+        "a rigid wheel",
+    )
+    receptance: TableFile | None = optional(
+        "receptance.csv",
+        "table of the wheel's receptance: frequency (Hz), real and imaginary part (m/N)",
+        "a rigid wheel",
+    )
+
+    def problems_of_body(self) -> Iterator[InputError]:
+        """One shape, one set of resonances, and a load that holds the wheel's own weight."""
+        if self.load < (weight := GRAVITY * self.mass) * (1.0 - 1e-9):
+            allowed = f"at least {written(weight, 'N', 'kN')}, the weight of {self.mass:g} kg on the contact"
+            remedy = "Loads include the wheel's own weight: give the load in kN, or a lighter wheel."
+            yield InputError("load", written(self.load, "N", "kN"), allowed, remedy)
+        for one, other in (("profile", "transverse_radius"), ("modes", "receptance")):
+            if {one, other} <= self.model_fields_set:
+                yield InputError("", f"both {one} and {other}", "one of them", "Remove one.")
+        yield from problems_of_table(self, "modes", read_modes)
+        yield from problems_of_table(self, "receptance", read_receptance)
+
+
+class WheelCase(MeasuredLines, WheelBody, FlatKeys):
+    """The wheel: a body, and the texture of its tread."""
+
+    roughness: WheelRoughness | None = optional("disc", "one-third-octave wavelength spectrum of the tread")
+    roughness_level: values.Level = key(
+        "+0 dB",
+        "level added to it",
+        "-120 dB to 120 dB: a million times is another texture",
+        goes_with="roughness",
+    )
+
+    @property
+    def has_texture(self) -> bool:
+        """Whether the tread has any texture or defect."""
+        return self.roughness is not None or self.line is not None or self.flat is not None
+
+    def problems(self) -> Iterator[InputError]:
+        """A sound body, one source of texture, and a flat that is small against the wheel."""
+        yield from self.problems_of_body()
+        yield from self.problems_of_line()
+        yield from self.problems_of_processing()
+        if self.roughness is not None and self.line is not None:
+            yield InputError("", "both roughness and line", "one of them", "Remove one.")
+        yield from self.problems_of_flat()
+        yield from problems_of_table(self, "roughness", read_levels)
