@@ -5,11 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray
 from click.testing import CliRunner
 
 import asperity
 from asperity.cli import main
 from asperity.convergence import running
+from asperity.convergence.group import halves
 from asperity.convergence.running import changed_case, on_the_surface_of, settings_for
 from asperity.errors import InputError
 from asperity.kinds.cases import as_case
@@ -175,11 +177,16 @@ class TestNumbers:
         np.testing.assert_allclose(change(ball, "modes"), difference[0], atol=1e-9)
 
     def test_half_of_a_record_is_compared_with_all_of_it(self, ball):
-        force = ball["rolling/contact_force"].values[1]
-        shown = change(ball, "path length", law=1)
-        powers = [np.var(part) for part in (force, force[: len(force) // 2])]
-        assert 10 * np.log10(powers[1] / powers[0]) == pytest.approx(np.median(shown), abs=np.ptp(shown))
-        assert np.abs(shown).max() > 0.1
+        """The first half: here a tone is there of twice the amplitude that the second half has."""
+        time = np.arange(8000) * 1e-4
+        force = np.where(time < 0.4, 2.0, 1.0) * np.sin(2 * np.pi * 500.0 * time)
+        held = xarray.Dataset({"contact_force": (("law", "time"), force[None])})
+        tree = xarray.DataTree.from_dict({"/rolling": held})
+        whole, half = halves(tree, 1e-4, 2e3)
+        at = np.argmin(np.abs(whole.band - 500.0))
+        assert half.force[0, at] == pytest.approx(10 * np.log10(2.0), abs=0.1)
+        assert whole.force[0, at] == pytest.approx(10 * np.log10(1.25), abs=0.2)
+        assert np.abs(change(ball, "path length", law=1)).max() > 0.1
 
     @SILENT
     def test_a_setting_that_is_too_coarse_is_named(self):

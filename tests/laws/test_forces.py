@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.pointforce import Prepared, evaluate, evaluate_all, with_damping
 from asperity.laws import Areal, HertzLaw, Linear, Printed, Shifted, Table, names
-from asperity.laws.layout import force, on_curve
+from asperity.laws.layout import _straight_to_touch, force, on_curve
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
@@ -205,3 +205,14 @@ def test_datum_below_the_first_touch_is_refused():
     with pytest.raises(InputError, match=r"datum of the state .*at least 3e-06.*highest first touch"):
         Printed(curve, None, datum=1e-6)
     assert Printed(curve, None, datum=3e-6).datum == 3e-6
+
+
+@pytest.mark.parametrize(("beyond", "replaced"), [(0.15, True), (0.25, False)])
+def test_the_state_just_beyond_a_first_touch_lies_on_the_line_to_the_next(beyond, replaced):
+    """Less than a fifth of a state's distance beyond, its force is rounding of the scan."""
+    states, touch = np.arange(6.0), 2.0 - beyond
+    root = np.array([[0.0, 0.0, 0.7, 3.0, 4.0, 5.0]])
+    found = _straight_to_touch(states, root, np.array([touch]))
+    line = 3.0 / (3.0 - touch) * beyond
+    assert found[0, 2] == pytest.approx(line if replaced else 0.7)
+    np.testing.assert_array_equal(found[0, 3:], root[0, 3:])

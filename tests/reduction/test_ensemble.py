@@ -6,7 +6,7 @@ import pytest
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.scan import first_touch
 from asperity.errors import InputError
-from asperity.reduction.stiffness import patches, stiffness_ensemble, weighted_mean
+from asperity.reduction.stiffness import StiffnessEnsemble, patches, stiffness_ensemble, weighted_mean
 from asperity.reduction.texture import punch_weights
 
 DX, MODULUS, RADIUS, N = 5e-6, 115e9, 10e-3, 51
@@ -76,3 +76,10 @@ def test_patches_have_their_patch_mean_removed_and_cover_the_maps():
 def test_small_map_is_refused():
     with pytest.raises(InputError, match="window of the contact: received 51 × 51 cells"):
         patches([np.zeros((60, 50))], (N, N), 1, punch_weights((1.0, 1.0), (5.0, 5.0)))
+
+
+def test_the_spread_of_forces_is_that_of_a_sample_of_them():
+    """Of forces 1, 2 and 6 N: mean 3 N, squares 4 + 1 + 9 over N − 1."""
+    forces = np.array([[1.0, 10.0], [2.0, 10.0], [6.0, 10.0]])
+    ensemble = StiffnessEnsemble(np.array([0.0, 1e-6]), forces, np.ones((3, 2)), 0.0, 2)
+    np.testing.assert_allclose(ensemble.force_spread, [np.sqrt(7.0), 0.0], atol=1e-15)

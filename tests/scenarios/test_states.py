@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from asperity.errors import PhysicsWarning
-from asperity.kinds.cases import parse_case
+from asperity.kinds.cases import kind_of, parse_case
 from asperity.laws.layout import force
 from asperity.running import prepare_case
-from asperity.scenarios.reducing import touched_places
+from asperity.scenarios.reducing import chosen_states, filtered_loads, touched_places
 from asperity.scenes.compute import compute
 
 HEAVY_BALL = """
@@ -81,3 +81,15 @@ def test_states_reach_from_a_light_load_on_the_highest_peak_to_the_largest_on_th
     assert lowest.max() < 0.1 * shape.load
     assert highest.min() == pytest.approx(shape.largest_force, rel=0.01)
     assert np.count_nonzero(chain.reduction.ensemble.mean_force) >= 12
+
+
+def test_states_of_smooth_bodies_begin_at_a_fiftieth_of_the_load_and_filters_at_half_of_that():
+    case = parse_case(
+        'kind = "ball-on-beam"\nlaws = ["hertz"]\n[surface]\nrms = "1 nm"\n[ball]\nload = "50 N"\n'
+    )
+    shape = kind_of(case).geometry_of(case)
+    found = chosen_states([np.zeros(shape.body.shape)], shape, shape.half_space(None))
+    lightest, heaviest = (shape.hertz.force(found[at]) for at in (0, -1))
+    assert lightest == pytest.approx(0.02 * shape.class_load, rel=0.1)
+    assert heaviest == pytest.approx(shape.largest_force, rel=0.05)
+    assert filtered_loads(case.contact, shape)[0] == pytest.approx(0.01 * shape.class_load)

@@ -17,10 +17,13 @@ import xarray
 import asperity
 from asperity.errors import CaseError, ComputationError, InputError
 from asperity.kinds.cases import load_case, parse_case
+from asperity.laws import Role
 from asperity.running import run
+from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES
 from asperity.store import Store
 from asperity.studies import member, running
 from asperity.studies.definition import TEMPLATE, load_study, study_of
+from asperity.studies.member import _weighted, _weighted_name
 
 BALL = """
 kind = "ball-on-beam"
@@ -387,3 +390,18 @@ def test_memory_that_is_too_small_is_a_failure_with_advice():
 
 def test_a_broken_pool_is_named():
     assert "BrokenProcessPool" in member.Failure.of(BrokenProcessPool("x")).message
+
+
+def test_differences_of_totals_are_over_the_bands_that_both_laws_have():
+    """A band that one law lacks is in neither total: here that of 80 dB at 1 kHz."""
+    band = xarray.DataArray([500.0, 1000.0, 2000.0], dims="band")
+    levels = [[50.0, 40.0, 30.0], [44.0, np.nan, 24.0]]
+    at = {"law": ["linear", "areal"], "band": band.values}
+    force = xarray.DataArray(
+        levels, dims=("law", "band"), coords=at, attrs={"units": "dB re 1 N", "long_name": ""}
+    )
+    force[0, 1] = 80.0
+    entry = FORCE_LEVEL_DIFFERENCES[Role.BARE]
+    difference = (force - force.sel(law="linear")).assign_attrs(units="dB", long_name="", reference="linear")
+    found = _weighted({"force_level": force, entry.name: difference})
+    assert float(found[_weighted_name(entry)].sel(law="areal")) == pytest.approx(-6.0)
