@@ -37,12 +37,12 @@ def test_the_version_is_the_same_everywhere():
 
 def test_the_gate_and_the_workflows_call_the_same_commands():
     jobs = workflow("checks")["jobs"]
-    assert text(".ci/run").rstrip().endswith(".ci/checks")
+    assert text(".ci/run").rstrip().endswith('.ci/checks "$@"')
     assert "${{ matrix.versions.command }}" in commands(jobs["checks"])
     oldest, newest = jobs["checks"]["strategy"]["matrix"]["versions"]
-    assert newest["command"] == ".ci/checks"
+    assert newest["command"] == ".ci/checks --long"
     assert f"{oldest['command']} " in text(".ci/checks")
-    assert any(command.startswith(".ci/checks --cov") for command in commands(jobs["coverage"]))
+    assert any(command.startswith(".ci/checks --long --cov") for command in commands(jobs["coverage"]))
     assert ".ci/build" in commands(jobs["build"])
     assert workflow("release")["jobs"]["checks"]["uses"] == "./.github/workflows/checks.yml"
     (hook,) = yaml.safe_load(text(".pre-commit-config.yaml"))["repos"][0]["hooks"]
