@@ -59,7 +59,7 @@ def track(pads: float) -> Track:
 
 def transfer(pads: float) -> dict[str, np.ndarray]:
     """Sound power level per axle less roughness level, dB re 1 pW and 1 µm, of rail, sleepers and both."""
-    body, wheel = track(pads), Wheel.rigid(600.0, LOAD)
+    body, wheel = track(pads), Wheel(600.0, LOAD)
     f = (BANDS[:, None] * WITHIN).ravel()
     section = RailSection(0.150, 0.072, 7.745e-3)
 
@@ -96,7 +96,7 @@ def total(levels: np.ndarray) -> float:
 def wheel_transfer(pads: float) -> np.ndarray:
     """As `transfer`, of the two wheels of `railway_wheel.py` on an axle."""
     body, table = track(pads), railway_wheel.table()
-    wheel = Wheel.from_modes(600.0, LOAD, *table[:, :3].T)
+    wheel = Wheel(600.0, LOAD, *table[:, :3].T)
     radiator = RadiatingWheel(0.46, 0.135, *table[:, 3:].T)
     f = (BANDS[:, None] * 10.0 ** (0.1 * (np.arange(400) - 199.5) / 400.0)).ravel()
     node, weight = np.polynomial.legendre.leggauss(12)

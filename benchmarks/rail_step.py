@@ -86,7 +86,7 @@ def laws(duration: float) -> dict[str, Law]:
 def timed(rail: RailPoles | MovingKernel, law: LaidOut, duration: float) -> float:
     """CPU time per step, s."""
     clock = Clock()
-    roll_wheel(rail, Wheel.rigid(MASS, LOAD), law, start=0.0, duration=duration, settling=0.0, progress=clock)  # type: ignore[arg-type]
+    roll_wheel(rail, Wheel(MASS, LOAD), law, start=0.0, duration=duration, settling=0.0, progress=clock)  # type: ignore[arg-type]
     return clock.seconds_per_step
 
 

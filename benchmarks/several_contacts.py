@@ -89,7 +89,7 @@ def wheels(
 ) -> tuple[float, float]:
     """The same of the wheels of a train."""
     at = (COACH + COACHES * np.arange(8)[:, None]).ravel()[:count]
-    body, wheel = Body.rigid(600.0, 65e3), Wheel.rigid(600.0, 65e3)
+    body, wheel = Body.rigid(600.0, 65e3), Wheel(600.0, 65e3)
     together = seconds_per_step(
         lambda clock: roll_bodies(
             between, [body] * count, [law] * count, positions=at, start=0.3, speed=SPEED, time_step=STEP,

@@ -59,6 +59,7 @@ def real(
     above: float = -math.inf,
     at_least: float = -math.inf,
     at_most: float = math.inf,
+    below: float = math.inf,
     remedy: str = "",
 ) -> float:
     """Take one finite real number of Python or numpy; truth values are none.
@@ -67,11 +68,21 @@ def real(
     and quotes away. An `InputError` says what is no such number, or beyond the limits.
     """
     number = _number(value)
-    if not (math.isfinite(number) and number > above and at_least <= number <= at_most):
+    if not (math.isfinite(number) and above < number < below and at_least <= number <= at_most):
         if isinstance(value, str):
             remedy = "Python takes numbers in SI, without unit and quotes."
         raise InputError(what, shown(value), allowed, remedy)
     return number
+
+
+def positive(what: str, value: object, remedy: str = "") -> float:
+    """Take one finite number above zero, as `real` does."""
+    return real(what, value, "a finite positive number", above=0.0, remedy=remedy)
+
+
+def not_negative(what: str, value: object) -> float:
+    """Take one finite number that is not below zero, as `real` does."""
+    return real(what, value, "a finite number, zero or more", at_least=0.0)
 
 
 def whole(what: str, value: object, allowed: str, *, at_least: int, at_most: float = math.inf) -> int:
@@ -119,6 +130,27 @@ def real_array(what: str, values: object, allowed: str) -> NDArray[np.float64]:
         received = shown(values) if array.ndim == 0 else f"data of type {array.dtype}"
         raise InputError(what, received, allowed)
     return np.asarray(array, dtype=np.float64, order="C")
+
+
+def finite_array(
+    what: str,
+    values: object,
+    allowed: str = "finite numbers",
+    *,
+    count: int | None = None,
+    above: float = -math.inf,
+    at_least: float = -math.inf,
+    below: float = math.inf,
+) -> NDArray[np.float64]:
+    """Take an array as `real_array` does, or a list (n,) of so many; each number finite and within limits."""
+    array = real_array(what, values, allowed)
+    if count is not None and (array := np.atleast_1d(array)).shape != (count,):
+        received = f"{array.size} numbers" if array.ndim == 1 else f"shape {array.shape}"
+        raise InputError(what, received, str(count))
+    wrong = ~(np.isfinite(array) & (array > above) & (array >= at_least) & (array < below))
+    if wrong.any():
+        raise InputError(what, float(array[wrong][0]), allowed)
+    return array
 
 
 def file_path(what: str, value: object, allowed: str) -> Path:

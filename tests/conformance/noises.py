@@ -117,7 +117,7 @@ def power():
 
 def linear_force():
     """Force on a wheel, a contact spring and a rail in series: −h/(α_W + α_C + α_R)."""
-    track, wheel, stiffness = Track.named("nordborg"), Wheel.rigid(600.0, 65e3), 1.25e9
+    track, wheel, stiffness = Track.named("nordborg"), Wheel(600.0, 65e3), 1.25e9
     for frequency in (60.0, 630.0, 2500.0):
         omega = 2 * np.pi * frequency
         rail = complex(np.squeeze(track.receptance(frequency, 0.3, 0.3)))

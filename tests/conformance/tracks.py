@@ -6,9 +6,8 @@ import mpmath as mp
 import numpy as np
 from ledger import Check
 
-from asperity.structures.decay_rate import decay_rate_of_responses
 from asperity.structures.moving_kernel import moving_kernel
-from asperity.structures.track import Track
+from asperity.structures.track import Track, decay_rate_of_responses
 
 NORDBORG = {
     "bending_stiffness": 4.725e6, "mass_per_length": 60.0, "rail_loss_factor": 0.04, "pad_stiffness": 300e6,

@@ -329,7 +329,7 @@ class TestReceptances:
     def test_receptances_that_end_below_twice_the_highest_frequency_are_warned_of(self, end, graded):
         """Of a structure, a body and a wheel."""
         frequency = np.arange(2.0, end + 1.0, 2.0)
-        wheel = Wheel.from_modes(600.0, 65e3, *TestResonances.MODES.T).receptance(frequency)
+        wheel = Wheel(600.0, 65e3, *TestResonances.MODES.T).receptance(frequency)
         point = np.column_stack([frequency, wheel.real, wheel.imag])
         over = {"receptances": receptances(self.BEAM, frequency)}
         body = {"mass": 600.0, "load": 65e3, "radius": 0.46, "receptance": point}
@@ -354,7 +354,7 @@ class TestReceptances:
 
     def test_a_wheel_is_fitted_to_twice_the_highest_frequency(self):
         """A mode just above it is found in a record with 2 % of noise; fitted to it alone, it is a guess."""
-        wheel = Wheel.from_modes(600.0, 65e3, [100.0, 290.0], [0.01, 0.002], [300.0, 100.0])
+        wheel = Wheel(600.0, 65e3, [100.0, 290.0], [0.01, 0.002], [300.0, 100.0])
         frequency, random = np.arange(5.0, 500.0, 0.5), np.random.default_rng(1)
         noise = 0.02 * (random.normal(size=frequency.size) + 1j * random.normal(size=frequency.size))
         found = wheel.receptance(frequency) * (1.0 + noise)
@@ -381,7 +381,7 @@ class TestResonances:
         assert bogie.shapes[1] == pytest.approx([0.0, 0.0, 20.0**-0.5, 15.0**-0.5])
 
     def test_a_mass_is_known_by_its_receptance(self):
-        wheel = Wheel.from_modes(600.0, 65e3, *self.MODES.T)
+        wheel = Wheel(600.0, 65e3, *self.MODES.T)
         frequency = np.arange(20.0, 10000.0, 4.0)
         found = wheel.receptance(frequency)
         table = np.column_stack([frequency, found.real, found.imag])

@@ -14,7 +14,7 @@ from asperity.spectra import nominal_frequency
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.wheel import Wheel
 
-WHEEL, STIFFNESS, STEP = Wheel.rigid(600.0, 65e3), 1.25e9, 50e-6
+WHEEL, STIFFNESS, STEP = Wheel(600.0, 65e3), 1.25e9, 50e-6
 LOSSY = Track.named("nordborg-loss-factor", ballast_loss_factor=2.0)
 
 

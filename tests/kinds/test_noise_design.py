@@ -11,8 +11,7 @@ from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.reference import cnossos
 from asperity.scenarios.linear_force import force_transfer, linear_force_psd
 from asperity.spectra import HALF_BAND, a_weighted_total, energy_sum, third_octave_bands
-from asperity.structures.decay_rate import decay_rate
-from asperity.structures.track import Track
+from asperity.structures.track import Track, decay_rate
 from asperity.structures.wheel import Wheel
 
 CENTRES, LOW, HIGH = third_octave_bands(100.0, 5000.0)
@@ -20,7 +19,7 @@ LINES = 10
 FREQUENCY = CENTRES[:, None] * 10.0 ** (0.1 * ((np.arange(LINES) + 0.5) / LINES - 0.5))
 RAIL = RailSection(foot_width=0.15, head_width=0.072, area=60.2 / STEEL_DENSITY)
 SLEEPER = SleeperTop(length=2.6, width=0.25)
-WHEEL, STIFFNESS = Wheel.rigid(600.0, 65e3), 1.25e9
+WHEEL, STIFFNESS = Wheel(600.0, 65e3), 1.25e9
 TRACKS = ("x2000", "nordborg", "uic60")
 
 

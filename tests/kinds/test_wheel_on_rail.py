@@ -200,7 +200,7 @@ class TestLossFactors:
 
     def test_viscous_tracks_have_nothing_to_tell(self):
         viscous = loss_factor_error(
-            Track.named("nordborg", rail_loss_factor=0.0), Wheel.rigid(600.0, 65e3), 1.2e9, 2e3
+            Track.named("nordborg", rail_loss_factor=0.0), Wheel(600.0, 65e3), 1.2e9, 2e3
         )
         assert relaxed(viscous) == {}
         assert list(described_losses(viscous, 65e3)) == []

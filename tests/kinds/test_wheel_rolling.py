@@ -35,7 +35,7 @@ TRACK = Track(
 LOAD, MASS, HERTZ = 65e3, 600.0, 9.413e10
 APPROACH = (LOAD / HERTZ) ** (2 / 3)
 STIFFNESS = 1.5 * HERTZ * np.sqrt(APPROACH)
-WHEEL = Wheel.rigid(MASS, LOAD)
+WHEEL = Wheel(MASS, LOAD)
 
 
 @pytest.fixture(scope="module")
@@ -149,7 +149,7 @@ class TestConvergence:
 class TestWheel:
     def test_a_flexible_wheel_follows_its_receptance(self, poles):
         # a mode far below the contact resonance of the rail: the force dips where wheel and rail balance
-        wheel = Wheel.from_modes(MASS, LOAD, [1800.0], [0.005], [40.0])
+        wheel = Wheel(MASS, LOAD, [1800.0], [0.005], [40.0])
         texture = roughness(0.0, 2.0)
         run = roll_wheel(poles, wheel, linear(texture), start=0.0, duration=1.2, settling=0.4)
         rigid = roll_wheel(poles, WHEEL, linear(texture), start=0.0, duration=1.2, settling=0.4)

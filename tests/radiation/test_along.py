@@ -13,7 +13,7 @@ from asperity.radiation.track import (
     squared_point_mobility,
     squared_sleeper_mobility,
 )
-from asperity.structures.decay_rate import decay_rate
+from asperity.structures.track import decay_rate
 
 TRACKS = {
     "uic60": Track.named("uic60"),
@@ -28,7 +28,7 @@ def bay_by_bay(track, cells=32, forces=16):
     bay, omega = track.sleeper_spacing, 2.0 * np.pi * FREQUENCIES
     places = (np.arange(-BAYS * cells, BAYS * cells) + 0.5) * bay / cells
     waves = track.waves(omega)
-    pad, ballast = track.layer_stiffnesses(omega)
+    pad, ballast = (each.stiffness(omega) for each in (track.support.pad, track.support.ballast))
     passed_on = pad / (pad + ballast - track.sleeper_mass * omega**2)
     rail, sleepers = [], []
     for x0 in (np.arange(forces) + 0.5) * bay / forces:
@@ -79,7 +79,7 @@ def test_what_a_force_puts_into_a_track_is_lost_in_rail_pads_and_ballast():
         0.5 * w * (1j * omega * waves.receptance(0.5 * bay * (u + 1.0), 0.5 * bay * (u + 1.0))).real
         for u, w in zip(node, weight, strict=True)
     )
-    pad, ballast = track.layer_stiffnesses(omega)
+    pad, ballast = (each.stiffness(omega) for each in (track.support.pad, track.support.ballast))
     below = pad / (pad + ballast - track.sleeper_mass * omega**2)
     sleepers = squared_sleeper_mobility(track, frequency)
     squeezed = sleepers * np.abs((1.0 - below) / below) ** 2  # of the pads, per force

@@ -25,7 +25,7 @@ TRACK = Track(
     bending_stiffness=4.725e6, mass_per_length=60.0, rail_loss_factor=0.004, pad_stiffness=300e6,
     pad_damping=18e3, sleeper_mass=150.0, ballast_stiffness=150e6, ballast_damping=48e3, sleeper_spacing=0.6,
 )  # fmt: skip
-RINGING = Wheel.from_modes(600.0, 65e3, [400.0, 2000.0], [0.01, 0.002], [300.0, 100.0])
+RINGING = Wheel(600.0, 65e3, [400.0, 2000.0], [0.01, 0.002], [300.0, 100.0])
 
 MASS, LOAD, CONTACT = 0.5, 5.0, 2e7
 OMEGA, DRIVEN = np.sqrt(CONTACT / MASS), 2 * np.pi * 350.0

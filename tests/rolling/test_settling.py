@@ -18,7 +18,7 @@ from asperity.structures.wheel import Wheel
 STEEL, MODULUS, CELLS, RTOL = material("steel"), 115e9, 31, 1e-6
 BALL, BEAM = Ball(0.025, STEEL), Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)
 DX, START, STEPS = 1e-5, 0.3, 150
-WHEEL, RAIL_DX = Wheel.rigid(600.0, 65e3), 1e-3
+WHEEL, RAIL_DX = Wheel(600.0, 65e3), 1e-3
 
 
 def heights(rms, depth, seed=2, rows=STEPS + CELLS + 20):

@@ -52,7 +52,7 @@ def bogie(poles):
 
 
 def ringing():
-    """As `Wheel.from_modes`."""
+    """As `Wheel`."""
     one, none = np.ones((1, 1)), np.zeros((1, 1))
     shapes = 1 / np.sqrt([[300.0, 100.0]])
     modes = np.array([400.0, 2000.0]), np.array([0.01, 0.002])
@@ -70,11 +70,11 @@ def test_a_rail_that_sinks_is_no_result(poles):
         poles, poles=np.append(poles.poles, swing), residues=np.append(poles.residues, sinking, axis=1)
     )
     law, path = HertzLaw(9.4e10, rough(1e-6, -1.0)), {"start": 0.53, "duration": 0.03, "settling": 0.02}
-    assert roll_wheel(poles, Wheel.rigid(MASS, LOAD), law, **path).outcome.ok
+    assert roll_wheel(poles, Wheel(MASS, LOAD), law, **path).outcome.ok
     with pytest.raises(
         ComputationError, match=r"hertz: the mean contact force .* load of 6.5e\+04 N"
     ) as told:
-        roll_wheel(falling, Wheel.rigid(MASS, LOAD), law, **path)
+        roll_wheel(falling, Wheel(MASS, LOAD), law, **path)
     assert float(str(told.value).split("force of ")[1].split()[0]) == pytest.approx(LOAD / 1.1, rel=0.02)
     assert "Try: what a warning asks for, if there is one; else" in str(told.value)
     assert told.value.exit_code == 3

@@ -115,11 +115,11 @@ def test_no_step_of_a_wheel_grows(poles, data):
     mass, stiffness = data.draw(powers(-3, 5)), data.draw(powers(5, 13))
     damping = data.draw(st.one_of(st.just(0.0), powers(0, 10)))
     modes = data.draw(st.integers(0, 3))
-    wheel = Wheel.rigid(mass, 65e3)
+    wheel = Wheel(mass, 65e3)
     if modes:
         frequencies = data.draw(st.lists(st.floats(100.0, 2e4), min_size=modes, max_size=modes))
         masses = data.draw(st.lists(powers(-2, 3), min_size=modes, max_size=modes))
-        wheel = Wheel.from_modes(mass, 65e3, frequencies, [0.01] * modes, masses)
+        wheel = Wheel(mass, 65e3, frequencies, [0.01] * modes, masses)
     texture = bump(56.0 * 50e-6, 0.0, 1.0 / stiffness)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)
@@ -162,7 +162,7 @@ class TestAlternatingCompliance:
         alternating = min(row @ (-1.0) ** np.arange(row.size) for row in kernel.weights)
         least, thrown = OnRail(RailBetween(kernel, {})).alternating([path])
         assert (least, thrown) == (pytest.approx(alternating, rel=1e-12), 0.0)
-        wheel = Body.from_modes(1e30, 65e3, [3000.0], [0.2], [20.0])
+        wheel = Body.rigid(1e30, 65e3).with_modes([3000.0], [0.2], [20.0])
         # the mode by itself, as an oscillator
         a = modal_coefficients(np.array([2 * np.pi * 3000.0]), np.array([0.2]), 50e-6)
         mode = alternating_of_modes(a)[0] / 20.0
@@ -234,7 +234,7 @@ def test_a_strong_damper_stays_below_what_a_rigid_contact_does():
         law = HertzLaw(9.413e10, texture, damping)
         with pytest.warns(CoarseSamplingWarning, match=r"softening the contact by 2.2 %"):
             run = one_body.roll_wheel(
-                pole_model, Wheel.rigid(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0
+                pole_model, Wheel(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0
             )
         assert run.contact_loss_share == 0.0
         forces.append(run.contact_force)

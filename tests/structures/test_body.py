@@ -1,53 +1,132 @@
-"""Bodies that roll on several contacts: what carries them."""
+"""What rolls: what it weighs, how several contacts share it, how it moves against closed forms."""
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from asperity.errors import InputError
-from asperity.structures.body import Body
+from asperity.reference.materials import material
+from asperity.structures.body import GRAVITY, Ball, Body, bogie, carriage, chain
 
-NONE = np.zeros(0)
+F = np.array([0.7, 4.0, 31.0, 250.0])
+S = 2j * np.pi * F
+BOGIE = (600.0, 2.5, 3000.0, 1800.0, 1.2e6, 8e3)
 
 
-def _beam_on(places, pressing):
+def two_masses(lower, upper, spring, damper):
+    """Receptance at the lower of two masses: −(1/ω²)(…) from Newton's equations, solved by hand."""
+    link = spring + damper * S
+    return (upper * S**2 + link) / ((lower * S**2 + link) * (upper * S**2 + link) - link**2)
+
+
+def bar_on(places, pressing=(981.0, 0.0)):
     """A rigid bar of 100 kg and 10 kg m², on contacts at places from its centre of mass, m."""
-    places = np.asarray(places, dtype=float)
-    contacts = np.stack([np.ones_like(places), places], axis=1)
-    zero = np.zeros((2, 2))
-    return Body(
-        np.diag([100.0, 10.0]), zero, zero, contacts, np.asarray(pressing, float), places,
-        NONE, NONE, np.zeros((len(places), 0)),
-    )  # fmt: skip
+    contacts, none = np.stack([np.ones(len(places)), places], axis=1), np.zeros((2, 2))
+    return Body(np.diag([100.0, 10.0]), none, none, contacts, np.array(pressing), np.array(places))
 
 
-def test_a_mass_is_carried_by_its_contact():
-    assert Body.rigid(600.0, 65e3).static_loads == pytest.approx([65e3])
+def test_a_ball_has_its_weight_or_a_given_load():
+    ball = Ball(0.025, material("steel"))
+    assert ball.mass == pytest.approx(0.5138, rel=1e-3)
+    assert ball.static_load == pytest.approx(ball.mass * 9.80665, rel=1e-15)
+    assert Ball(0.025, material("steel"), load=30.0).static_load == 30.0
+    assert Ball(0.025, material("steel"), given_mass=2.0).weight == pytest.approx(2.0 * 9.80665)
 
 
-def test_two_contacts_share_by_the_lever():
-    body = _beam_on([-1.0, 3.0], [981.0, 0.0])
-    assert body.static_loads == pytest.approx([0.75 * 981.0, 0.25 * 981.0])
+@pytest.mark.parametrize(
+    ("body", "loads"),
+    [
+        (Body.rigid(600.0, 65e3), [65e3]),
+        (bar_on([-1.0, 3.0]), [0.75 * 981.0, 0.25 * 981.0]),
+        (bar_on([-3.0, -1.0, 1.0, 3.0]), [0.25 * 981.0] * 4),
+        (chain([2.0], [], []), [2.0 * GRAVITY]),
+        (chain([600.0, 1500.0, 8e3], [1.2e6, 0.4e6], [1e4, 2e4], load=1e3), [10100.0 * GRAVITY + 1e3]),
+        (bogie(*BOGIE), [2100.0 * GRAVITY] * 2),
+        (bogie(*BOGIE, load=2e3), [2100.0 * GRAVITY + 1e3] * 2),
+        (carriage(2.0, 0.01, [0.0, 0.03, 0.06, 0.09], load=100.0), [0.5 * GRAVITY + 25.0] * 4),
+    ],
+)
+def test_contacts_carry_weights_and_load_as_levers_share_them(body, loads):
+    assert body.static_loads == pytest.approx(loads)
 
 
-def test_four_contacts_share_evenly():
-    assert _beam_on([-3, -1, 1, 3], [400.0, 0.0]).static_loads == pytest.approx(np.full(4, 100.0))
+def test_a_chain_of_two_is_the_closed_form():
+    body = chain([600.0, 4000.0], [1.2e6], [8e3])
+    assert_allclose(body.receptance(F)[:, 0, 0], two_masses(600.0, 4000.0, 1.2e6, 8e3), rtol=1e-12)
 
 
-def test_a_suspended_mass_rests_on_its_wheel():
-    """Wheel and body on a spring: the contact carries both weights, whatever the spring."""
-    spring = 1e5 * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    body = Body(
-        np.diag([1000.0, 5000.0]), 0.0 * spring, spring, np.array([[1.0, 0.0]]), np.array([9810.0, 49050.0]),
-        np.zeros(1), NONE, NONE, np.zeros((1, 0)),
-    )  # fmt: skip
-    assert body.static_loads == pytest.approx([58860.0])
+def test_the_modes_of_a_bogie_are_bounce_and_pitch():
+    """Both wheels alike lift half the frame, against one another its pitch: each a chain of two."""
+    body = bogie(*BOGIE)
+    point, transfer = body.receptance(F)[:, 0, 0], body.receptance(F)[:, 0, 1]
+    assert_allclose(point + transfer, two_masses(600.0, 1500.0, 1.2e6, 8e3), rtol=1e-10)
+    rolled = 1800.0 / (2.0 * 1.25**2)  # kg at each wheel
+    assert_allclose(point - transfer, two_masses(600.0, rolled, 1.2e6, 8e3), rtol=1e-10)
+    assert body.places.tolist() == [0.0, 2.5]
 
 
-def test_a_body_that_tilts_is_refused():
-    with pytest.raises(InputError, match=r"too few: it falls or tilts.*more contacts"):
-        _beam_on([1.0], [981.0, 0.0])
+def test_a_car_body_rests_on_the_frame():
+    body = bogie(*BOGIE, car_body=(16e3, 0.5e6, 15e3), load=2e3)
+    assert body.static_loads == pytest.approx(np.full(2, 10.1e3 * GRAVITY + 1e3))
+    point, transfer = body.receptance(F)[:, 0, 0], body.receptance(F)[:, 0, 1]
+    three = chain([600.0, 1500.0, 8e3], [1.2e6, 0.25e6], [8e3, 7.5e3])
+    assert_allclose(point + transfer, three.receptance(F)[:, 0, 0], rtol=1e-10)
 
 
-def test_shapes_must_fit():
-    with pytest.raises(InputError, match=r"pressing of a body.*shape \(2,\)"):
-        _beam_on([-1.0, 1.0], [981.0])
+def test_a_rigid_carriage_turns_about_its_centre():
+    levers = np.array([-0.045, -0.015, 0.015, 0.045])
+    expected = (1.0 / 2.0 + np.outer(levers, levers) / 0.01) / S[:, None, None] ** 2
+    assert_allclose(carriage(2.0, 0.01, levers + 0.045).receptance(F), expected, rtol=1e-12)
+
+
+def test_elements_carry_a_carriage_on_springs():
+    """An eccentric load is shared along a straight line, as springs of one stiffness do."""
+    upper = {"element_mass": 0.05, "upper_stiffness": 40e6, "upper_damping": 100.0}
+    body = carriage(2.0, 0.01, [0.0, 0.03, 0.06], **upper, load=60.0, load_place=0.04)
+    shared = (2.0 * GRAVITY + 60.0) / 3.0 + 60.0 * 0.01 * np.array([-0.03, 0.0, 0.03]) / (2 * 0.03**2)
+    assert body.static_loads == pytest.approx(shared + 0.05 * GRAVITY)
+    # all elements alike: a third of the carriage on each
+    alike = body.receptance(F).sum(axis=2)[:, 1]
+    assert_allclose(alike, two_masses(0.05, 2.0 / 3.0, 40e6, 100.0), rtol=1e-9)
+    stiff = carriage(2.0, 0.01, [0.0, 0.03, 0.08], element_mass=1e-9, upper_stiffness=1e11)
+    rigid = carriage(2.0, 0.01, [0.0, 0.03, 0.08])
+    assert_allclose(stiff.receptance(F[1:3]), rigid.receptance(F[1:3]), rtol=1e-5)
+
+
+def test_each_wheel_has_its_own_modes():
+    modes, pair = ([400.0, 2000.0], [0.01, 0.002], [300.0, 100.0]), bogie(*BOGIE)
+    ringing = pair.with_modes(*modes)
+    added = ringing.receptance(F) - pair.receptance(F)
+    flexible = sum(
+        1.0 / m / ((w := 2 * np.pi * f) ** 2 + 2 * z * w * S + S**2) for f, z, m in zip(*modes, strict=True)
+    )
+    assert_allclose(added[:, 1, 1], flexible, rtol=1e-6)
+    assert np.abs(added[:, 0, 1]).max() < 1e-6 * np.abs(flexible).min()
+    assert ringing.static_loads == pytest.approx(pair.static_loads)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Ball(0.0, material("steel")), "ball radius"),
+        (lambda: Ball(0.025, material("steel"), load=-1.0), "ball load"),
+        (lambda: Ball(0.025, material("steel"), given_mass=0.0), "ball mass"),
+        (lambda: bar_on([1.0]), r"too few: it falls or tilts.*more contacts"),
+        (lambda: bar_on([-1.0, 1.0], [981.0]), r"pressing of a body.*shape \(2,\)"),
+        (lambda: Body.rigid(0.0, 1.0), "one without inertia; allowed: positive masses"),
+        (lambda: chain([1.0, -1.0], [1.0], [0.0]), r"masses of the chain \(kg\): received -1.0"),
+        (lambda: chain([1.0, 1.0], [], [0.0]), "stiffnesses of the chain.*received 0 numbers; allowed: 1"),
+        (lambda: chain([1.0, 1.0], [0.0], [0.0]), "stiffnesses.*received 0.0; allowed: finite numbers"),
+        (lambda: chain([1.0, 1.0], [1.0], [-1.0]), r"dampings of the chain.*received -1.0.*0 and more"),
+        (lambda: chain([1.0], [], [], load=-20.0), r"a contact under -10.19 N; allowed: contacts that"),
+        (lambda: chain([1.0], [], [], load="much"), r"load \(N\): received 'much'"),
+        (lambda: bogie(1.0, 0.0, 1.0, 1.0, 1.0, 1.0), r"wheel mass, wheelbase.*received 0.0"),
+        (lambda: carriage(1.0, 1.0, [0.0], centre=0.1), "too few: it falls or tilts"),
+        (lambda: carriage(1.0, 1.0, [0.0, 1.0], element_mass=0.1), r"above them: received 0.0"),
+        (lambda: carriage(1.0, 1.0, [0.0, 1.0], load=100.0, load_place=3.0), "or nearer the middle"),
+        (lambda: chain([1.0], [], []).receptance(0.0), "no static receptance"),
+    ],
+)
+def test_bodies_that_cannot_be_are_refused(make, message):
+    with pytest.raises(InputError, match=message):
+        make()

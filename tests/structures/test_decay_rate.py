@@ -7,7 +7,7 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.structures.decay_rate import (
+from asperity.structures.track import (
     EN_15461_BAYS,
     decay_rate,
     decay_rate_en15461,

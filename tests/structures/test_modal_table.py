@@ -158,7 +158,7 @@ SINE = np.sin(np.pi * X)[:, None]
         ((X, [1.0, 2.0], 0.1, SINE), {}, r"received shape \(5, 1\); allowed: \(5, 2\): a row for each"),
         ((X, [-1.0], 0.1, SINE), {}, r"natural frequencies \(Hz\): received -1.0; allowed: 0 and more"),
         ((X, [1.0], 1.0, SINE), {}, "damping ratios: received 1.0; allowed: 0 and more, below 1"),
-        ((X, [1.0], [0.1, 0.1], SINE), {}, r"damping ratios: received shape \(2,\); allowed: one for each"),
+        ((X, [1.0], [0.1, 0.1], SINE), {}, r"damping ratios: received 2 numbers; allowed: 1"),
         ((X, [1.0], 0.1, SINE * np.nan), {}, "mode shapes: received values that are not finite"),
         ((X, [1.0], 0.1, 0.0 * SINE), {}, "mode 1 that does not move anywhere.*Leave it out"),
         ((X, [1.0], 0.1, SINE), {"modal_masses": [0.0]}, r"modal masses \(kg\): received 0.0"),

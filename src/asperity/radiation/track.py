@@ -146,8 +146,7 @@ def squared_sleeper_mobility(
     node, weight, driven = _driven(waves)
     above = waves.outgoing(0.0)
     total = _over_bays(waves, driven, above[:, None] * above.conj()[None, :])
-    pad, ballast = track.layer_stiffnesses(omega)
-    passed_on = np.abs(pad / (pad + ballast - track.sleeper_mass * omega**2)) ** 2
+    passed_on = np.abs(track.support.sleeper_motion(omega)) ** 2
     return 2.0 * omega**2 * passed_on * _mean(total, node, weight, force)
 
 

@@ -11,6 +11,7 @@ from scipy.special import beta, gamma
 
 from asperity.errors import InputError
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, above_zero
+from asperity.structures.modal import modal_answers
 from asperity.structures.wheel import Wheel
 
 POINTS = 41
@@ -65,9 +66,8 @@ def _line_means(
         at.append(natural * (1.0 + ratio * np.sinh(np.linspace(-reach, reach, POINTS))))
     fine = np.unique(np.clip(np.concatenate(at), edges[0], edges[-1]))
     omega = 2.0 * np.pi * fine
-    pole, residue = wheel.poles[:, None], wheel.residues[:, None]
-    flexible = residue / (1j * omega - pole) + residue.conj() / (1j * omega - pole.conj())
-    each = np.concatenate([-1.0 / (wheel.mass * omega[None] ** 2) + 0j, flexible])
+    flexible = modal_answers(fine, wheel.natural_frequencies, wheel.damping_ratios) / wheel.modal_masses
+    each = np.column_stack([-1.0 / (wheel.mass * omega**2), flexible]).T
     other = np.interp(fine, frequency, compliance) ** 2
     value = omega**2 * np.abs(each) ** 2 / (other + np.abs(each.sum(axis=0)) ** 2)
     area = 0.5 * (value[:, 1:] + value[:, :-1]) * np.diff(fine)

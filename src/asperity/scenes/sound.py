@@ -34,8 +34,7 @@ from asperity.scenes.compute import Computed
 from asperity.scenes.tables import read_mode_shapes, read_ratios
 from asperity.schema import Attribute, Entry, attributes, spectra, variables
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum, psd
-from asperity.structures.decay_rate import decay_rate
-from asperity.structures.track import Track
+from asperity.structures.track import Track, decay_rate
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 

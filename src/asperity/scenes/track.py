@@ -20,8 +20,8 @@ from asperity.scenes.loss_factors import error_of_losses, relaxed
 from asperity.scenes.sound import noise, radiation
 from asperity.schema import Attribute, Entry, attributes, variables
 from asperity.spectra import averaging_time, band_levels, psd
-from asperity.structures.decay_rate import decay_rate, decay_rate_en15461
 from asperity.structures.rail_poles import RailPoles
+from asperity.structures.track import decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real, real_array
+from asperity.arguments import finite_array, positive, real
 from asperity.errors import InputError
 from asperity.reference.materials import Material
+from asperity.structures.modal import modal_answers
 
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall, CGPM 1901
 
@@ -48,12 +49,10 @@ class Ball:
     given_mass: float | None = None
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.radius) and self.radius > 0.0):
-            raise InputError("ball radius (m)", self.radius, "a finite positive number")
-        if self.load is not None and not (np.isfinite(self.load) and self.load > 0.0):
-            raise InputError("ball load (N)", self.load, "a finite positive number")
-        if self.given_mass is not None and not (np.isfinite(self.given_mass) and self.given_mass > 0.0):
-            raise InputError("ball mass (kg)", self.given_mass, "a finite positive number")
+        positive("ball radius (m)", self.radius)
+        for what, value in (("ball load (N)", self.load), ("ball mass (kg)", self.given_mass)):
+            if value is not None:
+                positive(what, value)
 
     @property
     def mass(self) -> float:
@@ -74,9 +73,13 @@ class Ball:
 
 
 Array = NDArray[np.float64]
-
 CARRIED = 1e-9
 """Share of the pressing forces that may be left uncarried."""
+
+
+def no_modes() -> Array:
+    """Frequencies, damping ratios or masses of what is rigid."""
+    return np.zeros(0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,57 +96,36 @@ class Body:
     contacts: Array  # A, (c, d)
     pressing: Array  # p, (d,), constant forces that press the body down, N or N m
     places: Array  # (c,), of its contacts along the path, ahead of the body's position, m
-    natural_frequencies: Array  # (s,), of its modes, Hz
-    damping_ratios: Array  # (s,)
-    shapes: Array  # Φ, (c, s), kg^(−1/2)
+    natural_frequencies: Array = field(default_factory=no_modes)  # (s,), of its modes, Hz
+    damping_ratios: Array = field(default_factory=no_modes)  # (s,)
+    shapes: Array = field(default_factory=no_modes)  # Φ, (c, s), kg^(−1/2)
     fit_error: float = 0.0
     """Of one that was fitted to receptances: root mean square of the differences of level, dB."""
 
     def __post_init__(self) -> None:
-        c, d = self.contacts.shape
-        s = len(self.natural_frequencies)
-        shapes = {
-            "mass": (d, d),
-            "damping": (d, d),
-            "stiffness": (d, d),
-            "pressing": (d,),
-            "places": (c,),
-            "damping_ratios": (s,),
-            "shapes": (c, s),
-        }
-        for name, shape in shapes.items():
+        (c, d), s = self.contacts.shape, len(self.natural_frequencies)
+        if not s:
+            object.__setattr__(self, "shapes", np.zeros((c, 0)))
+        shapes = {"mass": (d, d), "damping": (d, d), "stiffness": (d, d), "pressing": (d,), "places": (c,)}
+        for name, shape in (shapes | {"damping_ratios": (s,), "shapes": (c, s)}).items():
             value = getattr(self, name)
             if value.shape != shape or not np.isfinite(value).all():
-                raise InputError(
-                    f"{name} of a body", f"shape {value.shape}", f"finite numbers of shape {shape}"
-                )
+                allowed = f"finite numbers of shape {shape}"
+                raise InputError(f"{name} of a body", f"shape {value.shape}", allowed)
         if np.linalg.eigvalsh(self.mass).min() <= 0.0:
             raise InputError("masses of a body", "one without inertia", "positive masses")
-        carried = self.contacts.T @ self.static_loads - self.stiffness @ self._hung - self.pressing
+        hung, loads = self._statics
+        carried = self.contacts.T @ loads - self.stiffness @ hung - self.pressing
         if np.abs(carried).max(initial=0.0) > CARRIED * np.abs(self.pressing).max(initial=1.0):
             remedy = "Give it more contacts, or springs that hold it."
-            raise InputError(
-                "contacts of a body", "too few: it falls or tilts", "a body that is held", remedy
-            )
+            what, received = "contacts of a body", "too few: it falls or tilts"
+            raise InputError(what, received, "a body that is held", remedy)
 
     @classmethod
     def rigid(cls, mass: float, load: float) -> Body:
         """A free rigid mass, kg, on one contact under a constant load, N, weight included."""
-        one, none = np.ones((1, 1)), np.zeros((1, 1))
-        empty = np.zeros(0)
-        return cls(mass * one, none, none, one, np.array([load]), np.zeros(1), empty, empty, np.zeros((1, 0)))
-
-    @classmethod
-    def from_modes(
-        cls,
-        mass: float,
-        load: float,
-        frequencies: ArrayLike,
-        damping_ratios: ArrayLike,
-        modal_masses: ArrayLike,
-    ) -> Body:
-        """Mass with resonances on one contact under a load, N, weight included, as `Wheel.from_modes`."""
-        return cls.rigid(mass, load).with_modes(frequencies, damping_ratios, modal_masses)
+        none = np.zeros((1, 1))
+        return cls(np.array([[mass]]), none, none, np.ones((1, 1)), np.array([load]), np.zeros(1))
 
     def with_modes(self, frequencies: ArrayLike, damping_ratios: ArrayLike, modal_masses: ArrayLike) -> Body:
         """Let what touches at each contact have resonances of its own, the same at each: those of a wheel.
@@ -167,17 +149,13 @@ class Body:
         InputError
             If the lists differ in length, or a number is out of range.
         """
-        natural = positive_numbers("natural frequencies of the modes (Hz)", frequencies)
-        ratio = positive_numbers("damping ratios of the modes", damping_ratios, natural.size)
-        shape = positive_numbers("modal masses (kg)", modal_masses, natural.size) ** -0.5
-        if natural.size and ratio.max() >= 1.0:
-            raise InputError("damping ratios of the modes", float(ratio.max()), "above 0 and below 1")
-        each = np.eye(len(self.places))
+        natural, ratio, mass = resonances(frequencies, damping_ratios, modal_masses)
+        count = len(self.places)
         return replace(
             self,
-            natural_frequencies=np.concatenate([self.natural_frequencies, np.tile(natural, len(each))]),
-            damping_ratios=np.concatenate([self.damping_ratios, np.tile(ratio, len(each))]),
-            shapes=np.hstack([self.shapes, np.kron(each, shape)]),
+            natural_frequencies=np.concatenate([self.natural_frequencies, np.tile(natural, count)]),
+            damping_ratios=np.concatenate([self.damping_ratios, np.tile(ratio, count)]),
+            shapes=np.hstack([self.shapes, np.kron(np.eye(count), mass**-0.5)]),
         )
 
     def receptance(self, frequency: ArrayLike) -> NDArray[np.complex128]:
@@ -187,26 +165,19 @@ class Body:
         """
         f = np.atleast_1d(np.asarray(frequency, dtype=float))
         if not (f > 0.0).all():
-            raise InputError(
-                "frequency (Hz)", float(f.min()), "above 0: a free body has no static receptance"
-            )
+            allowed = "above 0: a free body has no static receptance"
+            raise InputError("frequency (Hz)", float(f.min()), allowed)
         omega = 2.0 * np.pi * f[:, None, None]
         dynamic = self.stiffness + 1j * omega * self.damping - omega**2 * self.mass
-        moving = self.contacts @ np.linalg.solve(
-            dynamic, np.broadcast_to(self.contacts.T, (f.size, *self.contacts.T.shape))
-        )
-        natural, omega = 2.0 * np.pi * self.natural_frequencies, omega[:, 0]
-        answer = 1.0 / (natural**2 - omega**2 + 2j * self.damping_ratios * natural * omega)
-        return np.asarray(moving + np.einsum("cs,ns,ds->ncd", self.shapes, answer, self.shapes))
+        moved = np.linalg.solve(dynamic, np.broadcast_to(self.contacts.T, (f.size, *self.contacts.T.shape)))
+        answers = modal_answers(f, self.natural_frequencies, self.damping_ratios)
+        flexible = np.einsum("cs,ns,ds->ncd", self.shapes, answers, self.shapes)
+        return np.asarray(self.contacts @ moved + flexible)
 
     @property
     def static_loads(self) -> Array:
         """Forces of the contacts at rest (c,), N, on a rigid plane; of several answers the most even."""
         return self._statics[1]
-
-    @property
-    def _hung(self) -> Array:
-        return self._statics[0]
 
     @property
     def _statics(self) -> tuple[Array, Array]:
@@ -219,16 +190,25 @@ class Body:
         return solution[:d] / scale, solution[d:]
 
 
-def positive_numbers(what: str, given: ArrayLike, count: int | None = None, *, zero: bool = False) -> Array:
-    """Take a list of finite numbers above zero, or not below it; as many as `count`, if that is given."""
-    allowed = f"finite numbers, {'0 and more' if zero else 'above 0'}"
-    values = np.atleast_1d(real_array(what, given, allowed)) if np.size(given) else np.zeros(0)
-    if values.ndim > 1 or (count is not None and values.size != count):
-        raise InputError(what, f"{values.size} numbers", f"{count}" if count is not None else "a list")
-    wrong = ~(np.isfinite(values) & ((values >= 0.0) if zero else (values > 0.0)))
-    if wrong.any():
-        raise InputError(what, float(values[wrong][0]), allowed)
-    return values
+def resonances(
+    frequencies: ArrayLike, damping_ratios: ArrayLike, modal_masses: ArrayLike
+) -> tuple[Array, Array, Array]:
+    """Take natural frequencies, Hz, damping ratios and modal masses, kg, of as many modes each."""
+    count = np.size(frequencies)
+    natural = _above_zero("natural frequencies of the modes (Hz)", frequencies, count)
+    allowed = "finite numbers, above 0 and below 1"
+    ratio = finite_array(
+        "damping ratios of the modes", damping_ratios, allowed, count=count, above=0.0, below=1.0
+    )
+    return natural, ratio, _above_zero("modal masses (kg)", modal_masses, count)
+
+
+def _above_zero(what: str, given: ArrayLike, count: int) -> Array:
+    return finite_array(what, given, "finite numbers, above 0", count=count, above=0.0)
+
+
+def _not_below_zero(what: str, given: ArrayLike, count: int) -> Array:
+    return finite_array(what, given, "finite numbers, 0 and more", count=count, at_least=0.0)
 
 
 def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, load: float = 0.0) -> Body:
@@ -255,15 +235,13 @@ def chain(masses: ArrayLike, stiffnesses: ArrayLike, dampings: ArrayLike, *, loa
         If a mass or stiffness is not positive, a damping negative, a number is missing, or nothing is left
         to press on the contact.
     """
-    mass = positive_numbers("masses of the chain (kg)", masses)
-    spring = positive_numbers("stiffnesses of the chain (N/m)", stiffnesses, mass.size - 1)
-    damper = positive_numbers("dampings of the chain (N s/m)", dampings, mass.size - 1, zero=True)
-    stiffness, damping = np.zeros((2, mass.size, mass.size))
-    for i in range(mass.size - 1):
-        _connect(stiffness, damping, _unit(mass.size, i + 1) - _unit(mass.size, i), spring[i], damper[i])
+    mass = _above_zero("masses of the chain (kg)", masses, np.size(masses))
+    spring = _above_zero("stiffnesses of the chain (N/m)", stiffnesses, mass.size - 1)
+    damper = _not_below_zero("dampings of the chain (N s/m)", dampings, mass.size - 1)
     pressing = GRAVITY * mass
     pressing[-1] += _load(load)
-    return _on(np.zeros(1), _unit(mass.size, 0)[None], mass, damping, stiffness, pressing)
+    unit = np.eye(mass.size)
+    return _on_springs(np.zeros(1), unit[:1], mass, pressing, np.diff(unit, axis=0), spring, damper)
 
 
 def bogie(
@@ -306,26 +284,24 @@ def bogie(
     InputError
         If a number is not positive (damping may be zero), or nothing is left to press on the contacts.
     """
-    numbers = [wheel_mass, wheelbase, frame_mass, frame_inertia, primary_stiffness]
-    wheel, base, frame, inertia, spring = positive_numbers(
-        "wheel mass, wheelbase, frame mass, frame inertia and primary stiffness", numbers, 5
-    )
-    damper = positive_numbers("primary damping (N s/m)", [primary_damping], 1, zero=True)[0]
-    masses, size = [wheel, wheel, frame, inertia], 4
+    what = "wheel mass, wheelbase, frame mass, frame inertia and primary stiffness"
+    given = [wheel_mass, wheelbase, frame_mass, frame_inertia, primary_stiffness]
+    wheel, base, frame, inertia, spring = _above_zero(what, given, 5)
+    damper = _not_below_zero("primary damping (N s/m)", [primary_damping], 1)[0]
+    masses, springs, dampers = [wheel, wheel, frame, inertia], [spring] * 2, [damper] * 2
     if car_body is not None:
-        masses, size = [*masses, *positive_numbers("mass of the car body (kg)", car_body[:1], 1)], 5
-    stiffness, damping = np.zeros((2, size, size))
-    places = np.array([0.0, base])
-    for i, place in enumerate(places):
-        above = _unit(size, 2) + (place - 0.5 * base) * _unit(size, 3)
-        _connect(stiffness, damping, above - _unit(size, i), spring, damper)
-    if car_body is not None:
-        secondary = positive_numbers("secondary stiffness and damping", car_body[1:], 2, zero=True)
-        _connect(stiffness, damping, _unit(size, 4) - _unit(size, 2), *secondary)
+        masses += [*_above_zero("mass of the car body (kg)", car_body[:1], 1)]
+        secondary = _not_below_zero("secondary stiffness and damping", car_body[1:], 2)
+        springs, dampers = [*springs, secondary[0]], [*dampers, secondary[1]]
+    unit, places = np.eye(len(masses)), np.array([0.0, base])
+    stretch = unit[2] + np.outer(places - 0.5 * base, unit[3]) - unit[:2]
     pressing = GRAVITY * np.array(masses)
     pressing[3] = 0.0
     pressing[2 if car_body is None else 4] += _load(load)
-    return _on(places, np.eye(size)[:2], np.array(masses), damping, stiffness, pressing)
+    stretch = np.vstack([stretch, unit[4:] - unit[2]])
+    return _on_springs(
+        places, unit[:2], np.array(masses), pressing, stretch, np.array(springs), np.array(dampers)
+    )
 
 
 def carriage(
@@ -376,7 +352,7 @@ def carriage(
     Elements move with the carriage: that a rolling ball follows at half its speed, and comes back around, is
     left out.
     """
-    heavy, moment = positive_numbers("mass (kg) and inertia (kg m^2) of the carriage", [mass, inertia], 2)
+    heavy, moment = _above_zero("mass (kg) and inertia (kg m^2) of the carriage", [mass, inertia], 2)
     at = np.atleast_1d(np.asarray(places, dtype=float))
     middle = at.mean() if centre is None else real("centre of mass (m)", centre, "a finite number")
     down = _load(load)
@@ -384,47 +360,38 @@ def carriage(
     lever = np.stack([np.ones_like(at), at - middle], axis=1)
     moved = np.array([heavy * GRAVITY + down, down * (pressed - middle)])
     if element_mass is None:
-        none = np.zeros((2, 2))
-        return _on(at, lever, np.array([heavy, moment]), none, none, moved)
-    element, spring = positive_numbers(
-        "mass (kg) of the elements and stiffness (N/m) above them",
-        [element_mass, 0.0 if upper_stiffness is None else upper_stiffness],
-        2,
-    )
-    damper = positive_numbers("damping above the elements (N s/m)", [upper_damping], 1, zero=True)[0]
-    size = at.size + 2
-    stiffness, damping = np.zeros((2, size, size))
-    for i in range(at.size):
-        above = np.concatenate([np.zeros(at.size), lever[i]])
-        _connect(stiffness, damping, above - _unit(size, i), spring, damper)
-    masses = np.concatenate([np.full(at.size, element), [heavy, moment]])
-    pressing = np.concatenate([np.full(at.size, element * GRAVITY), moved])
-    return _on(at, np.eye(size)[: at.size], masses, damping, stiffness, pressing)
+        none = np.zeros((0, 2))
+        return _on_springs(at, lever, np.array([heavy, moment]), moved, none, np.zeros(0), np.zeros(0))
+    what, stiffness = "mass (kg) of the elements and stiffness (N/m) above them", upper_stiffness or 0.0
+    element, spring = _above_zero(what, [element_mass, stiffness], 2)
+    damper = _not_below_zero("damping above the elements (N s/m)", [upper_damping], 1)
+    masses = np.append(np.full(at.size, element), [heavy, moment])
+    pressing = np.append(GRAVITY * masses[:-2], moved)
+    unit = np.eye(masses.size)
+    stretch = lever @ unit[-2:] - unit[: at.size]
+    return _on_springs(at, unit[: at.size], masses, pressing, stretch, np.full(at.size, spring), damper)
 
 
-def _connect(stiffness: Array, damping: Array, stretch: Array, spring: float, damper: float) -> None:
-    """Put a spring and a damper where the degrees of freedom stretch them by `stretch` (d,) each."""
-    stiffness += spring * np.outer(stretch, stretch)
-    damping += damper * np.outer(stretch, stretch)
-
-
-def _on(
-    places: Array, contacts: Array, masses: Array, damping: Array, stiffness: Array, pressing: Array
+def _on_springs(
+    places: Array,
+    contacts: Array,
+    masses: Array,
+    pressing: Array,
+    stretch: Array,
+    springs: Array,
+    dampers: Array,
 ) -> Body:
-    """Body that presses on each of its contacts."""
-    none, shapes = np.zeros(0), np.zeros((len(places), 0))
-    body = Body(np.diag(masses), damping, stiffness, contacts, pressing, places, none, none, shapes)
+    """Body that presses on each of its contacts, of masses (d,) on springs and dampers (k,) between them.
+
+    Each is stretched by the degrees of freedom as a row of `stretch` (k, d) says.
+    """
+    stiffness, damping = (stretch.T * each @ stretch for each in (springs, dampers))
+    body = Body(np.diag(masses), damping, stiffness, contacts, pressing, places)
     least = float(body.static_loads.min())
     if not least > 0.0:
-        received = f"a contact under {least:.4g} N"
-        raise InputError(
-            "load (N)", received, "contacts that are pressed at rest", "Press more, or nearer the middle."
-        )
+        received, allowed = f"a contact under {least:.4g} N", "contacts that are pressed at rest"
+        raise InputError("load (N)", received, allowed, "Press more, or nearer the middle.")
     return body
-
-
-def _unit(size: int, i: int) -> Array:
-    return np.asarray(np.eye(size)[i])
 
 
 def _load(load: float) -> float:

@@ -9,7 +9,7 @@ the track with constant loss factors, in each one-third octave.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from scipy.linalg import block_diag
 
 from asperity.spectra import third_octave_bands
 from asperity.store import Cache, content_key, made
+from asperity.structures.modal import Array, Complex
 from asperity.structures.track import Relaxation, Relaxations, Track, relaxing
 
 LOWEST, HIGHEST = 5.0, 5000.0
@@ -49,7 +50,7 @@ CHOICES = [
 MOST = 16
 """Causal tracks that are held."""
 
-Linearised = Callable[[NDArray[np.float64]], tuple[NDArray[np.float64], NDArray[np.float64]]]
+Linearised = Callable[[Array], tuple[Array, Array]]
 
 
 def causal_track(track: Track, cache: Cache | None = None) -> Track:
@@ -77,14 +78,14 @@ _fitted: dict[Track, Track] = {}
 def _relaxations(track: Track, cache: Cache | None) -> Relaxations:
     """Fit, or look up, what stands for the loss factors of a track."""
 
-    def make() -> dict[str, NDArray[np.float64]]:
+    def make() -> dict[str, Array]:
         fit = _Fit(track)
         unknowns = _least_squares(fit.linearised, fit.start()) if fit.lossy else np.zeros(0)
         found = vars(fit.track_of(unknowns).relaxations)
         return {part: np.array([r.static, *r.strengths]) for part, r in found.items() if r is not None}
 
-    parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
-    kept = make() if cache is None else made(cache, content_key("causal-track", parameters, CHOICES), make)
+    key = content_key("causal-track", track.parameters, CHOICES)
+    kept = make() if cache is None else made(cache, key, make)
     plain = {part: values.tolist() for part, values in kept.items()}
     return Relaxations(**{part: Relaxation(c[0], tuple(c[1:]), FREQUENCIES) for part, c in plain.items()})
 
@@ -127,7 +128,7 @@ class _Fit:
         nominal = self.receptance(track)
         self.wanted = [self.banded(np.abs(1.0 / (carried + nominal)) ** 2) for carried in self.carried]
 
-    def receptance(self, track: Track) -> NDArray[np.complex128]:
+    def receptance(self, track: Track) -> Complex:
         """Receptances of the rail at the places, (places, f)."""
         waves = track.waves(self.omega)
         return np.array([waves.receptance(x, x) for x in self.places])
@@ -137,11 +138,11 @@ class _Fit:
         mean = values.mean(axis=0)
         return np.asarray(mean.reshape(-1, LINES, *mean.shape[1:]).mean(axis=1))
 
-    def parts(self, unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
+    def parts(self, unknowns: Array) -> Array:
         """Coefficients of spring and elements, (lossy parts, 1 + elements)."""
         return np.asarray(self.least + unknowns.reshape(self.least.shape))
 
-    def track_of(self, unknowns: NDArray[np.float64], stiffer: str = "", share: float = 0.0) -> Track:
+    def track_of(self, unknowns: Array, stiffer: str = "", share: float = 0.0) -> Track:
         """The track with the elements that the unknowns stand for, one part stiffer by a share."""
         found = {}
         for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
@@ -149,16 +150,16 @@ class _Fit:
             found[name] = Relaxation(static, tuple(strengths), FREQUENCIES)
         return replace(self.track, relaxations=Relaxations(self.rail, **found))
 
-    def constant(self, stiffness: float, loss: float) -> NDArray[np.float64]:
+    def constant(self, stiffness: float, loss: float) -> Array:
         """Real and imaginary part of a constant, in the rows of `coarse`."""
         return np.repeat([stiffness, loss], len(self.coarse) // 2)
 
-    def start(self) -> NDArray[np.float64]:
+    def start(self) -> Array:
         """Unknowns that depart least from the constant loss factors."""
         aims = [self.constant(1.0 - least_static(eta), eta) for eta in self.lossy.values()]
         return np.concatenate([np.zeros(0), *(scipy.optimize.nnls(self.coarse, aim)[0] for aim in aims)])
 
-    def linearised(self, unknowns: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def linearised(self, unknowns: Array) -> tuple[Array, Array]:
         """Weighted errors and departures, (n,), and their slopes, (n, unknowns)."""
         receptance, share, columns = self.receptance(self.track_of(unknowns)), 1e-6, []
         for name, part in zip(self.lossy, self.parts(unknowns), strict=True):
@@ -173,11 +174,11 @@ class _Fit:
 
     def _errors(
         self,
-        carried: NDArray[np.float64],
-        wanted: NDArray[np.float64],
-        receptance: NDArray[np.complex128],
-        change: NDArray[np.complex128],
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        carried: Array,
+        wanted: Array,
+        receptance: Complex,
+        change: Complex,
+    ) -> tuple[Array, Array]:
         """Errors of the level in each band, dB, large ones weighted, and their slopes."""
         transfer = 1.0 / (carried + receptance)
         power = np.abs(transfer) ** 2
@@ -188,14 +189,14 @@ class _Fit:
         weight = np.sqrt(1.0 + (error / LARGE) ** 2)
         return share * weight * error, share * (2.0 * weight - 1.0 / weight)[:, None] * slopes
 
-    def _departures(self, unknowns: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _departures(self, unknowns: Array) -> tuple[Array, Array]:
         """Departures from the constant loss factors at the centres of bands, and their slopes."""
         aims = np.array([self.constant(1.0, eta) for eta in self.lossy.values()])
         departures = self.parts(unknowns) @ self.coarse.T - aims
         return DEPARTURE * departures.ravel(), DEPARTURE * block_diag(*[self.coarse] * len(aims))
 
 
-def _least_squares(linearised: Linearised, start: NDArray[np.float64]) -> NDArray[np.float64]:
+def _least_squares(linearised: Linearised, start: Array) -> Array:
     """Unknowns, not negative, of the least sum of squares: Levenberg-Marquardt, its steps by `nnls`."""
     unknowns, damping = start, 1e-3
     residual, slope = linearised(unknowns)

@@ -12,9 +12,12 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real, real_array
+from asperity.arguments import finite_array, positive, real, real_array
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.piecewise import evaluate_pieces
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 class Modal(Protocol):
@@ -27,54 +30,57 @@ class Modal(Protocol):
     @property
     def natural_frequencies(self) -> NDArray[np.float64]:
         """Undamped, of all modes (m,), Hz."""
-        ...
 
     @property
     def damping_ratios(self) -> NDArray[np.float64]:
         """ζ of all modes (m,)."""
-        ...
 
     @property
     def extent(self) -> tuple[float, float]:
         """Where it begins and ends on the path, m."""
-        ...
 
-    def shapes(self, x: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def shapes(self, x: ArrayLike) -> tuple[Array, Array]:
         """Mode shapes φ, kg^(−1/2), and their slopes, kg^(−1/2)/m, at positions (n,), m: both (n, m)."""
-        ...
 
-    def shapes_along(
-        self, start: float, spacing: float, count: int
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def shapes_along(self, start: float, spacing: float, count: int) -> tuple[Array, Array]:
         """As `shapes`, at equally spaced positions."""
-        ...
+        return self.shapes(start + spacing * np.arange(count))
 
 
-def modal_receptance(structure: Modal, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
-    """Displacement at `x` per harmonic force at `x0`, m/N, e^{+iωt}, of the shape of the frequency, Hz.
+def modal_receptance(structure: Modal, frequency: ArrayLike, x: float, x0: float) -> Complex:
+    """Displacement at `x` per harmonic force at `x0`, by modal superposition.
 
-    Zero frequency gives the static compliance, which a structure with modes of a rigid body has not.
+    Parameters
+    ----------
+    structure : Modal
+        Where this is a method of it, the structure itself.
+    frequency : array_like
+        Hz; zero gives the static compliance. Time factor exp(+i omega t).
+    x, x0 : float
+        Positions of the response and of the force, m.
+
+    Returns
+    -------
+    ndarray of complex
+        m/N, of the shape of `frequency`.
+
+    Raises
+    ------
+    InputError
+        If a position is off the structure, or a frequency zero and there are modes of a rigid body.
     """
     (response, force), _ = structure.shapes([x, x0])
-    return np.asarray(_answers(structure, frequency) @ (response * force), dtype=complex)
-
-
-def driving_point(structure: Modal, frequency: ArrayLike, x: ArrayLike) -> NDArray[np.complex128]:
-    """Displacement of places (p,), m, per harmonic force there (p, f), m/N, as `modal_receptance`."""
-    return np.asarray(structure.shapes(x)[0] ** 2 @ _answers(structure, frequency).T, dtype=complex)
-
-
-def _answers(structure: Modal, frequency: ArrayLike) -> NDArray[np.complex128]:
-    """Of all modes to a unit force on each (..., m)."""
-    omega = 2.0 * np.pi * np.asarray(frequency, dtype=float)[..., None]
-    natural = 2.0 * np.pi * structure.natural_frequencies
-    if not omega.all() and not natural.all():
+    natural = structure.natural_frequencies
+    if not np.all(frequency) and not natural.all():
         raise InputError("frequency (Hz)", 0, "above 0: what nothing holds has no static receptance")
-    answers = 1.0 / (natural**2 - omega**2 + 2j * structure.damping_ratios * natural * omega)
-    return np.asarray(answers, dtype=complex)
+    return modal_answers(frequency, natural, structure.damping_ratios) @ (response * force)
 
 
-Array = NDArray[np.float64]
+def modal_answers(frequency: ArrayLike, natural: Array, ratios: Array) -> Complex:
+    """Displacement of modes of unit mass per modal force (..., m), s²; frequencies (...) in Hz, e^{+iωt}."""
+    omega, own = 2.0 * np.pi * np.asarray(frequency, dtype=float)[..., None], 2.0 * np.pi * natural
+    return np.asarray(1.0 / (own**2 - omega**2 + 2j * ratios * own * omega), dtype=complex)
+
 
 STATIC = 1e8
 """Hz, of modes that stand for residual flexibility: static in any time step above 5 ns."""
@@ -158,7 +164,7 @@ POINTS_PER_WAVELENGTH = 6
 
 
 @dataclass(frozen=True, eq=False)
-class ModalStructure:
+class ModalStructure(Modal):
     """A structure that is rolled over, by its modes at points along the path: computed or measured.
 
     Parameters
@@ -219,37 +225,38 @@ class ModalStructure:
         if natural.size == 0 and flexibility is None:
             raise InputError("natural frequencies (Hz)", "none", "at least one mode")
         warn_of_coarse(at, shapes, natural)
-        for name, value in (
-            ("positions", at),
-            ("frequencies", natural),
-            ("damping", ratios),
-            ("mode_shapes", shapes),
-            ("modal_masses", None),  # the shapes are mass-normalised from here on
-            ("residual_flexibility", flexibility),
-        ):
+        checked = {"positions": at, "frequencies": natural, "damping": ratios, "mode_shapes": shapes}
+        for name, value in checked.items():
             object.__setattr__(self, name, value)
+        object.__setattr__(self, "modal_masses", None)  # the shapes are mass-normalised from here on
+        object.__setattr__(self, "residual_flexibility", flexibility)
 
     def _checked(self) -> tuple[Array, Array, Array, Array]:
         """Positions, mass-normalised shapes, frequencies and damping ratios, of fitting sizes."""
         at = real_array("positions of the modes (m)", self.positions, "rising numbers")
-        natural = real_array("natural frequencies (Hz)", self.frequencies, "numbers, 0 and more")
-        shapes = real_array("mode shapes", self.mode_shapes, "a matrix (positions, modes)")
         if at.ndim != 1 or at.size < 2 or not np.isfinite(at).all() or not (np.diff(at) > 0.0).all():
             received = f"shape {at.shape}, or numbers that do not rise"
             raise InputError("positions of the modes (m)", received, "two or more rising finite numbers")
-        if natural.ndim != 1 or shapes.shape != (at.size, natural.size):
-            received = f"shape {shapes.shape}"
-            allowed = f"({at.size}, {natural.size}): a row for each position, a column for each mode"
-            raise InputError("mode shapes", received, allowed)
-        ratios = _each("damping ratios", self.damping, natural.size, "0 and more, below 1", 0.0, 1.0)
-        _each("natural frequencies (Hz)", natural, natural.size, "0 and more, below 10 MHz", 0.0, HIGHEST)
+        allowed = "0 and more, below 10 MHz"
+        natural = finite_array(
+            "natural frequencies (Hz)", self.frequencies, allowed, at_least=0.0, below=HIGHEST
+        )
+        shapes, count = (
+            real_array("mode shapes", self.mode_shapes, "a matrix (positions, modes)"),
+            natural.size,
+        )
+        if natural.ndim != 1 or shapes.shape != (at.size, count):
+            allowed = f"({at.size}, {count}): a row for each position, a column for each mode"
+            raise InputError("mode shapes", f"shape {shapes.shape}", allowed)
         if not np.isfinite(shapes).all():
             raise InputError("mode shapes", "values that are not finite", "finite numbers")
+        given = self.damping if np.ndim(self.damping) else np.full(count, self.damping)
+        ratios = finite_array(
+            "damping ratios", given, "0 and more, below 1", count=count, at_least=0.0, below=1.0
+        )
         if self.modal_masses is not None:
-            least = np.finfo(float).tiny
-            shapes = shapes / np.sqrt(
-                _each("modal masses (kg)", self.modal_masses, natural.size, "above 0", least, np.inf)
-            )
+            masses = finite_array("modal masses (kg)", self.modal_masses, "above 0", count=count, above=0.0)
+            shapes = shapes / np.sqrt(masses)
         silent = np.flatnonzero(~np.abs(shapes).any(axis=0))
         if silent.size:
             received = f"mode {silent[0] + 1} that does not move anywhere"
@@ -281,9 +288,9 @@ class ModalStructure:
             If a value is not positive.
         """
         at = self.positions
-        rigid = [np.full(at.size, real("mass (kg)", mass, "a positive number", above=0.0) ** -0.5)]
+        rigid = [np.full(at.size, positive("mass (kg)", mass) ** -0.5)]
         if inertia is not None:
-            moment = real("moment of inertia (kg m^2)", inertia, "a positive number", above=0.0)
+            moment = positive("moment of inertia (kg m^2)", inertia)
             middle = 0.5 * (at[0] + at[-1]) if centre is None else centre
             rigid.append((at - real("centre of mass (m)", middle, "a finite number")) / np.sqrt(moment))
         none = np.zeros(len(rigid))
@@ -296,13 +303,9 @@ class ModalStructure:
 
     def numbers(self) -> dict[str, Array]:
         """All that it is made of, by name: a case that holds it is named by these."""
-        found = {"positions": self.positions, "frequencies": self.frequencies, "shapes": self.mode_shapes}
-        flexibility = self.residual_flexibility
-        none = np.zeros(0)
-        return found | {
-            "damping": np.asarray(self.damping),
-            "residual": none if flexibility is None else flexibility,
-        }
+        residual = np.zeros(0) if self.residual_flexibility is None else self.residual_flexibility
+        numbers = {"positions": self.positions, "frequencies": self.frequencies, "shapes": self.mode_shapes}
+        return numbers | {"damping": np.asarray(self.damping), "residual": residual}
 
     @cached_property
     def _static(self) -> Array:
@@ -356,25 +359,7 @@ class ModalStructure:
         """
         return shapes_at(self._pieces, x)
 
-    def shapes_along(self, start: float, spacing: float, count: int) -> tuple[Array, Array]:
-        """As `shapes`, at equally spaced positions from a first one, m."""
-        return self.shapes(start + spacing * np.arange(count))
-
-    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
-        """Displacement at `x` per harmonic force at `x0`, m/N; frequencies in Hz, e^{+iωt}."""
-        return modal_receptance(self, frequency, x, x0)
-
-
-def _each(what: str, given: object, count: int, allowed: str, least: float, below: float) -> Array:
-    """Take a number for each mode, or one for all."""
-    values = real_array(what, given, allowed)
-    if values.ndim > 1 or (values.ndim == 1 and values.size != count):
-        raise InputError(what, f"shape {values.shape}", f"one for each of {count} modes")
-    values = np.broadcast_to(values, (count,)).copy()
-    wrong = ~((values >= least) & (values < below))
-    if wrong.any():
-        raise InputError(what, float(values[wrong][0]), allowed)
-    return values
+    receptance = modal_receptance
 
 
 def warn_of_coarse(at: Array, shapes: Array, natural: Array) -> None:

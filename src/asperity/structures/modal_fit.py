@@ -3,31 +3,29 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
-from typing import Any, Literal, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.errors import CoarseSamplingWarning, ComputationError, Grade, InputError, ShortRecordWarning
+from asperity import errors
+from asperity.errors import ComputationError, InputError
+from asperity.structures.modal import Array, Complex, modal_answers
 from asperity.threads import one_thread_in_linear_algebra
 
-Domain = Literal["half-plane", "disc"]
 
-
-@dataclass(frozen=True, eq=False)
-class RationalFit:
+class RationalFit(NamedTuple):
     """Responses as sums over common stable poles.
 
     A response is the sum of r/(s − p) over real poles, and of r/(s − p) + r*/(s − p*) over the others.
     """
 
-    # (p,), im >= 0; those with Im > 0 stand for themselves and their conjugates
-    poles: NDArray[np.complex128]
-    residues: NDArray[np.complex128]  # (m, p), of each response; real where the pole is real
+    poles: Complex  # (p,), im >= 0; those with Im > 0 stand for themselves and their conjugates
+    residues: Complex  # (m, p), of each response; real where the pole is real
     error: float  # root mean square of the weighted error, relative to that of the weighted responses
 
 
@@ -38,65 +36,69 @@ def vector_fit(
     *,
     weights: ArrayLike | None = None,
     iterations: int = 10,
-    domain: Domain = "half-plane",
-    radius: float = 1.0,
+    radius: float | None = None,
 ) -> RationalFit:
     """Fit responses by rational functions with common poles and no polynomial part.
 
-    Responses (m, n) or (n,) are known at points (n,): s = iω for ``"half-plane"``, z = e^{iωΔt} for
-    ``"disc"``; they are those of real signals, so that conjugate points have conjugate responses. Start poles
-    (p,) have Im >= 0. Stable poles lie where Re s < 0, or |z| < `radius`; others are mirrored there. They are
-    relocated `iterations` times; the best set met is kept.
+    Responses (m, n) or (n,) are known at points (n,), more than two for each pole: s = iω, or with a radius
+    z = e^{iωΔt}; they are those of real signals, so that conjugate points have conjugate responses. Start
+    poles (p,) have Im >= 0. Stable poles lie where Re s < 0, or |z| < `radius`; others are mirrored there.
+    They are relocated `iterations` times; the best set met is kept.
 
     B. Gustavsen and A. Semlyen, IEEE Trans. Power Delivery 14 (1999) 1052; relaxed: B. Gustavsen, ibid. 21
     (2006) 1587; one QR factorisation per response: D. Deschrijver et al., IEEE Microw. Wireless Compon. Lett.
     18 (2008) 383. Responses are first compressed to the few that span them.
     """
-    s, found = np.asarray(points, dtype=complex), np.asarray(poles, dtype=complex)
-    values = np.atleast_2d(np.asarray(responses, dtype=complex))
+    s, moved = np.asarray(points, dtype=complex), np.asarray(poles, dtype=complex)
     weight = np.ones(s.size) if weights is None else np.asarray(weights, dtype=float)
-    if not (np.isfinite(s).all() and np.isfinite(values).all() and np.isfinite(weight).all()):
-        raise InputError("responses to fit", "values that are not finite", "finite values")
-    if s.size < 2 * found.size + 1:
-        received = f"{s.size} points for {found.size} poles"
-        raise InputError(
-            "responses to fit", received, "more than two points per pole", "Fit fewer poles, or give more."
-        )
-    weighted = weight * values
+    weighted = weight * np.atleast_2d(np.asarray(responses, dtype=complex))
     scale, spanning = np.linalg.norm(weighted), _spanning(weighted)
-    best = RationalFit(found, np.zeros((len(values), found.size), dtype=complex), np.inf)
+    right = np.concatenate([weighted.real, weighted.imag], axis=1).T
+    best = RationalFit(moved, np.zeros((len(weighted), moved.size), dtype=complex), np.inf)
     for _ in range(iterations):
-        found = _stable(_relocated(s, weight, spanning, found), domain, radius)
-        if found.size == 0 or not np.isfinite(found).all():
+        moved = _stable(_relocated(s, weight, spanning, moved), radius)
+        if moved.size == 0 or not np.isfinite(moved).all():
             break
-        residues, left = _residues(s, weight, weighted, found)
-        error = float(np.linalg.norm(left) / scale) if scale > 0.0 else 0.0
+        matrix = _stacked(weight[:, None] * partial_fractions(s, moved))
+        solution = least_squares(matrix, right)
+        error = float(np.linalg.norm(matrix @ solution - right) / scale) if scale > 0.0 else 0.0
         if error < best.error:
-            best = RationalFit(found, residues, error)
+            best = RationalFit(moved, paired(solution, moved), error)
     if not np.isfinite(best.error):
         raise ComputationError("the rational fit broke down", "fewer poles, or a smoother response")
     return best
 
 
-def partial_fractions(
-    points: NDArray[np.complex128], poles: NDArray[np.complex128]
-) -> NDArray[np.complex128]:
+def least_squares(matrix: Array, right: Array, smallest: float | None = None) -> Array:
+    """Least squares in columns of size one; singular values below a share of the largest are left out."""
+    size = np.linalg.norm(matrix, axis=0)
+    return np.asarray((np.linalg.lstsq(matrix / size, right, rcond=smallest)[0].T / size).T)
+
+
+def real_basis(poles: Complex) -> NDArray[np.bool_]:
+    """Which of two real numbers for each pole count (2p,): the first of a real pole, both of a pair."""
+    return np.stack([np.ones(poles.size, dtype=bool), poles.imag != 0.0], axis=1).ravel()
+
+
+def partial_fractions(points: Complex, poles: Complex) -> Complex:
     """Real-coefficient basis (n, p + q) of partial fractions at points s (n,), poles (p,) with Im >= 0.
 
     For each pole 1/(s − p), or for Im > 0 the two columns 1/(s − p) ± 1/(s − p*), the second times i.
     """
-    columns = []
-    for pole in poles:
-        first = 1.0 / (points - pole)
-        if pole.imag == 0.0:
-            columns.append(first)
-        else:
-            second = 1.0 / (points - np.conj(pole))
-            columns += [first + second, 1j * (first - second)]
-    return np.array(columns).T
+    first, second = (1.0 / (points - each[:, None]) for each in (poles, poles.conj()))
+    both = np.where((poles.imag == 0.0)[:, None], first, first + second)
+    pairs = np.stack([both, 1j * (first - second)], axis=1).reshape(-1, points.size)
+    return pairs[real_basis(poles)].T
 
 
-def _spanning(weighted: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def paired(coefficients: Array, poles: Complex) -> Complex:
+    """Complex residues (m, p) from the real coefficients (p + q, m) of `partial_fractions`."""
+    parts = np.zeros((2 * poles.size, coefficients.shape[1]))
+    parts[real_basis(poles)] = coefficients
+    return np.ascontiguousarray((parts[::2] + 1j * parts[1::2]).T)
+
+
+def _spanning(weighted: Complex) -> Complex:
     """Few real combinations of the responses that span all of them, by singular values."""
     joined = np.concatenate([weighted.real, weighted.imag], axis=1)
     _, size, rows = np.linalg.svd(joined, full_matrices=False)
@@ -105,96 +107,46 @@ def _spanning(weighted: NDArray[np.complex128]) -> NDArray[np.complex128]:
     return np.asarray(real + 1j * imaginary)
 
 
-def _stacked(matrix: NDArray[np.complex128]) -> NDArray[np.float64]:
+def _stacked(matrix: Complex) -> Array:
     return np.concatenate([matrix.real, matrix.imag])
 
 
-def _relocated(
-    s: NDArray[np.complex128],
-    weight: NDArray[np.float64],
-    spanning: NDArray[np.complex128],
-    poles: NDArray[np.complex128],
-) -> NDArray[np.complex128]:
+def _relocated(s: Complex, weight: Array, spanning: Complex, poles: Complex) -> Complex:
     """Zeros of the fitted scaling function: the next poles."""
     basis = partial_fractions(s, poles)
     known, unknowns = _stacked(weight[:, None] * basis), basis.shape[1]
     scaling = np.column_stack([basis, np.ones(s.size)])
-    blocks: list[NDArray[np.float64]] = []
+    blocks: list[Array] = []
     for response in spanning:  # already weighted
         system = np.hstack([known, -_stacked(response[:, None] * scaling)])
         blocks.append(np.asarray(np.linalg.qr(system, mode="r"))[unknowns:, unknowns:])
     scale = np.linalg.norm(spanning) / s.size
-    relaxation = scale * scaling.real.sum(axis=0)
-    matrix = np.vstack([*blocks, relaxation])
+    matrix = np.vstack([*blocks, scale * scaling.real.sum(axis=0)])  # the last row keeps it from zero
     right = np.zeros(len(matrix))
     right[-1] = scale * s.size
-    size = np.linalg.norm(matrix, axis=0)
-    solution = np.linalg.lstsq(matrix / size, right, rcond=None)[0] / size
-    state, drive = _realisation(poles)
+    solution = least_squares(matrix, right)
+    # real state matrix and input vector of the partial fractions
+    used = real_basis(poles)
+    state = scipy.linalg.block_diag(*(np.array([[p.real, p.imag], [-p.imag, p.real]]) for p in poles))
+    drive = np.ravel([[2.0 if p.imag else 1.0, 0.0] for p in poles])[used]
     with np.errstate(divide="ignore", invalid="ignore"):
         update = np.outer(drive, solution[:-1]) / solution[-1]
     if not np.isfinite(update).all():
         return np.zeros(0, dtype=complex)
-    zeros = np.linalg.eigvals(state - update)
+    zeros = np.linalg.eigvals(state[np.ix_(used, used)] - update)
     zeros = np.where(np.abs(zeros.imag) <= 1e-12 * np.abs(zeros), zeros.real, zeros)
     return zeros[zeros.imag >= 0.0]
 
 
-def _realisation(poles: NDArray[np.complex128]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Real state matrix and input vector of the partial fractions."""
-    columns = int(np.sum(np.where(poles.imag == 0.0, 1, 2)))
-    state, drive, i = np.zeros((columns, columns)), np.zeros(columns), 0
-    for pole in poles:
-        if pole.imag == 0.0:
-            state[i, i], drive[i] = pole.real, 1.0
-            i += 1
-        else:
-            state[i : i + 2, i : i + 2] = [[pole.real, pole.imag], [-pole.imag, pole.real]]
-            drive[i] = 2.0
-            i += 2
-    return state, drive
+def _stable(poles: Complex, radius: float | None) -> Complex:
+    if radius is None:
+        return np.asarray(-np.abs(poles.real) + 1j * poles.imag)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.abs(poles) > radius, radius**2 / np.conj(poles), poles)
 
 
-def _stable(poles: NDArray[np.complex128], domain: Domain, radius: float) -> NDArray[np.complex128]:
-    if domain == "disc":
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mirrored = np.where(np.abs(poles) > radius, radius**2 / np.conj(poles), poles)
-    else:
-        mirrored = -np.abs(poles.real) + 1j * poles.imag
-    return np.asarray(mirrored, dtype=complex)
-
-
-def _residues(
-    s: NDArray[np.complex128],
-    weight: NDArray[np.float64],
-    weighted: NDArray[np.complex128],
-    poles: NDArray[np.complex128],
-) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Residues by least squares, and what they leave of the weighted responses."""
-    matrix = _stacked(weight[:, None] * partial_fractions(s, poles))
-    right = np.concatenate([weighted.real, weighted.imag], axis=1).T
-    size = np.linalg.norm(matrix, axis=0)
-    solution = np.linalg.lstsq(matrix / size, right, rcond=None)[0] / size[:, None]
-    return paired(solution, poles), matrix @ solution - right
-
-
-def paired(coefficients: NDArray[np.float64], poles: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """Complex residues (m, p) from the real coefficients (p + q, m) of `partial_fractions`."""
-    result, i = np.zeros((coefficients.shape[1], poles.size), dtype=complex), 0
-    for j, pole in enumerate(poles):
-        if pole.imag == 0.0:
-            result[:, j] = coefficients[i]
-            i += 1
-        else:
-            result[:, j] = coefficients[i] + 1j * coefficients[i + 1]
-            i += 2
-    return result
-
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Modes = tuple[Array, Array, Array]
-M = TypeVar("M")
+"""Frequencies (m,), Hz, damping ratios (m,), and modal masses (m,), kg, or shapes (p, m), kg^(−1/2)."""
 
 MOST_PEAKS = 60
 MOST_RESPONSES = 8  # that poles are looked for in
@@ -207,6 +159,8 @@ RESIDUAL_MODES = (1.5, 3.0)  # of the highest frequency: the stiffness of all mo
 RESIDUAL_DAMPING = 0.01
 LARGEST, SLOWEST = 1e20, 1e-6  # receptance, m/N, or one over it, and frequency, Hz: products stay finite
 REACH = 2.0  # of the highest frequency that matters: how far receptances are to be known and are fitted
+FEWEST_FREQUENCIES = 10
+DOUBTFUL_FIT, REFUSED_FIT = 1.0, 6.0  # dB: warned of, and where mass or unit cannot be right
 LEAST_LINES = 0.5  # lines in the width of a mode at half its power, below which it is noted
 FLOOR = 0.05  # of the rms of all responses at a frequency, below which errors count no more
 MOST_RANKS, SMALL_RANK = 8, 0.02  # of the residual stiffness: its largest parts, and of the largest
@@ -218,8 +172,7 @@ def fit_modes(frequency: Array, receptance: Complex, rigid: Complex) -> Modes:
     """Modes with positive modal masses that add to the rigid motion of a wheel.
 
     Frequency (n,), Hz, above zero and rising; receptances (n,) of the whole wheel, not zero, and of its rigid
-    motion, m/N. Returns frequencies, Hz, damping ratios and modal masses, kg, in order of frequency; none of
-    a rigid wheel.
+    motion, m/N. Modes in order of frequency; none of a rigid wheel.
 
     Poles come from vector fitting, modal masses from non-negative least squares: the sum takes energy at
     every frequency, also outside of the band. Relative errors count the same at all points. Modes that
@@ -227,21 +180,17 @@ def fit_modes(frequency: Array, receptance: Complex, rigid: Complex) -> Modes:
     """
     check_range(frequency, receptance, rigid)
     flexible, weights = receptance - rigid, 1.0 / np.abs(receptance)
-    nothing = (np.zeros(0), np.zeros(0), np.zeros(0))
-
-    def masses(poles: Complex) -> tuple[Modes, float, int]:
-        found, error = _modal_masses(frequency, flexible, weights, poles)
-        return found, error, len(found[0])
-
-    return _searched(frequency, flexible[None], weights, np.abs(receptance), nothing, masses)
+    none, masses = np.zeros(0), partial(_modal_masses, frequency, flexible, weights)
+    left = float(np.linalg.norm(weights * flexible))
+    level = np.abs(receptance)
+    return _searched(frequency, flexible[None], weights, level, masses, ((none, none, none), left))
 
 
 def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: NDArray[np.intp]) -> Modes:
     """Modes with real shapes that add to the rigid motion of a structure.
 
     Frequency (n,), Hz, above zero and rising; receptances (n, p, e) of p places under forces at e of them,
-    whose numbers are `driven`, and of the rigid motion, m/N. Returns frequencies, Hz, damping ratios and mode
-    shapes (p, m), kg^(−1/2), in order of frequency.
+    whose numbers are `driven`, and of the rigid motion, m/N. Modes with their shapes in order of frequency.
 
     Poles are common to all responses; the residues of each are the products of its shape at both places, so
     that all modal masses are positive. Errors count relative to each response, but for responses far below
@@ -251,15 +200,74 @@ def fit_shapes(frequency: Array, receptance: Complex, rigid: Complex, driven: ND
     flexible = receptance - rigid
     level = np.sqrt(np.mean(np.abs(receptance) ** 2, axis=(1, 2)))
     weights = 1.0 / np.hypot(np.abs(receptance), FLOOR * level[:, None, None])
-    nothing = (np.zeros(0), np.zeros(0), np.zeros((receptance.shape[1], 0)))
-
-    def shapes(poles: Complex) -> tuple[Modes, float, int]:
-        found, error = _mode_shapes(frequency, flexible, weights, driven, poles)
-        return found, error, len(found[0])
-
-    responses, none = flexible.reshape(len(frequency), -1).T, float(np.linalg.norm(weights * flexible))
+    shapes = partial(_mode_shapes, frequency, flexible, weights, driven)
+    none = np.zeros(0), np.zeros(0), np.zeros((receptance.shape[1], 0))
+    left = float(np.linalg.norm(weights * flexible))
+    responses = flexible.reshape(len(frequency), -1).T
     with one_thread_in_linear_algebra():
-        return _searched(frequency, responses, 1.0 / level, level, nothing, shapes, none)
+        return _searched(frequency, responses, 1.0 / level, level, shapes, (none, left))
+
+
+def checked_record(
+    what: str, frequency: ArrayLike, receptance: ArrayLike, places: int, forces: int, highest: float = np.inf
+) -> tuple[Array, Complex]:
+    """Take frequencies (n,), Hz, up to the highest, and receptances (n, places, forces) that make sense.
+
+    Without the last axes where there is one force, or one place as well.
+    """
+    f, given = np.asarray(frequency, dtype=float), np.asarray(receptance, dtype=complex)
+    received = f"shapes {f.shape} and {given.shape}"
+    if forces == 1:
+        given = given.reshape(*given.shape, *(1,) * (3 - given.ndim))
+    if f.ndim != 1 or given.shape != (f.size, places, forces):
+        allowed = f"n frequencies, and (n, {places}, {forces}): one value for each of them, place and force"
+        raise InputError(what, received, allowed)
+    if not (np.isfinite(f).all() and np.isfinite(given).all()):
+        raise InputError(what, "values that are not finite", "finite values")
+    if f.size and not (f[0] > 0.0 and (np.diff(f) > 0.0).all()):
+        raise InputError(what, "frequencies in disorder", "frequencies above 0 Hz and rising")
+    f, given = f[f <= highest], given[f <= highest]
+    if f.size < FEWEST_FREQUENCIES:
+        up_to = f" up to {highest:g} Hz" if np.isfinite(highest) else ""
+        raise InputError(what, f"{f.size} frequencies{up_to}", f"at least {FEWEST_FREQUENCIES}")
+    if not np.abs(given).any(axis=(1, 2)).all():
+        raise InputError(what, "nothing but zeros at a frequency", "a response", "Leave it out.")
+    return f, given
+
+
+def refuse_other_time_factor(what: str, at_forces: Complex) -> None:
+    """Refuse receptances (n, e, e) of forces at their own places whose imaginary part is positive."""
+    point = np.einsum("nii->ni", at_forces)
+    sine = point.imag / np.maximum(np.abs(point), np.finfo(float).tiny)
+    if sine.sum() > 3.0 * np.linalg.norm(sine):  # more than noise of random sign
+        raise InputError(
+            what,
+            "an imaginary part under the forces that is mostly positive",
+            "the time factor e^{+iωt}, whose imaginary part is negative where there are losses",
+            "Conjugate the values; divide a mobility by iω first.",
+        )
+
+
+def level_error(fitted: Complex, given: Complex) -> float:
+    """Root mean square of the level differences of receptances, dB."""
+    with np.errstate(divide="ignore"):
+        return float(np.sqrt(np.mean((20.0 * np.log10(np.abs(fitted / given))) ** 2)))
+
+
+def judge_fit(what: str, error: float, modes: str) -> None:
+    """Refuse a fit that misses its receptances by decibels, and warn of one that is doubtful."""
+    if not error <= REFUSED_FIT:
+        received = f"values that {modes} meet to {error:.1f} dB only"
+        allowed = f"a receptance that modes meet within {REFUSED_FIT:.0f} dB"
+        remedy = "Check the mass, the unit m/N, and that it is displacement along the force, not velocity."
+        raise InputError(what, received, allowed, remedy)
+    if error > DOUBTFUL_FIT:
+        warnings.warn(
+            f"{modes} meet the given {what} to {error:.1f} dB only, more than {DOUBTFUL_FIT:.0f} dB: "
+            "resonances are uncertain by as much. Give a finer or smoother receptance, or the modes.",
+            errors.UnconvergedWarning,
+            stacklevel=4,
+        )
 
 
 def check_range(frequency: Array, *receptances: Complex) -> None:
@@ -285,8 +293,8 @@ def warn_of_short_band(what: str, frequency: Array, highest: float) -> None:
         "above, little but the stiffness is known, and the highest bands may be decibels off. Give them to "
         f"{REACH * highest:.4g} Hz, or lower numerics.highest_frequency to {end / REACH:.4g} Hz."
     )
-    grade = Grade.WARNING if end >= highest else Grade.OUT
-    warnings.warn(ShortRecordWarning(told, grade), stacklevel=3)
+    grade = errors.Grade.WARNING if end >= highest else errors.Grade.OUT
+    warnings.warn(errors.ShortRecordWarning(told, grade), stacklevel=3)
 
 
 def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
@@ -303,7 +311,7 @@ def warn_of_wide_lines(frequency: Array, natural: Array, ratios: Array) -> None:
             f"{apart[worst]:.3g} Hz apart. With noise its loss factor is a guess. Give lines at most "
             f"{width[worst]:.2g} Hz apart there; they need not be even, and a netCDF file holds many."
         )
-        warnings.warn(CoarseSamplingWarning(told, Grade.NOTE), stacklevel=4)
+        warnings.warn(errors.CoarseSamplingWarning(told, errors.Grade.NOTE), stacklevel=4)
 
 
 def _searched(
@@ -311,34 +319,31 @@ def _searched(
     responses: Complex,
     weights: Array,
     level: Array,
-    nothing: M,
-    residues: Callable[[Complex], tuple[M, float, int]],
-    error_of_none: float | None = None,
-) -> M:
+    modes_of: Callable[[Complex], tuple[Modes, float]],
+    best: tuple[Modes, float],
+) -> Modes:
     """Modes of the start poles that leave the least error, tried in turn while more of them are worthwhile.
 
-    Responses (q, n), common weights (n,) and the level (n,) in which peaks are looked for. `residues` makes
-    modes of given poles: they, the weighted error that they leave, and their number.
+    Responses (q, n), common weights (n,) and the level (n,) in which peaks are looked for. `modes_of` makes
+    modes of given poles, and the weighted error that they leave; `best` are no modes, and that of them.
     """
-    best = nothing
-    best_error = float(np.linalg.norm(weights * responses[0])) if error_of_none is None else error_of_none
     mixed = responses
     if len(responses) > MOST_RESPONSES:  # every pole is in every sum of them
         mixed = np.random.default_rng(0).standard_normal((MOST_RESPONSES, len(responses))) @ responses
     for start in _start_poles(frequency, level):
-        if best_error <= GOOD_FIT * np.sqrt(responses.size):
+        before = best[1]
+        if before <= GOOD_FIT * np.sqrt(responses.size):
             break
         try:
             poles = vector_fit(2j * np.pi * frequency, mixed, start, weights=weights).poles
-            modes, error, count = residues(_with_residual(poles, frequency))
+            modes, error = modes_of(_with_residual(poles, frequency))
         except (ComputationError, np.linalg.LinAlgError):
             continue
-        before = best_error
         if error < before:
-            best, best_error = modes, error
-        if count and error > WORTHWHILE * before:
+            best = modes, error
+        if len(modes[0]) and error > WORTHWHILE * before:
             break
-    return best
+    return best[0]
 
 
 def _start_poles(frequency: Array, level: Array) -> list[NDArray[Any]]:
@@ -369,19 +374,12 @@ def _with_residual(poles: Complex, frequency: Array) -> Complex:
     return np.concatenate([poles[near], residual * (1j * damped - RESIDUAL_DAMPING)])
 
 
-def modal_answers(frequency: Array, natural: Array, ratios: Array) -> Complex:
-    """Displacement of modes of unit mass per modal force (n, m), s²; frequencies in Hz, e^{+iωt}."""
-    omega, own = 2.0 * np.pi * frequency[:, None], 2.0 * np.pi * natural
-    return np.asarray(1.0 / (own**2 - omega**2 + 2j * ratios * own * omega))
-
-
 def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Complex) -> tuple[Modes, float]:
     """Modes of given poles by non-negative least squares, and the weighted error that they leave."""
-    omega, natural = 2.0 * np.pi * frequency[:, None], np.abs(poles)
-    ratio = -poles.real / natural
-    columns = weights[:, None] / (natural**2 - omega**2 + 2j * ratio * natural * omega)
-    matrix = np.concatenate([columns.real, columns.imag])
-    right = np.concatenate([(weights * flexible).real, (weights * flexible).imag])
+    natural = np.abs(poles) / (2.0 * np.pi)
+    ratio = -poles.real / np.abs(poles)
+    matrix = _stacked(weights[:, None] * modal_answers(frequency, natural, ratio))
+    right = _stacked(weights * flexible)
     size = np.linalg.norm(matrix, axis=0)
     # a share is the norm of what a mode contributes
     shares, error = _not_negative(matrix / size, right)
@@ -389,7 +387,7 @@ def _modal_masses(frequency: Array, flexible: Complex, weights: Array, poles: Co
     kept = kept[np.argsort(natural[kept])]
     shares, error = _not_negative(matrix[:, kept] / size[kept], right)
     kept, shares = kept[shares > 0.0], shares[shares > 0.0]
-    return (natural[kept] / (2.0 * np.pi), ratio[kept], size[kept] / shares), float(error)
+    return (natural[kept], ratio[kept], size[kept] / shares), error
 
 
 def _not_negative(matrix: Array, right: Array) -> tuple[Array, float]:
@@ -414,16 +412,16 @@ def _mode_shapes(
     frequency: Array, flexible: Complex, weights: Array, driven: NDArray[np.intp], poles: Complex
 ) -> tuple[Modes, float]:
     """Modes of given poles with real shapes, and the weighted error that they leave."""
-    natural = np.abs(poles)
-    ratio = -poles.real / natural
-    answers = modal_answers(frequency, natural / (2.0 * np.pi), ratio)
+    natural = np.abs(poles) / (2.0 * np.pi)
+    ratio = -poles.real / np.abs(poles)
+    answers = modal_answers(frequency, natural, ratio)
     scale = np.linalg.norm(answers, axis=0)
     answers, target = answers / scale, weights * flexible
     sums = _summed(answers, target, weights)
     mode, at_driven = _first_shapes(sums, driven, len(RESIDUAL_MODES))
     for _ in range(2):  # the second time without modes that contribute nothing
         at_driven = _settled(sums, driven, mode, at_driven)
-        shapes = _rows(sums, range(target.shape[1]), mode, at_driven)
+        shapes = _rows(sums, mode, at_driven)
         shapes[driven] = at_driven
         size = np.einsum("ijrr->ijr", sums.products)[:, :, mode]
         parts = np.sqrt(np.einsum("ijr,ir,jr->r", size, shapes**2, at_driven**2))
@@ -434,8 +432,7 @@ def _mode_shapes(
         kept = np.flatnonzero(parts**2 > max(ONLY_NOISE * error**2, 1e-12 * parts.max(initial=0.0) ** 2))
         kept = kept[np.argsort(natural[mode[kept]], kind="stable")]
         mode, at_driven, shapes = mode[kept], at_driven[:, kept], shapes[:, kept]
-    found = natural[mode] / (2.0 * np.pi), ratio[mode], shapes / np.sqrt(scale[mode])
-    return found, error
+    return (natural[mode], ratio[mode], shapes / np.sqrt(scale[mode])), error
 
 
 def _summed(answers: Complex, target: Complex, weights: Array) -> _Sums:
@@ -504,13 +501,12 @@ def _error_of(shapes: Array, products: Array, targets: Array) -> tuple[float, Ar
     return error, slope, curvature.reshape(shapes.size, shapes.size)
 
 
-def _rows(sums: _Sums, places: Iterable[int], mode: NDArray[np.intp], at_driven: Array) -> Array:
-    """Shapes (places, modes) by least squares, for given ones (e, modes) at the places of excitation."""
+def _rows(sums: _Sums, mode: NDArray[np.intp], at_driven: Array) -> Array:
+    """Shapes (p, modes) by least squares, for given ones (e, modes) at the places of excitation."""
     rows = []
-    for i in places:
-        products = sums.products[i][:, mode[:, None], mode]
-        matrix = np.einsum("jr,jrs,js->rs", at_driven, products, at_driven)
-        rows.append(_solved(matrix, np.einsum("jr,jr->r", at_driven, sums.targets[i][:, mode])))
+    for products, targets in zip(sums.products, sums.targets, strict=True):
+        matrix = np.einsum("jr,jrs,js->rs", at_driven, products[:, mode[:, None], mode], at_driven)
+        rows.append(_solved(matrix, np.einsum("jr,jr->r", at_driven, targets[:, mode])))
     return np.array(rows)
 
 

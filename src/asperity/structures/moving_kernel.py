@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import warnings
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
-from asperity.arguments import real, shown, whole
+from asperity.arguments import not_negative, positive, real, shown, whole
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
 from asperity.store import Cache, content_key, made
 from asperity.structures.causal_track import causal_track
+from asperity.structures.modal import Array, Complex
 from asperity.structures.periodic_rail import PeriodicWaves
 from asperity.structures.track import Track
 from asperity.threads import thread_count
@@ -35,7 +35,7 @@ class HatResponse:
     """
 
     def __init__(self, track: Track, time_step: float, taps: int, zones: int) -> None:
-        self.taps, self.time_step = taps, time_step
+        self.track, self.taps, self.time_step = track, taps, time_step
         period = 2 * taps * time_step
         self.shift = SHIFT / period
         self.omega = 2.0 * np.pi / period * np.arange(zones * taps + 1) - 1j * self.shift
@@ -43,14 +43,14 @@ class HatResponse:
         self.hat = (np.sin(half) / half) ** 2
         self.waves: PeriodicWaves = track.waves(self.omega)
 
-    def response(self, spectra: NDArray[np.complex128]) -> NDArray[np.float64]:
+    def response(self, spectra: Complex) -> Array:
         """Response to the hat at lags 0 … taps − 1 from receptances times the hat, (k, f) → (k, taps)."""
         n = self.taps
         response = fft.irfft(_folded(spectra, n), 2 * n, axis=1)[:, :n]
         return np.asarray(response * np.exp(self.shift * self.time_step * np.arange(n)))
 
 
-def _folded(spectra: NDArray[np.complex128], n: int) -> NDArray[np.complex128]:
+def _folded(spectra: Complex, n: int) -> Complex:
     """Sum over all frequencies that look alike at the time steps, up to half the sampling frequency."""
     folded = spectra[:, : n + 1].copy()
     folded[:, n] = 2.0 * folded[:, n].real
@@ -86,8 +86,13 @@ class MovingKernel:
     track: Track  # with relaxations where it has loss factors
     speed: float  # of the contact, m/s
     time_step: float  # s
-    weights: NDArray[np.float64]  # (positions, taps), m/N
+    weights: Array  # (positions, taps), m/N
     distance: float = 0.0  # of the contact whose displacement it is ahead of the force, m; negative behind
+
+    @property
+    def kernel(self) -> MovingKernel:
+        """Itself, as of `RailPoles` what was fitted."""
+        return self
 
     @property
     def spacing(self) -> float:
@@ -95,14 +100,15 @@ class MovingKernel:
         return self.track.sleeper_spacing
 
     @property
-    def lag(self) -> NDArray[np.float64]:
+    def lag(self) -> Array:
         """Times of the columns, s."""
         return np.asarray(np.arange(self.weights.shape[1]) * self.time_step)
 
     @property
     def left_over(self) -> float:
         """Largest value in its last tenth, relative to the largest of all."""
-        return _left_over(self.weights)
+        last = self.weights[:, -max(1, self.weights.shape[1] // 10) :]
+        return float(np.abs(last).max() / np.abs(self.weights).max())
 
 
 def moving_kernel(
@@ -130,69 +136,51 @@ def moving_kernel(
     """
     if not isinstance(track, Track):
         raise InputError("track", shown(track), "a Track, as Track.named('x2000')")
-    time_step = real("time step (s)", time_step, "a finite positive number", above=0.0)
-    speed = real("speed (m/s)", speed, "zero or a finite positive number", at_least=0.0)
+    time_step, speed = positive("time step (s)", time_step), not_negative("speed (m/s)", speed)
     positions = whole("start positions", positions, "a whole number, 1 or more", at_least=1)
     if duration is not None:
-        duration = real("duration (s)", duration, "a finite positive number, or None", above=0.0)
+        duration = positive("duration (s)", duration)
     if not track.is_damped:
         remedy = "Give the rail a loss factor, or damping to pads or ballast."
         raise InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
     if speed > 0.0:
         track.refuse_speed(speed)
     track = causal_track(track, cache)
-    parameters = {k: v for k, v in asdict(track).items() if k not in ("name", "sources")}
     distance = real("distance (m)", distance, "a finite number")
-    described = (parameters, speed, time_step, duration, positions, ZONES, SHIFT)
+    described = (track.parameters, speed, time_step, duration, positions, ZONES, SHIFT)
     key = content_key("moving-kernel", *described, *([distance] if distance else []))
 
-    def make() -> dict[str, NDArray[np.float64]]:
-        return {"weights": _until_it_dies(track, speed, time_step, duration, positions, distance, progress)}
+    def kernel_of(length: float) -> MovingKernel:
+        taps = max(8, round(length / time_step))
+        weights = _weights(HatResponse(track, time_step, taps, ZONES), speed, positions, distance, progress)
+        return MovingKernel(track, speed, time_step, weights, distance)
+
+    def make() -> dict[str, Array]:
+        length = SHORTEST if duration is None else duration
+        while (kernel := kernel_of(length)).left_over > DIED_AWAY and duration is None and length < LONGEST:
+            length = min(1.6 * length, LONGEST)
+        return {"weights": kernel.weights}
 
     kept = make() if cache is None else made(cache, key, make)
-    weights = kept["weights"]
-    left = _left_over(weights)
-    if duration is None and left > DIED_AWAY:
-        frequency, keys = _lacks_damping(track, weights, time_step)
+    kernel = MovingKernel(track, speed, time_step, kept["weights"], distance)
+    if duration is None and kernel.left_over > DIED_AWAY:
+        frequency, keys = _lacks_damping(kernel)
         warnings.warn(
-            f"the moving kernel still has {100 * left:.2g} % of its largest value after {LONGEST:g} s, more "
-            f"than {100 * DIED_AWAY:g} %: what comes later is cut off. It swings at {frequency:.4g} Hz: "
-            f"raise {keys}.",
+            f"the moving kernel still has {100 * kernel.left_over:.2g} % of its largest value after "
+            f"{LONGEST:g} s, more than {100 * DIED_AWAY:g} %: what comes later is cut off. It swings at "
+            f"{frequency:.4g} Hz: raise {keys}.",
             CoarseSamplingWarning,
             stacklevel=2,
         )
-    return MovingKernel(track, speed, time_step, weights, distance)
+    return kernel
 
 
-def _until_it_dies(
-    track: Track,
-    speed: float,
-    time_step: float,
-    duration: float | None,
-    positions: int,
-    distance: float,
-    progress: Progress | None,
-) -> NDArray[np.float64]:
-    length = SHORTEST if duration is None else duration
-    while True:
-        taps = max(8, round(length / time_step))
-        weights = _weights(track, speed, time_step, taps, positions, distance, progress)
-        if duration is not None or length >= LONGEST or _left_over(weights) <= DIED_AWAY:
-            return weights
-        length = min(1.6 * length, LONGEST)
-
-
-def _left_over(weights: NDArray[np.float64]) -> float:
-    last = weights[:, -max(1, weights.shape[1] // 10) :]
-    return float(np.abs(last).max() / np.abs(weights).max())
-
-
-def _lacks_damping(track: Track, weights: NDArray[np.float64], time_step: float) -> tuple[float, str]:
+def _lacks_damping(kernel: MovingKernel) -> tuple[float, str]:
     """Frequency of what is left of a kernel, Hz, and the parameters of the track that damp it."""
-    half = weights[:, weights.shape[1] // 2 :]
+    half, track = kernel.weights[:, kernel.weights.shape[1] // 2 :], kernel.track
     longest = half[np.argmax(np.abs(half[:, -half.shape[1] // 5 :]).max(axis=1))]
     spectrum = np.abs(np.fft.rfft((longest - longest.mean()) * np.hanning(longest.size)))
-    frequency = float(np.argmax(spectrum) / (longest.size * time_step))
+    frequency = float(np.argmax(spectrum) / (longest.size * kernel.time_step))
     layers = ("ballast_damping or ballast_loss_factor", "pad_damping or pad_loss_factor")
     lightest = dict(zip(track.cut_on_frequencies, layers, strict=False))
     lightest |= {track.pinned_pinned_frequency: "rail_loss_factor"}
@@ -201,21 +189,15 @@ def _lacks_damping(track: Track, weights: NDArray[np.float64], time_step: float)
 
 
 def _weights(
-    track: Track,
-    speed: float,
-    time_step: float,
-    taps: int,
-    positions: int,
-    distance: float,
-    progress: Progress | None,
-) -> NDArray[np.float64]:
-    """All rows of the kernel."""
-    spacing = track.sleeper_spacing / positions
-    nodes = np.linspace(0.0, track.sleeper_spacing, positions + 1)
-    near, far = (HatResponse(track, time_step, taps, zones) for zones in (ZONES, 1))
+    near: HatResponse, speed: float, positions: int, distance: float, progress: Progress | None
+) -> Array:
+    """All rows of the kernel; near the contact receptances are folded as that response says."""
+    taps, time_step, bay_length = near.taps, near.time_step, near.waves.spacing
+    spacing, nodes = bay_length / positions, np.linspace(0.0, bay_length, positions + 1)
+    far = HatResponse(near.track, time_step, taps, 1)
     shapes = {grid: [s[:-1] for s in grid.waves.symmetric_shapes(nodes)] for grid in (near, far)}
 
-    def row(start: int) -> NDArray[np.float64]:
+    def row(start: int) -> Array:
         at = start + distance / spacing + np.arange(taps) * (speed * time_step / spacing)  # in nodes
         base = np.floor(at).astype(int)
         cubic, result = lagrange_weights(at - base), np.zeros(taps)
@@ -245,7 +227,7 @@ def _weights(
     return weights
 
 
-def _over_waves(amplitude: NDArray[np.complex128], shapes: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _over_waves(amplitude: Complex, shapes: Complex) -> Complex:
     """Sum (p, f) over the waves of a track, (w, f), each of its shape (p, w, f), one after the other."""
     total = amplitude[0] * shapes[:, 0]
     for wave in range(1, len(amplitude)):
@@ -253,7 +235,7 @@ def _over_waves(amplitude: NDArray[np.complex128], shapes: NDArray[np.complex128
     return np.asarray(total)
 
 
-def lagrange_weights(share: NDArray[np.float64]) -> NDArray[np.float64]:
+def lagrange_weights(share: Array) -> Array:
     """Weights (4, ...) of the nodes −1, 0, 1, 2 for places (...) between 0 and 1, of a cubic."""
     before, after, beyond = share + 1.0, share - 1.0, share - 2.0
     return np.stack(

@@ -1,68 +1,13 @@
-"""The exact receptance of a rail: free, and on periodic supports."""
+"""The exact receptance of a rail on periodic supports."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity.errors import InputError
-
-
-def free_rail_waves(
-    omega: NDArray[np.float64],
-    bending_stiffness: complex | NDArray[np.complex128],
-    mass_per_length: float,
-    shear_stiffness: complex | NDArray[np.complex128] | None = None,
-    rotary_inertia: float | None = None,
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Receptance of a free infinite rail as a sum of two waves, G_0(x) = sum_i A_i exp(-i k_i |x|).
-
-    Wavenumbers k_i, rad/m, Im k_i <= 0, and amplitudes A_i, m/N, both (2, f), at angular frequencies (f,),
-    rad/s, with positive real part or in the lower half-plane. Bending stiffness E I, N m^2, and shear
-    stiffness S = G A kappa, N, with their losses; mass m', kg/m; rotary inertia rho I, kg m. The latter with
-    the shear stiffness makes it a Timoshenko rail.
-
-    Residues of the wavenumber spectrum (1 + (EI k^2 - rho I omega^2)/S)/(EI (k^2 - k_1^2)(k^2 - k_2^2)) at
-    the roots of EI k^4 - omega^2 (rho I + m' EI/S) k^2 - m' omega^2 (1 - rho I omega^2/S) = 0.
-    """
-    bending, mass = bending_stiffness, mass_per_length
-    if shear_stiffness is None or rotary_inertia is None:
-        k = np.sqrt(omega) * (mass / bending) ** 0.25
-        scale = 1.0 / (4.0 * bending * k**3)
-        return np.stack([k, -1j * k]), np.stack([-1j * scale, -scale])
-    shear, inertia = shear_stiffness, rotary_inertia
-    difference = inertia - mass * bending / shear
-    root = omega * np.sqrt(omega**2 * difference**2 + 4.0 * bending * mass)
-    first = omega**2 * (inertia + mass * bending / shear) + root
-    product = -mass * omega**2 * (1.0 - inertia * omega**2 / shear)  # of the roots, times EI
-    squares = np.stack([first / (2.0 * bending), 2.0 * product / first])
-    k = np.sqrt(squares)
-    k = np.where(k.imag > 0.0, -k, k)
-    rotation = (bending * squares + shear - inertia * omega**2) / shear
-    return k, -1j * rotation / (2.0 * k * bending * (squares - squares[::-1]))
-
-
-def pinned_frequency(
-    length: float,
-    bending_stiffness: float,
-    mass_per_length: float,
-    shear_stiffness: float | None = None,
-    rotary_inertia: float | None = None,
-) -> float:
-    """Lowest natural frequency, Hz, of a rail that is simply supported at equal distances, m.
-
-    The frequency at which k = pi/length solves the dispersion relation; the rail as in `free_rail_waves`,
-    without loss factor.
-    """
-    k, bending, mass = np.pi / length, bending_stiffness, mass_per_length
-    if shear_stiffness is None or rotary_inertia is None:
-        return float(k**2 * np.sqrt(bending / mass) / (2.0 * np.pi))
-    middle = mass + (rotary_inertia + mass * bending / shear_stiffness) * k**2
-    root = np.sqrt(middle**2 - 4.0 * mass * rotary_inertia / shear_stiffness * bending * k**4)
-    return float(np.sqrt(2.0 * bending * k**4 / (middle + root)) / (2.0 * np.pi))
-
+from asperity.structures.modal import Array, Complex
 
 _LARGEST_EXPONENT = 200.0  # products of three exponentials stay inside the range of doubles
 
@@ -79,25 +24,21 @@ class PeriodicWaves:
     written, nothing becomes infinite where the supports exert no force.
     """
 
-    multipliers: NDArray[np.complex128]  # (2, f), lambda_j, the change of wave j over one bay, |lambda_j| < 1
-    coefficients: NDArray[
-        np.complex128
-    ]  # (2, f), C_j, N/m times the square of the scale that the shapes carry
-    wavenumbers: NDArray[np.complex128]  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
-    weights: NDArray[np.complex128]  # (2, 2, f), share of the free wave i in wave j, axes (i, j, f)
+    multipliers: Complex  # (2, f), lambda_j, the change of wave j over one bay, |lambda_j| < 1
+    coefficients: Complex  # (2, f), C_j, N/m times the square of the scale that the shapes carry
+    wavenumbers: Complex  # (2, f), k_i of the free rail, rad/m, Im k_i <= 0
+    weights: Complex  # (2, 2, f), share of the free wave i in wave j, axes (i, j, f)
     spacing: float  # distance of the supports L, m
 
-    def outgoing(self, x: float) -> NDArray[np.complex128]:
+    def outgoing(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that decay towards growing x, 0 <= x <= L, m: phi_lambda(x), scaled."""
         return self._shapes(x)[0]
 
-    def incoming(self, x: float) -> NDArray[np.complex128]:
+    def incoming(self, x: float) -> Complex:
         """Shapes (2, f) of the waves that grow towards growing x, 0 <= x <= L: phi_{1/lambda}(x), scaled."""
         return self._shapes(x)[1]
 
-    def symmetric_shapes(
-        self, places: NDArray[np.float64]
-    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    def symmetric_shapes(self, places: Array) -> tuple[Complex, Complex]:
         """Shapes at places (p,), m, that lie symmetrically about the middle of the bay: two of (p, 2, f).
 
         The first decay towards growing x, the second grow: `outgoing` and `incoming` for less work.
@@ -106,7 +47,7 @@ class PeriodicWaves:
         near = np.einsum("ijf,pif->pjf", self.weights, sines)
         return near[::-1] + self.multipliers * near, near[::-1] + near / self.multipliers
 
-    def _shapes(self, x: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    def _shapes(self, x: float) -> tuple[Complex, Complex]:
         """Shapes of outgoing and incoming waves, each (2, f)."""
         near, far = (
             np.einsum("ijf,if->jf", self.weights, np.sin(self.wavenumbers * at))
@@ -114,7 +55,7 @@ class PeriodicWaves:
         )
         return far + self.multipliers * near, far + near / self.multipliers
 
-    def receptance(self, x: float, x0: float) -> NDArray[np.complex128]:
+    def receptance(self, x: float, x0: float) -> Complex:
         """Displacement at `x` per force at `x0`, (f,), m/N; positions from any support, m."""
         first, last = min(x, x0), max(x, x0)
         first_bay = np.floor(first / self.spacing)
@@ -127,9 +68,9 @@ class PeriodicWaves:
 
 
 def periodic_waves(
-    wavenumbers: NDArray[np.complex128],
-    amplitudes: NDArray[np.complex128],
-    support: NDArray[np.complex128],
+    wavenumbers: Complex,
+    amplitudes: Complex,
+    support: Complex,
     spacing: float,
 ) -> PeriodicWaves:
     """Floquet waves from the receptance of the free rail, G_0(x) = sum_i A_i exp(-i k_i |x|).
@@ -168,28 +109,22 @@ def periodic_waves(
     return PeriodicWaves(multipliers, coefficients, wavenumbers, weights, spacing)
 
 
-def static_receptance(
-    bending_stiffness: float,
-    shear_stiffness: float | None,
-    support_stiffness: float,
-    spacing: float,
-    x: float,
-) -> float:
+def static_receptance(stiffness: float, shear: float, support: float, spacing: float, x: float) -> float:
     """Static deflection per unit force, m/N, the limit of the Floquet sum at zero frequency.
 
-    E I, N m^2; S = G A kappa, N, None for no shear; K of one support, N/m; position x of the force in the
-    bay, 0 <= x <= L, m. With y = 1 - c, G_0 = |x|^3/12EI - |x|/2S gives phi(0) = L^3/(4EI y^2) + b/y, b =
-    L/(2S) - L^3/(12EI), and the multipliers from y^2 + K b y + K L^3/(4EI) = 0.
+    E I, N m^2; 1/S = 1/G A kappa, 1/N; K of one support, N/m; position x of the force in the bay, 0 <= x <=
+    L, m. With y = 1 - c, G_0 = |x|^3/12EI - |x|/2S gives phi(0) = L^3/(4EI y^2) + b/y, b = L/(2S) -
+    L^3/(12EI), and the multipliers from y^2 + K b y + K L^3/(4EI) = 0.
     """
-    bending, shear = 1.0 / bending_stiffness, 0.0 if shear_stiffness is None else 1.0 / shear_stiffness
+    bending = 1.0 / stiffness
     cubic = 0.25 * bending * spacing**3
     linear = 0.5 * shear * spacing - bending * spacing**3 / 12.0
-    y = np.roots(np.array([1.0, support_stiffness * linear, support_stiffness * cubic], dtype=complex))
+    y = np.roots(np.array([1.0, support * linear, support * cubic], dtype=complex))
     c = 1.0 - y
     root = np.sqrt(c - 1.0) * np.sqrt(c + 1.0)
     multipliers = 1.0 / np.where(np.abs(c + root) > 1.0, c + root, c - root)
 
-    def shape(multiplier: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    def shape(multiplier: Complex) -> Complex:
         ramp = (spacing - x) + multiplier * x
         cube = (spacing - x) ** 3 + multiplier * x**3
         slope = bending * spacing**2 / (4.0 * y**2) + 0.5 * shear / y

@@ -9,13 +9,15 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real, real_array
+from asperity.arguments import finite_array, not_negative
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.progress import Progress
 from asperity.store import Cache, content_key, made
-from asperity.structures.modal_fit import paired, vector_fit
+from asperity.structures.modal import Array, Complex
+from asperity.structures.modal_fit import least_squares, paired, real_basis, vector_fit
 from asperity.structures.moving_kernel import DIED_AWAY, MovingKernel, moving_kernel
 
 POLES = 100
@@ -49,8 +51,8 @@ class RailPoles:
     """
 
     kernel: MovingKernel  # what was fitted
-    poles: NDArray[np.complex128]  # (p,), z_p per time step, |z_p| < 1
-    residues: NDArray[np.complex128]  # (positions, p), c_p at the start positions, m/N
+    poles: Complex  # (p,), z_p per time step, |z_p| < 1
+    residues: Complex  # (positions, p), c_p at the start positions, m/N
     fit_error: float  # rms error of the weights of lags >= 1 over all start positions, relative to theirs
     # largest relative error of the deflection under a constant force, the sum of the weights
     static_error: float
@@ -79,13 +81,13 @@ class RailPoles:
         mean = (residue / (at - pole) + residue.conj() / (at - pole.conj())).sum(axis=1)
         return bool((mean.imag <= 0.0).all())
 
-    def weights(self, taps: int | None = None) -> NDArray[np.float64]:
+    def weights(self, taps: int | None = None) -> Array:
         """The fitted kernel, (positions, taps), m/N; as many as the kernel has by default."""
         direct = self.kernel.weights[:, :1]
         decays = _decays(self.poles, (taps or self.kernel.weights.shape[1]) - 1)
         return np.hstack([direct, self.residues.real @ decays.real - self.residues.imag @ decays.imag])
 
-    def missed(self) -> NDArray[np.float64]:
+    def missed(self) -> Array:
         """What it has beyond the kernel from lag 1 on, (positions, lags), m/N, also after the last one."""
         wanted = _wanted(self.kernel)
         return self.weights(1 + wanted.shape[1])[:, 1:] - wanted
@@ -152,7 +154,7 @@ def most_poles(lags: int) -> int:
     return min(lags // 10 // 2 * 2, LINES)
 
 
-def _wanted(kernel: MovingKernel) -> NDArray[np.float64]:
+def _wanted(kernel: MovingKernel) -> Array:
     """Weights from lag 1 on that a fit is held to, (positions, lags): with zeros after a kernel that died."""
     weights = kernel.weights[:, 1:]
     return np.hstack([weights, np.zeros_like(weights)]) if kernel.left_over <= DIED_AWAY else weights
@@ -163,14 +165,14 @@ def _highest(time_step: float) -> float:
     return min(0.1 / time_step, 5000.0)
 
 
-def _angles(time_step: float) -> NDArray[np.float64]:
+def _angles(time_step: float) -> Array:
     """Frequencies of the fit, rad per time step."""
     logarithmic = np.geomspace(LOWEST, 0.995 * 0.5 / time_step, LINES)
     linear = np.linspace(LOWEST, _highest(time_step), LINES)
     return 2.0 * np.pi * np.union1d(logarithmic, linear) * time_step
 
 
-def _poles(kernel: MovingKernel, count: int) -> NDArray[np.complex128]:
+def _poles(kernel: MovingKernel, count: int) -> Complex:
     """Common poles, by vector fitting on the unit circle."""
     half, taps = 0.5 / kernel.time_step, kernel.weights.shape[1]
     angle, lag = _angles(kernel.time_step), np.arange(1, taps)
@@ -182,39 +184,31 @@ def _poles(kernel: MovingKernel, count: int) -> NDArray[np.complex128]:
     # a pole that a kernel of this length would not show to decay is not determined by it
     gone = np.clip(50.0 * kernel.left_over, GONE, 0.5)
     slowest = -np.log(gone) / taps
-    fit = vector_fit(
+    return vector_fit(
         np.exp(1j * angle),
         transform,
         np.exp(1j * start - np.maximum(0.02 * start, slowest)),
         weights=1.0 / np.sqrt(size),
         iterations=ITERATIONS,
-        domain="disc",
         radius=float(np.exp(-slowest)),
-    )
-    return fit.poles
+    ).poles
 
 
-def _decays(poles: NDArray[np.complex128], lags: int) -> NDArray[np.complex128]:
+def _decays(poles: Complex, lags: int) -> Complex:
     with np.errstate(divide="ignore"):
         rates = np.log(np.where(poles == 0.0, 1e-300, poles))
     return np.asarray(np.exp(rates[:, None] * np.arange(lags)))
 
 
-def _residues(weights: NDArray[np.float64], poles: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _residues(weights: Array, poles: Complex) -> Complex:
     """Least squares in time, of the weights, their running sums and their sum."""
     decays = _decays(poles, weights.shape[1])
-    columns = []
-    for pole, decay in zip(poles, decays, strict=True):
-        columns.append(decay.real)
-        if pole.imag != 0.0:
-            columns.append(-decay.imag)
-    basis, right = np.array(columns).T, weights.T
+    parts = np.stack([decays.real, -decays.imag], axis=1).reshape(-1, weights.shape[1])
+    basis, right = parts[real_basis(poles)].T, weights.T
     slow = 1.0 / np.sqrt(len(basis))  # running sums weigh like the weights of one step
     matrix = np.vstack([basis, slow * np.cumsum(basis, axis=0)])
     right = np.vstack([right, slow * np.cumsum(right, axis=0)])
-    size = np.linalg.norm(matrix, axis=0)
-    solution = np.linalg.lstsq(matrix / size, right, rcond=DETERMINED)[0] / size[:, None]
-    return paired(solution, poles)
+    return paired(least_squares(matrix, right, DETERMINED), poles)
 
 
 def over_the_bay(values: NDArray[Any]) -> NDArray[Any]:
@@ -223,20 +217,9 @@ def over_the_bay(values: NDArray[Any]) -> NDArray[Any]:
     At equal places, both ends of the bay included, by a periodic cubic spline.
     """
     count = len(values)
-    through = _periodic_splines(np.arange(float(count)), count)
-    between = _periodic_splines(np.linspace(0.0, count, CELLS + 1), count)
-    return np.asarray(np.tensordot(between @ np.linalg.inv(through), values, axes=1))
-
-
-def _periodic_splines(places: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    """Cubic B-splines (places, count) around the whole numbers below `count`, where they begin again."""
-    first = np.floor(places).astype(int)
-    t = places - first
-    weights = ((1.0 - t) ** 3, 4.0 - 6.0 * t**2 + 3.0 * t**3, 1.0 + 3.0 * (t + t**2 - t**3), t**3)
-    splines = np.zeros((len(places), count))
-    for shift, weight in zip(range(-1, 3), weights, strict=True):
-        np.add.at(splines, (np.arange(len(places)), (first + shift) % count), weight / 6.0)
-    return splines
+    around = np.concatenate([values, values[:1]])
+    spline = scipy.interpolate.CubicSpline(np.arange(count + 1), around, bc_type="periodic")
+    return np.asarray(spline(np.linspace(0.0, count, CELLS + 1)))
 
 
 NEGLIGIBLE = 0.01
@@ -260,7 +243,7 @@ class RailBetween:
     @property
     def kernel(self) -> MovingKernel:
         """The direct one."""
-        return _kernel(self.direct)
+        return self.direct.kernel
 
     def between(self, distance: float) -> RailPoles | MovingKernel | None:
         """What carries a force to a contact so far ahead of it, m; None if it is out of reach."""
@@ -316,11 +299,9 @@ def rail_between(
     InputError
         If places or reach are not finite, or the reach is negative.
     """
-    at = real_array("places of the contacts (m)", places, "finite numbers").ravel()
-    if not np.isfinite(at).all():
-        raise InputError("places of the contacts (m)", at.tolist(), "finite numbers")
+    at = finite_array("places of the contacts (m)", places).ravel()
     if reach is not None:
-        reach = real("reach (m)", reach, "zero or a finite positive number, or None", at_least=0.0)
+        reach = not_negative("reach (m)", reach)
     apart = np.unique(np.round(np.subtract.outer(at, at), DECIMALS))
     lengths = np.unique(np.abs(apart[apart != 0.0]))
     crossing: dict[float, RailPoles | MovingKernel] = {}
@@ -328,8 +309,8 @@ def rail_between(
     for done, length in enumerate(lengths):
         if reach is not None and length > reach:
             break
-        kernels = [_crossing(_kernel(direct), sign * float(length), cache) for sign in (1.0, -1.0)]
-        size = max(_size(kernel.weights) for kernel in kernels) / _size(_kernel(direct).weights)
+        kernels = [_crossing(direct.kernel, sign * float(length), cache) for sign in (1.0, -1.0)]
+        size = max(_size(kernel.weights) for kernel in kernels) / _size(direct.kernel.weights)
         if reach is None and size < NEGLIGIBLE:
             reach = float(lengths[done - 1]) if done else 0.0
             break
@@ -340,11 +321,7 @@ def rail_between(
     return RailBetween(direct, crossing, errors, np.inf if reach is None else reach)
 
 
-def _kernel(rail: RailPoles | MovingKernel) -> MovingKernel:
-    return rail.kernel if isinstance(rail, RailPoles) else rail
-
-
-def _size(weights: NDArray[np.float64]) -> float:
+def _size(weights: Array) -> float:
     return float(np.linalg.norm(weights))
 
 

@@ -11,21 +11,12 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.arguments import real_array
-from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, UnconvergedWarning, percent
+from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, percent
+from asperity.structures import modal_fit
 from asperity.structures.body import GRAVITY, Body, carriage
-from asperity.structures.modal import ModalStructure, warn_of_coarse
-from asperity.structures.modal_fit import (
-    RESIDUAL_DAMPING,
-    Complex,
-    Modes,
-    check_range,
-    fit_shapes,
-    modal_answers,
-    warn_of_wide_lines,
-)
-from asperity.structures.wheel import DOUBTFUL_FIT, REFUSED_FIT, Wheel
-
-Array = NDArray[np.float64]
+from asperity.structures.modal import Array, Complex, ModalStructure, modal_answers, warn_of_coarse
+from asperity.structures.modal_fit import RESIDUAL_DAMPING, Modes
+from asperity.structures.wheel import Wheel
 
 INSIDE = 1.02
 """Of the highest frequency, up to which a mode is one of the band."""
@@ -39,13 +30,6 @@ MOST_KNOTS = 0.6
 """Of the places; a shape that needs more is not smoothed."""
 WORTH_KNOTS = 0.7
 """Of the scatter that fewer knots leave, which more must leave to be worthwhile: noise leaves the same."""
-
-
-def in_band(modes: Modes, highest: float) -> Modes:
-    """Modes, with shapes (p, m), up to a frequency, Hz."""
-    natural, ratios, shapes = modes
-    inside = natural <= INSIDE * highest
-    return natural[inside], ratios[inside], shapes[:, inside]
 
 
 def with_stiffness_above(
@@ -123,7 +107,6 @@ def _wavenumber(at: Array, shape: Array) -> float:
     return float(np.sqrt(rise / size)) if size > 0.0 else 0.0
 
 
-FEWEST_FREQUENCIES = 10
 CREATED = 0.05
 """Share of a receptance that its imaginary part may be on the wrong side, by noise."""
 
@@ -185,27 +168,30 @@ def fit_structure(
     """
     at = real_array("positions of the receptances (m)", positions, "rising numbers")
     forces = np.atleast_1d(real_array("positions of the forces (m)", driven, "numbers"))
-    f, given = _checked(frequency, receptance, at.size, forces.size)
+    f, given = modal_fit.checked_record("receptance", frequency, receptance, at.size, forces.size)
     near = np.abs(at[:, None] - forces) if at.ndim == 1 else np.ones((1, forces.size))
     number = np.argmin(near, axis=0)
     if near.min(axis=0).max(initial=0.0) > 1e-6 * np.ptp(at) or len(set(number)) < forces.size:
         received = f"forces at {', '.join(f'{force:.4g}' for force in forces[:8])}"
-        raise InputError(
-            "positions of the forces (m)", received, "different places among those of the responses"
-        )
-    check_range(f, given)
+        allowed = "different places among those of the responses"
+        raise InputError("positions of the forces (m)", received, allowed)
+    modal_fit.check_range(f, given)
     _check_energy(f, given[:, number])
-    rigid = _rigid(f, at, number, mass, inertia, centre)
-    modes = in_band(fit_shapes(f, given, rigid, number), f[-1])
-    warn_of_coarse(at, modes[2], modes[0])
-    warn_of_wide_lines(f, *modes[:2])
-    fine, modes = with_stiffness_above(f, at, number, given - rigid, modes)
-    natural, ratios, shapes = modes
-    error = _fit_error(f, given[:, number], rigid[:, number], (natural, ratios, shapes[::FINER][number]))
-    _judge(error, len(natural))
+    rigid = np.zeros_like(given)
+    if mass is not None:
+        still = ModalStructure(at, np.ones(1), 0.0, np.ones((at.size, 1)))
+        moved = still.with_rigid_body(mass, inertia=inertia, centre=centre).mode_shapes[:, :-1]
+        rigid = -(moved @ moved[number].T) / (2.0 * np.pi * f[:, None, None]) ** 2 + 0j
+    natural, ratios, shapes = modal_fit.fit_shapes(f, given, rigid, number)
+    inside = natural <= INSIDE * f[-1]
+    natural, ratios, shapes = natural[inside], ratios[inside], shapes[:, inside]
+    warn_of_coarse(at, shapes, natural)
+    modal_fit.warn_of_wide_lines(f, natural, ratios)
+    fine, modes = with_stiffness_above(f, at, number, given - rigid, (natural, ratios, shapes))
+    error = _judged(f, given[:, number], rigid[:, number], (*modes[:2], modes[2][::FINER][number]))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)  # what is above the band has no wavelength
-        structure = ModalStructure(fine, natural, ratios, shapes, fit_error=error)
+        structure = ModalStructure(fine, *modes, fit_error=error)
         if mass is None:
             return structure
         return structure.with_rigid_body(mass, inertia=inertia, centre=centre)
@@ -256,26 +242,20 @@ def fit_body(
     """
     if places is None:
         wheel = Wheel.from_receptance(mass, load, frequency, receptance)
-        f, given = np.asarray(frequency, dtype=float), np.asarray(receptance, dtype=complex)
-        _check_energy(f, given[:, None, None])
-        masses = 1.0 / (2j * wheel.poles.imag * wheel.residues).real
-        body = Body.from_modes(mass, load, wheel.natural_frequencies, wheel.damping_ratios, masses)
-        return replace(body, fit_error=wheel.fit_error)
+        _check_energy(*modal_fit.checked_record("receptance", frequency, receptance, 1, 1))
+        return replace(wheel.body, fit_error=wheel.fit_error)
     at = np.atleast_1d(real_array("places of the contacts (m)", places, "numbers"))
-    f, given = _checked(frequency, receptance, at.size, at.size)
+    f, given = modal_fit.checked_record("receptance", frequency, receptance, at.size, at.size)
     if inertia is None:
         raise InputError("moment of inertia (kg m^2)", "none", "one, of a body on several contacts")
-    rigid_body = carriage(mass, inertia, at, centre=centre, load=load - mass * GRAVITY)
+    body = carriage(mass, inertia, at, centre=centre, load=load - mass * GRAVITY)
     _check_energy(f, given)
-    every = np.arange(at.size)
-    rigid = rigid_body.receptance(f)
-    natural, ratios, shapes = fit_shapes(f, given, rigid, every)
-    warn_of_wide_lines(f, natural, ratios)
-    error = _fit_error(f, given, rigid, (natural, ratios, shapes))
-    _judge(error, len(natural))
-    return replace(
-        rigid_body, natural_frequencies=natural, damping_ratios=ratios, shapes=shapes, fit_error=error
-    )
+    rigid = body.receptance(f)
+    modes = modal_fit.fit_shapes(f, given, rigid, np.arange(at.size))
+    natural, ratios, shapes = modes
+    modal_fit.warn_of_wide_lines(f, natural, ratios)
+    found = {"natural_frequencies": natural, "damping_ratios": ratios, "shapes": shapes}
+    return replace(body, **found, fit_error=_judged(f, given, rigid, modes))
 
 
 def receptances_in(rows: Array, source: str) -> tuple[Array, Array, Array, Complex]:
@@ -297,40 +277,14 @@ def receptances_in(rows: Array, source: str) -> tuple[Array, Array, Array, Compl
     return at, forces, f, given
 
 
-def _checked(frequency: ArrayLike, receptance: ArrayLike, p: int, e: int) -> tuple[Array, Complex]:
-    """Frequencies (n,) and receptances (n, p, e) of a record that makes sense."""
-    what = "receptance"
-    f, given = np.asarray(frequency, dtype=float), np.asarray(receptance, dtype=complex)
-    if given.ndim == 2 and e == 1:
-        given = given[..., None]
-    if f.ndim != 1 or given.shape != (f.size, p, e):
-        received = f"shapes {f.shape} and {given.shape}"
-        raise InputError(what, received, f"n frequencies, and (n, {p}, {e}): of each place and force")
-    if f.size < FEWEST_FREQUENCIES:
-        raise InputError(what, f"{f.size} frequencies", f"at least {FEWEST_FREQUENCIES}")
-    if not (np.isfinite(f).all() and np.isfinite(given).all()):
-        raise InputError(what, "values that are not finite", "finite values")
-    if not (f[0] > 0.0 and (np.diff(f) > 0.0).all()):
-        raise InputError(what, "frequencies in disorder", "frequencies above 0 Hz and rising")
-    if not np.abs(given).any(axis=(1, 2)).all():
-        raise InputError(what, "nothing but zeros at a frequency", "a response", "Leave it out.")
-    return f, given
-
-
 def _check_energy(frequency: Array, at_forces: Complex) -> None:
     """Refuse the other time factor, and warn where forces, each at its place, would be given energy.
 
     The power that forces F give is −ω/2 F* (H − H*)/(2i) F: its matrix must have no positive eigenvalue.
     """
+    modal_fit.refuse_other_time_factor("receptance", at_forces)
     point = np.einsum("nii->ni", at_forces)
     sine = point.imag / np.maximum(np.abs(point), np.finfo(float).tiny)
-    if sine.sum() > 3.0 * np.linalg.norm(sine):  # more than noise of random sign
-        raise InputError(
-            "receptance",
-            "an imaginary part under the forces that is mostly positive",
-            "the time factor e^{+iωt}, whose imaginary part is negative where there are losses",
-            "Conjugate the values; divide a mobility by iω first.",
-        )
     lost = (at_forces - at_forces.conj().swapaxes(1, 2)) / 2j
     created = np.linalg.eigvalsh(lost)[:, -1] / np.linalg.norm(at_forces, axis=(1, 2))
     created = np.maximum(created, sine.max(axis=1))
@@ -347,45 +301,10 @@ def _check_energy(frequency: Array, at_forces: Complex) -> None:
         )
 
 
-def _rigid(
-    f: Array,
-    at: Array,
-    number: NDArray[np.intp],
-    mass: float | None,
-    inertia: float | None,
-    centre: float | None,
-) -> Complex:
-    """Receptances (n, p, e) of the motion of a rigid body, zero without a mass."""
-    if mass is None:
-        return np.zeros((f.size, at.size, number.size), dtype=complex)
-    still = ModalStructure(at, np.ones(1), 0.0, np.ones((at.size, 1)))
-    shapes = still.with_rigid_body(mass, inertia=inertia, centre=centre).mode_shapes[:, :-1]
-    return np.asarray(-(shapes @ shapes[number].T) / (2.0 * np.pi * f[:, None, None]) ** 2, dtype=complex)
-
-
-def _fit_error(f: Array, given: Complex, rigid: Complex, modes: Modes) -> float:
-    """Root mean square of the level differences at the places of the forces, dB."""
+def _judged(f: Array, given: Complex, rigid: Complex, modes: Modes) -> float:
+    """Error of the level at the places of the forces (e,), dB, by receptances there (n, e, e)."""
     natural, ratios, shapes = modes
-    answers = modal_answers(f, natural, ratios)
-    fitted = np.einsum("njj->nj", rigid) + answers @ (shapes**2).T
-    with np.errstate(divide="ignore"):
-        difference = 20.0 * np.log10(np.abs(fitted / np.einsum("njj->nj", given)))
-    return float(np.sqrt(np.mean(difference**2)))
-
-
-def _judge(error: float, count: int) -> None:
-    if not error <= REFUSED_FIT:
-        raise InputError(
-            "receptance",
-            f"values that {count} modes meet to {error:.1f} dB only",
-            f"a receptance that modes meet within {REFUSED_FIT:.0f} dB",
-            "Check that it is m/N, displacement along the force, and the mass of what nothing holds.",
-        )
-    if error > DOUBTFUL_FIT:
-        warnings.warn(
-            f"{count} modes meet the given receptances to {error:.1f} dB only, more than "
-            f"{DOUBTFUL_FIT:.0f} dB: resonances are uncertain by as much. Give finer or smoother "
-            "receptances, or the modes.",
-            UnconvergedWarning,
-            stacklevel=4,
-        )
+    fitted = np.einsum("njj->nj", rigid) + modal_answers(f, natural, ratios) @ (shapes**2).T
+    error = modal_fit.level_error(fitted, np.einsum("njj->nj", given))
+    modal_fit.judge_fit("receptance", error, f"{len(natural)} modes")
+    return error

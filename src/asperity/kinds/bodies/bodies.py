@@ -115,8 +115,8 @@ def tread_of(case: Bodies) -> Wheel:
     """What touches a rail at each contact, by itself: its mass and its modes."""
     mass, load = case.body.contact_mass, load_of(case)
     if case.body.modes is None:
-        return Wheel.rigid(mass, load)
-    return Wheel.from_modes(mass, load, *read_modes(case.body.modes))
+        return Wheel(mass, load)
+    return Wheel(mass, load, *read_modes(case.body.modes))
 
 
 def degrees_of(case: Bodies) -> dict[str, float]:

@@ -43,7 +43,7 @@ def wheel_of(case: WheelOnRail) -> Wheel:
     """Build the wheel of a case: rigid, or with the modes or the receptance that the case names."""
     section = case.wheel
     if section.modes is not None:
-        return Wheel.from_modes(section.mass, section.load, *read_modes(section.modes))
+        return Wheel(section.mass, section.load, *read_modes(section.modes))
     if section.receptance is not None:
         highest = case.numerics.highest_frequency
         measured = read_receptance(section.receptance)
@@ -52,7 +52,7 @@ def wheel_of(case: WheelOnRail) -> Wheel:
             return Wheel.from_receptance(
                 section.mass, section.load, *measured, highest_frequency=REACH * highest
             )
-    return Wheel.rigid(section.mass, section.load)
+    return Wheel(section.mass, section.load)
 
 
 _FINE = 10
