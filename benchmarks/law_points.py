@@ -24,6 +24,7 @@ from asperity.kinds.cases import kind_of, parse_case
 from asperity.laws.layout import force
 from asperity.progress import Progress
 from asperity.reference.law_accuracy import HIGH, LOW
+from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.law_choice import place_of
@@ -155,7 +156,7 @@ def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[st
             if str(kept["case"]) == case.text:
                 return dict(kept)
     chain = chain_of(case, progress)
-    run = chain.runs["direct"]
+    run = first_contact(chain.runs["direct"])
     found = {
         "case": np.array(case.text),
         "force": run.contact_force,
@@ -183,7 +184,8 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
         name: float(direct[name]) for name in ("loss", "seconds", "unconverged")
     }
     kept["direct"]["energy"] = (10.0 ** (levels / 10.0)).tolist()
-    for name, run in chain.runs.items():
+    for name, each in chain.runs.items():
+        run = first_contact(each)
         course = force(built[name], direct["position"], direct["displacement"])
         kept[name] = {
             "energy": (10.0 ** (energies(run.contact_force)[1] / 10.0)).tolist(),

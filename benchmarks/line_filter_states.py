@@ -25,6 +25,7 @@ from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.laws.layout import force
 from asperity.progress import progress_bar
 from asperity.reference.cnossos import rail_roughness
+from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case
 from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
@@ -89,9 +90,10 @@ def away_of(found, wanted) -> str:
 def compare(name, case) -> None:
     """Print the lines of a case: records, and forces on the course of `direct`."""
     chain, step = rolled(case), case.time_step
-    direct = chain.runs["direct"]
+    runs = {law: first_contact(run) for law, run in chain.runs.items()}
+    direct = runs["direct"]
     wanted = levels(direct.contact_force, step)
-    for law, run in chain.runs.items():
+    for law, run in runs.items():
         line = f"| {name} | {law} | {100 * run.contact_loss_share:.1f} | "
         line += f"{away_of(levels(run.contact_force, step), wanted)} | "
         if law != "direct":
@@ -107,7 +109,8 @@ def average(first, load, rms, longest, shortest) -> None:
     energies, lost = {law: [] for law in LAWS[:-1]}, {law: [] for law in LAWS[:-1]}
     for seed in range(first, first + 8):
         case = ball(seed, load, rms, longest, shortest, LAWS[:-1])
-        for law, run in rolled(case).runs.items():
+        for law, each in rolled(case).runs.items():
+            run = first_contact(each)
             energies[law].append(10 ** (levels(run.contact_force, case.time_step) / 10))
             lost[law].append(run.contact_loss_share)
     mean = {law: 10 * np.log10(np.mean(found, axis=0)) for law, found in energies.items()}

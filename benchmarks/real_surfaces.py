@@ -161,8 +161,8 @@ def rolled(surface: HeightMap, own: dict[str, Any]) -> dict[str, float]:
     tree = asperity.run(case_of(surface, own))
     level = tree["spectra/acceleration_level"].values[0]
     return {
-        "force rms / N": float(tree["rolling/contact_force"].values[0].std()),
-        "out of contact": float(tree["rolling/contact_loss_share"].values[0]),
+        "force rms / N": float(tree["rolling/contact_force"].values[0, 0].std()),
+        "out of contact": float(tree["rolling/contact_loss_share"].values[0, 0]),
         "acceleration / dB": float(10 * np.log10(np.nanmean(np.nansum(10 ** (level / 10), axis=-1)))),
     }
 
@@ -199,8 +199,8 @@ def of_wheel(tree: Any) -> dict[str, float]:
     spectra = tree["spectra"]
     power = spectra["sound_power_level_a"].sel(source="total")
     return {
-        "force rms / kN": float(tree["rolling/contact_force"].values[0].std()) / 1e3,
-        "out of contact": float(tree["rolling/contact_loss_share"].values[0]),
+        "force rms / kN": float(tree["rolling/contact_force"].values[0, 0].std()) / 1e3,
+        "out of contact": float(tree["rolling/contact_loss_share"].values[0, 0]),
         "sound power / dB(A)": float(power.values[0]),
         "linear / dB(A)": float(power.values[1]),
     }

@@ -73,7 +73,7 @@ CASES = {
 
 
 def forces(folder: str, only: str) -> None:
-    """Compute all cases, and keep their forces (law, …, time) in a folder."""
+    """Compute all cases, and keep their forces (law, contact, time) in a folder."""
     import warnings
 
     import asperity
@@ -85,7 +85,8 @@ def forces(folder: str, only: str) -> None:
                 case = case | {"wheel": {"modes": np.array(MODES)}}
             rolling = asperity.run(case)["rolling"].to_dataset()
             found = rolling["contact_forces" if "contact_forces" in rolling else "contact_force"]
-            np.savez(Path(folder) / f"{name}.npz", force=found.values, law=found["law"].values)
+            force = found.values if "contact" in found.dims else found.values[:, None]
+            np.savez(Path(folder) / f"{name}.npz", force=force, law=found["law"].values)
             print(name, file=sys.stderr, flush=True)
 
 

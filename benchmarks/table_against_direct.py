@@ -27,6 +27,7 @@ from asperity.errors import PhysicsWarning
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.cases import parse_case
 from asperity.progress import progress_bar
+from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case
 from asperity.scenes.compute import Computed, compute
 from asperity.spectra import band_levels, psd
@@ -50,7 +51,8 @@ class Ensemble:
 
     def add(self, computed: Computed) -> None:
         """Add a path."""
-        runs, step = computed.chain.runs, computed.case.time_step
+        runs = {law: first_contact(run) for law, run in computed.chain.runs.items()}
+        step = computed.case.time_step
         force = np.stack([runs[law].contact_force for law in LAWS])
         segment = min(force.shape[1], round(0.1 / step))
         self.centres, levels = band_levels(*psd(force, step, segment=segment), low=LOW, high=HIGH)

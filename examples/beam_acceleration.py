@@ -67,7 +67,7 @@ def rings(spectra, highest: float) -> bool:
     return bool(np.all((np.abs(peaks - natural) <= near)[natural < highest]))
 
 
-lost = float(results["rough beam, 0.2 µm"]["rolling/contact_loss_share"][0])
+lost = float(results["rough beam, 0.2 µm"]["rolling/contact_loss_share"][0, 0])
 print(f"louder by {louder(200, 5e3).min():.1f} to {louder(200, 5e3).max():.1f} dB; in the air {lost:.0%}")
 assert 10.0 < louder(200.0, 5e3).min() < 20.0
 assert len(beam.natural_frequencies) == 14  # 23.4 n² Hz of a simply supported beam of 1 m × 10 mm, to 5 kHz

@@ -35,7 +35,7 @@ runs = {"bogie": asperity.run(bogie), "single wheel": asperity.run(bogie.with_(b
 
 figure, (above, below) = plt.subplots(2, figsize=(8.0, 6.0), sharex=True, layout="constrained")
 for name, run in runs.items():
-    level = run["spectra"].to_dataset()["contact_force_levels"].isel(law=0)
+    level = run["spectra"].to_dataset()["contact_force_level"].isel(law=0)
     for contact, style in zip(level, ("-", "--"), strict=False):
         above.semilogx(level["band"], contact, style, label=f"{name}, wheel {int(contact['contact'])}")
 track, frequency = bogie.track.model(), np.geomspace(40, 2800, 400)
@@ -52,7 +52,7 @@ plt.show()
 # Band by band the second wheel changes the force; over all bands, hardly.
 
 rear, alone = (
-    run["spectra"].to_dataset()["contact_force_levels"].isel(law=0, contact=0) for run in runs.values()
+    run["spectra"].to_dataset()["contact_force_level"].isel(law=0, contact=0) for run in runs.values()
 )
 change = rear - alone
 print(f"{float(change.min()):+.1f} to {float(change.max()):+.1f} dB in a band")

@@ -60,4 +60,4 @@ fall = float(at_tones.mean() - between.mean())
 print(f"the carriage shakes {fall:.0f} dB less between the tones")
 assert fall > 10.0
 rolling = runs["8 mm"]["rolling"].to_dataset().isel(law=0)
-assert abs(float(rolling["contact_forces"].sum("contact").mean()) / (balls * 25.0) - 1.0) < 1e-3
+assert abs(float(rolling["contact_force"].sum("contact").mean()) / (balls * 25.0) - 1.0) < 1e-3

@@ -180,7 +180,7 @@ class TestNumbers:
         """The first half: here a tone is there of twice the amplitude that the second half has."""
         time = np.arange(8000) * 1e-4
         force = np.where(time < 0.4, 2.0, 1.0) * np.sin(2 * np.pi * 500.0 * time)
-        held = xarray.Dataset({"contact_force": (("law", "time"), force[None])})
+        held = xarray.Dataset({"contact_force": (("law", "contact", "time"), force[None, None])})
         tree = xarray.DataTree.from_dict({"/rolling": held})
         whole, half = halves(tree, 1e-4, 2e3)
         at = np.argmin(np.abs(whole.band - 500.0))

@@ -58,7 +58,7 @@ def run(
     >>> import asperity
     >>> result = asperity.run(case)
     >>> result["rolling/contact_force"].dims
-    ('law', 'time')
+    ('law', 'contact', 'time')
     >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
     1
     """

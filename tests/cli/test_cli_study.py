@@ -127,8 +127,8 @@ def test_a_member_is_what_a_run_of_its_case_is(out):
     one = run("one.toml")["rolling"]
     with xr.open_dataset(out / "study.nc", engine="h5netcdf") as found:
         member = found.sel({"seed": 3, "ball.load": 5.0})
-        np.testing.assert_array_equal(member["contact_loss_share"], one["contact_loss_share"])
-        np.testing.assert_array_equal(member["rms_force"], one["contact_force"].std("time"))
+        np.testing.assert_array_equal(member["contact_loss_share"], one["contact_loss_share"][:, 0])
+        np.testing.assert_array_equal(member["rms_force"], one["contact_force"][:, 0].std("time"))
 
 
 def columns(path):

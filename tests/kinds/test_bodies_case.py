@@ -20,7 +20,7 @@ from asperity.kinds.bodies.bodies import bodies_of, geometry_of, smooth_contact
 from asperity.kinds.bodies.textures import contacts_of, textures_of
 from asperity.kinds.cases import parse_case, template
 from asperity.kinds.wheel_on_rail.bodies import wheel_of
-from asperity.scenes.contacts import passing_frequencies
+from asperity.scenes.result import passing_frequencies
 
 ROUGH = {"rms": "0.05 um", "longest": "0.4 mm", "shortest": "80 um"}
 COARSE = {"spacing": "20 um", "window": "0.6 mm", "samples": 2, "sample_length": "1.4 mm"}

@@ -75,7 +75,7 @@ def rail(surface="smooth = true", wheel="", contact="", laws=("linear",), durati
 
 
 def force(tree, law="linear"):
-    return tree["rolling/contact_force"].sel(law=law).values
+    return tree["rolling/contact_force"].sel(law=law, contact=1).values
 
 
 @pytest.fixture(scope="module")
@@ -216,7 +216,7 @@ def test_a_wheel_by_its_modes_and_by_its_receptance():
 
 def stiffness_of(tree):
     """Slope of the force over the approach, with the texture that the contact meets held fixed."""
-    rolling = tree["rolling"].to_dataset().sel(law="linear")
+    rolling = tree["rolling"].to_dataset().sel(law="linear", contact=1)
     line, position = tree["surface/line"], rolling["position"].values
     texture = np.interp(position - position[0], line["distance"].values, line.values)
     columns = np.column_stack([rolling["relative_displacement"].values, texture, np.ones(texture.size)])

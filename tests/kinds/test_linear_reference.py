@@ -109,7 +109,7 @@ def test_between_cells_the_reference_passes_the_texture_that_the_laws_follow(mon
     cells, steps, speed = 1e-3 * np.arange(3000), np.arange(3000), 30.0
     line = 1e-6 * np.sin(2 * np.pi * cells / 6e-3)
     case = SimpleNamespace(time_step=25e-6, speed=speed, contact=SimpleNamespace(spacing=1e-3))
-    run = SimpleNamespace(position=0.1 + 0.75e-3 * steps)
+    run = SimpleNamespace(positions=[0.1 + 0.75e-3 * steps])
     textures = SimpleNamespace(start=0.0, line=line, followed=line)
     chain = SimpleNamespace(runs={"linear": run}, textures=textures, shape=None, reduction=None)
     monkeypatch.setattr(spectra, "working_point", lambda *_: (0.0, STIFFNESS))

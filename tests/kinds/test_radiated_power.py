@@ -109,10 +109,10 @@ def test_the_motion_at_the_contact_is_that_of_the_force(which, request):
     """
     case, tree = request.getfixturevalue(which)
     track = case.track_model()
-    displacement = tree["rolling"]["rail_displacement"].values[0]
+    displacement = tree["rolling"]["rail_displacement"].values[0, 0]
     segment = min(displacement.size // 4, round(0.2 / case.time_step))
     frequency, moved = psd(displacement, case.time_step, segment=segment)
-    _, force = psd(tree["rolling"]["contact_force"].values[0], case.time_step, segment=segment)
+    _, force = psd(tree["rolling"]["contact_force"].values[0, 0], case.time_step, segment=segment)
     lines = frequency > 0.0
     velocity, of_force = (2.0 * np.pi * frequency) ** 2 * moved, np.zeros_like(force)
     share = spread(track, frequency[lines])

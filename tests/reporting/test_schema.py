@@ -61,7 +61,7 @@ def on_track(entry):
     )
 
 
-NOWHERE = ("calls them nothing else", "of bodies, one or many", "contacts at equal distances")
+NOWHERE = ("calls them nothing else", "of several contacts", "contacts at equal distances")
 OTHERS = {
     "ball-on-beam": (*NOWHERE, "over a track", "of a wheel", "loss factors", "poles", "law linear", "train"),
     "wheel-on-rail": (*NOWHERE, "of a ball", "accelerometers"),

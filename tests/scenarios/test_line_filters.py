@@ -214,7 +214,7 @@ class TestLaws:
         """Waves move it by several approaches: under the load it is the same state everywhere."""
         text = ball(["shifted", "hertz-filtered", "printed"], longest="8 mm").text
         found = computed(parse_case(text.replace("0.04 um", "2 um")))
-        load, positions = found.shape.load, found.runs["shifted"].position
+        load, positions = found.shape.load, found.runs["shifted"].positions[0]
         held_at = float(found.reduction.ensemble.curve.inverse(load))
         followed = found.laws["shifted"].texture.held_at(held_at).at(positions)[:, 0]
         assert np.ptp(followed) > 2.0 * found.reduction.working_approach

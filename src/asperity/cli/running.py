@@ -232,7 +232,7 @@ def law_summaries(tree: DataTree) -> list[dict[str, Any]]:
     found = []
     group = tree["rolling"].to_dataset()
     for law in group["law"].values.tolist():
-        here = group.sel(law=law)
+        here = group.sel(law=law).isel({rolling.CONTACT.name: 0}, missing_dims="ignore")
         force = here[rolling.CONTACT_FORCE.name]
         numbers = {"mean_force": force.mean(), "rms_force": force.std(), "peak_force": force.max()}
         lost = (rolling.CONTACT_LOSS_SHARE, rolling.CONTACT_LOSS_EVENTS, rolling.LONGEST_LOSS)

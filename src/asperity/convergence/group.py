@@ -84,12 +84,12 @@ def motion_entry(held: Mapping[Any, Any]) -> Entry | None:
 def halves(tree: DataTree, step: float, highest: float) -> tuple[Levels, Levels]:
     """Levels of the force over all of a record and over its first half, from segments of one length."""
     force = tree[rolling.CONTACT_FORCE.group].to_dataset()[rolling.CONTACT_FORCE.name].values
-    half = force.shape[1] // 2
-    segment = min(spectrum_segment(force.shape[1], step), half)
+    half = force.shape[-1] // 2
+    segment = min(spectrum_segment(force.shape[-1], step), half)
     found = []
-    for part in (force, force[:, :half]):
+    for part in (force, force[..., :half]):
         frequency, density = psd(part, step, segment=segment)
-        band, level = band_levels(frequency, density, high=highest)
+        band, level = band_levels(frequency, density.mean(axis=1), high=highest)
         found.append(Levels(band, level, np.full(level.shape, np.nan), np.nan))
     return found[0], found[1]
 

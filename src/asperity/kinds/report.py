@@ -21,13 +21,15 @@ PAGE, SUMMARY = "report.html", "summary.html"
 
 
 def chapters_of(tree: DataTree) -> tuple[Chapter, ...]:
-    """Chapters for the kind of case that `tree` is the result of; where it does not say, that shows most."""
+    """Chapters for the kind of case that `tree` is the result of, or those it fills most."""
     kind = stated(tree, KIND)
     if kind in KINDS:
         return KINDS[kind].chapters
-    return max(
-        (kind.chapters for kind in KINDS.values()), key=lambda chapters: len(drawable_parts(tree, chapters))
-    )
+
+    def filled(chapters: tuple[Chapter, ...]) -> float:
+        return len(drawable_parts(tree, chapters)) / sum(len(chapter.parts) for chapter in chapters)
+
+    return max((kind.chapters for kind in KINDS.values()), key=filled)
 
 
 def parts_of(tree: DataTree) -> list[Part]:

@@ -241,7 +241,8 @@ def _collected(runs: Sequence[NamedRun], names: Sequence[str], entry: Entry, red
         for k, law in enumerate(names):
             own = _own_name(run, law, held)
             if own is not None:
-                numbers[r, k] = float(reduce(of_law(run.tree, entry, own, *entry.dims[1:])))
+                dims = [dim for dim in entry.dims[1:] if dim != rolling.CONTACT.name]
+                numbers[r, k] = float(reduce(of_law(run.tree, entry, own, *dims)))
     return numbers
 
 

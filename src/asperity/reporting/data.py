@@ -15,6 +15,7 @@ from xarray import DataArray, DataTree
 from asperity.errors import InputError
 from asperity.schema import Attribute, Entry
 from asperity.schema.provenance import PARAMETERS
+from asperity.schema.rolling import CONTACT
 from asperity.schema.spectra import BAND_TIME_PRODUCT, START_SHARE
 from asperity.spectra import nominal, say_little
 from asperity.units import quantity
@@ -119,12 +120,14 @@ def laws(tree: DataTree, entry: Entry) -> list[str]:
 
 
 def of_law(tree: DataTree, entry: Entry, law: str, *dims: str) -> NDArray[np.float64]:
-    """Numbers of one law, with the remaining dimensions in the order of `dims`."""
+    """Numbers of one law, with the remaining dimensions in the order of `dims`; by default of contact 1."""
     found = stored_variable(tree, entry)
     if found is None:
         raise KeyError(entry.path)
     row = [str(name) for name in found["law"].values].index(law)
-    return np.asarray(found.isel(law=row).transpose(*dims).values, dtype=float)
+    of_first = {} if CONTACT.name in dims else {CONTACT.name: 0}
+    one = found.isel({"law": row} | of_first, missing_dims="ignore")
+    return np.asarray(one.transpose(*dims).values, dtype=float)
 
 
 def doubtful(tree: DataTree, product: Entry) -> NDArray[np.bool_]:

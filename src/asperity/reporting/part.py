@@ -93,7 +93,7 @@ def present_series(tree: DataTree, named: Mapping[Entry, str]) -> dict[Any, Seri
 def by_law(tree: DataTree, entry: Entry, name: str = "{}") -> dict[str, Series]:
     """Numbers of each law over the last dimension of a variable; `name` says where the law stands in it."""
     return {
-        law: Series(name.format(law), entry.units, of_law(tree, entry, law, *entry.dims[1:]))
+        law: Series(name.format(law), entry.units, of_law(tree, entry, law, entry.dims[-1]))
         for law in laws(tree, entry)
     }
 

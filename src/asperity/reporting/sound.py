@@ -22,7 +22,7 @@ from asperity.arguments import file_path, shown
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
-from asperity.schema.rolling import CONTACT_FORCE, LAW, SPEED, TIME
+from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
 from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum
 
 PASS_BY = "pass_by_pressure"
@@ -58,12 +58,17 @@ def pass_by_pressure(tree: DataTree) -> DataArray | None:
         return None
     time = rolling[TIME.name].values
     distance = np.hypot(DISTANCE, float(speed) * (time - 0.5 * (time[0] + time[-1])))
-    force = rolling[CONTACT_FORCE.name].transpose(LAW.name, TIME.name)
+    force = _of_first(rolling[CONTACT_FORCE.name]).transpose(LAW.name, TIME.name)
     step = float(time[-1] - time[0]) / (len(time) - 1)
     forces = force.values.astype(float)
     source = [radiated(one, step, band, bands) for one, bands in zip(forces, level, strict=True)]
     pressure = np.array(source) * np.sqrt(IMPEDANCE / (2.0 * np.pi)) / distance
     return DataArray(pressure, force.coords, force.dims, PASS_BY, {"units": "Pa"})
+
+
+def _of_first(values: DataArray) -> DataArray:
+    """Numbers of the first contact, where there are contacts."""
+    return values.isel({CONTACT.name: 0}, missing_dims="ignore", drop=True)
 
 
 def _sound_power(tree: DataTree) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
@@ -207,13 +212,17 @@ def sounds_of(tree: DataTree, what: str | None = None) -> list[Sound]:
         allowed = ", ".join(found) or "nothing, for the run holds no signal of two samples or more"
         raise InputError("what to listen to", shown(name), allowed)
     values = found[name]
+    values = values if values.sizes.get(CONTACT.name, 1) > 1 else _of_first(values)
     time = tree["rolling"].to_dataset()[TIME.name].values
     step = float(time[-1] - time[0]) / (len(time) - 1)
     places = [dim for dim in values.dims if dim not in (LAW.name, TIME.name)]
     sounds = []
     for index in product(range(values.sizes[LAW.name]), *(range(values.sizes[dim]) for dim in places)):
         one = values.isel(dict(zip((LAW.name, *places), index, strict=True)))
-        where = (f"{float(one[dim]):.6g} {one[dim].attrs.get('units', '')}".strip() for dim in places)
+        where = (
+            f"{float(one[dim]):.6g} {one[dim].attrs.get('units', '').removeprefix('1')}".strip()
+            for dim in places
+        )
         samples = at_rate(one.values.astype(float), step)
         law, unit = str(one[LAW.name].item()), str(values.attrs["units"])
         sounds.append(Sound(name, law, ", ".join(where), unit, samples))

@@ -6,7 +6,7 @@ import time
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from asperity.contact.scan import ScannedForces
 from asperity.errors import PhysicsWarning, ShortRecordWarning
 from asperity.laws import Law, Need, needs_of
 from asperity.progress import Progress
-from asperity.rolling.outcome import ContactLoss
+from asperity.rolling.roll import RolledBodies
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import Workshop
 from asperity.scenarios.line_filters import normalisations
@@ -29,46 +29,15 @@ if TYPE_CHECKING:
     from asperity.scenarios.preparing import PreparedCase
 
 
-class Run(Protocol):
-    """What all kinds of rolling record."""
-
-    @property
-    def time(self) -> NDArray[np.float64]:
-        """Times, s, shape (n,)."""
-
-    @property
-    def position(self) -> NDArray[np.float64]:
-        """Positions of the contact, m, shape (n,)."""
-
-    @property
-    def contact_force(self) -> NDArray[np.float64]:
-        """Contact force, N, shape (n,)."""
-
-    @property
-    def contact_loss(self) -> list[ContactLoss]:
-        """Flights."""
-
-    @property
-    def contact_loss_share(self) -> float:
-        """Share of the time out of contact."""
-
-    @property
-    def unconverged_steps(self) -> int:
-        """Time steps whose contact force missed the tolerance."""
-
-
-R = TypeVar("R", bound=Run)
-
-
 @dataclass(frozen=True, eq=False)
-class Chain(Generic[R]):
+class Chain:
     """What was computed for a case of any kind, before it is laid out as a result."""
 
     case: Case
     textures: Textures
     shape: Geometry
     reduction: Reduction | None  # state functions; None without samples
-    runs: dict[str, R]  # time histories, by law
+    runs: dict[str, RolledBodies]  # time histories, by law
     scan: ScannedForces[Any] | None  # of the path
     running_in: RunInCase | None  # what passes before did to the textures; None where there were none
     seconds: dict[str, float]  # wall time of each part, s
@@ -82,7 +51,7 @@ class Chain(Generic[R]):
             return {name: self.workshop.build(name) for name in self.case.laws}
 
     def stacked(self, name: str) -> NDArray[np.float64]:
-        """Stack one record of all runs, (laws, ...), by the name of its attribute."""
+        """Stack one record of all runs, (laws, contacts or sensors, ...), by the name of its attribute."""
         return np.stack([getattr(run, name) for run in self.runs.values()])
 
 
@@ -121,12 +90,12 @@ def warn_of_start(case: Case, remedy: str) -> None:
 
 def reduce_and_roll(
     prepared: PreparedCase,
-    roll: Callable[..., R],
+    roll: Callable[..., RolledBodies],
     store: Store,
     progress: Progress,
     watch: Stopwatch,
     further: Sequence[Further] = (),
-) -> Chain[R]:
+) -> Chain:
     """Run the textures in where a case asks for it, reduce the samples, build its laws and roll each.
 
     `roll` rolls a law, and beside it the same law of each `further` contact. The store keeps finished scans;
@@ -145,7 +114,7 @@ def reduce_and_roll(
     watch.lap("reduction")
     workshop = Workshop(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
     others = [_of_contact(workshop, contact) for contact in further]
-    runs: dict[str, R] = {}
+    runs: dict[str, RolledBodies] = {}
     anew = replace(workshop)  # without the textures that it will make
     for name in case.laws:
         runs[name] = roll(workshop.build(name), *(other.build(name) for other in others))

@@ -22,7 +22,7 @@ SMOOTH = "smooth bodies have one filter, that of the working load"
 """Why the filter that is applied is not known in other states of a case without samples."""
 
 
-def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset:
+def contact_group(chain: Chain, found: Sequence[Finding]) -> xarray.Dataset:
     """Lay out forces, stiffness and filters of all states, Hertz's where there are no samples.
 
     With the findings that hold the contact to the range of its laws.
@@ -36,7 +36,7 @@ def contact_group(chain: Chain[Any], found: Sequence[Finding]) -> xarray.Dataset
     return _reduced(chain).assign_attrs(attributes(facts))
 
 
-def _reduced(chain: Chain[Any]) -> xarray.Dataset:
+def _reduced(chain: Chain) -> xarray.Dataset:
     """What does not depend on what has rolled."""
     shape, reduction = chain.shape, chain.reduction
     facts: dict[Attribute, Any] = {
@@ -122,7 +122,7 @@ def _asked(answer: Answer) -> dict[str, Any]:
     return told | {"effect": round(answer.effect, 3), "grade": grade}
 
 
-def _filters(chain: Chain[Any]) -> dict[Entry, Any]:
+def _filters(chain: Chain) -> dict[Entry, Any]:
     """Filters on the approaches of all states; NaN where a state carries too little load to have one."""
     reduction = chain.reduction
     assert reduction is not None
@@ -165,7 +165,7 @@ def _on_states(values: NDArray[np.float64], rows: NDArray[np.intp], count: int) 
     return full
 
 
-def _hertz_only(chain: Chain[Any], facts: dict[Attribute, Any]) -> xarray.Dataset:
+def _hertz_only(chain: Chain, facts: dict[Attribute, Any]) -> xarray.Dataset:
     """Contact of smooth bodies, and its closed-form filter, where a case has no samples."""
     shape, hertz, load = chain.shape, chain.shape.hertz, chain.shape.load
     approach = np.linspace(0.0, 2.0 * hertz.approach(load), 41)[1:]

@@ -129,19 +129,20 @@ def coupled_force_psd(
     stiffness: float,
     places: ArrayLike,
 ) -> NDArray[np.float64]:
-    """One-sided PSD of the force of the first of several linear contacts, (f,), N²/Hz.
+    """One-sided PSD of the force of several linear contacts, mean of them, (f,), N²/Hz.
 
     The contacts pass the same path one after the other, and each has a texture of its own: of these are the
-    PSDs (f,), m²/Hz. With T_1j = F_1/z_j it is |Σ T_1j exp(iω d_j/v)|² S_path + Σ |T_1j|² S_own, d_j ahead of
-    the first, as a mean over the places (p,) of the run, m. Frequencies (f,), Hz, above zero; speed, m/s. As
-    `linear_force_psd` without motion; of the contacts those `MOST_COUPLED` that are numbered first.
+    PSDs (f,), m²/Hz. With T_ij = F_i/z_j that of a contact i is |Σ T_ij exp(iω d_j/v)|² S_path
+    + Σ |T_ij|² S_own, sums over j, d_j ahead of the first, as a mean over the places (p,) of the run, m.
+    Frequencies (f,), Hz, above zero; speed, m/s. As `linear_force_psd` without motion; of the contacts those
+    `MOST_COUPLED` that are numbered first.
     """
     count = min(len(scene.offsets), MOST_COUPLED)
     ahead = np.array(scene.offsets[:count]) - scene.offsets[0]
     delay = np.exp(2j * np.pi * np.outer(ahead, frequency) / speed)
-    found, at = np.zeros(len(frequency)), np.atleast_1d(np.asarray(places, dtype=float))
+    density, at = np.zeros(len(frequency)), np.atleast_1d(np.asarray(places, dtype=float))
     for place in at:
-        transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)[0]
-        found += np.abs(np.sum(transfer * delay, axis=0)) ** 2 * path_psd
-        found += np.sum(np.abs(transfer) ** 2, axis=0) * own_psd
-    return np.asarray(found / at.size)
+        transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)
+        density += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0) * path_psd
+        density += np.mean(np.sum(np.abs(transfer) ** 2, axis=1), axis=0) * own_psd
+    return np.asarray(density / at.size)

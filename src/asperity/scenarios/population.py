@@ -6,7 +6,6 @@ import math
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -54,18 +53,18 @@ class Answer:
     laws: tuple[str, ...] = ()  # of the case that it concerns
 
 
-_answered: WeakKeyDictionary[Chain[Any], tuple[Answer, ...]] = WeakKeyDictionary()
+_answered: WeakKeyDictionary[Chain, tuple[Answer, ...]] = WeakKeyDictionary()
 """Answers that were given: the range of validity and the report ask the same."""
 
 
-def answers(chain: Chain[Any]) -> tuple[Answer, ...]:
+def answers(chain: Chain) -> tuple[Answer, ...]:
     """Ask all that there is data for: nothing without samples, or of smooth ones."""
     if chain not in _answered:
         _answered[chain] = _found(chain)
     return _answered[chain]
 
 
-def _found(chain: Chain[Any]) -> tuple[Answer, ...]:
+def _found(chain: Chain) -> tuple[Answer, ...]:
     reduction = chain.reduction
     if reduction is None or not any(np.ptp(sample.heights) for sample in chain.textures.maps):
         return ()
@@ -128,7 +127,7 @@ def _filters(reduction: Reduction) -> Iterator[Answer]:
     )
 
 
-def _maps(chain: Chain[Any], reduction: Reduction, laws: tuple[str, ...]) -> Iterator[Answer]:
+def _maps(chain: Chain, reduction: Reduction, laws: tuple[str, ...]) -> Iterator[Answer]:
     """Whether measured maps differ in stiffness by more than places of one map do."""
     maps = chain.textures.maps
     if maps is chain.textures.strips or len(maps) < 2 or not reduction.stiffnesses.all():
@@ -156,7 +155,7 @@ def _maps(chain: Chain[Any], reduction: Reduction, laws: tuple[str, ...]) -> Ite
     )
 
 
-def _along_path(chain: Chain[Any], laws: tuple[str, ...]) -> Iterator[Answer]:
+def _along_path(chain: Chain, laws: tuple[str, ...]) -> Iterator[Answer]:
     """Whether the roughness of the path is the same all along it."""
     textures, patch = chain.textures, 2.0 * chain.shape.semi_axes[0]
     levels = levels_along(textures.line[textures.recorded], patch / chain.shape.spacing[0])
@@ -220,7 +219,7 @@ def told_apart(groups: Sequence[NDArray[np.float64]]) -> tuple[float, float]:
     return p, math.sqrt(max(0.0, (between - within) / size))
 
 
-def _direction(chain: Chain[Any]) -> Iterator[Answer]:
+def _direction(chain: Chain) -> Iterator[Answer]:
     """How much more power lines along the path have than lines across it."""
     found = along_over_across(chain.textures.maps, 2.0 * chain.shape.semi_axes[0])
     if found is None or not chain.textures.areal:

@@ -62,7 +62,7 @@ class Scene:
     positions: tuple[float, ...] = (0.0,)  # of the bodies ahead of that of the run, m
     sensors: tuple[float, ...] = ()  # positions of accelerometers on what is rolled over, m
     points: tuple[float, ...] = ()  # positions at which the rail of a track is looked at, m
-    # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m
+    # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m; numbered if not named
     degrees: Mapping[str, float] = field(default_factory=dict)
     # what its displacements at a contact are called: of what is rolled over, and of what rolls
     displacements: tuple[Entry, ...] = ()
@@ -81,6 +81,14 @@ class Scene:
     def loads(self) -> Array:
         """Static forces of all contacts (c,), N."""
         return np.concatenate([body.static_loads for body in self.rolling])
+
+    @property
+    def levers(self) -> dict[str, float]:
+        """Degrees of freedom by name, see `degrees`."""
+        if self.degrees:
+            return dict(self.degrees)
+        count = sum(len(body.mass) for body in self.rolling)
+        return {"body": 1.0} if count == 1 else {f"degree of freedom {n + 1}": 1.0 for n in range(count)}
 
     @property
     def first(self) -> BodyAtContact:

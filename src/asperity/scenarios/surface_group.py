@@ -34,7 +34,7 @@ FEWEST_POINTS = 16
 """Points of a segment of a line's spectrum, at least."""
 
 
-def surface_group(chain: Chain[Any], *, brief: bool = False) -> xarray.Dataset:
+def surface_group(chain: Chain, *, brief: bool = False) -> xarray.Dataset:
     """Lay out the textures of a case: first sample, a piece of the path, its line.
 
     And, if not in brief, of the whole path distribution, spectrum and statistics.
@@ -89,7 +89,7 @@ class _Path:
     spectrum: NDArray[np.float64]
 
 
-def _path(chain: Chain[Any]) -> _Path:
+def _path(chain: Chain) -> _Path:
     """Survey the recorded path, as a surface or, where nothing is known beside it, as a line."""
     textures, recorded = chain.textures, chain.textures.recorded
     segment = min(_segment(textures), recorded.stop - recorded.start)
@@ -202,7 +202,7 @@ def _length(metres: float) -> str:
     return f"{metres * 1e3:.3g} mm" if metres >= 1e-3 else f"{metres * 1e6:.3g} µm"
 
 
-def _spectra(chain: Chain[Any], path: _Path) -> dict[Entry, Any]:
+def _spectra(chain: Chain, path: _Path) -> dict[Entry, Any]:
     """Spectra of samples and path in the rolling direction, on the samples' wavenumbers."""
     maps, wavenumber = chain.textures.maps, path.wavenumber
     found: dict[Entry, Any] = {}

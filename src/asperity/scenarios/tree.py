@@ -24,15 +24,12 @@ from asperity.scenarios.chain import Chain
 from asperity.scenarios.chance import PLACES, ForceTransfer, chance_and_start, values_seen
 from asperity.scenarios.law_choice import LawChoice
 from asperity.scenarios.laws import working_point
-from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
+from asperity.schema import VERSION, Entry, attributes, provenance, spectra
 from asperity.spectra import (
     LEAST_PRODUCT,
     MOST_START,
-    averaging_time,
-    band_levels,
     band_product,
     level_deviation,
-    psd,
 )
 
 SEGMENT = (0.025, 0.2)
@@ -56,7 +53,7 @@ EXPECTED = ("G. Matheron, Economic Geology 58 (1963) 1246 (kriging, of the expec
 
 
 def assembled(
-    chain: Chain[Any],
+    chain: Chain,
     groups: Mapping[str, xarray.Dataset],
     caught: list[warnings.WarningMessage],
     *,
@@ -105,7 +102,7 @@ def scenario_group(case: Case) -> xarray.Dataset:
     return xarray.Dataset(attrs=attributes(scenario))
 
 
-def _sources(chain: Chain[Any], choice: LawChoice | None) -> tuple[str, ...]:
+def _sources(chain: Chain, choice: LawChoice | None) -> tuple[str, ...]:
     """Sources of the methods that a run of any kind used."""
     rough = ROUGH_CONTACT if chain.reduction is not None else ()
     return METHOD + rough + BANDS + (EXPECTED if choice is not None else ())
@@ -122,13 +119,13 @@ def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
     ]
 
 
-def _listed(chain: Chain[Any], numerics: Iterable[tuple[str, str]]) -> list[dict[str, str]]:
+def _listed(chain: Chain, numerics: Iterable[tuple[str, str]]) -> list[dict[str, str]]:
     every = [*_numerics(chain), *numerics]
     every += [(f"wall time, {part}", f"{seconds:.2f} s") for part, seconds in chain.seconds.items()]
     return [{"name": name, "value": value} for name, value in every]
 
 
-def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
+def _numerics(chain: Chain) -> Iterable[tuple[str, str]]:
     case, (nx, ny) = chain.case, chain.shape.body.shape
     yield "time step", f"{case.time_step * 1e6:.4g} µs"
     yield "time steps", f"{max(len(r.time) for r in chain.runs.values()) - 1}"
@@ -146,29 +143,12 @@ def _numerics(chain: Chain[Any]) -> Iterable[tuple[str, str]]:
         yield "contacts solved for the table", f"{chain.scan.counts.solved} in {precision} precision"
         yield "contacts of the table not converged", f"{chain.scan.counts.unconverged}"
     main, first = next(iter(chain.runs.items()))
-    thirds = ", ".join(f"{np.std(third):.3g}" for third in np.array_split(first.contact_force, 3))
+    thirds = ", ".join(
+        f"{rms_about_mean(part):.3g}" for part in np.array_split(first.contact_force, 3, axis=1)
+    )
     yield f"rms of the contact force in thirds of the record, {main}", f"{thirds} N"
     for name, run in chain.runs.items():
         yield f"time steps not converged, {name}", f"{run.unconverged_steps}"
-
-
-def rolling_group(chain: Chain[Any], own: Mapping[Entry, Any]) -> xarray.Dataset:
-    """Lay out what was recorded in time: force, approach, losses of contact, and what the kind adds."""
-    run, stack = next(iter(chain.runs.values())), chain.stacked
-    found = variables(
-        {
-            rolling.LAW: list(chain.runs),
-            rolling.TIME: run.time,
-            rolling.POSITION: run.position,
-            rolling.CONTACT_FORCE: stack("contact_force"),
-            rolling.RELATIVE_DISPLACEMENT: stack("relative_displacement"),
-            rolling.CONTACT_LOSS_SHARE: stack("contact_loss_share"),
-            rolling.CONTACT_LOSS_EVENTS: [len(run.contact_loss) for run in chain.runs.values()],
-            rolling.LONGEST_LOSS: stack("longest_loss"),
-        }
-        | dict(own)
-    )
-    return xarray.Dataset(found, attrs=attributes({rolling.SPEED: chain.case.speed}))
 
 
 def spectrum_segment(samples: int, step: float) -> int:
@@ -187,40 +167,18 @@ def difference_to(baseline: str) -> Entry:
     return spectra.FORCE_LEVEL_DIFFERENCES[role]
 
 
-def force_spectra(chain: Chain[Any], transfer: ForceTransfer | None = None) -> dict[str, xarray.Variable]:
-    """Lay out the contact force over frequency: narrow bands, one-third octaves, differences between laws.
-
-    With how sure the levels are, where the linear force of the bodies is known.
-    """
-    step, highest = chain.case.time_step, chain.case.numerics.highest_frequency
-    laws, force = list(chain.runs), chain.stacked("contact_force")
-    segment = spectrum_segment(force.shape[1], step)
-    time = averaging_time(force.shape[1], step, segment=segment)
-    frequency, density = psd(force, step, segment=segment)
-    band, level = band_levels(frequency, density, high=highest)
-    shown = drawn(frequency, highest)
-    found = variables(
-        {
-            spectra.LAW: laws,
-            spectra.FREQUENCY: frequency[shown],
-            spectra.BAND: band,
-            spectra.FORCE_PSD: density[:, shown],
-            spectra.FORCE_LEVEL: level,
-        }
-        | sureness(chain, band, time, transfer)
-    )
-    return found | level_differences(laws, level)
-
-
 def sureness(
-    chain: Chain[Any], band: NDArray[np.float64], time: float, transfer: ForceTransfer | None
+    chain: Chain, band: NDArray[np.float64], time: float, transfer: ForceTransfer | None
 ) -> dict[Entry, Any]:
-    """Lay out how sure the levels of bands (b,), Hz, are: B T for an averaging time, s, chance, and start."""
+    """Lay out how sure the levels of bands (b,), Hz, are: B T for an averaging time, s, chance, and start.
+
+    By the first contact: others of one path hold much the same.
+    """
     found: dict[Entry, Any] = {}
     run = next(iter(chain.runs.values()))
-    values = band_product(band, time) * values_seen(run.contact_force, chain.case.time_step, band)
+    values = band_product(band, time) * values_seen(run.contact_force[0], chain.case.time_step, band)
     if transfer is not None:
-        record, (first, last) = float(run.time[-1]), run.position[[0, -1]]
+        record, (first, last) = float(run.time[-1]), run.positions[0, [0, -1]]
         places = first + (last - first) * (np.arange(PLACES) + 0.5) / PLACES
         _, stiffness = working_point(chain.case.contact, chain.shape, chain.reduction)
         linear = partial(transfer, stiffness, places)
@@ -233,18 +191,23 @@ def sureness(
     }
 
 
+def rms_about_mean(force: NDArray[np.float64]) -> float:
+    """Rms of contact forces (c, n), N, each about its own mean."""
+    return float(np.sqrt(np.mean(np.var(force, axis=-1))))
+
+
 def drawn(frequency: NDArray[np.float64], highest: float) -> NDArray[np.bool_]:
     """Which lines of a spectrum are kept: up to the edge of the one-third octave of the highest, Hz."""
     return np.asarray((frequency > 0.0) & (frequency <= 1.13 * highest))
 
 
-def level_differences(laws: list[str], force_level: np.ndarray) -> dict[str, xarray.Variable]:
+def level_differences(laws: list[str], force_level: np.ndarray) -> dict[Entry, xarray.Variable]:
     """Differences of force levels (laws, bands), dB, to the linear laws, and to a reference if any."""
     compared = {difference_to(law): law for law in baselines(laws)}
     if (solved := reference(laws)) is not None:
         compared[spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = solved
     return {
-        entry.name: entry.variable(force_level - force_level[laws.index(law)], reference=law)
+        entry: entry.variable(force_level - force_level[laws.index(law)], reference=law)
         for entry, law in compared.items()
     }
 

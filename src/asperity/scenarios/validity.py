@@ -6,7 +6,6 @@ import math
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray
@@ -14,13 +13,14 @@ import xarray
 from asperity.config.case import Case
 from asperity.errors import Grade, OutOfRangeWarning, percent
 from asperity.laws import baselines, names, spec_of
-from asperity.scenarios.chain import Chain, Run
+from asperity.rolling.roll import RolledBodies
+from asperity.scenarios.chain import Chain
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.law_choice import WANTED, LawChoice, law_choice, law_to_take
 from asperity.scenarios.population import EFFECT, answers
 from asperity.scenarios.scene import Scene
 from asperity.scenarios.textures import Textures
-from asperity.scenarios.tree import difference_to
+from asperity.scenarios.tree import difference_to, rms_about_mean
 from asperity.scenarios.trial import ContactTrial
 from asperity.schema.spectra import (
     BAND,
@@ -67,7 +67,7 @@ class Finding:
         return f"{self.quantity}: {self.value}, in range {self.limit}. {self.meaning} {self.remedy}"
 
 
-def findings(chain: Chain[Any], choice: LawChoice | None = None) -> list[Finding]:
+def findings(chain: Chain, choice: LawChoice | None = None) -> list[Finding]:
     """Hold a case to the range in which its laws are known to hold; without samples, its time steps alone.
 
     Which law to take instead is what the map of law errors chooses, where it knows of the case.
@@ -86,7 +86,7 @@ def findings(chain: Chain[Any], choice: LawChoice | None = None) -> list[Finding
     ]
 
 
-def choice_of(chain: Chain[Any], scene: Scene, *, brief: bool) -> LawChoice | None:
+def choice_of(chain: Chain, scene: Scene, *, brief: bool) -> LawChoice | None:
     """What the map of law errors says of a case; in brief only where the real contact asks for it."""
     if brief and (chain.reduction is None or chain.reduction.area_ratio >= AREA[0]):
         return None
@@ -194,7 +194,7 @@ def _isolated(case: Case, share: float) -> Finding:
     )
 
 
-def _cut_off(chain: Chain[Any]) -> Iterator[Finding]:
+def _cut_off(chain: Chain) -> Iterator[Finding]:
     """Contacts that the window cuts off: those that are rolled, and all that were solved."""
     reduction, scan = chain.reduction, chain.scan
     assert reduction is not None
@@ -234,7 +234,7 @@ def _cut_off(chain: Chain[Any]) -> Iterator[Finding]:
         )
 
 
-def _time_steps(chain: Chain[Any]) -> Finding:
+def _time_steps(chain: Chain) -> Finding:
     """Time steps whose contact force missed its tolerance, of the law that has most of them."""
     case = chain.case
     steps = (case.rolled_time + case.settled_time) / case.time_step
@@ -253,7 +253,7 @@ def _time_steps(chain: Chain[Any]) -> Finding:
     )
 
 
-def _populations(chain: Chain[Any]) -> Iterator[Finding]:
+def _populations(chain: Chain) -> Iterator[Finding]:
     """Whether samples and path are one population, so that what is reduced from samples fits all of it."""
     for answer in answers(chain):
         if answer.laws:
@@ -282,7 +282,7 @@ COMPARED = (100.0, 5000.0)
 
 
 def verdict(
-    chain: Chain[Any],
+    chain: Chain,
     spectra: xarray.Dataset,
     found: Sequence[Finding],
     body: str,
@@ -295,9 +295,10 @@ def verdict(
     A-weighted, dB; choice of a law, from the law accuracy map.
     """
     main, run = next(iter(chain.runs.items()))
-    dynamic = float(np.std(run.contact_force))
+    dynamic = rms_about_mean(run.contact_force)
     sentences = list(_doubts(chain, found))
-    sentences += [f"{_contact(run, body)} ({main}); the contact force varies by {_force(dynamic)} rms"]
+    forces = "the contact force varies" if len(run.contact_force) == 1 else "the contact forces vary"
+    sentences += [f"{_contact(run, body)} ({main}); {forces} by {_force(dynamic)} rms"]
     secant = " (linear with the stiffness F/r)" if chain.case.contact.linearise == "secant" else ""
     others = [law for law in baselines(chain.runs) if difference_to(law).name in spectra and law != main]
     shown = compared_bands(spectra)
@@ -314,7 +315,7 @@ def verdict(
     return ". ".join(sentences) + "."
 
 
-def _doubts(chain: Chain[Any], found: Sequence[Finding]) -> Iterator[str]:
+def _doubts(chain: Chain, found: Sequence[Finding]) -> Iterator[str]:
     """Say first where the main law is outside its range, and what the scanned contact gives instead."""
     main = next(iter(chain.runs))
     doubts = [finding for finding in found if finding.concerns(main)]
@@ -325,7 +326,7 @@ def _doubts(chain: Chain[Any], found: Sequence[Finding]) -> Iterator[str]:
     seeing = [law for law in names() if law in chain.runs and spec_of(law).sees_heights]
     better = [law for law in seeing if any(law not in finding.laws for finding in doubts)]
     instead = [
-        f"{law} varies by {_force(float(np.std(chain.runs[law].contact_force)))} rms" for law in better
+        f"{law} varies by {_force(rms_about_mean(chain.runs[law].contact_force))} rms" for law in better
     ]
     yield f"{'Out of range' if out else 'Doubtful'} for {main}: {'; '.join([reasons, *instead[:1]])}"
 
@@ -358,11 +359,23 @@ def _force(newtons: float) -> str:
     return f"{newtons:.3g} N" if newtons < 1e3 else f"{newtons / 1e3:.3g} kN"
 
 
-def _contact(run: Run, body: str) -> str:
-    if not run.contact_loss:
+MOST_NAMED = 4
+"""Contacts that the verdict names."""
+
+
+def _contact(run: RolledBodies, body: str) -> str:
+    """Say how often the contact of a body is lost; of several contacts, which, and how much of the time."""
+    share, (first, *others) = 1.0 - run.in_contact.mean(axis=-1), run.contact_loss
+    if not others and not first:
         return f"The {body} never loses contact"
-    share, count = 100.0 * run.contact_loss_share, len(run.contact_loss)
-    return f"The {body} loses contact {count} time{'s' if count > 1 else ''}, {share:.2g} % of the time"
+    if not others:
+        times = f"{len(first)} time{'s' if len(first) > 1 else ''}"
+        return f"The {body} loses contact {times}, {100.0 * share[0]:.2g} % of the time"
+    lost = [f"{k + 1} ({100.0 * part:.2g} %)" for k, part in enumerate(share) if part > 0.0]
+    if not lost:
+        return f"None of the {len(share)} contacts is ever lost"
+    named = ", ".join(lost[:MOST_NAMED]) + (" and others" if len(lost) > MOST_NAMED else "")
+    return f"Of {len(share)} contacts, {len(lost)} {'is' if len(lost) == 1 else 'are'} lost at times: {named}"
 
 
 def _range(difference: xarray.DataArray) -> str:

@@ -15,7 +15,7 @@ from asperity.config.content import content, file_digest
 from asperity.laws import Law, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
-from asperity.rolling.roll import FirstContact, first_contact, roll_bodies
+from asperity.rolling.roll import RolledBodies, roll_bodies
 from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.kind import Kind
@@ -42,7 +42,7 @@ class Computed:
     case: Any
     scene: Scene
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
-    chain: Chain[FirstContact]  # textures, state functions, laws and runs
+    chain: Chain  # textures, state functions, laws and runs
     # (laws, points, n), displacement, m, and velocity, m/s, of the rail at the points that are passed
     points: tuple[NDArray[np.float64], ...] = ()
 
@@ -64,10 +64,6 @@ class Computed:
         assert isinstance(self.over, RailBetween)
         return self.over.kernel
 
-    def of_contacts(self, name: str) -> NDArray[np.float64]:
-        """Stack one record of all contacts, or sensors, of all runs (laws, c, ...), by its name."""
-        return np.stack([getattr(run.every, name) for run in self.chain.runs.values()])
-
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Reduce and roll a case from `asperity.running.prepare_case`."""
@@ -81,9 +77,9 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     which, others = prepared.kind.contacts_of(case, scene.loads)
     duration = recorded_time(case, textures)
 
-    def roll_laws(first: Law, *further: Law) -> FirstContact:
+    def roll_laws(first: Law, *further: Law) -> RolledBodies:
         laws = (first, *further)
-        every = roll_bodies(
+        return roll_bodies(
             over,
             scene.rolling,
             [laws[k] for k in which],
@@ -98,7 +94,6 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             progress=progress,
             checkpoint=checkpoint_of(first, prepared, store),
         )
-        return first_contact(every)
 
     chain = reduce_and_roll(prepared, roll_laws, store, progress, watch, others)
     computed = Computed(prepared.kind, case, scene, over, chain)
@@ -121,7 +116,7 @@ def in_time(
 
 def _passed(computed: Computed, progress: Progress) -> tuple[NDArray[np.float64], ...]:
     """Displacement, m, and velocity, m/s, of the rail at its points (laws, p, n), under all contacts."""
-    runs = [run.every for run in computed.chain.runs.values()]
+    runs = list(computed.chain.runs.values())
     forces, settled = np.stack([run.history for run in runs]), runs[0].history.shape[1] - len(runs[0].time)
     parts = [
         passed_points(computed.kernel, forces[:, k], float(origin), computed.scene.points, settled, progress)

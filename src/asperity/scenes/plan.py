@@ -66,5 +66,7 @@ def _force(tree: DataTree, law: str) -> NDArray[np.float64]:
 
 
 MEASURES = {
-    A_WEIGHTED: Measure("contact force level, A-weighted", "dB(A) re 1 N", a_weighted(_force)),
+    A_WEIGHTED: Measure(
+        "contact force level, energy mean over the contacts, A-weighted", "dB(A) re 1 N", a_weighted(_force)
+    ),
 }

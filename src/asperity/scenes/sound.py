@@ -332,7 +332,7 @@ def radiated_power(
     density[:, 0, used], density[:, 1, used] = rail * exciting, sleepers * exciting
     wheel, own = radiating_wheel(case), computed.scene.wheel
     if wheel is not None and own is not None:
-        _, motion = psd(computed.of_contacts("rolling_displacement"), case.time_step, segment=segment)
+        _, motion = psd(computed.chain.stacked("rolling_displacement"), case.time_step, segment=segment)
         middle = 0.5 * track.sleeper_spacing
         compliance = np.abs(1.0 / stiffness + track.receptance(lines, middle, middle))
         square = [  # by law (modes, c, f)

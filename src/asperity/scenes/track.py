@@ -66,7 +66,7 @@ def linear_reference(
     spectra, from zero, Hz; segments in time steps.
     """
     case, chain = computed.case, computed.chain
-    textures, position = chain.textures, next(iter(chain.runs.values())).position
+    textures, position = chain.textures, next(iter(chain.runs.values())).positions[0]
 
     def passed(line: NDArray[np.float64]) -> NDArray[np.float64]:
         """PSD of a line at the contact."""

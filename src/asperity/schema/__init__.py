@@ -9,19 +9,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from types import ModuleType
 
-from asperity.schema.entry import Attribute, Entry, attributes, variables
+from asperity.schema.entry import Attribute, Entry, attributes, entry, variables
 
-VERSION = 1
+VERSION = 2
 """Of the schema, in every result. Raise it where a name, dimension, unit or meaning changes or goes."""
 
-__all__ = ["VERSION", "Attribute", "Entry", "attributes", "contents_of", "variables"]
+__all__ = ["VERSION", "Attribute", "Entry", "attributes", "contents_of", "entry", "variables"]
 
 
 def contents_of(*modules: ModuleType) -> tuple[list[Entry], list[Attribute]]:
     """Entries and attributes that modules define, in their order."""
-    found = list(dict.fromkeys(item for module in modules for item in _items(module)))
-    entries = [item for item in found if isinstance(item, Entry)]
-    return entries, [item for item in found if isinstance(item, Attribute)]
+    items = list(dict.fromkeys(item for module in modules for item in _items(module)))
+    entries = [item for item in items if isinstance(item, Entry)]
+    return entries, [item for item in items if isinstance(item, Attribute)]
 
 
 def _items(module: ModuleType) -> Iterator[Entry | Attribute]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Attribute, Entry
+from asperity.schema.entry import Attribute, entry
 
 _ASKED = "where convergence was asked for"
-_entry = partial(Entry, "convergence", condition=_ASKED)
-_NOT_COMPARED = "this setting was not changed, or changes nothing of the kind"
+_entry = partial(entry, "convergence", condition=_ASKED)
+_changed = partial(_entry, missing="this setting was not changed, or changes nothing of the kind")
 
 PATH_LENGTH = "path length"
 """The setting that needs no other run: half of the record is compared with all; by chance they differ."""
@@ -25,41 +25,25 @@ def meaningless(size: float, chance: float) -> bool:
     return size > MEANINGLESS and not size <= 2.0 * chance
 
 
-SETTING = _entry("setting", ("setting",), "1", "setting that was changed")
-CHANGE = _entry("change", ("setting",), "1", "from what to what")
-LIMIT = _entry("limit", ("setting",), "1", "why it was not changed; empty where it was")
-LAW = _entry("law", ("law",), "1", "contact law")
-BAND = _entry("band", ("band",), "Hz", "one-third-octave band centre")
-FORCE_LEVEL_CHANGE = _entry(
-    "force_level_change",
-    ("setting", "law", "band"),
+SETTING = _entry("setting", "1", "setting that was changed")
+CHANGE = _entry("change(setting)", "1", "from what to what")
+LIMIT = _entry("limit(setting)", "1", "why it was not changed; empty where it was")
+LAW = _entry("law", "1", "contact law")
+BAND = _entry("band", "Hz", "one-third-octave band centre")
+_OVER = "of the finer computation over that of the coarser"
+_FORCE = f"contact force level {_OVER}"
+FORCE_LEVEL_CHANGE = _changed("force_level_change(setting, law, band)", "dB", _FORCE)
+MOTION_LEVEL_CHANGE = _changed(
+    "motion_level_change(setting, law, band)",
     "dB",
-    "contact force level of the finer computation over that of the coarser",
-    missing=_NOT_COMPARED,
-)
-MOTION_LEVEL_CHANGE = _entry(
-    "motion_level_change",
-    ("setting", "law", "band"),
-    "dB",
-    "level of the recorded motion, energy mean over its places, of the finer computation over that of the "
-    "coarser",
-    missing=_NOT_COMPARED,
+    f"level of the recorded motion, energy mean over its places, {_OVER}",
     attributes=("quantity",),
 )
-STIFFNESS_CHANGE = _entry(
-    "stiffness_change",
-    ("setting",),
-    "1",
-    "mean contact stiffness of the finer computation over that of the coarser, less one",
-    missing=_NOT_COMPARED,
-)
-LARGEST_CHANGE = _entry(
-    "largest_change",
-    ("setting",),
-    "dB",
-    "largest size of the change of the main law's force level, 100 Hz to 5 kHz, bands that say something",
-    missing=_NOT_COMPARED,
-)
-LARGEST_BAND = _entry("largest_band", ("setting",), "Hz", "band of it", missing=_NOT_COMPARED)
+_STIFFNESS = f"mean contact stiffness {_OVER}, less one"
+STIFFNESS_CHANGE = _changed("stiffness_change(setting)", "1", _STIFFNESS)
+_SIZE = "largest size of the change of the main law's force level, 100 Hz to 5 kHz, bands that say something"
+LARGEST_CHANGE = _changed("largest_change(setting)", "dB", _SIZE)
+LARGEST_BAND = _changed("largest_band(setting)", "Hz", "band of it")
 
-SENTENCE = Attribute("convergence", "verdict", "text", "which setting matters most, and how much", _ASKED)
+_SENTENCE = "which setting matters most, and how much"
+SENTENCE = Attribute("convergence", "verdict", "text", _SENTENCE, _ASKED)

@@ -39,16 +39,36 @@ class Entry:
         import numpy as np
         import xarray
 
-        found = np.asarray(values)
+        numbers = np.asarray(values)
         attrs = {"units": self.units, "long_name": self.long_name} | attributes
-        if found.dtype.kind == "f" and not (finite := np.isfinite(found)).all():
+        if numbers.dtype.kind == "f" and not (finite := np.isfinite(numbers)).all():
             attrs.setdefault("missing", self.missing or UNKNOWN)
             if attrs["missing"] == UNKNOWN:
-                lost = f"{found.size - finite.sum()} of {found.size} values of {self.name}"
-                told = PhysicsWarning(f"{lost} are not finite numbers, and {UNKNOWN}", Grade.OUT)
-                warnings.warn(told, stacklevel=2)
-            found = np.where(finite, found, np.nan)
-        return xarray.Variable(self.dims, found, attrs)
+                lost = f"{numbers.size - finite.sum()} of {numbers.size} values of {self.name}"
+                message = f"{lost} are not finite numbers, and {UNKNOWN}"
+                warnings.warn(PhysicsWarning(message, Grade.OUT), stacklevel=2)
+            numbers = np.where(finite, numbers, np.nan)
+        return xarray.Variable(self.dims, numbers, attrs)
+
+
+def entry(
+    group: str,
+    place: str,
+    units: str,
+    long_name: str,
+    condition: str = "",
+    missing: str = "",
+    attributes: tuple[str, ...] = (),
+) -> Entry:
+    """Make the entry of a variable of a group.
+
+    Its place is as ``"filter(approach, wavenumber)"``, with its dimensions; as ``"approach"`` that of a
+    coordinate, whose dimension is its own name.
+    """
+    name, _, dims = place.removesuffix(")").partition("(")
+    return Entry(
+        group, name, tuple((dims or name).split(", ")), units, long_name, condition, missing, attributes
+    )
 
 
 @dataclass(frozen=True)
@@ -67,8 +87,8 @@ def variables(values: Mapping[Entry, Any]) -> dict[str, xarray.Variable]:
     import xarray
 
     return {
-        entry.name: found if isinstance(found, xarray.Variable) else entry.variable(found)
-        for entry, found in values.items()
+        entry.name: value if isinstance(value, xarray.Variable) else entry.variable(value)
+        for entry, value in values.items()
     }
 
 

@@ -6,8 +6,7 @@ from functools import partial
 
 from asperity.schema.entry import Attribute
 
-_root = partial(Attribute, "")
-_scenario = partial(Attribute, "scenario")
+_root, _scenario = partial(Attribute, ""), partial(Attribute, "scenario")
 
 SCHEMA_VERSION = _root("schema_version", "1", "version of the names in the file")
 ASPERITY_VERSION = _root("asperity_version", "text", "version of the program that wrote the file")
@@ -18,12 +17,8 @@ SEED = _root("seed", "1", "of all that was drawn at random")
 CITATIONS = _root("citations", "JSON", "sources of methods and data")
 VERDICT = _root("verdict", "text", "what the run says, in a few sentences")
 WARNINGS = _root("warnings", "JSON", "warnings on the physics: category, message, grade, count")
-RUN = _root(
-    "run",
-    "text",
-    "names the run by case, contents of its files and program, so that none is computed twice",
-    "where the command line ran the case",
-)
+_NAMED = "names the run by case, contents of its files and program, so that none is computed twice"
+RUN = _root("run", "text", _NAMED, "where the command line ran the case")
 
 KIND = _scenario("kind", "text", "kind of case")
 PARAMETERS = _scenario("parameters", "JSON", "every key of the case, with its value and default")

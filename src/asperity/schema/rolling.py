@@ -1,22 +1,25 @@
-"""The run in time: force and approach by law, loss of contact."""
+"""The run in time: force and approach by law and contact, loss of contact."""
 
 from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Attribute, Entry
+from asperity.schema.entry import Attribute, entry
 
-_entry = partial(Entry, "rolling")
+_entry = partial(entry, "rolling")
+CONTACTS = "number of the contact, body by body, each from its rearmost"
 
-LAW = _entry("law", ("law",), "1", "contact law")
-TIME = _entry("time", ("time",), "s", "time since the run-in")
-POSITION = _entry("position", ("time",), "m", "position of the contact, in rolling direction")
-CONTACT_FORCE = _entry("contact_force", ("law", "time"), "N", "contact force")
-RELATIVE_DISPLACEMENT = _entry(
-    "relative_displacement", ("law", "time"), "m", "approach of the mean surfaces, positive closing"
-)
-CONTACT_LOSS_SHARE = _entry("contact_loss_share", ("law",), "1", "share of the time without contact")
-CONTACT_LOSS_EVENTS = _entry("contact_loss_events", ("law",), "1", "losses of contact")
-LONGEST_LOSS = _entry("longest_loss", ("law",), "s", "longest time without contact")
+LAW = _entry("law", "1", "contact law")
+TIME = _entry("time", "s", "time since the run-in")
+POSITION = _entry("position(time)", "m", "position of the first contact, in rolling direction")
+CONTACT = _entry("contact", "1", CONTACTS)
+OFFSET = _entry("offset(contact)", "m", "position of a contact ahead of that of the run")
+STATIC_LOAD = _entry("static_load(contact)", "N", "static force of a contact")
+CONTACT_FORCE = _entry("contact_force(law, contact, time)", "N", "contact force, compression positive")
+_APPROACH = "approach of the mean surfaces, positive closing"
+RELATIVE_DISPLACEMENT = _entry("relative_displacement(law, contact, time)", "m", _APPROACH)
+CONTACT_LOSS_SHARE = _entry("contact_loss_share(law, contact)", "1", "share of the time without contact")
+CONTACT_LOSS_EVENTS = _entry("contact_loss_events(law, contact)", "1", "losses of contact")
+LONGEST_LOSS = _entry("longest_loss(law, contact)", "s", "longest time without contact")
 
-SPEED = Attribute("rolling", "speed", "m/s", "speed of the contact")
+SPEED = Attribute("rolling", "speed", "m/s", "speed of the contacts")

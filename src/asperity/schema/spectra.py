@@ -4,40 +4,48 @@ from __future__ import annotations
 
 from functools import partial
 
-from asperity.schema.entry import Entry
+from asperity.schema.entry import Entry, entry
+from asperity.schema.rolling import CONTACTS
 
-_entry = partial(Entry, "spectra")
+_entry = partial(entry, "spectra")
 NO_SIGNAL = "there is no signal in these bands, and nothing has no level"
+_level = partial(_entry, missing=NO_SIGNAL)
 
-LAW = _entry("law", ("law",), "1", "contact law")
-FREQUENCY = _entry("frequency", ("frequency",), "Hz", "frequency")
-BAND = _entry("band", ("band",), "Hz", "one-third-octave band centre")
+LAW = _entry("law", "1", "contact law")
+FREQUENCY = _entry("frequency", "Hz", "frequency")
+BAND = _entry("band", "Hz", "one-third-octave band centre")
 BAND_TIME_PRODUCT = _entry(
-    "band_time_product",
-    ("band",),
+    "band_time_product(band)",
     "1",
     "bandwidth times averaging time; a level has a standard deviation of 4.34/sqrt of it, dB, or more",
     attributes=("least",),
 )
-LEVEL_DEVIATION = _entry(
-    "level_deviation", ("band",), "dB", "standard deviation of a force level by the chance of one record"
-)
+_DEVIATION = "standard deviation of a force level by the chance of one record"
+LEVEL_DEVIATION = _entry("level_deviation(band)", "dB", _DEVIATION)
 START_SHARE = _entry(
-    "start_share",
-    ("band",),
+    "start_share(band)",
     "1",
     "share of the mean square of the force that is not built up yet in the record",
     "of what rolls over structures whose receptances are known",
     attributes=("most",),
 )
 
-FORCE_PSD = _entry("force_psd", ("law", "frequency"), "N2/Hz", "PSD of the contact force, one-sided")
-FORCE_LEVEL = _entry("force_level", ("law", "band"), "dB re 1 N", "contact force level", missing=NO_SIGNAL)
+CONTACT = _entry("contact", "1", CONTACTS)
+FORCE_PSD = _entry(
+    "force_psd(law, frequency)", "N2/Hz", "PSD of the contact force, one-sided, mean of the contacts"
+)
+FORCE_LEVEL = _level(
+    "force_level(law, band)", "dB re 1 N", "contact force level, energy mean of the contacts"
+)
+_PSD = "PSD of the force of each contact, one-sided"
+CONTACT_FORCE_PSD = _entry("contact_force_psd(law, contact, frequency)", "N2/Hz", _PSD)
+_LEVEL = "level of the force of each contact"
+CONTACT_FORCE_LEVEL = _level("contact_force_level(law, contact, band)", "dB re 1 N", _LEVEL)
 
 
 def _difference(to: str, law: str, condition: str) -> Entry:
-    name, long_name = f"force_level_difference_to_{to}", f"force level over that of {law}"
-    return _entry(name, ("law", "band"), "dB", long_name, condition, NO_SIGNAL, ("reference",))
+    place, long_name = f"force_level_difference_to_{to}(law, band)", f"force level over that of {law}"
+    return _level(place, "dB", long_name, condition, attributes=("reference",))
 
 
 PRACTICE, BARE = "baseline of practice", "baseline on the bare texture"

@@ -35,6 +35,8 @@ KEPT = (
     contact.TRACK_STIFFNESS,
 )
 """What is kept of all results, beside what the schema of a scene says."""
+OF_CONTACTS = spectra.CONTACT_FORCE_LEVEL
+"""What is kept of every contact, where there are several; all else by contact is that of the first."""
 FACTS = (contact.WORKING_APPROACH, contact.WORKING_STIFFNESS, contact.YIELDED_SHARE)
 """Attributes of a result that are kept."""
 FORCES = {
@@ -53,13 +55,18 @@ def kept(tree: xarray.DataTree) -> xarray.Dataset:
 
     With citations and warnings as attributes.
     """
-    own = scene.KEPT
+    own, first = scene.KEPT, {rolling.CONTACT.name: 0}
     found = {
-        entry.name: tree[entry.path].sel(own.get(entry, {}), drop=True)
+        entry.name: tree[entry.path]
+        .sel(own.get(entry, {}), drop=True)
+        .isel(first, missing_dims="ignore", drop=True)
         for entry in (*KEPT, *own)
         if entry.group in tree.children and entry.name in tree[entry.group]
     }
-    force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name]
+    every = tree[OF_CONTACTS.path]
+    if every.sizes[rolling.CONTACT.name] > 1:
+        found[OF_CONTACTS.name] = every
+    force = tree["rolling"].to_dataset()[rolling.CONTACT_FORCE.name].isel(first, drop=True)
     for (name, what), of in zip(FORCES.items(), (force.mean, force.std, force.max), strict=True):
         found[name] = _described(of("time"), "N", what)
     lowering = contact.RUNNING_IN_LOWERING
@@ -83,10 +90,10 @@ def names_kept() -> dict[str, str]:
     """Names that the table of a study may have, each with which results have it, if not all."""
     entries = (*KEPT, contact.RUNNING_IN_LOWERING, *scene.KEPT)
     found = dict.fromkeys(FORCES, "") | {entry.name: entry.condition for entry in entries}
-    found |= {fact.name: fact.condition for fact in FACTS}
-    for entry in entries:
+    found |= {fact.name: fact.condition for fact in FACTS} | {OF_CONTACTS.name: "of several contacts"}
+    for entry in (*entries, OF_CONTACTS):
         if entry.units.startswith(LEVEL) and entry.dims[-1].endswith("band"):
-            found.setdefault(f"{entry.name}_a", entry.condition)
+            found.setdefault(f"{entry.name}_a", found[entry.name])
     for entry in spectra.FORCE_LEVEL_DIFFERENCES.values():
         found[_weighted_name(entry)] = entry.condition
     return found

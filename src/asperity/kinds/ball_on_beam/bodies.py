@@ -34,7 +34,8 @@ def bodies_of(case: BallOnBeam) -> Scene:
     rolling = (Body.rigid(ball.mass, ball.static_load),)
     names = (schema.BEAM_DISPLACEMENT, schema.BALL_DISPLACEMENT)
     sensors = case.beam.sensor_positions
-    return Scene(beam, rolling, title, sensors=sensors, displacements=names, like=case.kind)
+    degrees = {"ball": 1.0}
+    return Scene(beam, rolling, title, sensors=sensors, degrees=degrees, displacements=names, like=case.kind)
 
 
 def ball_of(case: BallOnBeam) -> Ball:

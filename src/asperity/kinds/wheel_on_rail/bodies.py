@@ -31,6 +31,7 @@ def bodies_of(case: WheelOnRail) -> Scene:
         (wheel.body,),
         title,
         points=case.point_positions,
+        degrees={"wheel": 1.0},
         displacements=(schema.RAIL_DISPLACEMENT, schema.WHEEL_DISPLACEMENT),
         like=case.kind,
         wheel=wheel,

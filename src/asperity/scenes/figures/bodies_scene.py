@@ -20,8 +20,8 @@ from asperity.reporting.drawing import (
     rolled,
 )
 from asperity.reporting.part import Data, Part
-from asperity.scenes.schema import OFFSET, ROLLING_SENSOR
-from asperity.schema.rolling import POSITION
+from asperity.scenes.schema import ROLLING_SENSOR
+from asperity.schema.rolling import OFFSET, POSITION
 
 
 def scene_data(tree: DataTree) -> Data:

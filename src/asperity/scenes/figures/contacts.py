@@ -21,17 +21,15 @@ from asperity.reporting.force_figures import (
 )
 from asperity.reporting.part import Data, Part, Series, series
 from asperity.reporting.tables import Cell, ReportTable, text_cell
-from asperity.scenes.schema import (
-    CONTACT,
-    FORCE_LEVELS,
-    FORCE_PSDS,
-    LOSS_SHARES,
-    OFFSET,
-    PASSING_FREQUENCY,
-    STATIC_LOAD,
-    SUM_PSD,
+from asperity.scenes.schema import PASSING_FREQUENCY, SUM_PSD
+from asperity.schema.rolling import CONTACT, CONTACT_LOSS_SHARE, OFFSET, STATIC_LOAD
+from asperity.schema.spectra import (
+    BAND,
+    BAND_TIME_PRODUCT,
+    CONTACT_FORCE_LEVEL,
+    CONTACT_FORCE_PSD,
+    FREQUENCY,
 )
-from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FREQUENCY
 from asperity.spectra import energy_sum
 
 MOST_LINES = 6
@@ -51,13 +49,13 @@ def _name(tree: DataTree, contact: int) -> str:
 
 def contact_levels_data(tree: DataTree) -> Data:
     """Level of the force of each contact by the main law, and their energy mean."""
-    main = laws(tree, FORCE_LEVELS)[0]
-    level = of_law(tree, FORCE_LEVELS, main, "contact", "band")
+    main = laws(tree, CONTACT_FORCE_LEVEL)[0]
+    level = of_law(tree, CONTACT_FORCE_LEVEL, main, "contact", "band")
     lines = product_series(tree, BAND_TIME_PRODUCT)
     for contact in range(len(level)):
-        lines[contact] = Series(_name(tree, contact), FORCE_LEVELS.units, level[contact])
+        lines[contact] = Series(_name(tree, contact), CONTACT_FORCE_LEVEL.units, level[contact])
     mean = energy_sum(np.nan_to_num(level, nan=-np.inf), axis=0) - 10.0 * np.log10(len(level))
-    lines[MEAN] = Series(MEAN, FORCE_LEVELS.units, mean)
+    lines[MEAN] = Series(MEAN, CONTACT_FORCE_LEVEL.units, mean)
     return Data(series(tree, BAND, "band centre"), lines)
 
 
@@ -74,7 +72,7 @@ def contact_levels_chart(tree: DataTree, data: Data) -> Chart:
 
 
 def _levels_caption(tree: DataTree) -> str:
-    main, count = laws(tree, FORCE_LEVELS)[0], len(values(tree, CONTACT))
+    main, count = laws(tree, CONTACT_FORCE_LEVEL)[0], len(values(tree, CONTACT))
     some = "" if count <= MOST_LINES else f" {MOST_LINES} of {count} contacts are drawn; the file has all."
     what = f"Force of each contact by the main law, {main}, per one-third octave."
     return f"{what}{some}{shaded_words(tree)}"
@@ -83,7 +81,7 @@ def _levels_caption(tree: DataTree) -> str:
 def sum_data(tree: DataTree) -> Data:
     """Spectra of the sum of all contact forces, of contacts that would be strangers, and of the first."""
     main = laws(tree, SUM_PSD)[0]
-    each = of_law(tree, FORCE_PSDS, main, "contact", "frequency")
+    each = of_law(tree, CONTACT_FORCE_PSD, main, "contact", "frequency")
     lines: dict[Any, Series] = {
         "sum": Series("sum of all contact forces", SUM_PSD.units, of_law(tree, SUM_PSD, main, "frequency")),
         "apart": Series("sum of their powers", SUM_PSD.units, each.sum(axis=0)),
@@ -127,10 +125,10 @@ def _sum_caption(tree: DataTree) -> str:
 
 def contacts_table(tree: DataTree) -> ReportTable | None:
     """Where the contacts are, what they carry, and how long they are lost."""
-    if not present(tree, OFFSET, STATIC_LOAD, LOSS_SHARES):
+    if not present(tree, OFFSET, STATIC_LOAD, CONTACT_LOSS_SHARE):
         return None
-    main = laws(tree, LOSS_SHARES)[0]
-    lost = of_law(tree, LOSS_SHARES, main, "contact")
+    main = laws(tree, CONTACT_LOSS_SHARE)[0]
+    lost = of_law(tree, CONTACT_LOSS_SHARE, main, "contact")
     rows = [
         [
             text_cell(f"{number}"),
@@ -150,7 +148,7 @@ CONTACTS = (
     Part(
         "contact_levels",
         "Force of each contact",
-        (FORCE_LEVELS, BAND, CONTACT, OFFSET),
+        (CONTACT_FORCE_LEVEL, BAND, CONTACT, OFFSET),
         contact_levels_data,
         contact_levels_chart,
         _levels_caption,
@@ -158,7 +156,7 @@ CONTACTS = (
     Part(
         "force_sum",
         "Contacts together",
-        (SUM_PSD, FORCE_PSDS, FREQUENCY, CONTACT),
+        (SUM_PSD, CONTACT_FORCE_PSD, FREQUENCY, CONTACT),
         sum_data,
         sum_chart,
         _sum_caption,
