@@ -9,7 +9,7 @@ import xarray as xr
 
 import asperity
 from asperity import HalfSpace, HeightMap, Profile, Track, read_surface, study
-from asperity.arguments import real, real_array, shown, two_lengths, whole
+from asperity.arguments import finite_array, one_of, real, real_array, shown, two_lengths, whole
 from asperity.errors import InputError
 from asperity.structures.moving_kernel import moving_kernel
 
@@ -245,3 +245,31 @@ def test_received_values_are_shown_short_and_plain():
     assert shown(np.float64(1.5)) == "1.5"
     assert len(shown("x" * 1000)) < 70
     assert shown(10**5000) == "a huge number"
+
+
+@pytest.mark.parametrize(
+    ("values", "limits", "message"),
+    [
+        ([1.0, 1.0], {"rising": True}, "received numbers that do not rise"),
+        ([[1.0, 2.0]], {"shape": (2, None)}, r"received shape \(1, 2\); allowed: numbers"),
+        ([1.0, 2.0], {"count": 3}, "received 2 numbers; allowed: 3"),
+        ([1.0, np.inf], {}, "received inf"),
+        ([0.0, 1.0], {"above": 0.0}, r"received 0\.0"),
+        ([0.0, 1.0], {"below": 1.0}, r"received 1\.0"),
+        ([-0.5], {"at_least": 0.0}, r"received -0\.5"),
+    ],
+)
+def test_arrays_within_limits(values, limits, message):
+    with pytest.raises(InputError, match=message):
+        finite_array("x", values, "numbers", **limits)
+    assert finite_array("x", 2.0, "numbers", count=1).shape == (1,)
+    np.testing.assert_array_equal(finite_array("x", [[1], [2]], shape=(2, None), rising=True), [[1], [2]])
+
+
+def test_one_of_some_words():
+    assert one_of("x", "mirror", ("refuse", "mirror")) == "mirror"
+    for value in ("miror", 3):
+        with pytest.raises(InputError, match=r"x: received .*; allowed: one of refuse, mirror\."):
+            one_of("x", value, ("refuse", "mirror"))
+    with pytest.raises(InputError, match='Did you mean "mirror"'):
+        one_of("x", "miror", ("refuse", "mirror"))

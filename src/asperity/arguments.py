@@ -7,9 +7,9 @@ import math
 import numbers
 import os
 import stat
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,10 +87,22 @@ def not_negative(what: str, value: object) -> float:
 
 def whole(what: str, value: object, allowed: str, *, at_least: int, at_most: float = math.inf) -> int:
     """Take one whole number within limits, as `real` does; one such as 8.0 counts as whole."""
-    number = _number(value)
-    if not (math.isfinite(number) and number == int(number) and at_least <= number <= at_most):
+    number = real(what, value, allowed, at_least=at_least, at_most=at_most)
+    if number != int(number):
         raise InputError(what, shown(value), allowed)
     return int(number)
+
+
+W = TypeVar("W", bound=str)
+
+
+def one_of(what: str, value: object, words: Iterable[W], remedy: str = "") -> W:
+    """Take one of some words; an `InputError` lists them, and names the nearest."""
+    known = list(words)
+    if not isinstance(value, str) or value not in known:
+        allowed = "one of " + ", ".join(known)
+        raise InputError(what, shown(value), allowed, remedy or nearest(value, known))
+    return known[known.index(value)]
 
 
 def passes_of(value: object) -> int | None:
@@ -138,19 +150,34 @@ def finite_array(
     allowed: str = "finite numbers",
     *,
     count: int | None = None,
+    shape: tuple[int | None, ...] | None = None,
+    rising: bool = False,
     above: float = -math.inf,
     at_least: float = -math.inf,
     below: float = math.inf,
 ) -> NDArray[np.float64]:
-    """Take an array as `real_array` does, or a list (n,) of so many; each number finite and within limits."""
+    """Take an array as `real_array` does, each number finite and within limits.
+
+    Of so many numbers (n,), one of which may stand alone; or of a shape, None where any length will do. Where
+    they must rise, each is above the one before, along the first axis.
+    """
     array = real_array(what, values, allowed)
-    if count is not None and (array := np.atleast_1d(array)).shape != (count,):
+    if count is not None:
+        array = np.atleast_1d(array)
+        shape = (count,)
+    if shape is not None and not _fits(array.shape, shape):
         received = f"{array.size} numbers" if array.ndim == 1 else f"shape {array.shape}"
-        raise InputError(what, received, str(count))
+        raise InputError(what, received, str(count) if count is not None else allowed)
     wrong = ~(np.isfinite(array) & (array > above) & (array >= at_least) & (array < below))
     if wrong.any():
         raise InputError(what, float(array[wrong][0]), allowed)
+    if rising and (np.diff(array, axis=0) <= 0.0).any():
+        raise InputError(what, "numbers that do not rise", allowed)
     return array
+
+
+def _fits(shape: tuple[int, ...], wanted: tuple[int | None, ...]) -> bool:
+    return len(shape) == len(wanted) and all(n in (None, m) for m, n in zip(shape, wanted, strict=True))
 
 
 def file_path(what: str, value: object, allowed: str) -> Path:

@@ -170,7 +170,7 @@ def test_materials():
     assert_allclose(contact_modulus(STEEL, STEEL), 210e9 / (2 * 0.91), rtol=1e-15)
     assert all(m.citation for m in MATERIALS.values())
     assert material(" Steel ") is STEEL
-    with pytest.raises(InputError, match="Did you mean 'aluminium'"):
+    with pytest.raises(InputError, match='Did you mean "aluminium"'):
         material("aluminum")
     with pytest.raises(InputError, match="Young's modulus"):
         Material("jelly", 0.0, 0.3, 1000.0)

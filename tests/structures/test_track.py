@@ -381,7 +381,7 @@ def test_bad_questions_are_refused():
         track().receptance(1e9, 0.0, 0.0)
     with pytest.raises(InputError, match="below the critical speed of the track"):
         track().refuse_speed(track().critical_speed)
-    with pytest.raises(InputError, match="Did you mean 'nordborg'"):
+    with pytest.raises(InputError, match='Did you mean "nordborg"'):
         Track.named("nordburg")
     with pytest.raises(InputError, match="track parameter"):
         Track.named("nordborg", pad_mass=1.0)

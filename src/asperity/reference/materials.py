@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from dataclasses import dataclass
 
 import numpy as np
 
+from asperity.arguments import one_of
 from asperity.errors import InputError
 
 
@@ -105,12 +105,7 @@ def material(name: str) -> Material:
     >>> material("Steel").youngs_modulus
     210000000000.0
     """
-    key = name.strip().lower()
-    if key in MATERIALS:
-        return MATERIALS[key]
-    near = difflib.get_close_matches(key, MATERIALS, n=1)
-    remedy = f"Did you mean '{near[0]}'?" if near else ""
-    raise InputError("material", repr(name), "one of " + ", ".join(MATERIALS), remedy)
+    return MATERIALS[one_of("material", name.strip().lower(), MATERIALS)]
 
 
 def contact_modulus(first: Material, second: Material) -> float:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
-
-from asperity.errors import InputError
+from asperity.arguments import one_of
 
 _NORDBORG = "A. Nordborg, J. Acoust. Soc. Am., 2002 (not seen), as used by a public re-implementation"
 _NORDBORG_VISCOUS = "viscous variant of " + _NORDBORG
@@ -72,8 +70,4 @@ TRACKS: dict[str, Parameters] = {
 
 def named_track(name: str) -> Parameters:
     """Parameters of a named track of `TRACKS`, those of `Track`, each with (value in SI, source)."""
-    if not isinstance(name, str) or name not in TRACKS:
-        close = difflib.get_close_matches(str(name), TRACKS, n=1)
-        remedy = f"Did you mean {close[0]!r}?" if close else ""
-        raise InputError("track name", repr(name), "one of " + ", ".join(TRACKS), remedy)
-    return dict(TRACKS[name])
+    return dict(TRACKS[one_of("track name", name, TRACKS)])

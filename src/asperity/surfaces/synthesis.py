@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 from scipy.special import j0
 
+from asperity.arguments import one_of
 from asperity.errors import InputError
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
@@ -43,8 +44,7 @@ def extend(
     """
     values = np.asarray(heights, dtype=np.float64)
     n = len(values)
-    if how not in CHOICES:
-        raise InputError(f"continuation of the {what}", repr(how), "one of " + ", ".join(CHOICES))
+    one_of(f"continuation of the {what}", how, CHOICES)
     if not np.isfinite(values).all():
         raise InputError(what, "missing points", "complete heights", "Fill or trim it first.")
     index = np.arange(start, start + rows)
