@@ -23,6 +23,14 @@ SHAKEDOWN = "shakedown"  # stands for a number of passes: until one changes noth
 FORMS = {"plane": 1, "quadratic": 2}  # words for polynomials of these degrees
 MOST_PASSES = 100  # of running-in
 
+Array = NDArray[np.float64]
+
+
+def require(right: object, what: str, received: object, allowed: str, remedy: str = "") -> None:
+    """Raise an `InputError` of what was received, what is allowed and what to do, unless all is right."""
+    if not right:
+        raise InputError(what, received, allowed, remedy)
+
 
 def shown(value: object) -> str:
     """Write a received value for a message, shortened to what a person needs to find it again."""

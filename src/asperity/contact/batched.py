@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import shown
+from asperity.arguments import Array, shown
 from asperity.contact.halfspace import MAX_ITERATIONS, HalfSpace
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.batched_cg import first_guess, solve_batch
@@ -93,8 +93,8 @@ def choose_device(name: str) -> None:
     os.environ[CHOSEN] = name
 
 
-Array = Any
-"""An array of the device."""
+DeviceArray = Any
+"""An array on the device."""
 
 MEMORY_SHARE = 0.6
 """Share of the free memory that a batch may take."""
@@ -108,10 +108,10 @@ SMALLEST_BOX = 8
 class SolvedContacts:
     """Contacts by approach and position, all of shape (n_approaches, n_positions)."""
 
-    force: NDArray[np.float64]  # N; zero without contact
+    force: Array  # N; zero without contact
     iterations: NDArray[np.int64]  # of conjugate gradients
     converged: NDArray[np.bool_]  # whether the tolerance was met; true without contact
-    edge_share: NDArray[np.float64]  # share of the force on the window's outermost cells
+    edge_share: Array  # share of the force on the window's outermost cells
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,9 +125,9 @@ class _Boxes:
 
 def solve_batched(
     half_space: HalfSpace,
-    gaps: Callable[[int, int], Array],
+    gaps: Callable[[int, int], DeviceArray],
     count: int,
-    approaches: NDArray[np.float64],
+    approaches: Array,
     rtol: float,
     device: Device,
 ) -> SolvedContacts:
@@ -187,9 +187,9 @@ def _in_batches(
 
 def _bounding_boxes(
     shape: tuple[int, int],
-    gaps: Callable[[int, int], Array],
+    gaps: Callable[[int, int], DeviceArray],
     count: int,
-    approaches: NDArray[np.float64],
+    approaches: Array,
     device: Device,
 ) -> _Boxes:
     """Bounding boxes of the overlaps of all positions, moved into the window."""
@@ -216,8 +216,8 @@ def _bounding_boxes(
 
 def _solve_batch(
     half_space: HalfSpace,
-    gap: Array,
-    approaches: NDArray[np.float64],
+    gap: DeviceArray,
+    approaches: Array,
     boxes: _Boxes,
     span: tuple[int, int],
     rtol: float,
@@ -256,7 +256,7 @@ def _solve_batch(
         found.edge_share[i, at] = device.to_host(edge)
 
 
-def _box_cells(origins: NDArray[np.int64], nx: int, ny: int, xp: Any) -> tuple[Array, Array]:
+def _box_cells(origins: NDArray[np.int64], nx: int, ny: int, xp: Any) -> tuple[DeviceArray, DeviceArray]:
     """Rows (b, nx, 1) and columns (b, 1, ny) of the window's cells in each box."""
     corner = xp.asarray(origins)
     rows = corner[:, 0, None, None] + xp.arange(nx)[None, :, None]

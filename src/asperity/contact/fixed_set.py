@@ -8,11 +8,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.kernels.batched_cg import apply_stencil
 from asperity.kernels.convolution import convolve_padded, padded_length, padded_spectrum
 
 
-def displaced(table: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDArray[np.float64]:
+def displaced(table: Array, pressure: Array) -> Array:
     """Displacement (nx, ny), m, under a pressure, Pa; influence table (≥ nx, ≥ ny), m/Pa."""
     nx, ny = pressure.shape
     spectrum = padded_spectrum(table, nx, ny)
@@ -20,12 +21,8 @@ def displaced(table: NDArray[np.float64], pressure: NDArray[np.float64]) -> NDAr
 
 
 def unit_indentation(
-    table: NDArray[np.float64],
-    taps: tuple[float, ...],
-    inside: NDArray[np.bool_],
-    rtol: float,
-    max_iterations: int,
-) -> tuple[NDArray[np.float64], bool]:
+    table: Array, taps: tuple[float, ...], inside: NDArray[np.bool_], rtol: float, max_iterations: int
+) -> tuple[Array, bool]:
     """Find the pressure that displaces a set of cells by one: K p = 1 on the set, p = 0 elsewhere.
 
     Preconditioned conjugate gradients. Influence table (≥ nx, ≥ ny), m/Pa, taps of `inverse_stencil`, Pa/m,

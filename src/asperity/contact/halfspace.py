@@ -9,9 +9,9 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from asperity.arguments import real, real_array, two, two_lengths, whole
+from asperity.arguments import Array, real, real_array, two, two_lengths, whole
 from asperity.contact.fixed_set import displaced, unit_indentation
 from asperity.errors import InputError, Outcome, UnconvergedWarning
 from asperity.kernels.contact import REACH, room
@@ -66,7 +66,7 @@ class Contact:
     ((41, 41), True)
     """
 
-    pressure: NDArray[np.float64]
+    pressure: Array
     force: float
     approach: float
     area: float
@@ -74,7 +74,7 @@ class Contact:
     residual: float
     outcome: Outcome
     half_space: HalfSpace = field(repr=False)
-    undeformed_gap: NDArray[np.float64] = field(repr=False)
+    undeformed_gap: Array = field(repr=False)
 
     @property
     def converged(self) -> bool:
@@ -82,7 +82,7 @@ class Contact:
         return self.outcome.ok
 
     @cached_property
-    def gap(self) -> NDArray[np.float64]:
+    def gap(self) -> Array:
         """Gap after elastic deformation, m, shape (nx, ny).
 
         Below zero only where the hardness caps the pressure.
@@ -90,7 +90,7 @@ class Contact:
         return self.undeformed_gap + self.half_space.displacement(self.pressure) - self.approach
 
     @cached_property
-    def plastic_indentation(self) -> NDArray[np.float64]:
+    def plastic_indentation(self) -> Array:
         """Depth by which the surface has yielded for good, m ≥ 0, shape (nx, ny).
 
         The overlap that the capped pressure leaves. Heights less this depth carry the same pressure without
@@ -178,7 +178,7 @@ class HalfSpace:
         """Area of one cell, m²."""
         return self.spacing[0] * self.spacing[1]
 
-    def displacement(self, pressure: ArrayLike) -> NDArray[np.float64]:
+    def displacement(self, pressure: ArrayLike) -> Array:
         """Surface displacement under a pressure, m, positive into the material.
 
         Parameters
@@ -414,7 +414,7 @@ class HalfSpace:
             )
         return load
 
-    def _field(self, name: str, values: ArrayLike) -> NDArray[np.float64]:
+    def _field(self, name: str, values: ArrayLike) -> Array:
         a = _array(real_array(name, values, f"an array of the half-space's shape {self.shape}"))
         if a.shape != self.shape:
             raise InputError(f"{name} shape", a.shape, f"the half-space's shape {self.shape}")
@@ -445,19 +445,12 @@ class HalfSpace:
         self._single = self._single or influence(self.influence.table, self.influence.taps, np.float32)
         return self._single
 
-    def at_approach(
-        self, gap: NDArray[np.float64], approach: float, start: NDArray[np.float64] | None, rtol: float
-    ) -> Contact:
+    def at_approach(self, gap: Array, approach: float, start: Array | None, rtol: float) -> Contact:
         """Solve at a prescribed approach as `solve` does, unchecked and silent: look at `converged`."""
         return self._single_contact(gap, approach, start, rtol)
 
     def _single_contact(
-        self,
-        gap: NDArray[np.float64],
-        approach: float,
-        start: NDArray[np.float64] | None,
-        rtol: float,
-        total: float = -1.0,
+        self, gap: Array, approach: float, start: Array | None, rtol: float, total: float = -1.0
     ) -> Contact:
         flat, here = np.zeros(self.shape), np.zeros(1)
         block = self.at_positions(flat, gap, here, np.array([approach]), 0, rtol, start, load=total)
@@ -473,13 +466,13 @@ class HalfSpace:
 
     def at_positions(
         self,
-        rows: NDArray[np.float64],
-        body: NDArray[np.float64],
-        planes: NDArray[np.float64],
-        approaches: NDArray[np.float64],
+        rows: Array,
+        body: Array,
+        planes: Array,
+        approaches: Array,
         stride: int,
         rtol: float,
-        start: NDArray[np.float64] | None = None,
+        start: Array | None = None,
         single: bool = False,
         load: float = -1.0,
     ) -> Block:
@@ -496,10 +489,10 @@ class HalfSpace:
 
     def block(
         self,
-        rows: NDArray[np.float64],
-        body: NDArray[np.float64],
-        planes: NDArray[np.float64],
-        approaches: NDArray[np.float64],
+        rows: Array,
+        body: Array,
+        planes: Array,
+        approaches: Array,
         stride: int,
         rtol: float,
         single: bool = False,
@@ -525,9 +518,7 @@ class HalfSpace:
             if position < end:
                 self._prepare(nx, ny, single)
 
-    def at_load(
-        self, gap: NDArray[np.float64], load: float, start: NDArray[np.float64] | None, rtol: float
-    ) -> Contact:
+    def at_load(self, gap: Array, load: float, start: Array | None, rtol: float) -> Contact:
         """Solve at a given load as `solve` does, unchecked and silent: look at `converged`.
 
         The overlap at an estimated approach is all that needs a grid.
@@ -547,12 +538,12 @@ class HalfSpace:
 
 
 @lru_cache
-def _unit_taps(ratio: float) -> NDArray[np.float64]:
+def _unit_taps(ratio: float) -> Array:
     """Preconditioning stencil of cells 1 × ratio, π E* being one."""
     return inverse_stencil(influence_table(32, 32, 1.0, ratio))
 
 
-def _array(values: ArrayLike) -> NDArray[np.float64]:
+def _array(values: ArrayLike) -> Array:
     """Array of the one kind that kernels are compiled for: contiguous and writable."""
     return np.require(values, np.float64, ["C", "W"])
 

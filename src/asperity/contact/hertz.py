@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from asperity.arguments import Array
 from asperity.errors import HalfSpaceWarning, InputError, percent
 
 HALVINGS = 56
@@ -258,7 +259,7 @@ def in_groove(
     return Hertz(modulus, along, across)
 
 
-def groove_gap(across: ArrayLike, radius: float, groove_radius: float) -> NDArray[np.float64]:
+def groove_gap(across: ArrayLike, radius: float, groove_radius: float) -> Array:
     """Gap of a circle in a circle, exact, normal to the groove.
 
     Parameters

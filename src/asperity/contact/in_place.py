@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.kernels.continuation import continue_rolling
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class ContactInPlace:
     The body (nx, ny), m, has the shape of the half-space; `rtol` is as in `HalfSpace.solve`.
     """
 
-    def __init__(self, half_space: HalfSpace, body: NDArray[np.float64], rtol: float) -> None:
+    def __init__(self, half_space: HalfSpace, body: Array, rtol: float) -> None:
         self.half_space = half_space
         self.block = half_space.block(np.zeros(half_space.shape), body, np.zeros(1), np.zeros(1), 0, rtol)
         self.pressure, self.start = self.block.pressures[:, 0]
@@ -44,9 +44,7 @@ class ContactInPlace:
         self.start[:] = self.pressure
         self.block.solved[0] = 1
 
-    def start_from(
-        self, last: NDArray[np.float64], before: NDArray[np.float64], rows: int, rows_before: int
-    ) -> None:
+    def start_from(self, last: Array, before: Array, rows: int, rows_before: int) -> None:
         """Let the next contact start from the pressures of the last two, Pa, (nx, ny).
 
         The next is so many rows on from the last, as that was from the one before.
@@ -55,11 +53,7 @@ class ContactInPlace:
         self.block.solved[0] = 1
 
     def solve(
-        self,
-        heights: NDArray[np.float64],
-        approach: float,
-        compliance: float = 0.0,
-        rtol: float | None = None,
+        self, heights: Array, approach: float, compliance: float = 0.0, rtol: float | None = None
     ) -> Found:
         """Solve at an approach, m, or where it falls with the force by a compliance of the bodies, m/N.
 

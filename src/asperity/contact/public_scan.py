@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from asperity.arguments import real, real_array, shown, whole
+from asperity.arguments import Array, real, real_array, shown, whole
 from asperity.contact.batched import find_device
 from asperity.contact.halfspace import BELOW_ONE, HalfSpace
 from asperity.contact.scan import (
@@ -65,7 +65,7 @@ def scan_surface(
     return _labelled(job, scanned)
 
 
-def heights_on(half_space: HalfSpace, surface: ArrayLike | HeightMap, what: str) -> NDArray[np.float64]:
+def heights_on(half_space: HalfSpace, surface: ArrayLike | HeightMap, what: str) -> Array:
     """Heights of a surface, complete and on the grid of a half-space, m; `what` names it in messages."""
     allowed = "a height map, or an array (n, ny) of finite lengths in m"
     if isinstance(surface, Profile):
@@ -113,7 +113,7 @@ def check_settings(workers: object, cache: object, progress: object) -> None:
         raise InputError("progress", shown(progress), "a callable (done, total, message), or None")
 
 
-def _labelled(job: ScanJob, scanned: ScannedForces[NDArray[np.float64]]) -> xarray.DataArray:
+def _labelled(job: ScanJob, scanned: ScannedForces[Array]) -> xarray.DataArray:
     import xarray
 
     position = np.arange(job.positions) * job.stride * job.half_space.spacing[0]

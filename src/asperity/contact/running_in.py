@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import MOST_PASSES, SHAKEDOWN, passes_of, real, real_array, whole
+from asperity.arguments import MOST_PASSES, SHAKEDOWN, Array, passes_of, real, real_array, whole
 from asperity.contact.halfspace import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import Grade, InputError, TruncatedContactWarning, UnconvergedWarning, percent
@@ -31,21 +31,21 @@ class RunningIn:
     """A body to be rolled over a surface, and how often: all that the lowering depends on."""
 
     half_space: HalfSpace  # grid of the window, (nx, ny) cells; modulus and hardness
-    body: NDArray[np.float64]  # (nx, ny), shape of the smooth body, m, zero at its lowest point
+    body: Array  # (nx, ny), shape of the smooth body, m, zero at its lowest point
     load: float  # N
     passes: int | None  # None for as many as it takes to shakedown
     tolerance: float  # lowering that counts as none, m
     stride: int = 1  # rows between positions
     rtol: float = 1e-6  # tolerance of each solution, as in `HalfSpace.solve`
 
-    def key(self, heights: NDArray[np.float64]) -> str:
+    def key(self, heights: Array) -> str:
         """Name in the store of what these heights become."""
         space = self.half_space
         parameters = [list(space.spacing), space.modulus, space.hardness, self.load, self.tolerance]
         parameters += [self.passes or SHAKEDOWN, self.stride, self.rtol]
         return content_key("running-in", heights, self.body, parameters)
 
-    def done(self, largest: NDArray[np.float64]) -> bool:
+    def done(self, largest: Array) -> bool:
         """Whether passes that lowered places by so much, m, are enough."""
         if self.passes is not None:
             return len(largest) >= self.passes
@@ -56,18 +56,18 @@ class RunningIn:
 class RunInHeights:
     """A surface after running-in."""
 
-    heights: NDArray[np.float64]  # (n, ny), m, peaks positive
-    lowering: NDArray[np.float64]  # (n, ny), by which places have been lowered for good, m, never negative
+    heights: Array  # (n, ny), m, peaks positive
+    lowering: Array  # (n, ny), by which places have been lowered for good, m, never negative
     touched: NDArray[np.bool_]  # (n, ny), places that have carried pressure
-    largest: NDArray[np.float64]  # (passes,), largest lowering of a place in each pass, m
-    yielding: NDArray[np.float64]  # (passes,), share of the touched area that yielded in each pass
+    largest: Array  # (passes,), largest lowering of a place in each pass, m
+    yielding: Array  # (passes,), share of the touched area that yielded in each pass
     yielded_share: float  # of the touched area, in all passes together
     settled: bool  # whether the last pass lowered no place by more than the tolerance
     counts: Counts
 
 
 def run_in(
-    heights: NDArray[np.float64],
+    heights: Array,
     job: RunningIn,
     *,
     cache: Cache | None = None,
@@ -100,7 +100,7 @@ def run_in(
     )  # fmt: skip
 
 
-def _kept(heights: NDArray[np.float64], job: RunningIn, cache: Cache | None) -> dict[str, NDArray[Any]]:
+def _kept(heights: Array, job: RunningIn, cache: Cache | None) -> dict[str, NDArray[Any]]:
     """State after the passes that were rolled before, else an untouched surface."""
     kept = None if cache is None else cache.get(job.key(heights))
     if kept is not None:
@@ -115,8 +115,8 @@ def _kept(heights: NDArray[np.float64], job: RunningIn, cache: Cache | None) -> 
 
 
 def _pass(
-    heights: NDArray[np.float64],
-    lowering: NDArray[np.float64],
+    heights: Array,
+    lowering: Array,
     touched: NDArray[np.bool_],
     job: RunningIn,
     workers: int | None,
@@ -144,15 +144,11 @@ def _pass(
 
 
 def _piece(
-    heights: NDArray[np.float64],
-    lowering: NDArray[np.float64],
-    touched: NDArray[np.bool_],
-    job: RunningIn,
-    positions: range,
+    heights: Array, lowering: Array, touched: NDArray[np.bool_], job: RunningIn, positions: range
 ) -> Counts:
     """Roll over a piece, from a cold start."""
     space, rows, counts = job.half_space, job.body.shape[0], []
-    start: NDArray[np.float64] | None = None
+    start: Array | None = None
     for first in positions:
         under = slice(first, first + rows)
         contact = space.at_load(job.body - (heights[under] - lowering[under]), job.load, start, job.rtol)
@@ -218,7 +214,7 @@ def run_in_surface(
     return HeightMap(found.heights, half_space.spacing, source)
 
 
-def tolerance_of(half_space: HalfSpace, body: NDArray[np.float64], load: float) -> float:
+def tolerance_of(half_space: HalfSpace, body: Array, load: float) -> float:
     """Lowering that counts as none, m: `SETTLED_SHARE` of the approach of the smooth, elastic bodies."""
     elastic = HalfSpace(half_space.shape, half_space.spacing, half_space.modulus)
     return SETTLED_SHARE * elastic.at_load(body, load, None, 1e-4).approach

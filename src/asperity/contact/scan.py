@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.contact.batched import Device, find_device, solve_batched
 from asperity.errors import Grade, InputError, TruncatedContactWarning, UnconvergedWarning, percent
 from asperity.kernels.scanning import TRUNCATED
@@ -107,7 +108,7 @@ _MEANING = {
 }
 
 
-def window_for(body: NDArray[np.float64], spacing: tuple[float, float], overlap: float) -> float:
+def window_for(body: Array, spacing: tuple[float, float], overlap: float) -> float:
     """Side of a square window, m, that holds the contact of a body (nx, ny), m, which goes on as a parabola.
 
     Hertz's patch of smooth bodies at the largest overlap, m, of the undeformed ones, with the highest peak,
@@ -139,11 +140,11 @@ class ScanJob:
 
     half_space: HalfSpace  # grid of the window, (nx, ny) cells; modulus and hardness
     surface: Strip  # (n, ny) heights, m, peaks positive
-    body: NDArray[np.float64]  # (nx, ny), shape of the smooth body, m, zero at its lowest point
-    approaches: NDArray[np.float64]  # (k,), from the planes, m, increasing
+    body: Array  # (nx, ny), shape of the smooth body, m, zero at its lowest point
+    approaches: Array  # (k,), from the planes, m, increasing
     stride: int = 1  # rows between positions: the body stands on rows from `first`, first + stride, … on
     rtol: float = 1e-6  # tolerance of each solution, as in `HalfSpace.solve`
-    planes: NDArray[np.float64] | float = 0.0  # (positions,), from which approaches count, m
+    planes: Array | float = 0.0  # (positions,), from which approaches count, m
     anchor: int = 0  # row from which positions and blocks count: surfaces alike from there on share them
     device: Device | None = field(default_factory=find_device)
     """Where contacts are solved in batches; None for the processor, which solves them one by one."""
@@ -210,7 +211,7 @@ class ScanJob:
         """What the kept blocks take on disk, about."""
         return 8 * self.positions * self.approaches.size + BLOCK_BYTES * len(self.starts)
 
-    def under(self, start: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def under(self, start: int) -> tuple[Array, Array]:
         """Heights under a block, m, shape (rows, ny), and the planes of its positions, m."""
         known = np.broadcast_to(np.asarray(self.planes, dtype=np.float64), (self.positions,))
         beyond = self.block * ((start + self.ahead) // self.block + 1) - self.ahead
@@ -219,16 +220,14 @@ class ScanJob:
         stop = row + (len(planes) - 1) * self.stride + self.body.shape[0]
         return np.ascontiguousarray(self.surface.rows(row, stop)), planes
 
-    def key(self, rows: NDArray[np.float64], planes: NDArray[np.float64]) -> str:
+    def key(self, rows: Array, planes: Array) -> str:
         """Name in the store of the block on these heights."""
         space = self.half_space
         parameters = [list(space.spacing), space.modulus, space.hardness, self.stride, self.rtol]
         parameters += ["batched"] if self.device else ["single"] if self.single else []
         return content_key("scan", rows, self.body, self.approaches, planes, parameters)
 
-    def solve(
-        self, rows: NDArray[np.float64], planes: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def solve(self, rows: Array, planes: Array) -> tuple[Array, NDArray[np.int64]]:
         """Forces of a block from a cold start, N, shape (k, positions), and its `Counts`."""
         space = self.half_space
         if self.device is not None:
@@ -238,14 +237,12 @@ class ScanJob:
         )
         return block.totals * space.cell_area, block.counts
 
-    def solved(self, rows: NDArray[np.float64], planes: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+    def solved(self, rows: Array, planes: Array) -> dict[str, NDArray[Any]]:
         """Forces and counts of a block, as a cache keeps them."""
         forces, counts = self.solve(rows, planes)
         return {"forces": forces, "counts": counts}
 
-    def _solve_batched(
-        self, rows: NDArray[np.float64], planes: NDArray[np.float64], device: Device
-    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    def _solve_batched(self, rows: Array, planes: Array, device: Device) -> tuple[Array, NDArray[np.int64]]:
         """All positions of a block at once, approach by approach."""
         xp = device.xp
         heights, shape, plane = xp.asarray(rows), xp.asarray(self.body), xp.asarray(planes)
@@ -266,7 +263,7 @@ class SolvedBlock:
     """Solutions at the positions of a block."""
 
     key: str  # name in the store
-    forces: NDArray[np.float64]  # (k, positions), N
+    forces: Array  # (k, positions), N
     counts: Counts
 
 
@@ -333,16 +330,14 @@ def scan_forces(
     workers: int | None = None,
     progress: Progress | None = None,
     beside: Sequence[ScanJob] = (),
-) -> ScannedForces[NDArray[np.float64]]:
+) -> ScannedForces[Array]:
     """Scan, and hold the forces in memory; arguments as in `solved_blocks`."""
     blocks = list(solved_blocks(job, cache, workers, progress, beside=beside))
     forces = np.concatenate([block.forces for block in blocks], axis=1)
     return ScannedForces(forces, total(block.counts for block in blocks), job.single)
 
 
-def first_touch(
-    surface: NDArray[np.float64] | Strip, body: NDArray[np.float64], stride: int = 1, first: int = 0
-) -> NDArray[np.float64]:
+def first_touch(surface: Array | Strip, body: Array, stride: int = 1, first: int = 0) -> Array:
     """Approach, m, at which the body first touches the surface at each position, shape (n_positions,).
 
     It counts from the plane z = 0, and is usually negative: peaks touch before the planes meet. Surface,
@@ -367,7 +362,7 @@ def first_touch(
     return result
 
 
-def _sliding_maximum(values: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+def _sliding_maximum(values: Array, length: int) -> Array:
     """Largest of so many values from each on, (n − length + 1,), of values (n,)."""
     reach = 1
     while reach < length:

@@ -13,6 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_factor, cho_solve
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.kernels.piecewise import shape_preserving
 from asperity.reduction.texture import PIECE, LongConvolution, StateTexture
@@ -39,12 +40,12 @@ CUT_OFF, CUT_OFF_SLOPE = 1e-2, 4
 class FilterSpectra:
     """What one scanned strip says about the contact filter: spectra added up in bands."""
 
-    wavenumber: NDArray[np.float64]  # (k,), cycles/m, mean of each band
+    wavenumber: Array  # (k,), cycles/m, mean of each band
     bins: NDArray[np.intp]  # (k,), lines of the spectra in each band
-    force: NDArray[np.float64]  # (s, k), power of the scanned force in each state, N²
+    force: Array  # (s, k), power of the scanned force in each state, N²
     # (s, k), power of the line textures under the patch of each state, mean over the lines, m²
-    lines: NDArray[np.float64]
-    mean_line: NDArray[np.float64]  # (s, k), power of their mean, m²
+    lines: Array
+    mean_line: Array  # (s, k), power of their mean, m²
     cross: NDArray[np.complex128]  # (s, k), cross spectrum of the force with their mean, N m
 
 
@@ -52,27 +53,27 @@ class FilterSpectra:
 class ContactFilter:
     """Contact filters of an ensemble of strips, for s states and k wavenumbers."""
 
-    approaches: NDArray[np.float64]  # (s,), of the states, m
-    wavenumber: NDArray[np.float64]  # (k,), cycles/m
+    approaches: Array  # (s,), of the states, m
+    wavenumber: Array  # (k,), cycles/m
     # (k,), where the texture has the power to say something; beside it the filter is held
     excited: NDArray[np.bool_]
-    raw: NDArray[np.float64]  # (s, k), |Ĥ| of Eq. 2.6, root of the ratio of the powers of all strips; no sign
-    magnitude: NDArray[np.float64]  # (s, k), the fit to it
-    spread: NDArray[np.float64]  # (s, k), standard deviation of the strips' own fits
+    raw: Array  # (s, k), |Ĥ| of Eq. 2.6, root of the ratio of the powers of all strips; no sign
+    magnitude: Array  # (s, k), the fit to it
+    spread: Array  # (s, k), standard deviation of the strips' own fits
     # (s, k), force regressed on the mean line under the patch, over k_t; by power of strips and lines
-    signed: NDArray[np.float64]
-    coherence: NDArray[np.float64]  # (s, k), share of the force's power that this explains
+    signed: Array
+    coherence: Array  # (s, k), share of the force's power that this explains
     # (s,), k_0: force and texture agree at low wavenumbers; mean over strips, N/m
-    asymptotic_stiffness: NDArray[np.float64]
-    tangent_stiffness: NDArray[np.float64]  # (s,), k_t, N/m
+    asymptotic_stiffness: Array
+    tangent_stiffness: Array  # (s,), k_t, N/m
     # (s,), share of the lines' power at the low wavenumbers from which k_0 is taken
-    long_wave_share: NDArray[np.float64]
+    long_wave_share: Array
     # "low-wavenumber", as printed: both spectra share their long-wave asymptote; or "tangent", k_0 = k_t:
     # keeps what a patch wider than the lateral correlation averages away
     normalise: Normalise
 
 
-def punch_filter(wavenumber: ArrayLike, semi_axis: ArrayLike) -> NDArray[np.float64]:
+def punch_filter(wavenumber: ArrayLike, semi_axis: ArrayLike) -> Array:
     """Closed form of the filter for small roughness that is uniform across: sin q/q, negative beyond q = π.
 
     q = 2π wavenumber × semi-axis in the rolling direction, in cycles/m and m, broadcast.
@@ -81,10 +82,7 @@ def punch_filter(wavenumber: ArrayLike, semi_axis: ArrayLike) -> NDArray[np.floa
 
 
 def filter_spectra(
-    forces: NDArray[np.float64],
-    lines: NDArray[np.float64],
-    spacing: float,
-    half_widths: ArrayLike | None = None,
+    forces: Array, lines: Array, spacing: float, half_widths: ArrayLike | None = None
 ) -> FilterSpectra:
     """Take the spectra of a scanned force and of the line textures that it follows (Eqs. 2.4, 2.5).
 
@@ -125,7 +123,7 @@ def filter_spectra(
     return FilterSpectra(np.add.reduceat(wavenumber, first) / bins, bins, *sums)
 
 
-def _windowed(rows: NDArray[np.float64]) -> NDArray[np.complex128]:
+def _windowed(rows: Array) -> NDArray[np.complex128]:
     """Spectra of rows without their means, under a Hann window."""
     return np.fft.rfft((rows - rows.mean(axis=1, keepdims=True)) * hann_window(rows.shape[1]))
 
@@ -183,7 +181,7 @@ def estimate_filter(
     )
 
 
-def _excited(wavenumber: NDArray[np.float64], density: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _excited(wavenumber: Array, density: Array) -> NDArray[np.bool_]:
     """Where a texture has power, from the density of its lines.
 
     Rough surfaces fall no faster than k^−4; what does is a cut-off, beyond which the force holds products of
@@ -195,7 +193,7 @@ def _excited(wavenumber: NDArray[np.float64], density: NDArray[np.float64]) -> N
     return np.asarray(weighted > CUT_OFF * np.maximum.accumulate(typical))
 
 
-def _neighbours(wavenumber: NDArray[np.float64], excited: NDArray[np.bool_]) -> NDArray[np.float64]:
+def _neighbours(wavenumber: Array, excited: NDArray[np.bool_]) -> Array:
     """Weights, shape (k, k), with which bands count in the average about each wavenumber.
 
     A triangle over the logarithm of the wavenumber, times k²: spectra of rough lines then count evenly.
@@ -208,20 +206,15 @@ def _neighbours(wavenumber: NDArray[np.float64], excited: NDArray[np.bool_]) -> 
     return np.asarray(weights * excited * wavenumber**2)
 
 
-def _averaged(
-    wavenumber: NDArray[np.float64],
-    excited: NDArray[np.bool_],
-    force: NDArray[np.float64],
-    lines: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _averaged(wavenumber: Array, excited: NDArray[np.bool_], force: Array, lines: Array) -> Array:
     """Root of the ratio of two powers, each averaged about every wavenumber."""
     weights = _neighbours(wavenumber, excited)
     return np.clip(np.sqrt((force @ weights.T) / (lines @ weights.T)), FLOOR, 1.0)
 
 
 def _regressed(
-    wavenumber: NDArray[np.float64], excited: NDArray[np.bool_], strips: Sequence[FilterSpectra]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    wavenumber: Array, excited: NDArray[np.bool_], strips: Sequence[FilterSpectra]
+) -> tuple[Array, Array]:
     """Force regressed on the mean line, N/m, and the coherence of the two."""
     weights = _neighbours(wavenumber, excited).T
     cross = np.sum([s.cross for s in strips], axis=0) @ weights
@@ -231,12 +224,8 @@ def _regressed(
 
 
 def _polynomials(
-    wavenumber: NDArray[np.float64],
-    excited: NDArray[np.bool_],
-    ratio: NDArray[np.float64],
-    degree: int,
-    through_one: bool,
-) -> NDArray[np.float64]:
+    wavenumber: Array, excited: NDArray[np.bool_], ratio: Array, degree: int, through_one: bool
+) -> Array:
     """Polynomials in dB over the wavenumber, fitted where the texture is excited and held beyond."""
     degree = min(degree, max(1, int(excited.sum()) - 2))
     highest = wavenumber[excited][-1]
@@ -247,12 +236,7 @@ def _polynomials(
     return np.clip(10.0 ** ((basis @ coefficients).T / 20.0), FLOOR, 1.0)
 
 
-def closed_form(
-    approaches: NDArray[np.float64],
-    wavenumber: NDArray[np.float64],
-    semi_axes: NDArray[np.float64],
-    stiffness: NDArray[np.float64],
-) -> ContactFilter:
+def closed_form(approaches: Array, wavenumber: Array, semi_axes: Array, stiffness: Array) -> ContactFilter:
     """Filter of bodies without texture, sin q/q: that of small roughness, uniform across; no raw estimate.
 
     Approaches, m, semi-axes in the rolling direction, m, and tangent stiffnesses, N/m, are (s,); wavenumbers
@@ -291,11 +275,11 @@ class LineFilter:
     """A contact filter and the taps that apply it."""
 
     contact_filter: ContactFilter  # what was estimated
-    taps: NDArray[np.float64]  # (s, J + 1), b_j of each state, symmetric
+    taps: Array  # (s, J + 1), b_j of each state, symmetric
     spacing: float  # sampling of the line texture, m
 
     @property
-    def applied(self) -> NDArray[np.float64]:
+    def applied(self) -> Array:
         """Magnitude that the taps have at the filter's wavenumbers, shape (s, k)."""
         return np.abs(response(self.taps, self.spacing, self.contact_filter.wavenumber))
 
@@ -306,7 +290,7 @@ class LineFilter:
         return float(_missed(self.taps, self.spacing, fine, _target(self.contact_filter, fine)).max())
 
 
-def response(taps: NDArray[np.float64], spacing: float, wavenumber: ArrayLike) -> NDArray[np.float64]:
+def response(taps: Array, spacing: float, wavenumber: ArrayLike) -> Array:
     """Response (s, k) of symmetric taps (s, odd) about their middle one, real and signed.
 
     Spacing in m, wavenumbers (k,) in cycles/m; one where a wave passes unchanged.
@@ -321,7 +305,7 @@ def tap_count(spacing: float, largest_semi_axis: float) -> int:
     return 2 * math.ceil(2.0 * largest_semi_axis / spacing)
 
 
-def punch_taps(semi_axes: ArrayLike, spacing: float) -> NDArray[np.float64]:
+def punch_taps(semi_axes: ArrayLike, spacing: float) -> Array:
     """Taps (s, odd) of the closed-form filter sin q/q: the mean over the length of each patch.
 
     Semi-axes (s,) of the patch in the rolling direction and spacing, m; the taps sum to one.
@@ -359,9 +343,7 @@ def design_fir(
     return LineFilter(contact_filter, taps, spacing)
 
 
-def _of_first_order(
-    contact_filter: ContactFilter, spacing: float, order: int, most: int
-) -> NDArray[np.float64]:
+def _of_first_order(contact_filter: ContactFilter, spacing: float, order: int, most: int) -> Array:
     """Taps (s, J + 1) of the first order, from one on, of which no state misses the fit, or of the largest.
 
     The state that missed it most is asked first: the others need no taps where it misses it again.
@@ -370,7 +352,7 @@ def _of_first_order(
     fitted, worst = _target(contact_filter, fine), 0
 
     @cache
-    def target(points: int) -> NDArray[np.float64]:
+    def target(points: int) -> Array:
         return _target(contact_filter, np.arange(points // 2 + 1) / (points * spacing))
 
     at_zero = _target(contact_filter, np.zeros(1))
@@ -391,7 +373,7 @@ def _of_first_order(
         order = min(2 * math.ceil(0.5 * GROWTH * order), most)
 
 
-def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> NDArray[np.float64]:
+def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> Array:
     """Taps from the inverse transform of the magnitude under a Hamming window."""
     grid = np.linspace(0.0, 0.5 / spacing, 513)
     gain = _target(contact_filter, grid)
@@ -400,7 +382,7 @@ def _by_window(contact_filter: ContactFilter, spacing: float, order: int) -> NDA
     return _summed(contact_filter, np.hamming(order + 1) * np.hstack((even[:, :0:-1], even)))
 
 
-def _least_relative_error(target: NDArray[np.float64], lowest: float, order: int) -> NDArray[np.float64]:
+def _least_relative_error(target: Array, lowest: float, order: int) -> Array:
     """Taps (J + 1,) with the least squared relative error of the response, octave for octave.
 
     The target (k,) is at equal steps from wavenumber zero to half the sampling one; below the lowest, in
@@ -419,25 +401,20 @@ def _least_relative_error(target: NDArray[np.float64], lowest: float, order: int
     return np.concatenate([0.5 * cosines[:0:-1], cosines[:1], 0.5 * cosines[1:]])
 
 
-def _fine(contact_filter: ContactFilter) -> NDArray[np.float64]:
+def _fine(contact_filter: ContactFilter) -> Array:
     """Wavenumbers at which a response is held against the fit, cycles/m."""
     known = contact_filter.wavenumber[contact_filter.excited]
     return np.geomspace(known[0], known[-1], _FINE * known.size)
 
 
-def _missed(
-    taps: NDArray[np.float64],
-    spacing: float,
-    wavenumber: NDArray[np.float64],
-    fitted: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _missed(taps: Array, spacing: float, wavenumber: Array, fitted: Array) -> Array:
     """Largest distances (s,) of what taps (s, J + 1) do from fitted magnitudes (s, k) above `DOWN_TO`, dB."""
     wanted = 20.0 * np.log10(fitted)
     applied = 20.0 * np.log10(np.maximum(np.abs(response(taps, spacing, wavenumber)), 1e-9))
     return np.asarray(np.max(np.abs(applied - wanted), axis=1, where=wanted >= DOWN_TO, initial=0.0))
 
 
-def _target(contact_filter: ContactFilter, wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
+def _target(contact_filter: ContactFilter, wavenumber: Array) -> Array:
     """Magnitude at any wavenumber: between the fitted ones smooth in dB over octaves, beyond them held.
 
     Under the printed normalisation it goes on to one at wavenumber zero.
@@ -451,18 +428,14 @@ def _target(contact_filter: ContactFilter, wavenumber: NDArray[np.float64]) -> N
     return np.asarray(found)
 
 
-def _summed(contact_filter: ContactFilter, taps: NDArray[np.float64]) -> NDArray[np.float64]:
+def _summed(contact_filter: ContactFilter, taps: Array) -> Array:
     """Taps that let pass what the filter does at wavenumber zero."""
     at_zero = _target(contact_filter, np.zeros(1))
     return np.asarray(taps * at_zero / taps.sum(axis=1, keepdims=True))
 
 
 def filtered_texture(
-    heights: NDArray[np.float64],
-    spacing: float,
-    taps: NDArray[np.float64],
-    approaches: ArrayLike,
-    start: float = 0.0,
+    heights: Array, spacing: float, taps: Array, approaches: ArrayLike, start: float = 0.0
 ) -> StateTexture:
     """Filter the line texture (m,) of a path, m, peaks positive, for every state (Eq. 2.7).
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import Array
 from asperity.contact import HalfSpace
 from asperity.contact.scan import Counts, total, warn_of_flaws
 from asperity.errors import InputError
@@ -26,7 +27,7 @@ class ForceCurve:
     above the last one g goes on with its end slope.
     """
 
-    knots: NDArray[np.float64]  # (k,), approaches, m, increasing
+    knots: Array  # (k,), approaches, m, increasing
     coefficients: NDArray[
         np.float64
     ]  # (k − 1, 4), of g in each interval, highest power first, in (approach − knot)
@@ -36,11 +37,7 @@ class ForceCurve:
 
     @classmethod
     def from_samples(
-        cls,
-        approach: ArrayLike,
-        force: ArrayLike,
-        exponent: float = 1.5,
-        stiffness: ArrayLike | None = None,
+        cls, approach: ArrayLike, force: ArrayLike, exponent: float = 1.5, stiffness: ArrayLike | None = None
     ) -> ForceCurve:
         """Curve through computed pairs of approach, m, increasing, and force, N, with dF/ds, N/m, if known.
 
@@ -82,17 +79,17 @@ class ForceCurve:
         """Approach below which the force is zero, m (minus infinity for a bilateral curve)."""
         return -np.inf if self.bilateral else float(self.knots[0])
 
-    def force(self, approach: ArrayLike) -> NDArray[np.float64]:
+    def force(self, approach: ArrayLike) -> Array:
         """Contact force, N, at approaches, m."""
         g, _ = self._root(np.asarray(approach, dtype=float))
         return g if self.exponent == 1.0 else g**self.exponent
 
-    def stiffness(self, approach: ArrayLike) -> NDArray[np.float64]:
+    def stiffness(self, approach: ArrayLike) -> Array:
         """Tangent stiffness dF/ds, N/m, at approaches, m."""
         g, slope = self._root(np.asarray(approach, dtype=float))
         return slope if self.exponent == 1.0 else self.exponent * g ** (self.exponent - 1.0) * slope
 
-    def secant(self, approach: ArrayLike, datum: float) -> NDArray[np.float64]:
+    def secant(self, approach: ArrayLike, datum: float) -> Array:
         """Secant stiffness k_c(r) = F/r, N/m, on the state r = approach + datum (thesis Eq. 2.3).
 
         Zero where r <= 0. The datum, m, is at least minus the first touch, so that r > 0 in contact.
@@ -100,7 +97,7 @@ class ForceCurve:
         state = np.asarray(approach, dtype=float) + datum
         return np.where(state > 0.0, self.force(approach) / np.where(state > 0.0, state, 1.0), 0.0)
 
-    def inverse(self, force: ArrayLike) -> NDArray[np.float64]:
+    def inverse(self, force: ArrayLike) -> Array:
         """Approach, m, at which the curve has a force, N; the first touch for zero force.
 
         A force is not negative unless the curve is bilateral.
@@ -123,7 +120,7 @@ class ForceCurve:
         straight = (cubic == 0.0) & (square == 0.0)
         return np.where(straight, self.knots[interval] + (g - value) / slope, curved)
 
-    def _root(self, s: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _root(self, s: Array) -> tuple[Array, Array]:
         """The interpolated g and its slope."""
         interval = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, len(self.coefficients) - 1)
         cubic, square, slope, value = np.moveaxis(self.coefficients[interval], -1, 0)
@@ -144,7 +141,7 @@ def _check_positive(what: str, value: float) -> None:
         raise InputError(what, value, "a finite positive number")
 
 
-def _check_samples(approach: NDArray[np.float64], force: NDArray[np.float64]) -> None:
+def _check_samples(approach: Array, force: Array) -> None:
     if approach.ndim != 1 or approach.shape != force.shape:
         raise InputError(
             "force curve samples", f"shapes {approach.shape} and {force.shape}", "two lists of one length"
@@ -171,7 +168,7 @@ def _check_samples(approach: NDArray[np.float64], force: NDArray[np.float64]) ->
         )
 
 
-def isolated_share(pressure: NDArray[np.float64]) -> float:
+def isolated_share(pressure: Array) -> float:
     """Share of the force on cells that touch alone: asperities that the grid does not resolve.
 
     Of a pressure (nx, ny), Pa; 0 without contact. Cells count as alone where none of their four neighbours is
@@ -191,28 +188,28 @@ TANGENT = 1e-4
 class StiffnessEnsemble:
     """Loading curves of N samples at common approaches."""
 
-    approaches: NDArray[np.float64]  # (k,), from the samples' patch planes, m, positive closing
-    forces: NDArray[np.float64]  # (N, k), N
-    tangents: NDArray[np.float64]  # (N, k), dF/d(approach) of the solved contacts, N/m
+    approaches: Array  # (k,), from the samples' patch planes, m, positive closing
+    forces: Array  # (N, k), N
+    tangents: Array  # (N, k), dF/d(approach) of the solved contacts, N/m
     datum: float
     """d0, m: the state is r = approach + d0, one offset for all samples, no less than the highest first
     touch, so that F(r = 0) = 0 for each of them."""
     held: int  # states, from the lowest, in which the window holds the contacts of all samples
 
     @property
-    def mean_force(self) -> NDArray[np.float64]:
+    def mean_force(self) -> Array:
         """Ensemble mean of the force, N, shape (k,)."""
         return np.asarray(self.forces.mean(axis=0))
 
     @property
-    def force_spread(self) -> NDArray[np.float64]:
+    def force_spread(self) -> Array:
         """Standard deviation of the force between samples, N, shape (k,)."""
         if len(self.forces) < 2:
             return np.zeros(self.forces.shape[1])
         return np.asarray(self.forces.std(axis=0, ddof=1))
 
     @property
-    def states(self) -> NDArray[np.float64]:
+    def states(self) -> Array:
         """States r = approach + d0, m, shape (k,)."""
         return self.approaches + self.datum
 
@@ -222,12 +219,7 @@ class StiffnessEnsemble:
         return ForceCurve.from_samples(self.approaches, self.mean_force, stiffness=self.tangents.mean(axis=0))
 
 
-def patches(
-    maps: Sequence[NDArray[np.float64]],
-    shape: tuple[int, int],
-    count: int,
-    weights: NDArray[np.float64],
-) -> list[NDArray[np.float64]]:
+def patches(maps: Sequence[Array], shape: tuple[int, int], count: int, weights: Array) -> list[Array]:
     """Cut at least so many samples of (nx, ny) cells out of maps, each levelled to the plane its patch feels.
 
     Samples are spread evenly over the maps, at least one from each, overlapping if need be; heights in m.
@@ -263,7 +255,7 @@ def _spread(spare: tuple[int, int], count: int) -> list[tuple[int, int]]:
     return [(round(u * spare[0]), round(v * spare[1])) for u, v in zip(along, across, strict=True)]
 
 
-def weighted_mean(heights: NDArray[np.float64], weights: NDArray[np.float64]) -> float:
+def weighted_mean(heights: Array, weights: Array) -> float:
     """Mean height, m, under a patch at the middle of a sample of odd sides, by its `punch_weights`."""
     mx, my = (min(w, h) // 2 for w, h in zip(weights.shape, heights.shape, strict=True))
     cx, cy = heights.shape[0] // 2, heights.shape[1] // 2
@@ -273,10 +265,10 @@ def weighted_mean(heights: NDArray[np.float64], weights: NDArray[np.float64]) ->
 
 
 def stiffness_ensemble(
-    samples: Sequence[NDArray[np.float64]],
+    samples: Sequence[Array],
     half_space: HalfSpace,
-    body: NDArray[np.float64],
-    approaches: NDArray[np.float64],
+    body: Array,
+    approaches: Array,
     datum: float,
     *,
     rtol: float = 1e-6,
@@ -293,7 +285,7 @@ def stiffness_ensemble(
 
     cell = half_space.cell_area
 
-    def load(sample: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], Counts]:
+    def load(sample: Array) -> tuple[Array, Array, Counts]:
         block = half_space.at_positions(sample, body, np.zeros(1), approaches, 1, rtol)
         forces = cell * block.totals[:, 0]
         tangents = [

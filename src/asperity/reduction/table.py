@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from asperity.arguments import Array
 from asperity.contact.scan import FORCE_ACCURACY, ScanJob, ScannedForces, solved_blocks, total
 from asperity.errors import ComputationError, InputError
 from asperity.kernels.along import OVERLAP, splines_along
@@ -25,7 +26,7 @@ class StoredForces:
     shape: tuple[int, ...]  # (states, positions)
     ahead: int = 0
 
-    def columns(self, first: int, stop: int) -> NDArray[np.float64]:
+    def columns(self, first: int, stop: int) -> Array:
         """Forces at the positions first … stop − 1, N, shape (states, stop − first)."""
         stop = min(stop, self.shape[1])
         whole = range((first + self.ahead) // self.block, (stop - 1 + self.ahead) // self.block + 1)
@@ -34,7 +35,7 @@ class StoredForces:
         offset = max(blocks.start * self.block - self.ahead, 0)
         return np.concatenate(parts, axis=1)[:, first - offset : stop - offset]
 
-    def _forces(self, index: int) -> NDArray[np.float64]:
+    def _forces(self, index: int) -> Array:
         found = self.cache.get(self.keys[index])
         if found is None:
             raise ComputationError(
@@ -65,7 +66,7 @@ def scan_into(
     return ScannedForces(forces, total(counts), job.single)
 
 
-def columns(forces: NDArray[np.float64] | StoredForces, first: int, stop: int) -> NDArray[np.float64]:
+def columns(forces: Array | StoredForces, first: int, stop: int) -> Array:
     """Forces at the positions first … stop − 1, N, shape (states, stop − first), in memory or stored."""
     return forces[:, first:stop] if isinstance(forces, np.ndarray) else forces.columns(first, stop)
 
@@ -81,12 +82,12 @@ class ForceTable:
     """Contact force at positions of the path and states of the contact, at least two."""
 
     # (s, m), at state i and position m, N, not negative; not falling with the approach but by accuracy
-    forces: NDArray[np.float64] | StoredForces
-    approaches: NDArray[np.float64]  # (s,), of the states, m, increasing
+    forces: Array | StoredForces
+    approaches: Array  # (s,), of the states, m, increasing
     start: float  # position of the first point on the path, m
     spacing: float  # distance of the points, m
     # (m,), approach at which contact begins, m; by default it is estimated from the forces
-    touches: NDArray[np.float64] | None = None
+    touches: Array | None = None
 
     def __post_init__(self) -> None:
         forces = self.forces
@@ -102,7 +103,7 @@ class ForceTable:
         object.__setattr__(self, "forces", forces)
         object.__setattr__(self, "approaches", approaches)
 
-    def at(self, positions: ArrayLike) -> NDArray[np.float64]:
+    def at(self, positions: ArrayLike) -> Array:
         """Forces (n, s), N, at positions (n,), m, by cubic splines: not negative, not falling with states."""
         count = self.forces.shape[1]
         index = grid_index("force table", count, self.start, self.spacing, positions)
@@ -116,7 +117,7 @@ class ForceTable:
         # a spline may undershoot beside a place where contact is lost
         return np.maximum.accumulate(np.maximum(result, 0.0, out=result), axis=1)
 
-    def touch_at(self, positions: ArrayLike) -> NDArray[np.float64] | None:
+    def touch_at(self, positions: ArrayLike) -> Array | None:
         """Approach at first touch at positions (n,), m, interpolated linearly; None where it is not known."""
         if self.touches is None:
             return None
@@ -124,9 +125,7 @@ class ForceTable:
         return np.interp(np.asarray(positions, dtype=float), at, self.touches)
 
 
-def _check_forces(
-    forces: NDArray[np.float64] | StoredForces, approaches: NDArray[np.float64], spacing: float
-) -> None:
+def _check_forces(forces: Array | StoredForces, approaches: Array, spacing: float) -> None:
     """Refuse forces that no contact has, piece by piece."""
     lowest, largest, fall = 0.0, 0.0, 0.0
     for first in range(0, forces.shape[-1], PIECE):

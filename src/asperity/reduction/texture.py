@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.kernels.along import splines_along
 from asperity.surfaces.strip import Rows, Strip
@@ -25,7 +26,7 @@ class StateTexture:
     heights: NDArray[
         np.float64
     ]  # (s, m), at state i and position m, m, positive *away* from the contact (h = −z)
-    approaches: NDArray[np.float64]  # (s,), of the states, m, increasing
+    approaches: Array  # (s,), of the states, m, increasing
     start: float  # position of the first point on the path, m
     spacing: float  # distance of the points, m
 
@@ -51,14 +52,12 @@ class StateTexture:
         heights = (1.0 - share) * self.heights[lower] + share * self.heights[upper]
         return StateTexture.unfiltered(heights, self.spacing, self.start)
 
-    def at(self, positions: ArrayLike) -> NDArray[np.float64]:
+    def at(self, positions: ArrayLike) -> Array:
         """Texture (n, s), m, of every state at positions (n,) on the path, m, by cubic splines along it."""
         return along_path("state texture", self.heights, self.start, self.spacing, positions)
 
 
-def check_states(
-    what: str, values: NDArray[np.float64], approaches: NDArray[np.float64], spacing: float
-) -> None:
+def check_states(what: str, values: Array, approaches: Array, spacing: float) -> None:
     """Refuse values (s, m) at approaches (s,) and positions along a path whose shapes or values do not fit.
 
     Approaches and spacing in m; `what` they are is for the message.
@@ -74,9 +73,7 @@ def check_states(
         raise InputError(f"spacing of the {what} (m)", spacing, "a finite positive number")
 
 
-def along_path(
-    what: str, values: NDArray[np.float64], start: float, spacing: float, positions: ArrayLike
-) -> NDArray[np.float64]:
+def along_path(what: str, values: Array, start: float, spacing: float, positions: ArrayLike) -> Array:
     """Natural cubic splines (n, s) of rows (s, m) along a path, at positions (n,), m.
 
     The rows are sampled at ``start + spacing * arange(m)``; `what` they are is for the message.
@@ -85,9 +82,7 @@ def along_path(
     return np.asarray(splines_along(np.ascontiguousarray(values, dtype=float), index))
 
 
-def grid_index(
-    what: str, points: int, start: float, spacing: float, positions: ArrayLike
-) -> NDArray[np.float64]:
+def grid_index(what: str, points: int, start: float, spacing: float, positions: ArrayLike) -> Array:
     """Places, from 0 to points − 1, of positions on the path, m, on the grid of a state function.
 
     Its points begin at `start` and are a spacing apart, m; `what` is known there is for the message.
@@ -114,12 +109,12 @@ class LongConvolution:
     Results come in pieces of at most so many (overlap-save).
     """
 
-    def __init__(self, weights: NDArray[np.float64], piece: int = CONVOLVED) -> None:
+    def __init__(self, weights: Array, piece: int = CONVOLVED) -> None:
         self.reach, self.piece = weights.shape[-1] - 1, piece
         self.period = next_fast_len(piece + self.reach, real=True)
         self.transfer = rfft(weights, self.period)
 
-    def of(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    def of(self, rows: Array) -> Array:
         """Convolve rows (c, n), where weights lie on them as a whole, and add them up: (s, n − t + 1)."""
         count = rows.shape[-1] - self.reach
         result = np.empty((len(self.transfer), count))
@@ -137,7 +132,7 @@ PIECE = 2**11
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
-def punch_weights(spacing: tuple[float, float], semi_axes: tuple[float, float]) -> NDArray[np.float64]:
+def punch_weights(spacing: tuple[float, float], semi_axes: tuple[float, float]) -> Array:
     """Share (odd, odd) of the flat-punch pressure on each cell of a grid under an elliptic patch.
 
     (dx, dy) and the semi-axes (a_x, a_y) in m, the patch centred on the middle cell; the weights sum to one.
@@ -160,7 +155,7 @@ def punch_weights(spacing: tuple[float, float], semi_axes: tuple[float, float]) 
 
 
 def areal_texture(
-    heights: NDArray[np.float64] | Strip,
+    heights: Array | Strip,
     spacing: tuple[float, float],
     approaches: ArrayLike,
     semi_axes: ArrayLike,
@@ -206,6 +201,6 @@ def areal_texture(
     return StateTexture(result, np.asarray(approaches, dtype=np.float64), start, spacing[0])
 
 
-def _half(weights: NDArray[np.float64], middle: int) -> NDArray[np.float64]:
+def _half(weights: Array, middle: int) -> Array:
     """Columns of the weights from the middle on, no more than half a strip has."""
     return weights[:, weights.shape[1] // 2 :][:, : middle + 1]

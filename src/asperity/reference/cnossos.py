@@ -11,13 +11,13 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 
 CITATION = "Directive (EU) 2015/996, appendix G, as amended by Delegated Directive (EU) 2021/1226"
 
-Spectrum = tuple[NDArray[np.float64], NDArray[np.float64]]
+Spectrum = tuple[Array, Array]
 
 WAVELENGTHS_MM = (
     2000.0, 1600.0, 1250.0, 1000.0, 800.0, 630.0, 500.0, 400.0, 315.0, 250.0, 200.0, 160.0, 125.0,
@@ -139,7 +139,7 @@ WHEEL_TRANSFER: dict[str, tuple[float, ...]] = {
 """Table G-3b, vehicle by wheel diameter, dB at `TRANSFER_FREQUENCIES`."""
 
 
-def wavelengths() -> NDArray[np.float64]:
+def wavelengths() -> Array:
     """Nominal wavelengths of the tables (35,), m, falling from 2 m to 0.8 mm."""
     return np.array(WAVELENGTHS_MM) * 1e-3
 
@@ -227,7 +227,7 @@ def _filter_name(load_kn: int, diameter_mm: int) -> str:
     return f"{load_kn} kN, {diameter_mm} mm"
 
 
-def _table(what: str, tables: Mapping[str, tuple[float, ...]], name: str) -> NDArray[np.float64]:
+def _table(what: str, tables: Mapping[str, tuple[float, ...]], name: str) -> Array:
     if name not in tables:
         raise InputError(what, repr(name), "one of " + "; ".join(repr(key) for key in tables))
     return np.array(tables[name])

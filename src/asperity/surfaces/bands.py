@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft, linalg
 from scipy.special import k1
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.spectra import HALF_BAND, band_energies, band_levels, psd, third_octave_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -35,7 +36,7 @@ def band_levels_of(
     segment: float | None = None,
     shortest: float | None = None,
     longest: float | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """One-third-octave levels, dB re 1 µm, with their wavelengths, m; of a map the mean power along x.
 
     Complete heights, m; the mean of each line is removed. Segments, m, are Hann-windowed with 50 % overlap,
@@ -86,12 +87,12 @@ SAME_COHERENCE = 1.05
 class _Lines:
     """Fourier lines of a periodic record and the energy that bands put on them."""
 
-    wavenumbers: NDArray[np.float64]  # (k,) cycles/m, from zero
-    energies: NDArray[np.float64]  # (k,) m², mean square of each line
+    wavenumbers: Array  # (k,) cycles/m, from zero
+    energies: Array  # (k,) m², mean square of each line
     band_of: NDArray[np.intp]  # (k,) the band with the largest part of each line
-    low: NDArray[np.float64]  # (b,) band edges, cycles/m
-    high: NDArray[np.float64]
-    targets: NDArray[np.float64]  # (b,) m², mean square of each band
+    low: Array  # (b,) band edges, cycles/m
+    high: Array
+    targets: Array  # (b,) m², mean square of each band
     description: str
 
 
@@ -181,14 +182,14 @@ def _blocks(lines: _Lines) -> list[slice]:
     return [slice(int(i), int(j)) for i, j in pairwise(starts)]
 
 
-def _lateral_factor(distance: NDArray[np.float64]) -> NDArray[np.float64]:
+def _lateral_factor(distance: Array) -> Array:
     """Matrix that mixes independent numbers into lines with coherence z K1(z) at `distance` z."""
     coherence = np.full(distance.size, 1.0 + 1e-10)  # keeps nearly equal lines factorable
     coherence[1:] = distance[1:] * k1(distance[1:])
     return np.asarray(linalg.cholesky(linalg.toeplitz(coherence), lower=True))
 
 
-def _correction(lines: _Lines, energies: NDArray[np.float64]) -> NDArray[np.float64]:
+def _correction(lines: _Lines, energies: Array) -> Array:
     """Factor for the energy of each line that gives every band its mean square.
 
     Lines on an edge are shared by two bands, so the factors of the bands depend on each other.
@@ -235,9 +236,7 @@ def _fourier_lines(n: int, spacing: float, wavelengths: ArrayLike, levels_db: Ar
     return _Lines(wavenumbers, energies, band_of, low, high, targets, description)
 
 
-def _wavenumber_bands(
-    wavelengths: ArrayLike, levels_db: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _wavenumber_bands(wavelengths: ArrayLike, levels_db: ArrayLike) -> tuple[Array, Array, Array, Array]:
     given = np.atleast_1d(np.asarray(wavelengths, dtype=np.float64))
     levels = np.atleast_1d(np.asarray(levels_db, dtype=np.float64))
     if (

@@ -6,9 +6,10 @@ import math
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import fft
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile
 
@@ -76,7 +77,7 @@ def flat_length(depth: float, radius: float) -> float:
 
 def flat_geometry(
     x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh", length: float | None = None
-) -> NDArray[np.float64]:
+) -> Array:
     """Height of a flatted wheel against the round one, zero or negative, m, along its circumference, m.
 
     `x` counts from the middle of the flat. Fresh: a chord, -(d - x²/2R) for |x| <= l/2. Worn: rounded, -d/2
@@ -99,9 +100,7 @@ def _length(depth: float, radius: float, shape: str, length: float | None) -> fl
     return length
 
 
-def _flat_shape(
-    x: NDArray[np.float64], depth: float, radius: float, length: float, shape: str
-) -> NDArray[np.float64]:
+def _flat_shape(x: Array, depth: float, radius: float, length: float, shape: str) -> Array:
     if shape == "fresh":
         return -(depth - x**2 / (2.0 * radius))
     if shape == "worn":
@@ -111,7 +110,7 @@ def _flat_shape(
 
 def flat_trajectory(
     x: ArrayLike, depth: float, radius: float, shape: FlatShape = "fresh", length: float | None = None
-) -> NDArray[np.float64]:
+) -> Array:
     """Height of the centre of a rigid flatted wheel that rolls on a rigid flat rail, zero or negative, m.
 
     `x` is the centre's position, m, from where the middle of the flat is below it; the rest as in
@@ -130,7 +129,7 @@ def flat_trajectory(
     return np.interp(distance, at, envelope, right=0.0)
 
 
-def dipped_joint(x: ArrayLike, depth: float, length: float) -> NDArray[np.float64]:
+def dipped_joint(x: ArrayLike, depth: float, length: float) -> Array:
     """Height of a rail with a dipped joint, m: two parabolas that meet in a kink.
 
     -depth (1 - 2|x|/length)² for |x| <= length/2, else zero, x from the joint; all in m. The rail turns by 8

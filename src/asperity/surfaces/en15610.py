@@ -14,6 +14,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import CoarseSamplingWarning, InputError, PhysicsWarning
 from asperity.reference.cnossos import rail_roughness
 from asperity.spectra import HALF_BAND
@@ -156,7 +157,7 @@ def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
     return replace(profile, heights=rolled)
 
 
-def _complete(profile: Profile) -> NDArray[np.float64]:
+def _complete(profile: Profile) -> Array:
     if profile.missing_share > 0.0:
         received = f"{profile.missing_share:.2%} missing points"
         raise InputError("measured line", received, "complete heights", "Trim and fill it first.")
@@ -171,10 +172,10 @@ FEWEST_BANDS = 6
 class ThirdOctaves:
     """One-third-octave levels of lines, mean power of all, dB re 1 µm, at wavelengths (b,), m, that fall."""
 
-    wavelength: NDArray[np.float64]
-    measured: NDArray[np.float64]  # levelled, gaps filled
-    processed: NDArray[np.float64]  # after EN 15610: without spikes, rolled over with a circle
-    limit: NDArray[np.float64]  # EN ISO 3095:2013; NaN where it gives none
+    wavelength: Array
+    measured: Array  # levelled, gaps filled
+    processed: Array  # after EN 15610: without spikes, rolled over with a circle
+    limit: Array  # EN ISO 3095:2013; NaN where it gives none
 
     @property
     def limited(self) -> NDArray[np.bool_]:

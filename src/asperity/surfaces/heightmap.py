@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real, two, two_lengths, whole
+from asperity.arguments import Array, real, two, two_lengths, whole
 from asperity.errors import InputError
 
 
@@ -43,7 +43,7 @@ class HeightMap:
     [1.0, 2.0]
     """
 
-    heights: NDArray[np.float64]
+    heights: Array
     spacing: tuple[float, float]
     source: str = ""
 
@@ -63,12 +63,12 @@ class HeightMap:
         return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
 
     @property
-    def x(self) -> NDArray[np.float64]:
+    def x(self) -> Array:
         """Coordinates (nx,) along the rolling direction in m, from zero."""
         return np.arange(self.shape[0], dtype=np.float64) * self.spacing[0]
 
     @property
-    def y(self) -> NDArray[np.float64]:
+    def y(self) -> Array:
         """Coordinates (ny,) across the rolling direction in m, from zero."""
         return np.arange(self.shape[1], dtype=np.float64) * self.spacing[1]
 
@@ -77,7 +77,7 @@ class HeightMap:
         """Share of the points without a height, 0 to 1."""
         return float(np.isnan(self.heights).mean())
 
-    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
+    def rows(self, first: int, stop: int) -> Array:
         """Return the heights of some rows across the rolling direction.
 
         Parameters
@@ -246,7 +246,7 @@ class Profile:
     (0.004, 4)
     """
 
-    heights: NDArray[np.float64]
+    heights: Array
     spacing: float
     source: str = ""
 
@@ -266,7 +266,7 @@ class Profile:
         return len(self.heights) * self.spacing
 
     @property
-    def x(self) -> NDArray[np.float64]:
+    def x(self) -> Array:
         """Coordinates (n,) in m, from zero."""
         return np.arange(len(self.heights), dtype=np.float64) * self.spacing
 
@@ -349,7 +349,7 @@ class Profile:
         return replace(self, heights=self.heights[kept])
 
 
-def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> NDArray[np.float64]:
+def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> Array:
     what = f"heights of {source}" if source else "heights"
     shape = "(nx, ny)" if dimensions == 2 else "(n,)"
     allowed = f"an array {shape} of real numbers, at least two along each axis"
@@ -369,7 +369,7 @@ def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> NDArra
     return array
 
 
-def _frozen_copy(array: NDArray[Any]) -> NDArray[np.float64]:
+def _frozen_copy(array: NDArray[Any]) -> Array:
     if isinstance(array, np.ma.MaskedArray):
         array = np.ma.filled(array.astype(np.float64), np.nan)
     immutable = array.dtype == np.float64 and array.flags.owndata and not array.flags.writeable

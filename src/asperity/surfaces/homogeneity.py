@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import bdtrc
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
@@ -28,7 +28,7 @@ class Homogeneity:
     """Outcome of the homogeneity test."""
 
     # (kx, ky), root mean square height of each tile about the map's mean plane, m
-    tile_rms: NDArray[np.float64]
+    tile_rms: Array
     variation: float  # coefficient of variation of the tiles' mean squares
     expected: float  # median of the same over stationary surrogates
     p_value: float  # share of surrogates, this map included, that vary at least as much
@@ -81,7 +81,7 @@ def _coarse(surface: HeightMap, tiles: tuple[int, int]) -> HeightMap:
     return resample(surface, (step * dx, step * dy))
 
 
-def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> NDArray[np.float64]:
+def _tile_mean_squares(surface: HeightMap, tiles: tuple[int, int]) -> Array:
     px, py = (n // k for n, k in zip(surface.shape, tiles, strict=True))
     kept = surface.heights[: px * tiles[0], : py * tiles[1]]
     return np.mean(kept.reshape(tiles[0], px, tiles[1], py) ** 2, axis=(1, 3))

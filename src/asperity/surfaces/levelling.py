@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import NDArray
 from scipy import fft
 
-from asperity.arguments import FORMS, real, shown
+from asperity.arguments import FORMS, Array, real, shown
 from asperity.errors import ComputationError, InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.parallel_lines import are_lines
@@ -83,9 +83,7 @@ def band_limit(surface: Surface, longest: float | None = None, shortest: float |
     return replace(surface, heights=heights)
 
 
-def _gaussian(
-    heights: NDArray[np.float64], spacings: NDArray[np.float64], cut_off: float
-) -> NDArray[np.float64]:
+def _gaussian(heights: Array, spacings: Array, cut_off: float) -> Array:
     valid = np.isfinite(heights)
     weighted, weight = np.where(valid, heights, 0.0), valid.astype(np.float64)
     for axis, spacing in enumerate(spacings):
@@ -97,7 +95,7 @@ def _gaussian(
     return np.where(valid, weighted / np.where(valid, weight, 1.0), np.nan)
 
 
-def _convolve(values: NDArray[np.float64], kernel: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+def _convolve(values: Array, kernel: Array, axis: int) -> Array:
     from scipy.signal import oaconvolve  # takes a second to import
 
     full = oaconvolve(values, kernel, mode="full", axes=axis)
@@ -146,9 +144,7 @@ def nearly_complete(surface: Surface) -> Surface | None:
     return fill(surface, lines=False) if surface.missing_share <= FILLED_SHARE_WARNED else None
 
 
-def _harmonic(
-    heights: NDArray[np.float64], missing: NDArray[np.bool_], spacings: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _harmonic(heights: Array, missing: NDArray[np.bool_], spacings: Array) -> Array:
     """Heights of the missing points, from the discrete Laplace equation."""
     from scipy import sparse
     from scipy.sparse.linalg import spsolve
@@ -205,9 +201,7 @@ def resample(surface: Surface, spacing: float | tuple[float, float]) -> Surface:
     return replace(surface, heights=heights, spacing=(float(new[0]), float(new[1])))
 
 
-def _resample_axis(
-    heights: NDArray[np.float64], old_step: float, new_step: float, axis: int
-) -> NDArray[np.float64]:
+def _resample_axis(heights: Array, old_step: float, new_step: float, axis: int) -> Array:
     points = heights.shape[axis]
     length = points * old_step
     series = np.moveaxis(fft.dct(heights, type=2, axis=axis), axis, -1)
@@ -240,7 +234,7 @@ class Form:
     """Least-squares form of a surface."""
 
     kind: str  # ``"sphere"``, ``"cylinder"`` or ``"polynomial"``
-    heights: NDArray[np.float64]  # of the form, m, with the shape of the surface
+    heights: Array  # of the form, m, with the shape of the surface
     radius: float  # of curvature, m, positive for a hill and negative for a hollow; NaN for a polynomial
 
 
@@ -286,14 +280,14 @@ def fit_form(
 
 
 def _fit_sag(
-    sag: Callable[..., NDArray[np.float64]],
-    start: NDArray[np.float64],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    heights: NDArray[np.float64],
+    sag: Callable[..., Array],
+    start: Array,
+    x: Array,
+    y: Array,
+    heights: Array,
     valid: NDArray[np.bool_],
     scale: float,
-) -> tuple[NDArray[np.float64], float]:
+) -> tuple[Array, float]:
     """Refine a curved form; `start` and `sag` work in coordinates divided by `scale`."""
     unit = float(np.ptp(heights[valid])) or 1.0
     if not abs(start[1]) > 1e-9 * unit:
@@ -301,7 +295,7 @@ def _fit_sag(
     z = heights[valid] / scale
     start = np.array([start[0] / scale, start[1] / scale, *start[2:]])
 
-    def residual(p: NDArray[np.float64]) -> NDArray[np.float64]:
+    def residual(p: Array) -> Array:
         return (sag(p, x[valid], y[valid]) - z) * (scale / unit)
 
     steps = np.maximum(np.abs(start), 1e-12)
@@ -311,19 +305,19 @@ def _fit_sag(
     return sag(found.x, x, y) * scale, float(found.x[1]) / scale
 
 
-def _sphere_start(q: NDArray[np.float64], line: bool) -> NDArray[np.float64]:
+def _sphere_start(q: Array, line: bool) -> Array:
     curvature = 2.0 * q[3] if line else q[3] + q[5]
     x0, y0 = (-q[1] / curvature, -q[2] / curvature) if curvature else (0.0, 0.0)
     return np.array([q[0] - curvature * (x0 * x0 + y0 * y0) / 2.0, curvature, x0, y0][: 3 if line else 4])
 
 
-def _sphere(p: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+def _sphere(p: Array, x: Array, y: Array) -> Array:
     y0 = p[3] if p.size > 3 else 0.0
     square = (x - p[2]) ** 2 + (y - y0) ** 2
     return p[0] + p[1] * square / (1.0 + np.sqrt(np.maximum(1.0 - p[1] ** 2 * square, 0.0)))
 
 
-def _cylinder_start(q: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cylinder_start(q: Array) -> Array:
     values, vectors = np.linalg.eigh([[2.0 * q[3], q[4]], [q[4], 2.0 * q[5]]])
     across = int(np.abs(values).argmax())
     cosine, sine = vectors[:, across]
@@ -333,14 +327,14 @@ def _cylinder_start(q: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([q[0] - curvature * offset**2 / 2.0, curvature, offset, np.arctan2(sine, cosine), tilt])
 
 
-def _cylinder(p: NDArray[np.float64], x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cylinder(p: Array, x: Array, y: Array) -> Array:
     across = x * np.cos(p[3]) + y * np.sin(p[3]) - p[2]
     along = -x * np.sin(p[3]) + y * np.cos(p[3])
     bow = p[1] * across**2 / (1.0 + np.sqrt(np.maximum(1.0 - (p[1] * across) ** 2, 0.0)))
     return p[0] + bow + p[4] * along
 
 
-def _coordinates(surface: HeightMap | Profile) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+def _coordinates(surface: HeightMap | Profile) -> tuple[Array, Array, float]:
     """Centred x and y, broadcast to the heights and divided by half the longest side, with that half side."""
     if isinstance(surface, Profile):
         x, y = surface.x - surface.x.mean(), np.zeros(surface.shape)
@@ -355,7 +349,7 @@ def _check_count(valid: NDArray[np.bool_], coefficients: int) -> None:
         raise InputError("surface", f"{valid.sum()} valid points", f"at least {coefficients} for this fit")
 
 
-def polynomial(surface: HeightMap | Profile, degree: int) -> NDArray[np.float64]:
+def polynomial(surface: HeightMap | Profile, degree: int) -> Array:
     """Heights, m, of the least-squares polynomial of a total degree, 0 to 12, through the valid points."""
     if not (isinstance(degree, int | np.integer) and 0 <= degree <= 12):
         raise InputError("degree", degree, "a whole number from 0 to 12")
@@ -375,5 +369,5 @@ def polynomial(surface: HeightMap | Profile, degree: int) -> NDArray[np.float64]
     return fitted
 
 
-def _outer(factors: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+def _outer(factors: list[Array]) -> Array:
     return factors[0] if len(factors) == 1 else np.multiply.outer(factors[0], factors[1])

@@ -9,9 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import fft
 
+from asperity.arguments import Array
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 
@@ -53,7 +54,7 @@ def lines_of(surface: HeightMap) -> tuple[Profile, ...]:
 class Register:
     """Parallel lines in register, and what brought them there."""
 
-    lines: NDArray[np.float64]  # (k, n), heights, m, cut to the shortest full line
+    lines: Array  # (k, n), heights, m, cut to the shortest full line
     reversed: tuple[bool, ...]  # whether each line was turned round
     shifts: tuple[int, ...]  # points by which each line was moved on, around its length
     correlations: tuple[float, ...]  # coefficient of each line with the one before it; 1 for the first
@@ -91,7 +92,7 @@ def bring_into_register(profiles: Sequence[Profile]) -> Register:
     return Register(result, tuple(turned), tuple(shifts), (1.0, *pairs), replaced)
 
 
-def _best_match(reference: NDArray[np.float64], line: NDArray[np.float64]) -> tuple[bool, int]:
+def _best_match(reference: Array, line: Array) -> tuple[bool, int]:
     """Whether to turn a periodic line round, and how far to move it on, to follow a reference."""
     n = len(line)
     wanted = fft.rfft(reference - reference.mean())
@@ -107,12 +108,12 @@ def _best_match(reference: NDArray[np.float64], line: NDArray[np.float64]) -> tu
     return max(matches)[1:]
 
 
-def _correlation(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+def _correlation(one: Array, other: Array) -> float:
     scale = float(one.std() * other.std())
     return float(np.mean((one - one.mean()) * (other - other.mean()))) / scale if scale else 0.0
 
 
-def common_length(profiles: Sequence[Profile]) -> NDArray[np.float64]:
+def common_length(profiles: Sequence[Profile]) -> Array:
     """Complete parallel lines with one spacing, cut to the length of the shortest: heights (k, n), m."""
     if not profiles:
         raise InputError("parallel lines", "none", "one or more lines")
@@ -129,7 +130,7 @@ def common_length(profiles: Sequence[Profile]) -> NDArray[np.float64]:
 
 def strip_from_lines(
     lines: ArrayLike, spacing: float, distance_across: float, shape_y: int, spacing_y: float
-) -> NDArray[np.float64]:
+) -> Array:
     """Strip (n, shape_y) through complete parallel lines (k, n), heights and distances in m.
 
     The points across are centred on the lines. Across, one line is constant, two and three are joined by

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import fill
@@ -22,15 +22,15 @@ REACH = 6.0
 class HeightTransform:
     """Monotone map from a standard normal variable to heights, tabulated uniformly."""
 
-    deviates: NDArray[np.float64]  # (k,), standard normal, rising
-    heights: NDArray[np.float64]  # (k,), m, not falling; beyond the table the end values hold
+    deviates: Array  # (k,), standard normal, rising
+    heights: Array  # (k,), m, not falling; beyond the table the end values hold
 
-    def __call__(self, normal: NDArray[np.float64]) -> NDArray[np.float64]:
+    def __call__(self, normal: Array) -> Array:
         """Heights, m, of standard normal values of any shape."""
         return np.interp(normal, self.deviates, self.heights)
 
 
-def height_transform(heights: NDArray[np.float64], points: int = 2401) -> HeightTransform:
+def height_transform(heights: Array, points: int = 2401) -> HeightTransform:
     """Transform that gives a normal variable the distribution of measured heights, m, as a table.
 
     The quantiles are used as they are, so nothing higher or lower than measured can arise.
@@ -41,7 +41,7 @@ def height_transform(heights: NDArray[np.float64], points: int = 2401) -> Height
     return HeightTransform(deviates, np.interp(ndtr(deviates), probabilities, rising))
 
 
-def gaussian_correlation(transform: HeightTransform, correlation: NDArray[np.float64]) -> NDArray[np.float64]:
+def gaussian_correlation(transform: HeightTransform, correlation: Array) -> Array:
     """Correlation coefficient that a Gaussian field needs for its transform to have a given one, at most 1.
 
     Mehler's expansion: with g = Σ c_k He_k/√k!, the correlation of g is Σ c_k² ρ^k/Σ c_k². The relation is
@@ -118,9 +118,7 @@ def inscribed(length: float, width: float, angle: float) -> tuple[float, float]:
     return (length * cos - width * sin) / both, (width * cos - length * sin) / both
 
 
-def _interpolated(
-    surface: HeightMap, at: tuple[NDArray[np.float64], NDArray[np.float64]]
-) -> NDArray[np.float64]:
+def _interpolated(surface: HeightMap, at: tuple[Array, Array]) -> Array:
     """Heights at places (x, y), m, inside a map; the spline needs more points than its degree."""
     missing = np.isnan(surface.heights)
     heights = fill(surface).heights if missing.any() else surface.heights

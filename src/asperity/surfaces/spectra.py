@@ -9,12 +9,13 @@ import scipy
 from numpy.typing import NDArray
 from scipy import fft
 
+from asperity.arguments import Array
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.threads import thread_count
 
 
-def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     """One-sided profile spectrum along an axis, averaged over all lines: wavenumber, cycles/m, and PSD, m³.
 
     The heights are complete and levelled, m; the mean of the surface is removed, not that of each line. The
@@ -33,16 +34,14 @@ def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[NDArray[np.floa
     return fft.rfftfreq(length, spacing), density.reshape(-1, density.shape[-1]).mean(axis=0)
 
 
-def _complete(surface: HeightMap | Profile) -> NDArray[np.float64]:
+def _complete(surface: HeightMap | Profile) -> Array:
     if np.isnan(surface.heights).any():
         received = f"{surface.missing_share:.2%} missing points"
         raise InputError("surface", received, "complete heights for a spectrum", "Use fill first.")
     return surface.heights - surface.heights.mean()
 
 
-def psd_2d(
-    surface: HeightMap, window: bool = True
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def psd_2d(surface: HeightMap, window: bool = True) -> tuple[Array, Array, Array]:
     """Two-sided areal spectrum C(qx, qy), m⁴, with the angular wavenumbers qx and qy, rad/m, rising.
 
     The heights are complete and levelled, m; the mean is removed. The double integral is Sq², weighted by the
@@ -61,7 +60,7 @@ def psd_2d(
     return qx, qy, density
 
 
-def psd_radial(surface: HeightMap, window: bool = True) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def psd_radial(surface: HeightMap, window: bool = True) -> tuple[Array, Array]:
     """Areal spectrum C(q), m⁴, averaged over directions, after the angular wavenumber q, rad/m.
 
     The heights are complete and levelled, m. Wavenumbers are means over rings as wide as the coarser of the
@@ -112,7 +111,7 @@ TOGETHER = 512
 """Wavenumbers whose spectra across are made at a time."""
 
 
-def autocorrelation(surface: HeightMap) -> NDArray[np.float64]:
+def autocorrelation(surface: HeightMap) -> Array:
     """Normalised autocorrelation at lags up to half the map, zero lag in the middle.
 
     Of shape (2 (nx//2) + 1, 2 (ny//2) + 1). The mean is removed, pairs with a missing point are left out. ISO
@@ -128,9 +127,7 @@ def autocorrelation(surface: HeightMap) -> NDArray[np.float64]:
     return np.asarray(mean / mean[middle])
 
 
-def lag_sums(
-    heights: NDArray[np.float64], valid: NDArray[np.bool_], reach: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def lag_sums(heights: Array, valid: NDArray[np.bool_], reach: int) -> tuple[Array, Array]:
     """Sums of products of heights, m², at all lags up to half their width, and the numbers of pairs.
 
     Heights (nx, ny) are about their mean, m, and zero where they are not valid; `reach` is the largest lag
@@ -162,7 +159,7 @@ class LagSums:
         self.columns = columns
         self.rows: list[int] = []
 
-    def add(self, heights: NDArray[np.float64]) -> None:
+    def add(self, heights: Array) -> None:
         """Add a piece, (rows, columns) about the mean, m."""
         self.rows.append(len(heights))
         along = np.empty((self.length // 2 + 1, self.columns), dtype=np.complex128)
@@ -174,7 +171,7 @@ class LagSums:
             spectrum = fft.fft(along[some], self.width, axis=1)
             self.power[some] += spectrum.real**2 + spectrum.imag**2
 
-    def sums(self) -> NDArray[np.float64]:
+    def sums(self) -> Array:
         """Sums of products, m², (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle."""
         across = np.conj(fft.rfft(self.power, axis=1, workers=thread_count())[:, : self.side + 1])
         across /= self.width
@@ -182,14 +179,14 @@ class LagSums:
         half = np.concatenate([found[self.length - self.reach :], found[: self.reach + 1]])
         return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
 
-    def means(self) -> NDArray[np.float64]:
+    def means(self) -> Array:
         """Mean products, m², of pieces in which no height is missing, as `sums`."""
         found, (along, across) = self.sums(), self._pairs()
         for first in range(0, len(found), TOGETHER):
             found[first : first + TOGETHER] /= np.outer(along[first : first + TOGETHER], across)
         return found
 
-    def pairs(self) -> NDArray[np.float64]:
+    def pairs(self) -> Array:
         """Numbers of pairs at these lags, of pieces in which no height is missing."""
         return np.outer(*self._pairs()).astype(np.float64)
 
@@ -215,9 +212,7 @@ def autocorrelation_lengths(
 
 
 def lengths_of(
-    correlation: NDArray[np.float64],
-    spacing: tuple[float, float],
-    threshold: float = CORRELATION_THRESHOLD,
+    correlation: Array, spacing: tuple[float, float], threshold: float = CORRELATION_THRESHOLD
 ) -> tuple[float, float]:
     """Lags, m, at which the central lobe of an autocorrelation falls to a share of its value at zero lag.
 

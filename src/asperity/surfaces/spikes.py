@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.surfaces.heightmap import HeightMap
 
 __all__ = ["FARTHEST", "spikes", "without_spikes"]
@@ -64,7 +65,7 @@ def without_spikes(surface: HeightMap) -> HeightMap:
     return replace(surface, heights=np.where(found, np.nan, surface.heights), source=source)
 
 
-def _local_median(heights: NDArray[np.float64]) -> NDArray[np.float64]:
+def _local_median(heights: Array) -> Array:
     """Median of the neighbours that have a height, the point itself among them; edges are carried on."""
     padded = np.pad(heights, REACH, mode="reflect", reflect_type="odd")
     side = 2 * REACH + 1
@@ -82,7 +83,7 @@ def _local_median(heights: NDArray[np.float64]) -> NDArray[np.float64]:
     return found
 
 
-def _typical(distance: NDArray[np.float64]) -> NDArray[np.float64]:
+def _typical(distance: Array) -> Array:
     """Median of the distances, of all or of the tiles around, whichever is more."""
     apart = distance[distance > 0.0]
     if not apart.size:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import nearly_complete
@@ -36,15 +36,13 @@ class Stratified:
     valley_ratio: float  # where valleys begin, Smr2 or Rmr2
 
 
-def material_ratio_curve(
-    heights: NDArray[np.float64], points: int = 201
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def material_ratio_curve(heights: Array, points: int = 201) -> tuple[Array, Array]:
     """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed."""
     ratio = np.linspace(0.0, 1.0, points)
     return ratio, np.quantile(heights[np.isfinite(heights)], 1.0 - ratio)
 
 
-def stratified(heights: NDArray[np.float64]) -> Stratified:
+def stratified(heights: Array) -> Stratified:
     """Core, peaks and valleys by the straight line through the flattest 40 % of the material ratio curve.
 
     ISO 25178-2:2021 and ISO 21920-2:2021, as ISO 13565-2:1996 has it: of all secants over 40 % the first of
@@ -125,7 +123,7 @@ def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None =
 
 
 def areal_parameters(
-    powers: NDArray[np.float64],
+    powers: Array,
     total: float,
     slopes: tuple[float, float],
     lengths: tuple[float, float],
@@ -153,7 +151,7 @@ def rms_slope(surface: HeightMap) -> float:
     return float(np.sqrt(np.nanmean(_square_slope(surface))))
 
 
-def _square_slope(surface: HeightMap) -> NDArray[np.float64]:
+def _square_slope(surface: HeightMap) -> Array:
     along, across = (slope(surface.heights, d, axis) for axis, d in enumerate(surface.spacing))
     return along**2 + across**2
 
@@ -208,7 +206,7 @@ def profile_statistics(
     ]
 
 
-def _stratified(letter: str, heights: NDArray[np.float64], band: tuple[float, float]) -> list[Statistic]:
+def _stratified(letter: str, heights: Array, band: tuple[float, float]) -> list[Statistic]:
     found = stratified(heights)
     values = [
         ("k", found.core, "m", "height of the core, by the flattest 40 % of the material ratio curve"),
@@ -240,7 +238,7 @@ def line_statistics(
     return found
 
 
-def _amplitudes(heights: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+def _amplitudes(heights: Array) -> tuple[Array, float]:
     """Means of |z|, z², z³ and z⁴, and the total height."""
     z = heights[np.isfinite(heights)]
     z = z - z.mean()
@@ -249,9 +247,7 @@ def _amplitudes(heights: NDArray[np.float64]) -> tuple[NDArray[np.float64], floa
     return np.array([np.abs(z).mean(), *(np.mean(z**n) for n in (2, 3, 4))]), float(np.ptp(z))
 
 
-def _named(
-    letter: str, powers: NDArray[np.float64], total: float, band: tuple[float, float]
-) -> list[Statistic]:
+def _named(letter: str, powers: Array, total: float, band: tuple[float, float]) -> list[Statistic]:
     rms = float(np.sqrt(powers[1]))
     values = [
         ("q", rms, "m", "rms height"),
@@ -263,7 +259,7 @@ def _named(
     return [Statistic(letter + name, value, unit, band, meaning) for name, value, unit, meaning in values]
 
 
-def slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np.float64]:
+def slope(heights: Array, spacing: float, axis: int) -> Array:
     """Seven-point derivative along an axis at points with three neighbours on either side, others NaN.
 
     Heights and spacing in m.
@@ -277,7 +273,7 @@ def slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np
     return found
 
 
-def inner_slope(heights: NDArray[np.float64], spacing: float, axis: int) -> NDArray[np.float64]:
+def inner_slope(heights: Array, spacing: float, axis: int) -> Array:
     """Seven-point derivative along an axis, without the three points at either end; heights, spacing in m."""
     z = np.moveaxis(heights, axis, 0)
     n = z.shape[0] - 6

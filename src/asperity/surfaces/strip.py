@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import IO, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 
 BYTES_KEPT = 2**29
@@ -28,13 +28,11 @@ class Fields:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._kept: dict[Hashable, tuple[int, int]] = {}  # offset in the file, bytes, and ny
-        self._held: dict[Hashable, NDArray[np.float64]] = {}
+        self._held: dict[Hashable, Array] = {}
         self._file: IO[bytes] | None = None
         self._length = 0  # of the file, bytes
 
-    def rows(
-        self, name: Hashable, make: Callable[[], NDArray[np.float64]], first: int, stop: int
-    ) -> NDArray[np.float64]:
+    def rows(self, name: Hashable, make: Callable[[], Array], first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1 of a field, m, not to be written to; unknown ones are made.
 
         They take memory for as long as they are held.
@@ -56,7 +54,7 @@ class Fields:
         """Bytes that are held in memory."""
         return sum(heights.nbytes for heights in self._held.values())
 
-    def _put(self, name: Hashable, heights: NDArray[np.float64]) -> None:
+    def _put(self, name: Hashable, heights: Array) -> None:
         full = self._length + heights.nbytes > BYTES_KEPT or self.nbytes + heights.nbytes > BYTES_HELD
         if full and len(self._kept) + len(self._held) >= FEWEST:
             self._forget()
@@ -65,7 +63,7 @@ class Fields:
         except OSError:
             self._held[name] = heights
 
-    def _write(self, name: Hashable, heights: NDArray[np.float64]) -> None:
+    def _write(self, name: Hashable, heights: Array) -> None:
         if self._file is None:
             self._file = tempfile.TemporaryFile(prefix="asperity-")  # noqa: SIM115  closed below
             self._close = weakref.finalize(self, self._file.close)
@@ -107,7 +105,7 @@ class Strip(Protocol):
         """Lengths (nx dx, ny dy), m."""
         ...
 
-    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
+    def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
         ...
 
@@ -116,7 +114,7 @@ class Strip(Protocol):
 class Rows:
     """Heights in memory as a strip, without copying or checking them."""
 
-    heights: NDArray[np.float64]  # (nx, ny), m
+    heights: Array  # (nx, ny), m
     spacing: tuple[float, float] = (1.0, 1.0)  # (dx, dy), m
 
     @property
@@ -129,7 +127,7 @@ class Rows:
         """Lengths (nx dx, ny dy), m."""
         return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
 
-    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
+    def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m."""
         return self.heights[first:stop]
 
@@ -139,7 +137,7 @@ class Raised:
     """A strip with heights added to it."""
 
     strip: Strip  # what lies below
-    added: Callable[[int, int], NDArray[np.float64]]  # for rows first … stop − 1: (stop − first, ny or 1), m
+    added: Callable[[int, int], Array]  # for rows first … stop − 1: (stop − first, ny or 1), m
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -156,7 +154,7 @@ class Raised:
         """Lengths (nx dx, ny dy), m."""
         return self.strip.size
 
-    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
+    def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m."""
         heights = np.empty((stop - first, self.shape[1]))
         for start in range(first, stop, TOGETHER):
@@ -167,12 +165,12 @@ class Raised:
         return heights
 
 
-def raised(strip: Strip, heights: NDArray[np.float64]) -> Raised:
+def raised(strip: Strip, heights: Array) -> Raised:
     """Add heights (nx,), m, that are the same all across."""
     return Raised(strip, lambda first, stop: heights[first:stop, None])
 
 
-def turning(strip: Strip, turn: NDArray[np.float64], start: int) -> Raised:
+def turning(strip: Strip, turn: Array, start: int) -> Raised:
     """Add one turn (n, ny), m, of what rolls, again and again; its row `start` touches row zero."""
     return Raised(strip, lambda first, stop: turn[(np.arange(first, stop) + start) % len(turn)])
 
@@ -197,11 +195,11 @@ class LongStrip:
 
     shape: tuple[int, int]
     spacing: tuple[float, float]
-    piece: Callable[[int, int], NDArray[np.float64]]
+    piece: Callable[[int, int], Array]
     seed: int
     stride: int
     blend: int
-    transform: Callable[[NDArray[np.float64]], NDArray[np.float64]] | None = None
+    transform: Callable[[Array], Array] | None = None
     source: str = ""
     before: int = 0
     name: Hashable = field(default_factory=object, repr=False)
@@ -219,7 +217,7 @@ class LongStrip:
         """Lengths (nx dx, ny dy), m."""
         return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
 
-    def rows(self, first: int, stop: int) -> NDArray[np.float64]:
+    def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
         if not 0 <= first <= stop <= self.shape[0]:
             raise InputError("rows of the strip", f"{first} to {stop}", f"rows from 0 to {self.shape[0]}")
@@ -232,7 +230,7 @@ class LongStrip:
             at = k * self.stride + end
         return heights if self.transform is None else self.transform(heights)
 
-    def _read(self, k: int, within: int, heights: NDArray[np.float64]) -> None:
+    def _read(self, k: int, within: int, heights: Array) -> None:
         """Read heights (n, ny), m, of piece k from a row within it on, blended with the one before."""
         heights[:] = self._field(k, within, within + len(heights))
         blended = min(len(heights), self.blend - within)
@@ -242,7 +240,7 @@ class LongStrip:
             ending = self.stride + within
             heights[:blended] += np.cos(angle) * self._field(k - 1, ending, ending + blended)
 
-    def _field(self, k: int, first: int, stop: int) -> NDArray[np.float64]:
+    def _field(self, k: int, first: int, stop: int) -> Array:
         """Rows first … stop − 1 of piece k, which has stride + blend of them."""
         seed = int(np.random.SeedSequence([self.seed, k % 2**32]).generate_state(1)[0])
         name = self.name, seed, self.stride, self.blend, self.shape[1]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.spectra import psd
 from asperity.surfaces.spectra import LagSums, lengths_of
@@ -34,10 +34,10 @@ class StripSurvey:
 
     # areal roughness parameters, in the order of `areal_parameters`; none of a flat strip
     statistics: list[Statistic]
-    edges: NDArray[np.float64]  # (81,), heights about the mean, m
-    density: NDArray[np.float64]  # (80,), probability density between them, 1/m
-    wavenumber: NDArray[np.float64]  # (f,), cycles per metre
-    spectrum: NDArray[np.float64]  # (f,), one-sided PSD along the strip, mean over its lines, m³
+    edges: Array  # (81,), heights about the mean, m
+    density: Array  # (80,), probability density between them, 1/m
+    wavenumber: Array  # (f,), cycles per metre
+    spectrum: Array  # (f,), one-sided PSD along the strip, mean over its lines, m³
 
 
 def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = None) -> StripSurvey:
@@ -74,9 +74,7 @@ def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = 
 class _Sums:
     """What is added up over the pieces of a strip."""
 
-    def __init__(
-        self, spacing: tuple[float, float], edges: NDArray[np.float64], segment: int, lags: LagSums
-    ) -> None:
+    def __init__(self, spacing: tuple[float, float], edges: Array, segment: int, lags: LagSums) -> None:
         self.spacing, self.edges, self.segment, self.lags = spacing, edges, segment, lags
         self.powers = np.zeros(4)  # |z|, z², z³, z⁴
         self.square = self.stretch = 0.0
@@ -84,7 +82,7 @@ class _Sums:
         self.counts = np.zeros(len(edges) - 1)
         self.spectrum = np.zeros(segment // 2 + 1)
 
-    def add(self, heights: NDArray[np.float64], inner: slice) -> None:
+    def add(self, heights: Array, inner: slice) -> None:
         for first in range(MARGIN, len(heights) - MARGIN, STRETCH):
             stop = min(first + STRETCH, len(heights) - MARGIN)
             self._add_slopes(heights[first - MARGIN : stop + MARGIN])
@@ -94,7 +92,7 @@ class _Sums:
         self.lags.add(z)
         self._add_spectrum(z)
 
-    def _add_slopes(self, rows: NDArray[np.float64]) -> None:
+    def _add_slopes(self, rows: Array) -> None:
         """Add what slopes are at all points but those within the margin."""
         dx, dy = self.spacing
         square = inner_slope(rows[:, MARGIN:-MARGIN], dx, 0) ** 2
@@ -103,12 +101,12 @@ class _Sums:
         self.stretch += float((np.sqrt(1.0 + square) - 1.0).sum())
         self.sloped += square.size
 
-    def _add_heights(self, z: NDArray[np.float64]) -> None:
+    def _add_heights(self, z: Array) -> None:
         squared = z * z
         self.powers += [np.abs(z).sum(), squared.sum(), (squared * z).sum(), (squared * squared).sum()]
         self.counts += np.histogram(z, len(self.counts), (self.edges[0], self.edges[-1]))[0]
 
-    def _add_spectrum(self, z: NDArray[np.float64]) -> None:
+    def _add_spectrum(self, z: Array) -> None:
         overlap = self.segment // 2
         count = (len(z) - overlap) // (self.segment - overlap)
         for first in range(0, z.shape[1], LINES):
@@ -145,9 +143,7 @@ def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int
     return list(pairwise(edges.tolist()))
 
 
-def _with_margin(
-    strip: Strip, bounds: list[tuple[int, int]], mean: float
-) -> Iterator[tuple[NDArray[np.float64], slice]]:
+def _with_margin(strip: Strip, bounds: list[tuple[int, int]], mean: float) -> Iterator[tuple[Array, slice]]:
     """Pieces about a mean, m, with the rows beside them that slopes need, and where the piece is in it."""
     first, stop = bounds[0][0], bounds[-1][1]
     for start, end in bounds:

@@ -8,11 +8,11 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import fft
 from scipy.special import j0
 
-from asperity.arguments import one_of
+from asperity.arguments import Array, one_of
 from asperity.errors import InputError
 from asperity.surfaces.bands import from_bands, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap
@@ -34,7 +34,7 @@ def extend(
     start: int = 0,
     crossfade: int = 0,
     what: str = "record",
-) -> NDArray[np.float64]:
+) -> Array:
     """Heights (rows,) or (rows, k), m, along a path of any length from a record (n,) or (n, k).
 
     The record is complete. One that is too short is refused, mirrored, that is run through to and fro (no
@@ -63,7 +63,7 @@ def extend(
     return np.asarray(values[start : start + rows])
 
 
-def close(heights: ArrayLike, points: int) -> NDArray[np.float64]:
+def close(heights: ArrayLike, points: int) -> Array:
     """Close a periodic record: spread the step between its end and its start over both sides of the join.
 
     Heights (n,) or (n, k), m; half the step is taken from that many points on either side, fading with a
@@ -98,9 +98,9 @@ class Likeness:
     """What a synthesised surface shares with measured maps."""
 
     # from a normal variable of unit variance to heights, m
-    transform: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    transform: Callable[[Array], Array]
     # (odd, odd), of the normal field at all lags up to `LAGS` maps, zero lag first (wrapped)
-    correlation: NDArray[np.float64]
+    correlation: Array
     spacing: tuple[float, float]  # (dx, dy), m
     source: str  # where the maps came from
 
@@ -162,7 +162,7 @@ def _prepared(maps: tuple[HeightMap, ...], spacing: float | tuple[float, float] 
     return levelled
 
 
-def _correlation(maps: list[NDArray[np.float64]], spacing: tuple[float, float]) -> NDArray[np.float64]:
+def _correlation(maps: list[Array], spacing: tuple[float, float]) -> Array:
     """Correlation coefficients at all lags up to twice the map, odd size, zero lag first (wrapped)."""
     size = [max(m.shape[axis] for m in maps) for axis in (0, 1)]
     grid = [2 * LAGS * n for n in size]
@@ -179,12 +179,8 @@ def _correlation(maps: list[NDArray[np.float64]], spacing: tuple[float, float]) 
 
 
 def _spectrum(
-    maps: list[NDArray[np.float64]],
-    size: list[int],
-    grid: list[int],
-    spacing: tuple[float, float],
-    variance: float,
-) -> NDArray[np.float64]:
+    maps: list[Array], size: list[int], grid: list[int], spacing: tuple[float, float], variance: float
+) -> Array:
     """Half spectrum of the heights, m²; its mean over the grid is what it explains of their variance."""
     shares = [(min(spacing) / step) ** 2 for step in spacing]
     power, weight = np.zeros((grid[0], grid[1] // 2 + 1)), 0.0
@@ -211,13 +207,13 @@ def _spectrum(
     return density
 
 
-def _faded(points: int, grid: int) -> NDArray[np.float64]:
+def _faded(points: int, grid: int) -> Array:
     """Correlation that fades out at `points`, with a spectrum nowhere negative: that of a Hann window."""
     found = fft.irfft(np.abs(fft.rfft(_hann(points), grid)) ** 2, grid)
     return np.asarray(found / found[0])
 
 
-def _hann(points: int) -> NDArray[np.float64]:
+def _hann(points: int) -> Array:
     return np.sin(np.pi * (np.arange(points) + 0.5) / points) ** 2
 
 
@@ -324,9 +320,7 @@ def _check_self_affine(
             raise InputError(what, received, allowed)
 
 
-def _gaussian_field(
-    power: NDArray[np.float64], grid: Sequence[int], rms: float, seed: int
-) -> NDArray[np.float64]:
+def _gaussian_field(power: Array, grid: Sequence[int], rms: float, seed: int) -> Array:
     """Periodic Gaussian field with this half spectrum, scaled to an expected mean square of rms²."""
     doubled = power.sum() + power[:, 1 : (grid[1] + 1) // 2].sum()  # the half that rfft2 leaves out
     noise = np.random.default_rng(seed).standard_normal((grid[0], grid[1]))
@@ -390,7 +384,7 @@ def long_self_affine(
     _check_shape(shape)
     _check_self_affine(steps, rms, hurst, longest, shortest, anisotropy)
 
-    def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
+    def piece(rows: int, piece_seed: int) -> Array:
         return self_affine(
             (rows, shape[1]), steps, rms=rms, hurst=hurst, longest=longest, shortest=shortest,
             anisotropy=anisotropy, lay=lay, seed=piece_seed,
@@ -422,7 +416,7 @@ def long_strip_from_bands(
     steps, reach = (float(spacing[0]), float(spacing[1])), int(np.ceil(given.max() / spacing[0]))
     stride = max(BAND_REACHES * reach, int(np.ceil(LEAST_PIECE / steps[0])))
 
-    def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
+    def piece(rows: int, piece_seed: int) -> Array:
         grid = fft.next_fast_len(rows, real=True)
         return strip_from_bands(
             (grid, shape[1]), steps, given, levels, lateral=lateral, seed=piece_seed
@@ -449,7 +443,7 @@ def long_strip_like(
     _check_shape(shape)
     like = likeness(maps, spacing)
 
-    def piece(rows: int, piece_seed: int) -> NDArray[np.float64]:
+    def piece(rows: int, piece_seed: int) -> Array:
         return _gaussian_like(like, (rows, shape[1]), piece_seed)
 
     source = f"synthesised from {like.source}, seed {seed}"
@@ -462,7 +456,7 @@ def _pieces(columns: int, reach: int) -> tuple[int, int]:
     return max(PIECE_POINTS // columns, PIECE_REACHES * reach), max(1, BLEND_REACHES * reach)
 
 
-def _gaussian_like(like: Likeness, shape: tuple[int, int], seed: int) -> NDArray[np.float64]:
+def _gaussian_like(like: Likeness, shape: tuple[int, int], seed: int) -> Array:
     """Gaussian field of unit variance with the correlation of measured maps, not periodic."""
     lags = [(n + 1) // 2 for n in like.correlation.shape]
     grid = [fft.next_fast_len(n + k, real=True) for n, k in zip(shape, lags, strict=True)]
@@ -471,7 +465,7 @@ def _gaussian_like(like: Likeness, shape: tuple[int, int], seed: int) -> NDArray
     return _gaussian_field(power, grid, 1.0, seed)[: shape[0], : shape[1]]
 
 
-def _embedded(correlation: NDArray[np.float64], grid: Sequence[int]) -> NDArray[np.float64]:
+def _embedded(correlation: Array, grid: Sequence[int]) -> Array:
     """Correlation at the lags of a periodic grid; lags that wrap onto each other add up.
 
     Adding samples the same spectrum more coarsely, so it stays non-negative.

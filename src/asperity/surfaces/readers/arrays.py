@@ -11,7 +11,7 @@ from zipfile import ZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.arguments import listed, shown
+from asperity.arguments import Array, listed, shown
 from asperity.errors import InputError
 from asperity.surfaces.readers.guards import (
     Hints,
@@ -97,7 +97,7 @@ SPARSEST = 0.5  # smallest share of grid points that must be there
 _REMEDY = "Resample the heights at a uniform spacing first."
 
 
-def uniform_step(coordinates: NDArray[np.float64], source: str, name: str) -> float:
+def uniform_step(coordinates: Array, source: str, name: str) -> float:
     """Return the signed step of coordinates (n,) that must be uniform, within 0.05 steps of their places.
 
     That is (last - first) / (n - 1), negative for falling coordinates; source and name are for the message.
@@ -111,7 +111,7 @@ def uniform_step(coordinates: NDArray[np.float64], source: str, name: str) -> fl
     return step
 
 
-def line(x: NDArray[np.float64], z: NDArray[np.float64], source: str) -> tuple[NDArray[np.float64], float]:
+def line(x: Array, z: Array, source: str) -> tuple[Array, float]:
     """Put points x, z, given in any order, on the uniform line that they lie on.
 
     Returns the heights along rising x, NaN where the line has no point, and the spacing, in the units given.
@@ -121,9 +121,7 @@ def line(x: NDArray[np.float64], z: NDArray[np.float64], source: str) -> tuple[N
     return _filled_in(index, z, (int(index.max()) + 1,), source), spacing
 
 
-def rasterised(
-    x: NDArray[np.float64], y: NDArray[np.float64], z: NDArray[np.float64], source: str
-) -> tuple[NDArray[np.float64], tuple[float, float]]:
+def rasterised(x: Array, y: Array, z: Array, source: str) -> tuple[Array, tuple[float, float]]:
     """Sort points x, y, z, given in any order, into the regular grid that they lie on.
 
     Returns the heights (nx, ny) along rising x and y, NaN where the grid has no point, and (dx, dy), in the
@@ -134,9 +132,7 @@ def rasterised(
     return _filled_in(i * shape[1] + j, z, shape, source), (dx, dy)
 
 
-def _filled_in(
-    index: NDArray[np.intp], z: NDArray[np.float64], shape: tuple[int, ...], source: str
-) -> NDArray[np.float64]:
+def _filled_in(index: NDArray[np.intp], z: Array, shape: tuple[int, ...], source: str) -> Array:
     _check_share(source, shape, len(z))
     if len(np.unique(index)) != len(index):
         raise InputError(source, "several points at one place", "one height per grid point", _REMEDY)
@@ -145,15 +141,13 @@ def _filled_in(
     return heights.reshape(shape)
 
 
-def _steps(coordinates: NDArray[np.float64]) -> NDArray[np.float64]:
+def _steps(coordinates: Array) -> Array:
     """Gaps between grid lines; smaller ones are rounding within one grid line."""
     gaps = np.diff(np.sort(coordinates))
     return gaps[gaps > 0.5 * gaps.max(initial=0.0)]
 
 
-def _indices(
-    coordinates: NDArray[np.float64], source: str, name: str, steps: NDArray[np.float64]
-) -> tuple[NDArray[np.intp], float]:
+def _indices(coordinates: Array, source: str, name: str, steps: Array) -> tuple[NDArray[np.intp], float]:
     what = f"{name} of {source}"
     if not np.isfinite(coordinates).all():
         raise InputError(what, "missing or infinite coordinates", "a coordinate for each point", _REMEDY)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.apart import reason
-from asperity.arguments import file_path, listed, no_file, real, shown
+from asperity.arguments import Array, file_path, listed, no_file, real, shown
 from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap, Profile
@@ -261,7 +261,7 @@ def surfaces_of(array: NDArray[Any], spacing: tuple[float, float], source: str) 
     return [HeightMap(array, spacing, source)]
 
 
-def scaled(array: NDArray[Any], unit: float, source: str) -> NDArray[np.float64]:
+def scaled(array: NDArray[Any], unit: float, source: str) -> Array:
     """Return real numbers times the length of their unit, m, as float64."""
     if array.dtype.kind not in "fiu":
         raise InputError(

@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from asperity.arguments import listed, shown
+from asperity.arguments import Array, listed, shown
 from asperity.errors import InputError
 from asperity.surfaces.readers.arrays import only_one, uniform_step
 from asperity.surfaces.readers.guards import Hints, Surface, check_claim, hostile, scaled, surfaces_of
@@ -68,7 +67,7 @@ def _unit(variable: Any) -> float | None:
     return factor(unit, "m") if isinstance(unit, str) else None
 
 
-def _decoded(variable: Any, unit: float, source: str) -> NDArray[np.float64]:
+def _decoded(variable: Any, unit: float, source: str) -> Array:
     """Apply the conventional attributes for missing values, scale and offset."""
     raw, attributes = np.asarray(variable[...]), variable.attrs
     heights = scaled(raw, 1.0, source)

@@ -7,8 +7,8 @@ import struct
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.readers.guards import (
@@ -57,7 +57,7 @@ def read(path: Path, hints: Hints) -> list[Surface]:
         return surfaces_of(heights.T, (spacing[0], spacing[1]), path.name)
 
 
-def _read_binary(data: bytes, source: str) -> tuple[dict[str, str], NDArray[np.float64]]:
+def _read_binary(data: bytes, source: str) -> tuple[dict[str, str], Array]:
     if len(data) < _BINARY.size:
         raise InputError(
             source, f"{len(data)} bytes", f"a header of {_BINARY.size} bytes", "Export it again."
@@ -69,7 +69,7 @@ def _read_binary(data: bytes, source: str) -> tuple[dict[str, str], NDArray[np.f
     return header, np.frombuffer(data, kind, points, _BINARY.size).reshape(shape)
 
 
-def _read_ascii(data: bytes, source: str) -> tuple[dict[str, str], NDArray[np.float64]]:
+def _read_ascii(data: bytes, source: str) -> tuple[dict[str, str], Array]:
     head, _, rest = data.partition(b"*")
     pairs = (line.partition("=") for line in head.decode("latin-1").splitlines())
     header = {name.strip().lower(): value.strip() for name, _, value in pairs}

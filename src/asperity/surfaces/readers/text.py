@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.files import amount
@@ -141,7 +141,7 @@ def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
     raise InputError(source, received, allowed, remedy)
 
 
-def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[str], NDArray[np.float64]]:
+def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[str], Array]:
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
     header: list[str] = []
     marked: list[tuple[int, str, int]] = []  # headings that are numbers but for marks in them, and fields
@@ -199,7 +199,7 @@ def _no_numbers(text: str, number: int, source: str) -> InputError:
     )
 
 
-def _surfaces(table: NDArray[np.float64], header: Header, hints: Hints, source: str) -> list[Surface]:
+def _surfaces(table: Array, header: Header, hints: Hints, source: str) -> list[Surface]:
     unit = hints.heights_in(source, header.height_unit)
     stated = hints.spacing or header.spacing
     columns = table.shape[1]

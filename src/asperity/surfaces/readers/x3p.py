@@ -11,6 +11,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile
@@ -110,7 +111,7 @@ def _shape(root: Element, source: str) -> tuple[int, int, int]:
 
 def _points(
     opened: zipfile.ZipFile, root: Element, axes: list[_Axis], shape: tuple[int, int, int], source: str
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, Array]:
     """Coordinates in m of all points along each stored axis, NaN where a point is not valid."""
     stored = np.dtype([(axis.name, axis.kind) for axis in axes if axis.absolute])
     link = _text(root, "Record3/DataLink/PointDataLink")
@@ -134,7 +135,7 @@ def _points(
 
 def _listed(
     root: Element, stored: np.dtype[np.void], shape: tuple[int, int, int], source: str
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, Array]:
     """Points written as text: one Datum each, coordinates apart by semicolons, nothing in a missing one."""
     datums = root.findall("Record3/DataList/Datum")
     names = list(stored.names or ())
@@ -180,7 +181,7 @@ def _check_md5(data: bytes, stated: str | None, member: str, source: str) -> Non
 
 
 def _surfaces(
-    axes: list[_Axis], shape: tuple[int, int, int], points: dict[str, NDArray[np.float64]], source: str
+    axes: list[_Axis], shape: tuple[int, int, int], points: dict[str, Array], source: str
 ) -> list[Surface]:
     z = points["CZ"]
     if "CX" not in points and "CY" not in points:
