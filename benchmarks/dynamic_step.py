@@ -32,7 +32,7 @@ from asperity.errors import PhysicsWarning
 from asperity.kinds.cases import parse_case
 from asperity.laws import Law
 from asperity.progress import progress_bar
-from asperity.rolling.one_body import Rolling, roll_ball
+from asperity.rolling.roll import RolledBodies, roll_bodies
 from asperity.running import prepare_case
 from asperity.scenarios.laws import Workshop
 from asperity.scenes.compute import Computed, compute
@@ -102,18 +102,19 @@ def direct_law(computed: Computed) -> Law:
     return workshop.build("direct")
 
 
-def rolled(computed: Computed, law: Law, duration: float) -> tuple[float, float, Rolling]:
+def rolled(computed: Computed, law: Law, duration: float) -> tuple[float, float, RolledBodies]:
     """CPU time of a step and of the laying-out, s, and what was rolled."""
     case, timed, clock = computed.case, Timed(law), Clock()
-    run = roll_ball(
-        computed.beam,
-        computed.ball,
-        timed,
+    run = roll_bodies(
+        computed.over,
+        computed.scene.rolling,
+        [timed],
+        positions=computed.scene.positions,
         speed=case.speed,
-        start=case.start,
+        start=case.record_start,
         duration=duration,
         time_step=case.time_step,
-        sensors=case.beam.sensor_positions,
+        sensors=computed.scene.sensors,
         progress=clock,
     )
     return clock.seconds_per_step, timed.seconds, run
@@ -124,7 +125,7 @@ def report(
 ) -> None:
     """Print the table in Markdown."""
     case = computed.case
-    modes, sensors = len(computed.beam.natural_frequencies), len(case.beam.sensor_positions)
+    modes, sensors = len(computed.over.natural_frequencies), len(computed.scene.sensors)
     print(
         f"\nBall on beam, {computed.chain.shape.load:g} N, window {computed.chain.shape.body.shape[0]} x "
         f"{computed.chain.shape.body.shape[1]} cells, {modes} beam modes, {sensors} sensors, "
@@ -159,7 +160,7 @@ def main() -> None:
     laws = computed.chain.laws | {"direct": direct_law(computed)}
     steps: dict[str, list[float]] = {name: [] for name in laws}
     layouts: dict[str, list[float]] = {name: [] for name in laws}
-    runs: dict[str, Rolling] = {}
+    runs: dict[str, RolledBodies] = {}
     rolled(computed, laws["direct"], 20 * computed.case.time_step)  # compiles
     for _ in range(options.rounds):
         for name, law in laws.items():

@@ -31,7 +31,7 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
-from asperity.rolling.one_body import roll_wheel
+from asperity.rolling.roll import roll_wheel
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailPoles, rail_poles
 from asperity.structures.track import Track

@@ -33,8 +33,7 @@ from step_clock import Clock
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.one_body import roll_ball, roll_wheel
-from asperity.rolling.roll import roll_bodies
+from asperity.rolling.roll import roll_ball, roll_bodies, roll_wheel
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel

@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from asperity.kernels.modal import modal_coefficients, refine
+from asperity.kernels.stepping import refine
+from asperity.rolling.steps import modal_coefficients
 
 H = 2e-3
 

@@ -22,9 +22,8 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.one_body import roll_ball
 from asperity.rolling.outcome import contact_losses
-from asperity.rolling.roll import roll_bodies
+from asperity.rolling.roll import roll_ball, roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 

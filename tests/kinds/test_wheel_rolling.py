@@ -10,7 +10,7 @@ from asperity.laws import HertzLaw, Linear
 from asperity.radiation.passing import _Path, passed_points
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
-from asperity.rolling.one_body import roll_wheel
+from asperity.rolling.roll import roll_wheel
 from asperity.scenarios.linear_force import linear_force_psd
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store

@@ -12,8 +12,8 @@ from asperity.reduction.filter import filtered_texture
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import areal_texture
-from asperity.rolling.outcome import STEPPED_EQUILIBRIUM
-from asperity.rolling.rest import static_approach
+from asperity.rolling.rest import STEPPED_TOLERANCE, at_rest
+from asperity.structures.body import Body
 from asperity.surfaces.strip import Rows
 
 DX, N, RADIUS, MODULUS, LOAD = 5e-6, 31, 10e-3, 115e9, 2.0
@@ -49,9 +49,10 @@ class TestDirect:
         """The contact from which rolling starts, against one that is solved under the load."""
         heights = rough(60)
         law = direct(heights, rtol=0.01).prepare([20 * DX, 21 * DX])
-        approach, _ = static_approach(lambda at: law.evaluate(0, at), LOAD, STEPPED_EQUILIBRIUM)
+        one, at = [Body.rigid(1.0, LOAD)], [lambda approach: law.evaluate(0, approach)]
+        rest = at_rest(one, np.zeros(1), np.zeros((1, 1)), at, STEPPED_TOLERANCE)
         alone = HalfSpace((N, N), (DX, DX), MODULUS).solve(body() - heights[5:36], load=LOAD, rtol=1e-9)
-        assert approach == pytest.approx(alone.approach, rel=1e-4)
+        assert rest.approach[0] == pytest.approx(alone.approach, rel=1e-4)
 
     def test_between_rows_the_texture_is_interpolated(self):
         x = np.arange(80) * DX

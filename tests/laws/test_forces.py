@@ -14,7 +14,8 @@ from asperity.laws.layout import _straight_to_touch, force, on_curve
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.rest import static_approach
+from asperity.rolling.rest import at_rest
+from asperity.structures.body import Body
 
 K = 2.4e10  # N/m^1.5, a steel ball of 25 mm on steel
 LOAD = 5.0
@@ -35,6 +36,12 @@ def shifted_table(height, states=40):
     """Table of a contact whose force is Hertz's of the approach less the texture."""
     approaches = np.linspace(-2e-6, 3e-6, states)
     return ForceTable(HERTZ.force(approaches[:, None] - height), approaches, 0.0, SPACING)
+
+
+def resting(law, load):
+    """Approach, and stiffness there, at which a body under a load rests on a law."""
+    rest = at_rest([Body.rigid(1.0, load)], np.zeros(1), np.zeros((1, 1)), [law])
+    return rest.approach[0], rest.stiffness[0]
 
 
 def every_law():
@@ -128,14 +135,14 @@ def test_slow_bump_lifts_the_body_by_its_height(name):
     texture = StateTexture.unfiltered(height, SPACING)
     follows = {"shifted": Shifted, "areal": Areal}
     law = Table(shifted_table(height)) if name == "table" else follows[name](HERTZ, texture)
-    approach, _ = static_approach(lambda s: evaluate(law.prepare(2e-4), 0, s), LOAD)
+    approach, _ = resting(lambda s: evaluate(law.prepare(2e-4), 0, s), LOAD)
     assert_allclose((WORKING - approach) / bump, 1.0, rtol=0.01)
 
 
 def test_printed_follows_two_thirds_of_a_slow_bump():
     bump = 1e-4 * WORKING
     law = Printed(HERTZ, StateTexture.unfiltered(np.full(50, -bump), SPACING), datum=0.0)
-    approach, _ = static_approach(lambda s: evaluate(law.prepare(2e-4), 0, s), LOAD, 1e-13)
+    approach, _ = resting(lambda s: evaluate(law.prepare(2e-4), 0, s), LOAD)
     assert_allclose((WORKING - approach) / bump, 2.0 / 3.0, rtol=1e-3)
 
 
@@ -167,18 +174,20 @@ def test_arguments_beyond_the_data_are_counted():
 
 @given(st.floats(1e-3, 1e4))
 @settings(max_examples=40)
-def test_static_approach_carries_the_load(load):
+def test_a_body_at_rest_is_where_the_law_carries_its_load(load):
     law = Shifted(HERTZ, waves())
     prepared = law.prepare(np.array([7e-4]))
-    approach, stiffness = static_approach(lambda s: evaluate(prepared, 0, s), load)
+    approach, stiffness = resting(lambda s: evaluate(prepared, 0, s), load)
     root = brentq(lambda s: evaluate(prepared, 0, s)[0] - load, -1e-3, 1e-2, xtol=1e-18)
     assert_allclose(approach, root, rtol=1e-7)
     assert_allclose(stiffness, evaluate(prepared, 0, approach)[1])
 
 
 def test_load_that_no_approach_carries():
-    with pytest.raises(ComputationError, match=r"no approach carries the load of 5 N.*smaller load"):
-        static_approach(lambda s: (0.0, 0.0), 5.0)
+    with pytest.raises(
+        ComputationError, match=r"do not come to rest .* loads of 5 N the last .*smaller load"
+    ):
+        resting(lambda s: (0.0, 0.0), 5.0)
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,7 @@ from shelf import Shelf
 from asperity.laws import HertzLaw, Linear
 from asperity.laws.layout import force
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.one_body import roll_wheel
-from asperity.rolling.roll import first_contact, roll_bodies
+from asperity.rolling.roll import first_contact, roll_bodies, roll_wheel
 from asperity.structures.body import Body
 from asperity.structures.modal import STATIC, STATIC_DAMPING
 from asperity.structures.moving_kernel import moving_kernel

@@ -7,8 +7,7 @@ from asperity.contact import HalfSpace
 from asperity.laws import Direct
 from asperity.reference.materials import material
 from asperity.rolling import stepper as stepping
-from asperity.rolling.one_body import roll_ball, roll_wheel
-from asperity.rolling.roll import roll_bodies
+from asperity.rolling.roll import roll_ball, roll_bodies, roll_wheel
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel

@@ -13,11 +13,10 @@ from asperity.errors import (
     Outcome,
     UnconvergedWarning,
 )
-from asperity.kernels import several as kernels
+from asperity.kernels import stepping
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling import stepper
 from asperity.rolling.rest import at_rest
 from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
@@ -64,7 +63,9 @@ def test_bodies_that_are_none_are_refused():
 
 def test_a_contact_that_carries_nothing_is_told():
     """One law alone, and bodies whose contacts cannot carry them together."""
-    with pytest.raises(ComputationError, match="no approach carries the load"):
+    with pytest.raises(
+        ComputationError, match=r"do not come to rest on their contacts \(1\) at the start.*loads of 5 N"
+    ):
         roll_bodies(None, [BALL], [HertzLaw(1e-3)], positions=[0.0], **PATH)
 
     def weak(approach):
@@ -74,7 +75,7 @@ def test_a_contact_that_carries_nothing_is_told():
     pair = Body(
         one, none, none, np.ones((2, 1)), np.array([5.0]), np.zeros(2), empty, empty, np.zeros((2, 0))
     )
-    with pytest.raises(ComputationError, match="do not come to rest on their 2 contacts at the start"):
+    with pytest.raises(ComputationError, match=r"do not come to rest on their contacts \(2\) at the start"):
         at_rest([pair], np.array([0.0, 1e4]), np.zeros((2, 2)), [weak, weak])
 
 
@@ -124,13 +125,13 @@ def test_forces_that_miss_the_tolerance_are_counted(monkeypatch):
         state = dict
         warn_of_flaws = staticmethod(lambda: None)
 
-    monkeypatch.setattr(stepper, "SWEEPS", 1)
+    monkeypatch.setattr(stepping, "SWEEPS", 1)
     seen = warned(Python(), BEAM, duration=1e-4)
     assert len(seen[UnconvergedWarning]) == 1
     assert "stepped: 10 of 10 time steps (100 %) missed the tolerance" in seen[UnconvergedWarning][0]
     assert seen["run"].outcome is Outcome.STEPS_UNCONVERGED
     assert seen["run"].unconverged_steps == 10
-    monkeypatch.setattr(stepper, "SWEEPS", kernels.SWEEPS)
+    monkeypatch.undo()
     assert warned(Python(), BEAM, duration=1e-4)["run"].outcome is Outcome.CONVERGED
 
 

@@ -9,8 +9,7 @@ from shelf import Shelf
 from asperity.errors import ComputationError, InputError
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.one_body import roll_wheel
-from asperity.rolling.roll import roll_bodies
+from asperity.rolling.roll import roll_bodies, roll_wheel
 from asperity.structures.body import Body
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_between, rail_poles

@@ -9,14 +9,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflectionWarning
-from asperity.kernels.modal import modal_coefficients
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling import one_body, stability
+from asperity.rolling import roll, stability
+from asperity.rolling.assembly import alternating, system_of
+from asperity.rolling.ground import ground_of
 from asperity.rolling.path import Path
-from asperity.rolling.steps import alternating_of_modes, body_steps, resolved_step
-from asperity.rolling.support import OnRail
+from asperity.rolling.steps import alternating_of_modes, modal_coefficients, resolved_step
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel
@@ -55,7 +55,7 @@ def test_no_step_of_a_ball_grows(mass, stiffness, damping, time_step):
     law = Linear(5.0, stiffness, 0.0, texture, damping)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)
-        run = one_body.roll_ball(
+        run = roll.roll_ball(
             BEAM, ball, law, speed=speed, start=0.3, duration=(STEPS - 2) * time_step,
             time_step=time_step, sensors=[0.5],
         )  # fmt: skip
@@ -75,7 +75,7 @@ def test_no_flight_of_a_ball_grows(mass, stiffness, time_step, flight):
     law = HertzLaw(stiffness, StateTexture.unfiltered(texture, speed * time_step, 0.3))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        run = one_body.roll_ball(
+        run = roll.roll_ball(
             BEAM, Ball(0.025, STEEL, load, mass), law, speed=speed, start=0.3,
             duration=(STEPS - 2) * time_step, time_step=time_step, sensors=[0.5],
         )  # fmt: skip
@@ -123,11 +123,17 @@ def test_no_step_of_a_wheel_grows(poles, data):
     texture = bump(56.0 * 50e-6, 0.0, 1.0 / stiffness)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)
-        run = one_body.roll_wheel(
+        run = roll.roll_wheel(
             poles, wheel, Linear(65e3, stiffness, 0.0, texture, damping),
             start=0.0, duration=(STEPS - 2) * 50e-6, settling=0.0,
         )  # fmt: skip
     assert not grows(run.contact_force, 65e3, 0.1)
+
+
+def of_body(body, h):
+    """Its alternating compliance at its contact."""
+    path = Path(np.zeros((1, 2)), 1.0, h)
+    return alternating(system_of(ground_of(None, path, np.zeros(0)), [body], path))[0]
 
 
 class TestAlternatingCompliance:
@@ -139,7 +145,7 @@ class TestAlternatingCompliance:
         a = modal_coefficients(np.array([1e-3]), np.array([0.0]), h)
         found = alternating_of_modes(a)[0] / mass
         assert found == pytest.approx(-(h**2) / 12 / mass, rel=1e-6)
-        assert body_steps([Body.rigid(mass, 1.0)], h).alternating[0] == pytest.approx(found, rel=1e-6)
+        assert of_body(Body.rigid(mass, 1.0), h) == pytest.approx(found, rel=1e-6)
 
     def test_stiff_mode(self):
         # a mode far above it answers statically
@@ -157,16 +163,16 @@ class TestAlternatingCompliance:
         assert shape**2 @ alternating_of_modes(a) == pytest.approx(force * (shape @ q), rel=1e-9)
 
     def test_a_rail_and_a_wheel(self):
-        path = Path(np.zeros(2), 56.0, 50e-6)
+        path = Path(np.zeros((1, 2)), 56.0, 50e-6)
         kernel = moving_kernel(TRACK, 56.0, 50e-6)
-        alternating = min(row @ (-1.0) ** np.arange(row.size) for row in kernel.weights)
-        least, thrown = OnRail(RailBetween(kernel, {})).alternating([path])
-        assert (least, thrown) == (pytest.approx(alternating, rel=1e-12), 0.0)
+        least = min(row @ (-1.0) ** np.arange(row.size) for row in kernel.weights)
+        ground = ground_of(RailBetween(kernel, {}), path, np.zeros(0))
+        assert (ground.alternating, ground.thrown) == (pytest.approx(least, rel=1e-12), 0.0)
         wheel = Body.rigid(1e30, 65e3).with_modes([3000.0], [0.2], [20.0])
         # the mode by itself, as an oscillator
         a = modal_coefficients(np.array([2 * np.pi * 3000.0]), np.array([0.2]), 50e-6)
         mode = alternating_of_modes(a)[0] / 20.0
-        assert body_steps([wheel], 50e-6).alternating[0] == pytest.approx(mode, rel=1e-6)
+        assert of_body(wheel, 50e-6) == pytest.approx(mode, rel=1e-6)
 
 
 def test_modes_too_fast_for_the_step_answer_statically():
@@ -200,7 +206,7 @@ def test_softened_contact_has_the_frequency_of_newmark():
     heavy = Beam(1.0, 4e12, 1e8, highest_frequency=5e3)
     texture = bump(1e-3 * h, 0.3, 1e-3 / stiffness)
     with pytest.warns(CoarseSamplingWarning):
-        run = one_body.roll_ball(
+        run = roll.roll_ball(
             heavy, Ball(0.025, STEEL, 5.0, mass), Linear(5.0, stiffness, 0.0, texture), speed=1e-3, start=0.3,
             duration=(STEPS - 2) * h, time_step=h, sensors=[0.5],
         )  # fmt: skip
@@ -216,7 +222,7 @@ def test_a_motion_that_runs_away_is_told():
         pytest.warns(LargeDeflectionWarning),
         pytest.raises(ComputationError, match=r"the motion runs away: at step \d+.*under a load of 5 N"),
     ):
-        one_body.roll_ball(
+        roll.roll_ball(
             BEAM, Ball(0.025, STEEL, 5.0, 0.5), HertzLaw(1e12, texture), speed=1.0, start=0.3, duration=9e-4,
             time_step=1e-5, sensors=[0.5],
         )  # fmt: skip
@@ -233,7 +239,7 @@ def test_a_strong_damper_stays_below_what_a_rigid_contact_does():
     for damping in (1e8, 1e10):
         law = HertzLaw(9.413e10, texture, damping)
         with pytest.warns(CoarseSamplingWarning, match=r"softening the contact by 2.2 %"):
-            run = one_body.roll_wheel(
+            run = roll.roll_wheel(
                 pole_model, Wheel(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0
             )
         assert run.contact_loss_share == 0.0
@@ -247,7 +253,7 @@ def test_a_beam_that_bends_too_far_is_told():
     with pytest.warns(
         LargeDeflectionWarning, match=f"up to {static:.3g} m under the contact, 43 % of its length"
     ):
-        one_body.roll_ball(
+        roll.roll_ball(
             soft, Ball(0.025, STEEL, 20.0), HertzLaw(1e10), speed=1.0, start=15.0, duration=1e-3,
             time_step=1e-5, sensors=[0.5],
         )  # fmt: skip

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.kernels.options import ENTERED, INNER, LOOP, ONCE, REASSOCIATE, compiled
+from asperity.kernels.options import INNER, LOOP, ONCE, REASSOCIATE, compiled
 
 
 class Channels(NamedTuple):
@@ -30,68 +30,29 @@ class Channels(NamedTuple):
     scatters: NDArray  # (t,), whether a kernel is scattered
 
 
-class Channel(NamedTuple):
-    """One channel, as views."""
-
-    decay: NDArray
-    residue: NDArray
-    direct: NDArray  # as `now` of `Channels`
-    scattered: NDArray
-    first: float  # place of its source at step zero, in sleeper bays
-    stride: float
-
-
-class ChannelMotion(NamedTuple):
-    """What is written for one channel."""
-
-    rail: NDArray
-    ring: NDArray
-
-
 @compiled(**INNER)
-def place(channel, step, cells):  # type: ignore[no-untyped-def]
-    """Cell of the bay in which the contact is at a step, and the share of the cell behind it."""
-    bays = channel.first + channel.stride * step
+def place(channels, source, step, cells):  # type: ignore[no-untyped-def]
+    """Cell of the bay in which a contact is at a step, and the share of the cell behind it."""
+    bays = channels.place[source] + channels.stride * step
     at = (bays - np.floor(bays)) * cells
     cell = min(int(at), cells - 1)
     return cell, at - cell
 
 
-@compiled(**INNER)
-def direct_at(channel, step):  # type: ignore[no-untyped-def]
-    """Displacement of the rail at a step for unit force there, m/N."""
-    cell, share = place(channel, step, channel.direct.shape[0] - 1)
-    return channel.direct[cell] + share * (channel.direct[cell + 1] - channel.direct[cell])
-
-
-@compiled(**ENTERED)
-def cubic_weights(t):  # type: ignore[no-untyped-def]
-    """Lagrange weights of the nodes -1, 0, 1, 2 at a place t between 0 and 1."""
-    before, after, beyond = t + 1.0, t - 1.0, t - 2.0
-    return (
-        -t * after * beyond / 6.0,
-        before * after * beyond / 2.0,
-        -before * t * beyond / 2.0,
-        before * t * after / 6.0,
-    )
-
-
 @compiled(**INNER, **REASSOCIATE)
-def advance_poles(channel, motion, step, force):  # type: ignore[no-untyped-def]
+def advance_poles(decay, residue, state, cell, share, force):  # type: ignore[no-untyped-def]
     """Advance the rail by one step under the force at its start, N; return its displacement, m.
 
-    That is the displacement at the end without the force there.
+    That is the displacement at the end without the force there. The force acts in a cell of the bay, with a
+    share of it behind.
     """
-    cell, share = place(channel, step, channel.direct.shape[0] - 1)
-    state, decay = motion.rail, channel.decay
-    residue = channel.residue
     low, high = force * (1.0 - share), force * share
     poles = state.shape[0] // 2
     total = 0.0
     for p in range(poles):
-        a, b, c, d = state[p], state[poles + p], decay[p], decay[poles + p]
-        real = c * a - d * b + low * residue[cell, p] + high * residue[cell + 1, p]
         q = poles + p
+        a, b, c, d = state[p], state[q], decay[p], decay[q]
+        real = c * a - d * b + low * residue[cell, p] + high * residue[cell + 1, p]
         state[q] = c * b + d * a + low * residue[cell, q] + high * residue[cell + 1, q]
         state[p] = real
         total += real
@@ -99,24 +60,21 @@ def advance_poles(channel, motion, step, force):  # type: ignore[no-untyped-def]
 
 
 @compiled(**INNER, **REASSOCIATE)
-def scatter(channel, motion, step, force):  # type: ignore[no-untyped-def]
-    """Add to the ring what a force at a step, N, will do; the displacement of the next step, m.
+def scatter(kernel, ring, cell, t, now, force):  # type: ignore[no-untyped-def]
+    """Add to the ring, from the place `now` on, what a force will do, N.
 
-    The start positions of the kernel are interpolated by a periodic cubic.
+    The start positions of the kernel are interpolated by a periodic cubic: Lagrange's weights of the nodes
+    −1, 0, 1, 2 at a place t between 0 and 1.
     """
-    rows, taps = channel.scattered.shape
-    cell, t = place(channel, step, rows)
-    before, after = channel.scattered[(cell + rows - 1) % rows], channel.scattered[(cell + 1) % rows]
-    here, beyond = channel.scattered[cell % rows], channel.scattered[(cell + 2) % rows]
-    w0, w1, w2, w3 = cubic_weights(t)
-    w0, w1, w2, w3 = w0 * force, w1 * force, w2 * force, w3 * force
-    ring, now = motion.ring, step % taps
+    rows, taps = kernel.shape
+    before, after = kernel[(cell + rows - 1) % rows], kernel[(cell + 1) % rows]
+    here, beyond = kernel[cell], kernel[(cell + 2) % rows]
+    w0, w1 = -t * (t - 1.0) * (t - 2.0) / 6.0 * force, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * force
+    w2, w3 = -(t + 1.0) * t * (t - 2.0) / 2.0 * force, (t + 1.0) * t * (t - 1.0) / 6.0 * force
     for k in range(1, taps - now):
         ring[now + k] += w0 * before[k] + w1 * here[k] + w2 * after[k] + w3 * beyond[k]
     for k in range(max(taps - now, 1), taps):
         ring[now + k - taps] += w0 * before[k] + w1 * here[k] + w2 * after[k] + w3 * beyond[k]
-    ring[now] = 0.0
-    return ring[(step + 1) % taps]
 
 
 @compiled(**ONCE)
@@ -124,27 +82,24 @@ def advance_channels(channels, motion, force, step):  # type: ignore[no-untyped-
     """Advance the rail over the step that ends at `step`, under the forces (n,) at its start, N.
 
     What the rail remembers, and its displacements at the end, without the forces there, are those of
-    `asperity.kernels.several.ContactsMotion`.
+    `asperity.kernels.stepping.Motion`.
     """
     taps = motion.ring.shape[1]
     for k in range(motion.rail_ahead.shape[0]):
         motion.rail_ahead[k] = 0.0
     for p in range(channels.source.shape[0]):
         source, receiver, t = channels.source[p], channels.receiver[p], channels.table[p]
-        channel = Channel(
-            channels.decay[t],
-            channels.residue[t],
-            channels.now[t],
-            channels.scattered[t],
-            channels.place[source],
-            channels.stride,
-        )
-        kept = ChannelMotion(motion.rail[p], motion.ring[receiver])
+        now, kernel = channels.now[t], channels.scattered[t]
         if channels.scatters[t]:
-            scatter(channel, kept, step - 1, force[source])
+            cell, share = place(channels, source, step - 1, kernel.shape[0])
+            scatter(kernel, motion.ring[receiver], cell, share, (step - 1) % taps, force[source])
         else:
-            motion.rail_ahead[receiver] += advance_poles(channel, kept, step - 1, force[source])
-        motion.rail_now[p] = direct_at(channel, step)
+            cell, share = place(channels, source, step - 1, now.shape[0] - 1)
+            motion.rail_ahead[receiver] += advance_poles(
+                channels.decay[t], channels.residue[t], motion.rail[p], cell, share, force[source]
+            )
+        cell, share = place(channels, source, step, now.shape[0] - 1)
+        motion.rail_now[p] = now[cell] + share * (now[cell + 1] - now[cell])
     if taps > 1:
         for k in range(motion.rail_ahead.shape[0]):
             motion.ring[k, (step - 1) % taps] = 0.0

@@ -11,55 +11,50 @@ from numpy.typing import NDArray
 
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.pointforce import Prepared
-from asperity.kernels.several import Assembly, ContactsRecord
+from asperity.kernels.stepping import Motion, System
 from asperity.laws.base import Law, SteppedLaw
+from asperity.rolling import stability
+from asperity.rolling.ground import Ground, ground_of
 from asperity.rolling.path import Path
-from asperity.rolling.rest import Rest, Resting
-from asperity.rolling.stability import (
-    Limit,
-    contact_resonance,
-    largest_force,
-    largest_stiffness,
-    softening,
-    stiffness_in_impacts,
-    warn_if_coarse,
-)
-from asperity.rolling.stepper import ContactsStepper
-from asperity.rolling.steps import BodySteps, body_steps, resolved_step
-from asperity.rolling.support import OnModes, OnRail, Under
+from asperity.rolling.rest import Rest, start_at_rest
+from asperity.rolling.steps import alternating_of_modes, body_step, padded, resolved_step
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
 
 Array = NDArray[np.float64]
+RUNAWAY = 1e4
+"""Times the load, or the largest force that the law was made for, that no contact force reaches."""
 
 
 @dataclass(frozen=True, eq=False)
-class Stand:
-    """Bodies that stand on a structure, ready to roll."""
+class Assembly:
+    """Bodies that stand on what they roll over, ready to roll under laws of their n contacts."""
 
-    under: Under
+    over: Modal | RailBetween | None
     bodies: Sequence[Body]
-    steps: BodySteps
-    stepper: ContactsStepper
+    laws: Sequence[Law]
+    path: Path
+    prepared: Sequence[Prepared | SteppedLaw]  # the laws, on their paths
+    system: System
+    motion: Motion
     largest: float  # contact force that makes no sense any more, N
-    compliance: float  # largest static one under a contact on its path, m/N; infinite if nothing holds it
+    softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
 
     def energies(self) -> tuple[float, float, float]:
         """Now, J: of the structure, of the bodies, and of the bodies under their constant forces."""
-        motion, system, steps = self.stepper.motion, self.stepper.system, self.steps
-        structure = np.sum(motion.velocity**2 + system.stiffness * motion.displacement**2)
-        d = steps.core_stiffness.shape[1]
-        cores = np.sum(motion.core[:, d:] ** 2 + steps.core_stiffness * motion.core[:, :d] ** 2)
-        modes = np.sum(motion.flexible[1] ** 2 + steps.flexible_stiffness * motion.flexible[0] ** 2)
-        loads = sum(
-            float(body.pressing @ (basis @ core[: len(basis)]))
-            for body, basis, core in zip(self.bodies, steps.bases, motion.core, strict=True)
-        )
-        return 0.5 * float(structure), 0.5 * float(cores + modes), loads
+        motion, system, f = self.motion, self.system, self.system.shapes.shape[1]
+        modes = 0.5 * (motion.velocity**2 + system.stiffness * motion.displacement**2)
+        structure = len(modes) - f * len(self.bodies)
+        d, stored, pressed = system.core_shapes.shape[1], float(modes[structure:].sum()), 0.0
+        for body, core in zip(self.bodies, motion.core, strict=True):
+            y, rate = core[: len(body.mass)], core[d : d + len(body.mass)]
+            stored += 0.5 * float(rate @ body.mass @ rate + y @ body.stiffness @ y)
+            pressed += float(body.pressing @ y)
+        return float(modes[:structure].sum()), stored, pressed
 
 
-def stand(
+def assemble(
     over: Modal | RailBetween | None,
     bodies: Sequence[Body],
     laws: Sequence[Law],
@@ -67,28 +62,22 @@ def stand(
     positions: Array,
     sensors: Array,
     highest_frequency: float | None,
-) -> Stand:
+) -> Assembly:
     """Set bodies at `positions` ahead of a path, m, at rest on what they roll over; see `roll_bodies`."""
-    offsets = _offsets(bodies, laws, positions)
-    under: Under = OnRail(over) if isinstance(over, RailBetween) else OnModes(over)
-    paths = [Path(whole.positions + at, whole.speed, whole.time_step, whole.settled) for at in offsets]
-    under.refuse(paths)
-    steps = body_steps(bodies, whole.time_step)
-    system = _assembly(under, steps, bodies, sensors, paths)
-    prepared = [law.prepare(path.positions) for law, path in zip(laws, paths, strict=True)]
-    resting = Resting(under, bodies, steps, system, paths, prepared)
-    rest = resting.on(np.zeros(len(laws)))
-    both, thrown = (least + steps.alternating for least in under.alternating(paths))
-    warn_if_coarse(whole.time_step, _limits(under, system, bodies, paths, both, rest, highest_frequency))
-    softer, largest = _softened(laws, prepared, (both, thrown), rest, whole.time_step)
+    path = whole.ahead(_offsets(bodies, laws, positions))
+    ground = ground_of(over, path, sensors)
+    system = system_of(ground, bodies, path)
+    prepared = [law.prepare(at) for law, at in zip(laws, path.positions, strict=True)]
+    rest, motion = start_at_rest(ground, bodies, system, prepared)
+    own = alternating(system)
+    limits = _limits(ground, system, bodies, ground.alternating + own, rest, highest_frequency)
+    stability.warn_if_coarse(path.time_step, limits)
+    both = ground.alternating + own, ground.thrown + own
+    softer, largest = _softened(laws, prepared, both, rest, path.time_step)
     if softer.any():
-        rest = resting.on(softer)
-    system = system._replace(softening=softer)
-    modal = None if isinstance(over, RailBetween) else over
-    stepper = ContactsStepper(
-        system, resting.start(rest), _record(system, paths), modal, paths, laws, prepared
-    )
-    return Stand(under, bodies, steps, stepper, largest, under.most_compliance(paths))
+        system = system._replace(softening=softer)
+        rest, motion = start_at_rest(ground, bodies, system, prepared)
+    return Assembly(over, bodies, laws, path, prepared, system, motion, largest, ground.softest)
 
 
 def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
@@ -104,63 +93,83 @@ def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> A
     return offsets
 
 
-def _assembly(
-    under: Under, steps: BodySteps, bodies: Sequence[Body], sensors: Array, paths: Sequence[Path]
-) -> Assembly:
+def system_of(ground: Ground, bodies: Sequence[Body], path: Path) -> System:
     """Constants for the kernels, with contacts as they are."""
-    natural, ratios = under.modes
+    b, h, channels = len(bodies), path.time_step, ground.channels
     loads = np.concatenate([body.static_loads for body in bodies])
-    mean = float(np.clip(loads, 0.0, None).mean())
+    n, mean = len(loads), float(np.clip(loads, 0.0, None).mean())
     if not mean > 0.0:
         raise InputError("loads of the bodies (N)", "none that presses", "forces that press them down")
-    n, channels = len(loads), under.channels(paths)
-    return Assembly(
-        coefficients=resolved_step(natural, ratios, paths[0].time_step),
+    of = np.repeat(np.arange(b), [len(body.places) for body in bodies])
+    frequencies = padded([2.0 * np.pi * body.natural_frequencies for body in bodies])
+    natural = np.concatenate([ground.natural, frequencies.ravel()])
+    damping_ratios = padded([body.damping_ratios for body in bodies])
+    ratios = np.concatenate([ground.ratios, damping_ratios.ravel()])
+    coefficients = resolved_step(natural, ratios, h)
+    shapes = padded([row for body in bodies for row in body.shapes])
+    rows = padded([row for body in bodies for row in body.contacts])
+    step = padded([body_step(body, h) for body in bodies])  # (b, 2, d, 4, d)
+    constant = np.einsum("bxijk,bk->bxi", step[..., 2:, :], padded([body.pressing for body in bodies]))
+    before, now = np.einsum("nxijk,nk->jnxi", step[of][..., 2:, :], rows).reshape(2, n, -1)
+    answers = coefficients[3, len(ground.natural) :].reshape(b, -1)[of]
+    return System(
+        coefficients=coefficients,
         stiffness=natural**2,
         damping=2.0 * ratios * natural,
-        sensors=under.at_sensors(sensors),
-        core_step=steps.core_step,
-        core_before=steps.core_before,
-        core_now=steps.core_now,
-        core_pressed=steps.core_pressed,
-        core_damping=steps.core_damping,
-        flexible=steps.flexible,
-        flexible_damping=steps.flexible_damping,
-        body=steps.body,
-        core_shapes=steps.core_shapes,
-        answers=steps.answers,
-        flexible_shapes=steps.flexible_shapes,
-        own=steps.own,
+        sensors=ground.sensors,
+        core_step=step[..., :2, :].reshape(b, now.shape[1], now.shape[1]),
+        core_pressed=-constant.reshape(b, -1),
+        core_damping=padded([body.damping for body in bodies]),
+        body=of,
+        core_shapes=rows,
+        core_before=before,
+        core_now=now,
+        shapes=shapes,
+        own=np.sum(rows * now[:, : rows.shape[1]], axis=1) + np.sum(shapes**2 * answers, axis=1),
         loads=np.maximum(loads, mean) if n > 1 else loads,
+        ones=np.ones(len(natural)),
         softening=np.zeros(n),
-        time_step=float(paths[0].time_step),
-        speed=float(paths[0].speed),
-        coupled=bool(len(channels.source) > n or (n > 1 and natural.size > 0) or n > len(bodies)),
+        time_step=float(h),
+        speed=float(path.speed),
+        coupled=bool(len(channels.source) > n or (n > 1 and ground.natural.size > 0) or n > b),
         channels=channels,
     )
 
 
+def alternating(system: System) -> Array:
+    """Least alternating compliance of the body at each contact (n,), m/N: of all its contacts at once."""
+    found, (d, f) = np.zeros(len(system.body)), (system.core_shapes.shape[1], system.shapes.shape[1])
+    modes = alternating_of_modes(system.coefficients)[len(system.stiffness) - f * len(system.core_step) :]
+    for b, step in enumerate(system.core_step):
+        at = np.flatnonzero(system.body == b)
+        core = np.linalg.solve(np.eye(2 * d) + step, (system.core_now - system.core_before)[at].T)[:d]
+        shapes = system.shapes[at]
+        matrix = system.core_shapes[at] @ core + (shapes * modes[b * f : (b + 1) * f]) @ shapes.T
+        found[at] = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min())
+    return found
+
+
 def _limits(
-    under: Under,
-    system: Assembly,
+    ground: Ground,
+    system: System,
     bodies: Sequence[Body],
-    paths: Sequence[Path],
-    alternating: Array,
+    least: Array,
     rest: Rest,
     highest_frequency: float | None,
-) -> Iterator[Limit]:
-    """What the time step must resolve."""
-    shapes = under.shapes(np.array([path.positions[0] for path in paths]))[0]
-    direct = system.own + shapes**2 @ system.coefficients[3]
-    resonances = [
-        contact_resonance(stiffness, own, least, system.time_step)
-        for stiffness, own, least in zip(rest.stiffness, direct, alternating, strict=True)
-    ]
-    yield from under.limits(max(resonances), float(rest.stiffness.max()), paths[0])
+) -> Iterator[stability.Limit]:
+    """What the time step must resolve, with the least alternating compliances at the contacts, m/N."""
+    if ground.bay:
+        on_bay = np.sqrt(float(rest.stiffness.max()) / ground.bay) / (2.0 * np.pi)
+        yield "the contact resonance on a bay of rail", on_bay, 5.0
+    else:
+        direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
+        resonances = stability.contact_resonance(rest.stiffness, direct, least, system.time_step)
+        yield "the contact resonance", float(resonances.max()), 10.0
+    yield from ground.limits
     natural = np.concatenate([body.natural_frequencies for body in bodies])
     asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
     yield "the highest mode of a body", float(asked.max(initial=0.0)), 4.0
-    yield "the highest frequency asked for", highest_frequency or 0.0, under.steps_asked
+    yield "the highest frequency asked for", highest_frequency or 0.0, 5.0 if ground.bay else 10.0
 
 
 def _softened(
@@ -174,28 +183,16 @@ def _softened(
 
     The contact that is softened most is warned of.
     """
-    softer, largest, told = np.zeros(len(laws)), 0.0, []
+    softer, largest, messages = np.zeros(len(laws)), 0.0, []
     for k, (law, laid) in enumerate(zip(laws, prepared, strict=True)):
         stiffness = float(rest.stiffness[k])
-        stiffest, strongest = largest_stiffness(laid, (float(rest.approach[k]), stiffness))
-        stiff = stiffest, stiffness_in_impacts(laid, stiffest, stiffness)
+        stiffest, in_impacts, strongest = stability.largest_values(laid, stiffness)
         least = float(alternating[0][k]), float(alternating[1][k])
-        softer[k], message = softening(least, stiff, law.damping, stiffness, time_step)
-        told += [(softer[k] * stiffness, message)] if message else []
-        largest = max(largest, largest_force(float(rest.force[k]), strongest))
-    if told:
-        warnings.warn(max(told)[1], CoarseSamplingWarning, stacklevel=4)
+        softer[k], message = stability.softening(
+            least, (stiffest, in_impacts), law.damping, stiffness, time_step
+        )
+        messages += [(softer[k] * stiffness, message)] if message else []
+        largest = max(largest, RUNAWAY * max(float(rest.force[k]), strongest))
+    if messages:
+        warnings.warn(max(messages)[1], CoarseSamplingWarning, stacklevel=4)
     return softer, largest
-
-
-def _record(system: Assembly, paths: Sequence[Path]) -> ContactsRecord:
-    n, samples = len(paths), len(paths[0].positions)
-    b, d = system.core_pressed.shape[0], system.core_shapes.shape[1]
-    return ContactsRecord(
-        force=np.zeros((n, samples)),
-        approach=np.zeros((n, samples)),
-        over=np.zeros((n, samples)),
-        rolling=np.zeros((n, samples)),
-        core=np.zeros((b, d, samples)),
-        acceleration=np.zeros((len(system.sensors), samples)),
-    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,8 @@ from asperity.errors import ComputationError, ExtrapolationWarning, Grade, Uncon
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.base import SteppedLaw
 from asperity.structures.body import Body
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,19 @@ def contact_losses(flying: NDArray[np.bool_], time_step: float) -> list[ContactL
     ]
 
 
+def flying(prepared: Prepared | SteppedLaw, force: Array, approach: Array) -> NDArray[np.bool_]:
+    """Whether the bodies are apart at each step, by force, N, and approach, m, (n,) each.
+
+    Never for a contact that can pull.
+    """
+    if isinstance(prepared, Prepared):
+        if prepared.bilateral:
+            return np.zeros(force.shape, dtype=bool)
+        if prepared.damped_in_flight:
+            force = evaluate_all(prepared, approach, 0)[0]
+    return np.asarray(force <= 0.0)
+
+
 LEAST = 100
 """Time steps of which anything is said."""
 ERRORS = 5.0
@@ -41,13 +56,7 @@ FAR = 10.0
 """How far, in what bodies and texture allow, a mass that misses its load has to be driven away."""
 
 
-def displaced_in_contact(approach: NDArray[np.float64], apart: NDArray[np.bool_]) -> float:
-    """How far texture and contact displace bodies, m, by the approach while they touch."""
-    touching = approach[~apart]
-    return float(np.ptp(touching)) if touching.size else 0.0
-
-
-def free_motion(body: Body) -> tuple[NDArray[np.float64], float, float] | None:
+def free_motion(body: Body) -> tuple[Array, float, float] | None:
     """How a body that nothing but its contacts holds is driven by its load; None if springs hold it.
 
     Displacements of its contacts (c,), the largest one; its mass in this motion, kg, and its load, N.
@@ -65,13 +74,7 @@ def free_motion(body: Body) -> tuple[NDArray[np.float64], float, float] | None:
 
 
 def refuse_missed_load(
-    name: str,
-    force: NDArray[np.float64],
-    load: float,
-    mass: float,
-    reach: float,
-    time_step: float,
-    settled: int = 0,
+    name: str, force: Array, load: float, mass: float, reach: float, time_step: float, settled: int = 0
 ) -> None:
     """Refuse a run whose mean contact force misses the load by more than its standard error.
 
@@ -104,63 +107,37 @@ def refuse_missed_load(
         )
 
 
-STEPPED_EQUILIBRIUM = 1e-5  # of the load; the contact of a stepped law is itself solved to a tolerance
+def warn_of_steps(
+    names: Sequence[str],
+    prepared: Sequence[Prepared | SteppedLaw],
+    counts: NDArray[np.int64],
+    approach: Array,
+) -> None:
+    """Warn of forces that missed the tolerance, and of laws that were continued beyond their data.
 
-
-def evaluation(prepared: Prepared | SteppedLaw, step: int) -> Callable[[float], tuple[float, float]]:
-    """Force, N, and stiffness, N/m, of a law at a step, as a function of the approach, m."""
-    if not isinstance(prepared, Prepared):
-        return lambda approach: prepared.evaluate(step, float(approach))
-
-    def evaluate(approach: float) -> tuple[float, float]:
-        force, stiffness, _ = evaluate_all(prepared, np.array([approach], dtype=np.float64), step)
-        return float(force[0]), float(stiffness[0])
-
-    return evaluate
-
-
-def flying(
-    prepared: Prepared | SteppedLaw, force: NDArray[np.float64], approach: NDArray[np.float64]
-) -> NDArray[np.bool_]:
-    """Whether the bodies are apart at each step, by force, N, and approach, m, (n,) each.
-
-    Never for a contact that can pull.
+    Laws by their names; counts are of steps done, not converged, and evaluations; the approach (n, steps), m,
+    is that which the laws saw. Contacts under laws of one name count together.
     """
-    if not isinstance(prepared, Prepared):
-        return np.asarray(force <= 0.0)
-    if prepared.bilateral:
-        return np.zeros(force.shape, dtype=bool)
-    if prepared.damped_in_flight:
-        return np.asarray(evaluate_all(prepared, approach, 0)[0] <= 0.0)
-    return np.asarray(force <= 0.0)
-
-
-def warn_if_unconverged(name: str, counts: NDArray[np.int64], *, stacklevel: int) -> None:
-    """Warn of forces that missed the tolerance; counts are of steps done, not converged, and evaluations."""
-    if not counts[1]:
-        return
-    steps = max(int(counts[0]), 1)
-    share = int(counts[1]) / steps
-    warnings.warn(
-        UnconvergedWarning(
-            f"{name}: {counts[1]} of {steps} time steps ({percent(share)}) missed the tolerance on "
-            "the contact force: their force is uncertain; take a smaller numerics.time_step",
-            Grade.of_share(share),
-        ),
-        stacklevel=stacklevel,
-    )
-
-
-def warn_if_beyond(name: str, beyond: int, steps: int, *, stacklevel: int) -> None:
-    """Warn of time steps, of so many, at which a law was continued beyond its data."""
-    if not beyond:
-        return
-    warnings.warn(
-        ExtrapolationWarning(
-            f"{name}: the contact was closer than its largest computed state in {beyond} of {steps} time "
-            f"steps ({percent(beyond / steps)}): the force there is a continuation; let "
-            "contact.approaches reach higher",
-            Grade.of_share(beyond / steps),
-        ),
-        stacklevel=stacklevel,
-    )
+    if counts[1]:
+        share = float(counts[1]) / max(int(counts[0]), 1)
+        missed = (
+            f"{', '.join(dict.fromkeys(names))}: {counts[1]} of {max(int(counts[0]), 1)} time steps "
+            f"({percent(share)}) missed the tolerance on the contact force: their force is uncertain; take a "
+            "smaller numerics.time_step"
+        )
+        warnings.warn(UnconvergedWarning(missed, Grade.of_share(share)), stacklevel=5)
+    beyond = dict.fromkeys(names, 0)
+    for name, law, seen in zip(names, prepared, approach, strict=True):
+        if isinstance(law, Prepared):
+            beyond[name] += int(evaluate_all(law, seen, 0)[2])
+        else:
+            law.warn_of_flaws()
+    for name, count in beyond.items():
+        steps = names.count(name) * approach.shape[1]
+        if count:
+            message = (
+                f"{name}: the contact was closer than its largest computed state in {count} of {steps} time "
+                f"steps ({percent(count / steps)}): the force there is a continuation; let "
+                "contact.approaches reach higher"
+            )
+            warnings.warn(ExtrapolationWarning(message, Grade.of_share(count / steps)), stacklevel=5)

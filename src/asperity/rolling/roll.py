@@ -1,43 +1,31 @@
-"""The energy balance of bodies on several contacts: where the work of the loads went."""
+"""Bodies roll over a structure on any number of contacts, and what is kept of it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import Outcome
-from asperity.kernels.pointforce import Prepared, evaluate_all
-from asperity.kernels.several import (
-    BODY_DAMPING,
-    CONTACT_DAMPING,
-    CONTACT_WORK,
-    OVER_DAMPING,
-    SLOPE_WORK,
-    THROUGHPUT,
-    ContactsMotion,
-)
+from asperity.kernels import stepping
 from asperity.laws.base import Law
 from asperity.progress import Progress
-from asperity.rolling.assembly import Stand, stand
-from asperity.rolling.outcome import (
-    ContactLoss,
-    contact_losses,
-    displaced_in_contact,
-    flying,
-    free_motion,
-    refuse_missed_load,
-    warn_if_beyond,
-    warn_if_unconverged,
-)
+from asperity.rolling import outcome
+from asperity.rolling.assembly import Assembly, assemble
+from asperity.rolling.ground import warn_if_bent
 from asperity.rolling.path import Path
-from asperity.rolling.stepper import ContactsStepper, Remembered, advance_to_end, restore
+from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
-from asperity.structures.body import Body
+from asperity.structures.body import Ball, Body
 from asperity.structures.modal import Modal
-from asperity.structures.rail_poles import RailBetween
+from asperity.structures.moving_kernel import MovingKernel
+from asperity.structures.rail_poles import RailBetween, RailPoles
+from asperity.structures.wheel import Wheel
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -80,27 +68,6 @@ class Ledger:
         }
 
 
-def warn_after_contacts(stepper: ContactsStepper, approach: NDArray[np.float64]) -> None:
-    """Warn of forces that missed the tolerance, and of laws that were continued beyond their data.
-
-    The approach (n, steps), m, is that which the laws saw. Contacts under laws of one name count together.
-    """
-    counts = stepper.motion.counts
-    names = [law.name for law in stepper.laws]
-    warn_if_unconverged(", ".join(dict.fromkeys(names)), counts, stacklevel=5)
-    beyond = dict.fromkeys(names, 0)
-    for name, law, seen in zip(names, stepper.prepared, approach, strict=True):
-        if isinstance(law, Prepared):
-            beyond[name] += int(evaluate_all(law, seen, 0)[2])
-        else:
-            law.warn_of_flaws()
-    for name, count in beyond.items():
-        warn_if_beyond(name, count, names.count(name) * approach.shape[1], stacklevel=5)
-
-
-Array = NDArray[np.float64]
-
-
 @dataclass(frozen=True, eq=False)
 class RolledBodies:
     """Bodies have rolled over a structure on c contacts, numbered through in the order of the bodies."""
@@ -117,7 +84,7 @@ class RolledBodies:
     degrees_of_freedom: tuple[Array, ...]  # of each body (d, n), m or rad, positive upwards
     acceleration: Array  # (sensors, n), of what is rolled over, m/s², positive downwards
     in_contact: NDArray[np.bool_]  # (c, n), whether the surfaces touch
-    contact_loss: tuple[list[ContactLoss], ...]  # flights at each contact
+    contact_loss: tuple[list[outcome.ContactLoss], ...]  # flights at each contact
     energy: Ledger  # where the work of the loads went, in run-in and run
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
@@ -128,18 +95,20 @@ class RolledBodies:
 class FirstContact:
     """What the first contact of bodies that have rolled recorded, and beside it what all of them did."""
 
-    time: Array  # (n,), s, uniform from zero, after the run-in
+    every: RolledBodies
     position: Array  # (n,), of the contact, m
     contact_force: Array  # (n,), N, compression positive
     relative_displacement: Array  # (n,), approach of the mean surfaces, m, positive closing
-    in_contact: NDArray[np.bool_]  # (n,), whether the bodies touch
-    contact_loss: list[ContactLoss]  # flights
-    evaluations: int  # of the law, in run-in and run
-    unconverged_steps: int  # time steps whose contact force missed the tolerance, of run-in and run
-    outcome: Outcome  # whether all steps converged
     over_displacement: Array  # (n,), of what is rolled over, at the contact, m, positive downwards
     rolling_displacement: Array  # (n,), of what rolls, at the contact, m, positive downwards
-    every: RolledBodies
+    in_contact: NDArray[np.bool_]  # (n,), whether the bodies touch
+    contact_loss: list[outcome.ContactLoss]  # flights
+    time: Array  # this and the next ones as of all contacts
+    acceleration: Array
+    energy: Ledger
+    evaluations: int
+    unconverged_steps: int
+    outcome: Outcome
 
     @property
     def contact_loss_share(self) -> float:
@@ -151,33 +120,13 @@ class FirstContact:
         """Duration of the longest flight, s."""
         return max((event.duration for event in self.contact_loss), default=0.0)
 
-    @property
-    def acceleration(self) -> Array:
-        """Of what is rolled over (sensors, n), m/s², positive downwards."""
-        return self.every.acceleration
-
-    @property
-    def energy(self) -> Ledger:
-        """Where the work of the loads went, in run-in and run."""
-        return self.every.energy
-
 
 def first_contact(every: RolledBodies) -> FirstContact:
     """Take the first contact of bodies that have rolled."""
-    return FirstContact(
-        time=every.time,
-        position=every.positions[0],
-        contact_force=every.contact_force[0],
-        relative_displacement=every.relative_displacement[0],
-        in_contact=every.in_contact[0],
-        contact_loss=every.contact_loss[0],
-        evaluations=every.evaluations,
-        unconverged_steps=every.unconverged_steps,
-        outcome=every.outcome,
-        over_displacement=every.over_displacement[0],
-        rolling_displacement=every.rolling_displacement[0],
-        every=every,
-    )
+    names = [field.name for field in fields(FirstContact)[2:]]
+    own = {name: getattr(every, name) for name in names}
+    own |= {name: own[name][0] for name in names[: names.index("time")]}
+    return FirstContact(every, every.positions[0], **own)
 
 
 def roll_bodies(
@@ -246,82 +195,103 @@ def roll_bodies(
         If nothing is at rest at the start, or the motion runs away.
     """
     whole = Path.laid(start, speed, time_step, duration, settling)
-    at = np.atleast_1d(np.asarray(positions, dtype=float))
-    standing = stand(
-        over, bodies, laws, whole, at, np.atleast_1d(np.asarray(sensors, dtype=float)), highest_frequency
-    )
-    stepper, remembered = standing.stepper, Remembered(standing.stepper.prepared)
-    energies = standing.energies()
-    restore(checkpoint, stepper, remembered)
-    largest = standing.largest
+    ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
+    assembly = assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
+    stepper = Stepper(assembly)
+    energies = assembly.energies()
     try:
-        advance_to_end(stepper, remembered, lambda: stepper.advance(largest), largest, progress, checkpoint)
+        stepper.run(progress, checkpoint)
     finally:  # why a motion may have run away
-        standing.under.judge(stepper.record.over)
-    return _rolled(standing, whole, energies)
+        warn_if_bent(over, stepper.record.over)
+    return _rolled(assembly, stepper.record, energies)
 
 
-def _rolled(standing: Stand, whole: Path, energies: tuple[float, float, float]) -> RolledBodies:
-    """What is kept of a run that is done."""
-    stepper, kept = standing.stepper, slice(whole.settled, None)
-    record, counts = stepper.record, stepper.motion.counts
-    seen = record.approach - stepper.system.softening[:, None] * record.force
-    apart = np.array(
-        [
-            flying(law, force, approach)
-            for law, force, approach in zip(stepper.prepared, record.force, seen, strict=True)
-        ]
-    )
-    warn_after_contacts(stepper, seen)
-    _refuse_missed_loads(standing, apart, whole)
+def _rolled(
+    assembly: Assembly, record: stepping.Histories, energies: tuple[float, float, float]
+) -> RolledBodies:
+    """What is kept of a run that started with these energies."""
+    path, system, counts = assembly.path, assembly.system, assembly.motion.counts
+    seen, kept = record.approach - system.softening[:, None] * record.force, slice(path.settled, None)
+    apart = np.array(list(map(outcome.flying, assembly.prepared, record.force, seen)))
+    outcome.warn_of_steps([law.name for law in assembly.laws], assembly.prepared, counts, seen)
+    _refuse_missed_loads(assembly, record, apart)
     apart = apart[:, kept]
-    dofs = zip(standing.steps.bases, record.core, strict=True)
     return RolledBodies(
-        time=whole.time,
-        positions=np.array([path.positions[kept] for path in stepper.paths]),
-        body=standing.steps.body,
+        time=path.time,
+        positions=path.positions[:, kept],
+        body=system.body,
         contact_force=record.force[:, kept],
         history=record.force,
-        history_start=np.array([path.positions[0] for path in stepper.paths]),
+        history_start=path.starts,
         relative_displacement=record.approach[:, kept],
         over_displacement=record.over[:, kept],
         rolling_displacement=record.rolling[:, kept],
-        degrees_of_freedom=tuple(basis @ core[: len(basis), kept] for basis, core in dofs),
+        degrees_of_freedom=tuple(
+            core[: len(body.mass), kept] for body, core in zip(assembly.bodies, record.core, strict=True)
+        ),
         acceleration=record.acceleration[:, kept],
         in_contact=~apart,
-        contact_loss=tuple(contact_losses(each, whole.time_step) for each in apart),
-        energy=_ledger(stepper.motion, standing, energies),
+        contact_loss=tuple(outcome.contact_losses(each, path.time_step) for each in apart),
+        energy=_ledger(assembly, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),
         outcome=Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
     )
 
 
-def _refuse_missed_loads(standing: Stand, apart: NDArray[np.bool_], whole: Path) -> None:
+def _refuse_missed_loads(assembly: Assembly, record: stepping.Histories, apart: NDArray[np.bool_]) -> None:
     """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
-    record, names = standing.stepper.record, [law.name for law in standing.stepper.laws]
-    touched = [displaced_in_contact(*each) for each in zip(record.approach, apart, strict=True)]
-    sunk = standing.compliance * sum(float(np.abs(body.static_loads).sum()) for body in standing.bodies)
-    for k, body in enumerate(standing.bodies):
-        own = standing.steps.body == k
-        if (free := free_motion(body)) is not None:
+    path, of, names = assembly.path, assembly.system.body, [law.name for law in assembly.laws]
+    # how far texture and contact displace bodies while they touch
+    touched = [
+        np.ptp(at[~off]) if not off.all() else 0.0 for at, off in zip(record.approach, apart, strict=True)
+    ]
+    sunk = assembly.softest * sum(float(np.abs(body.static_loads).sum()) for body in assembly.bodies)
+    for k, body in enumerate(assembly.bodies):
+        own = of == k
+        if (free := outcome.free_motion(body)) is not None:
             shape, mass, load = free
-            name, reach = names[int(np.argmax(own))], sunk + max(np.compress(own, touched))
+            name, reach = names[int(np.argmax(own))], sunk + float(max(np.compress(own, touched)))
             force = shape @ record.force[own]
-            refuse_missed_load(name, force, load, mass, reach, whole.time_step, whole.settled)
+            outcome.refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
 
 
-def _ledger(motion: ContactsMotion, standing: Stand, before: tuple[float, float, float]) -> Ledger:
+def _ledger(assembly: Assembly, before: tuple[float, float, float]) -> Ledger:
     """Balance of a run that started with these energies of structure, of bodies and of their loads, J."""
-    structure, bodies, loads = (now - then for now, then in zip(standing.energies(), before, strict=True))
+    structure, bodies, loads = (now - then for now, then in zip(assembly.energies(), before, strict=True))
+    ledger = assembly.motion.ledger.tolist()
     return Ledger(
         loads=-loads,
         bodies=bodies,
-        body_damping=float(motion.ledger[BODY_DAMPING]),
+        body_damping=ledger[stepping.BODY_DAMPING],
         structure=structure,
-        structure_damping=float(motion.ledger[OVER_DAMPING]),
-        contact=float(motion.ledger[CONTACT_WORK]),
-        slope=float(motion.ledger[SLOPE_WORK]),
-        contact_damping=float(motion.ledger[CONTACT_DAMPING]),
-        throughput=float(motion.ledger[THROUGHPUT]),
+        structure_damping=ledger[stepping.OVER_DAMPING],
+        contact=ledger[stepping.CONTACT_WORK],
+        slope=ledger[stepping.SLOPE_WORK],
+        contact_damping=ledger[stepping.CONTACT_DAMPING],
+        throughput=ledger[stepping.THROUGHPUT],
     )
+
+
+def roll_ball(beam: Modal, ball: Ball, law: Law, *, sensors: ArrayLike, **path: Any) -> FirstContact:
+    """Roll a ball over a beam at constant speed, and keep what follows the run-in.
+
+    Sensors (k,) on the beam, m; all else as of `roll_bodies`, of which this is one rigid body.
+    """
+    body = Body.rigid(ball.mass, ball.static_load)
+    return first_contact(roll_bodies(beam, [body], [law], positions=[0.0], sensors=sensors, **path))
+
+
+def roll_wheel(rail: RailPoles | MovingKernel, wheel: Wheel, law: Law, **path: Any) -> FirstContact:
+    """Roll a wheel along a track at constant speed, and keep what follows the run-in.
+
+    The track is given for one speed and time step, as poles, or scattered; the contact is at `start` at time
+    zero, m from a sleeper. All else as of `roll_bodies`, of which this is one body.
+    """
+    between = RailBetween(rail, {})
+    own: dict[str, Any] = {
+        "positions": [0.0],
+        "speed": between.kernel.speed,
+        "time_step": between.kernel.time_step,
+    }
+    return first_contact(roll_bodies(between, [wheel.body], [law], **own, **path))

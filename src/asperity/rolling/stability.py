@@ -25,51 +25,42 @@ import warnings
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from asperity.errors import CoarseSamplingWarning
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.base import SteppedLaw
 
+Array = NDArray[np.float64]
 MARGIN = 0.5
 """Share of the bound up to which a step is taken as it is."""
 STABLE = 1.1
 """Alternating compliances with which a step is stable on a rigid contact."""
 ELASTIC = 4.0
 """Alternating compliances with which an impact on a rigid contact returns its energy."""
-RESOLVED = 0.9 * np.pi
-"""Angle by which a mode may turn in a step to be followed."""
 NEGLIGIBLE = 0.01
 """Share of the contact's compliance that may be added without a word."""
-RUNAWAY = 1e4
-"""Times the load, or the largest force that the law was made for, that no contact force reaches."""
 Limit = tuple[str, float, float]
 """What must be resolved: its name, its frequency, Hz, and the time steps in a period that it takes."""
 RISE = 4.0
 """How much stiffer than at rest a contact may become: Hertz's does under 64 times the load."""
 
 
-def largest_stiffness(prepared: Prepared | SteppedLaw, at_rest: tuple[float, float]) -> tuple[float, float]:
-    """Largest stiffness, N/m, and force, N, of a law within what it was made for; zero for a force not known.
+def largest_values(law: Prepared | SteppedLaw, at_rest: float) -> tuple[float, float, float]:
+    """Largest stiffness, N/m, stiffness in impacts, N/m, and force, N, of a law within what it was made for.
 
-    `at_rest` holds approach, m, and stiffness, N/m, under the load.
+    `at_rest` is the stiffness under the load, N/m. The stiffness in impacts is zero of a contact that never
+    opens, the force where it is not known.
     """
-    if not isinstance(prepared, Prepared):
-        return RISE * at_rest[1], 0.0
-    if not np.isfinite(prepared.upper):
-        return at_rest[1], 0.0
-    height = prepared.values.max(axis=1) if not len(prepared.slopes) else 0.0
-    force, stiffness, _ = evaluate_all(prepared, prepared.planes + height + prepared.upper, 0)
-    return max(at_rest[1], float(stiffness.max())), float(force.max())
-
-
-def stiffness_in_impacts(prepared: Prepared | SteppedLaw, largest: float, at_rest: float) -> float:
-    """Stiffness that a contact may have in impacts, N/m; zero if it never opens.
-
-    `largest` is that within what the law was made for, `at_rest` that under the load, N/m.
-    """
-    if isinstance(prepared, Prepared) and prepared.bilateral:
-        return 0.0
-    return max(largest, RISE * at_rest)
+    stiffness, force = at_rest, 0.0
+    if not isinstance(law, Prepared):
+        stiffness = RISE * at_rest
+    elif np.isfinite(law.upper):
+        height = law.values.max(axis=1) if not len(law.slopes) else 0.0
+        forces, slopes, _ = evaluate_all(law, law.planes + height + law.upper, 0)
+        stiffness, force = max(at_rest, float(slopes.max())), float(forces.max())
+    opens = not (isinstance(law, Prepared) and law.bilateral)
+    return stiffness, max(stiffness, RISE * at_rest) if opens else 0.0, force
 
 
 def softening(
@@ -101,19 +92,14 @@ def softening(
     )
 
 
-def contact_resonance(stiffness: float, direct: float, alternating: float, time_step: float) -> float:
-    """Natural frequency, Hz, of bodies on the contact, N/m, from their two compliances in a time step, m/N.
+def contact_resonance(stiffness: Array, direct: Array, alternating: Array, time_step: float) -> Array:
+    """Natural frequencies, Hz, of bodies on contacts, N/m, from their two compliances in a time step, m/N.
 
     A mass m has α = h²/6m and β = −h²/12m, a spring of compliance c has α = β = c.
     """
-    inverse_mass = max(4.0 * (direct - alternating), 0.0) / time_step**2
-    compliance = max(direct + 2.0 * alternating, 0.0) / 3.0
-    return float(np.sqrt(inverse_mass * stiffness / (1.0 + stiffness * compliance))) / (2.0 * np.pi)
-
-
-def largest_force(load: float, force: float) -> float:
-    """Contact force, N, that makes no sense any more, by the load and the largest force of the law, N."""
-    return RUNAWAY * max(load, force)
+    inverse_mass = np.maximum(4.0 * (direct - alternating), 0.0) / time_step**2
+    compliance = np.maximum(direct + 2.0 * alternating, 0.0) / 3.0
+    return np.asarray(np.sqrt(inverse_mass * stiffness / (1.0 + stiffness * compliance)) / (2.0 * np.pi))
 
 
 def warn_if_coarse(time_step: float, limits: Iterable[Limit]) -> None:

@@ -1,0 +1,198 @@
+"""What bodies roll over, as their contacts need it: the modes of a structure, a rigid plane, or a rail."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.errors import InputError, LargeDeflectionWarning
+from asperity.kernels.rail import Channels
+from asperity.rolling.path import Path
+from asperity.rolling.stability import Limit
+from asperity.rolling.steps import alternating_of_modes, resolved_step
+from asperity.structures.beam import Beam, SupportedBeam
+from asperity.structures.modal import STATIC, Modal
+from asperity.structures.moving_kernel import MovingKernel
+from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_bay
+
+Array = NDArray[np.float64]
+PLACES = 256
+"""Positions at which mode shapes are looked at."""
+LARGEST_DEFLECTION = 0.02
+"""Share of the length up to which a beam may be displaced: slopes are then below about 0.06."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What is rolled over by n contacts on their paths."""
+
+    natural: Array  # angular frequencies of its modes (s,), rad/s; none of a plane or a rail
+    ratios: Array  # (s,), damping ratios
+    shapes: Array  # (n, s), under the contacts at the start, kg^(−1/2)
+    slopes: Array  # (n, s), likewise, per metre
+    sensors: Array  # (sensors, s)
+    channels: Channels  # of a rail, else none
+    yields: Array  # (n, n), mean static compliance of a rail, m/N; zero of modes
+    softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
+    alternating: float = 0.0  # least alternating compliance of all contacts at once, m/N
+    thrown: float = 0.0  # that of what throws bodies apart: an endless rail carries impacts away
+    limits: tuple[Limit, ...] = ()  # what a time step must resolve
+    bay: float = 0.0  # mass of a bay of rail, kg
+    memory: int = 0  # time steps that a rail remembers
+
+
+def ground_of(over: Modal | RailBetween | None, path: Path, sensors: Array) -> Ground:
+    """Look at what is rolled over along a path, and at sensors (k,), m; refuse where it does not fit."""
+    if isinstance(over, RailBetween):
+        return _rail(over, path, sensors)
+    n, channels = len(path.positions), no_channels(len(path.positions))
+    if over is not None:
+        return _modes(over, path, sensors, channels)
+    if sensors.size:
+        raise InputError("sensors", f"{sensors.size} on a rigid plane", "none: it does not move")
+    none, shapes = np.zeros(0), np.zeros((n, 0))
+    return Ground(none, none, shapes, shapes, np.zeros((0, 0)), channels, np.zeros((n, n)), 0.0)
+
+
+def _modes(over: Modal, path: Path, sensors: Array, channels: Channels) -> Ground:
+    low, high = over.extent
+    margin = 1e-9 * (high - low)
+    for k, positions in enumerate(path.positions):
+        if not (positions[0] >= low - margin and positions[-1] <= high + margin):
+            raise InputError(
+                f"path of contact {k + 1} (m)",
+                f"{positions[0]:.6g} to {positions[-1]:.6g}",
+                f"{low:.6g} to {high:.6g}, on the structure",
+                "Choose start, duration, run-in and positions so that all contacts stay on it.",
+            )
+    natural, ratios = 2.0 * np.pi * over.natural_frequencies, over.damping_ratios
+    chosen = path.positions[:, :: max(1, (path.total + 1) // PLACES)].T
+    along = over.shapes(chosen.ravel())[0].reshape(*chosen.shape, len(natural))
+    each = alternating_of_modes(resolved_step(natural, ratios, path.time_step))
+    least = float(np.linalg.eigvalsh((along * each) @ along.transpose(0, 2, 1)).min())
+    followed = over.natural_frequencies[over.natural_frequencies < STATIC]  # others are meant to be static
+    return Ground(
+        natural,
+        ratios,
+        *over.shapes(path.starts),
+        over.shapes(sensors)[0] if sensors.size else np.zeros((0, len(natural))),
+        channels,
+        np.zeros((len(path.positions), len(path.positions))),
+        float(((along / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf,
+        least,
+        least,
+        (("the highest mode of the structure", float(followed.max(initial=0.0)), 4.0),),
+    )
+
+
+def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
+    """A rail, by poles or scattered, between contacts at fixed distances."""
+    kernel, n = rail.kernel, len(path.positions)
+    given, made = (path.speed, path.time_step), (kernel.speed, kernel.time_step)
+    if not np.allclose(given, made, rtol=1e-9, atol=0.0):
+        received = f"{given[0]:.6g} m/s in steps of {given[1]:.6g} s"
+        allowed = f"{made[0]:.6g} m/s and {made[1]:.6g} s, for which the rail's kernel was computed"
+        raise InputError("path", received, allowed, "Compute the moving kernel of this path.")
+    if sensors.size:
+        allowed = "none: a rail is known under the contacts alone"
+        raise InputError("sensors", f"{sensors.size} on a rail", allowed)
+    channels, tables = _channels(rail, path.starts)
+    static = np.array([each.weights.sum(axis=1).mean() for each in map(_kernel, tables)])
+    found = np.zeros((n, n))
+    found[channels.receiver, channels.source] = static[channels.table]
+    squares, vectors = np.linalg.eigh(0.5 * (found + found.T))
+    none, modes, taps = np.zeros(0), np.zeros((n, 0)), kernel.weights.shape[1]
+    return Ground(
+        none,
+        none,
+        modes,
+        modes,
+        np.zeros((0, 0)),
+        channels,
+        np.asarray((vectors * np.maximum(squares, 0.0)) @ vectors.T),
+        float(kernel.weights.sum(axis=1).max()),
+        float((kernel.weights @ (-1.0) ** np.arange(taps)).min()),  # of all places in a bay
+        limits=(("the passing of sleepers v/L", kernel.speed / kernel.spacing, 20.0),),
+        bay=kernel.track.mass_per_length * kernel.spacing,
+        memory=taps,
+    )
+
+
+def _kernel(rail: RailPoles | MovingKernel) -> MovingKernel:
+    return rail.kernel if isinstance(rail, RailPoles) else rail
+
+
+def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[RailPoles | MovingKernel]]:
+    """Channels between all contacts within reach, and the kernels that they carry, the direct one first."""
+    tables: list[RailPoles | MovingKernel] = [rail.direct]
+    pairs = []
+    for source, here in enumerate(starts):
+        for receiver, there in enumerate(starts):
+            found = rail.direct if source == receiver else rail.between(there - here)
+            if found is not None:
+                known = [index for index, table in enumerate(tables) if table is found]
+                tables += [] if known else [found]
+                pairs.append((source, receiver, known[0] if known else len(tables) - 1))
+    source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
+    poles = max((len(each.poles) for each in tables if isinstance(each, RailPoles)), default=0)
+    scatters = np.array([not isinstance(each, RailPoles) for each in tables])
+    rows, taps = rail.kernel.weights.shape if scatters.any() else (1, 1)
+    decay, residue = np.zeros((len(tables), 2, poles)), np.zeros((len(tables), CELLS + 1, 2, poles))
+    scattered = np.zeros((len(tables), rows, taps))
+    for t, each in enumerate(tables):
+        if isinstance(each, RailPoles):
+            own, residues = len(each.poles), over_the_bay(each.residues)
+            decay[t, :, :own] = each.poles.real, each.poles.imag
+            residue[t, :, 0, :own], residue[t, :, 1, :own] = residues.real, residues.imag
+        else:
+            scattered[t] = each.weights
+    return Channels(
+        source=source,
+        receiver=receiver,
+        table=table,
+        first=np.searchsorted(source, np.arange(len(starts) + 1)),
+        place=starts / rail.kernel.spacing,
+        stride=rail.kernel.speed * rail.kernel.time_step / rail.kernel.spacing,
+        decay=decay.reshape(len(tables), 2 * poles),
+        residue=residue.reshape(len(tables), CELLS + 1, 2 * poles),
+        now=np.array([over_the_bay(each.weights[:, 0]) for each in map(_kernel, tables)]),
+        scattered=scattered,
+        scatters=scatters,
+    ), tables
+
+
+def no_channels(contacts: int) -> Channels:
+    """Those of what is no rail."""
+    none = np.zeros(0, dtype=np.int64)
+    return Channels(
+        source=none,
+        receiver=none,
+        table=none,
+        first=np.zeros(contacts + 1, dtype=np.int64),
+        place=np.zeros(contacts),
+        stride=0.0,
+        decay=np.zeros((0, 0)),
+        residue=np.zeros((0, 1, 0)),
+        now=np.zeros((0, 1)),
+        scattered=np.zeros((0, 1, 1)),
+        scatters=np.zeros(0, dtype=bool),
+    )
+
+
+def warn_if_bent(over: Modal | RailBetween | None, displaced: Array) -> None:
+    """Compare the deflection of a beam under its contacts, m, with what beam theory allows."""
+    if not isinstance(over, Beam | SupportedBeam):
+        return
+    deflection = float(np.abs(displaced).max())
+    share = deflection / over.length
+    if share > LARGEST_DEFLECTION:
+        warnings.warn(
+            f"the beam is displaced by up to {deflection:.3g} m under the contact, "
+            f"{100 * share:.2g} % of its length: beam theory needs small slopes, as up to "
+            f"{100 * LARGEST_DEFLECTION:.0f} %; check load, section, length and support of the beam",
+            LargeDeflectionWarning,
+            stacklevel=4,
+        )
