@@ -239,9 +239,7 @@ def test_a_strong_damper_stays_below_what_a_rigid_contact_does():
     for damping in (1e8, 1e10):
         law = HertzLaw(9.413e10, texture, damping)
         with pytest.warns(CoarseSamplingWarning, match=r"softening the contact by 2.2 %"):
-            run = roll.roll_wheel(
-                pole_model, Wheel(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0
-            )
+            run = roll.roll_wheel(pole_model, Wheel(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0)
         assert run.contact_loss_share == 0.0
         forces.append(run.contact_force)
     assert forces[1].std() == pytest.approx(forces[0].std(), rel=0.02)

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from asperity.arguments import finite_array, positive, real
 from asperity.errors import InputError
 from asperity.reference.materials import Material
-from asperity.structures.modal import modal_answers
 
 GRAVITY = 9.80665  # m/s^2, standard acceleration of free fall, CGPM 1901
 
@@ -170,6 +169,8 @@ class Body:
         omega = 2.0 * np.pi * f[:, None, None]
         dynamic = self.stiffness + 1j * omega * self.damping - omega**2 * self.mass
         moved = np.linalg.solve(dynamic, np.broadcast_to(self.contacts.T, (f.size, *self.contacts.T.shape)))
+        from asperity.structures.modal import modal_answers  # a case knows bodies without compiled code
+
         answers = modal_answers(f, self.natural_frequencies, self.damping_ratios)
         flexible = np.einsum("cs,ns,ds->ncd", self.shapes, answers, self.shapes)
         return np.asarray(self.contacts @ moved + flexible)
