@@ -16,7 +16,7 @@ os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pyte
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
 os.environ["ASPERITY_CACHE"] = _cache.name
 
-from asperity import results  # noqa: E402
+from asperity import sandbox  # noqa: E402
 
 hypothesis.settings.register_profile("untimed", deadline=None)
 hypothesis.settings.load_profile("untimed")
@@ -36,14 +36,13 @@ def pytest_unconfigure():
 
 @pytest.fixture(autouse=True)
 def results_opened_here(monkeypatch):
-    """Results of tests are their own: `test_results.py` and `faults` open them in other processes."""
+    """Results of tests are their own: `test_results.py` and `faults` open them in sandboxes."""
 
     def opened(function, arguments, *_):
-        assert function == "asperity.results:serve_result"
-        results.serve_result(*arguments, answers := io.BytesIO())
-        return answers.getvalue()
+        sandbox.send(function(*arguments), answer := io.BytesIO())
+        return sandbox.received(answer.getvalue())
 
-    monkeypatch.setattr("asperity.results.apart", opened)
+    monkeypatch.setattr("asperity.results.sandboxed", opened)
 
 
 @pytest.fixture

@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 
 import asperity
-from asperity.apart import apart
 from asperity.errors import InputError
 from asperity.kinds.notebook import Result
 from asperity.results import GROUPS, case_text, checked, read_result, save, variable
+from asperity.sandbox import sandboxed
 from asperity.schema import VERSION
 
 
@@ -37,7 +37,7 @@ def small_tree():
 
 def test_a_result_comes_back_as_it_was(tmp_path, monkeypatch):
     """Through the process that opens it; its arrays can be written to."""
-    monkeypatch.setattr("asperity.results.apart", apart)
+    monkeypatch.setattr("asperity.results.sandboxed", sandboxed)
     tree = small_tree()
     found = read_result(save(tree, tmp_path / "run.nc"))
     xr.testing.assert_identical(found, tree)

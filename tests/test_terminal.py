@@ -17,7 +17,7 @@ CASE = 'kind = "ball-on-beam"\nduration = "0.01 s"\nlaws = ["hertz"]\n[surface]\
 WRITERS = {
     "terminal.py",
     "progress.py",  # bars; its words go through `printable`
-    "apart.py",  # answers to the process that asked
+    "sandbox.py",  # answers to the process that asked
     "desk.py",
     "jobs.py",
     "__main__.py",  # before anything can be imported

@@ -12,6 +12,8 @@ TOO_MUCH_MEMORY = (
     "the case takes more memory than there is. Are all its lengths, times and files in the units that they "
     "are meant in? If so, try a smaller contact.window, a shorter duration or a coarser contact.spacing."
 )
+MOST_WORDS = 300
+"""Characters of what a library says that a message repeats."""
 MOST_ERRORS = 10
 """Errors of a case that are listed: who has more corrects these first."""
 
@@ -85,6 +87,13 @@ def _cut(received: object) -> str:
     """Write what was received, shortened where it is no name or value of a person."""
     text = str(received)
     return text if len(text) <= LONGEST else f"{text[:LONGEST]}…"
+
+
+def reason(error: BaseException) -> str:
+    """Name an error of a library and its words, but no page of raw bytes."""
+    words = " ".join("".join(c if c.isprintable() else " " for c in str(error)).split())
+    cut = f"{words[:MOST_WORDS]} …" if len(words) > MOST_WORDS else words
+    return f"{type(error).__name__} ({cut})" if cut else type(error).__name__
 
 
 class Grade(Enum):

@@ -6,15 +6,15 @@ import io
 import math
 import os
 import zlib
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Sequence
 from numbers import Integral
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
-from asperity.apart import apart, reason
 from asperity.arguments import file_path, no_file, shown
-from asperity.errors import InputError
+from asperity.errors import InputError, reason
 from asperity.files import is_sealed, write_bytes
+from asperity.sandbox import Answer, sandboxed
 from asperity.schema import VERSION
 from asperity.schema.provenance import ASPERITY_VERSION, CASE, SCHEMA_VERSION
 
@@ -136,7 +136,7 @@ def read_result(path: str | os.PathLike[str]) -> xarray.DataTree:
 
 def _opened_apart(path: Path, *, whole: bool = True) -> xarray.DataTree:
     """Open a result in a process of its own: HDF5 may hang in a file, or end, whatever its digest says."""
-    from asperity.streamed import receive_result
+    import xarray
 
     if received := no_file(path):
         raise InputError(str(path), received, _ALLOWED, "Check the path.")
@@ -150,10 +150,13 @@ def _opened_apart(path: Path, *, whole: bool = True) -> xarray.DataTree:
     if intact is False:
         received = "a damaged file: its digest does not fit its contents"
         raise InputError(str(path), received, _ALLOWED, _AGAIN)
-    words = [str(path.absolute()), whole]
-    found = receive_result(io.BytesIO(apart(f"{__name__}:serve_result", words, str(path), size, "netCDF-4")))
-    assert found is not None
-    return found
+    arguments = [str(path.absolute()), whole]
+    groups, arrays = sandboxed(groups_of_netcdf, arguments, str(path), size, "netCDF-4")
+    numbers, found = iter(arrays), {}
+    for name, attributes, variables in groups:
+        held = {each: xarray.Variable(dims, next(numbers), told) for each, dims, told in variables}
+        found[name] = xarray.Dataset(held, attrs=attributes)
+    return xarray.DataTree.from_dict(found)
 
 
 def _decoded(path: Path, tree: xarray.DataTree) -> xarray.DataTree:
@@ -179,33 +182,33 @@ def _check_version(path: Path, tree: xarray.DataTree) -> None:
     raise InputError(str(path), received, f"schema version {VERSION}", remedy)
 
 
-def serve_result(path: str, whole: bool, answers: BinaryIO) -> None:
-    """Send all that is in a file, or its attributes alone, to the binary file `answers`."""
+def groups_of_netcdf(path: str, whole: bool) -> Answer:
+    """Read all that is in a file, or its attributes alone: groups, what their variables are, and these."""
     import h5netcdf
 
-    from asperity.streamed import Group, send_groups
-
-    def groups(found: Any) -> Iterator[Group]:
-        variables = found.variables if whole else {}
-        held = {name: (each.dimensions, _values(each), dict(each.attrs)) for name, each in variables.items()}
-        yield found.name, dict(found.attrs), held
-        for group in found.groups.values() if whole else ():
-            yield from groups(group)
-
     left = max(SMALL, MOST_UNPACKED * os.path.getsize(path))
+    groups: list[Any] = []
+    arrays: list[NDArray[Any]] = []
 
-    def _values(variable: Any) -> NDArray[Any]:
+    def take(group: Any) -> None:
         nonlocal left
-        left -= math.prod(variable.shape) * 8
-        if left < 0:
-            raise ValueError(f"more than {MOST_UNPACKED} times its size in numbers")
-        return variable[...]
+        variables = group.variables if whole else {}
+        for each in variables.values():
+            left -= math.prod(each.shape) * 8
+            if left < 0:
+                raise ValueError(f"more than {MOST_UNPACKED} times its size in numbers")
+            arrays.append(each[...])
+        told = [(name, each.dimensions, dict(each.attrs)) for name, each in variables.items()]
+        groups.append((group.name, dict(group.attrs), told))
+        for inner in group.groups.values() if whole else ():
+            take(inner)
 
     try:
         with h5netcdf.File(path, "r", decode_vlen_strings=True) as file:
-            send_groups(groups(file), answers)
+            take(file)
     except Exception as error:  # h5py raises errors of many kinds on damaged files
         raise InputError(path, f"a damaged file ({reason(error)})", _ALLOWED, _AGAIN) from error
+    return groups, arrays
 
 
 def attributes_of(path: str | os.PathLike[str]) -> dict[str, Any]:

@@ -14,10 +14,10 @@ from corpus import ABSURD, CIRCLES, CORPUS
 from program import LONG, ended, left, program, promised
 
 import asperity
-from asperity.apart import apart
 from asperity.errors import InputError
 from asperity.files import atomic_write
 from asperity.interrupts import interruptible
+from asperity.sandbox import sandboxed
 
 SECONDS = 30
 """Of processor time that no failure takes."""
@@ -91,14 +91,14 @@ def test_what_once_failed(name, tmp_path, replay):
 @pytest.fixture
 def circles(tmp_path, monkeypatch):
     """A file in which HDF5 turns in circles, with a seal that fits; opened as the program does."""
-    monkeypatch.setattr("asperity.results.apart", apart)
+    monkeypatch.setattr("asperity.results.sandboxed", sandboxed)
     return atomic_write(tmp_path / "run.nc", lambda file: file.write(CIRCLES), sealed=True)
 
 
 @pytest.mark.parametrize("read", [asperity.open_result, asperity.read_surface])
 def test_a_library_that_turns_in_circles(circles, monkeypatch, read):
     """The process ends by itself, or beside other work by the patience of this one: both say the same."""
-    monkeypatch.setattr("asperity.apart.SECONDS", 0.9)
+    monkeypatch.setattr("asperity.sandbox.SECONDS", 0.9)
     with pytest.raises(InputError, match=r"a file that takes more than 1 s to open"):
         read(circles)
 

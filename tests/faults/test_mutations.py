@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from program import LONG
 
-from asperity.apart import MEMORY
 from asperity.errors import AsperityError, InputError, PhysicsWarning
 from asperity.kinds.cases import parse_case
 from asperity.results import read_result, save, variable
+from asperity.sandbox import MEMORY
 from asperity.schema import VERSION
 from asperity.surfaces.readers import netcdf, read_surface
 from asperity.surfaces.readers.guards import checked_hints

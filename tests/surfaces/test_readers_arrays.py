@@ -269,8 +269,8 @@ def test_instrument_file_that_lacks_something(measured):
 )
 def test_a_library_that_fails_on_a_hostile_file(tmp_path, monkeypatch, code, message):
     package(tmp_path, monkeypatch, code)
-    monkeypatch.setattr("asperity.apart.SECONDS", 3.0)
-    monkeypatch.setattr("asperity.apart.PATIENCE", 1.0)
+    monkeypatch.setattr("asperity.sandbox.SECONDS", 3.0)
+    monkeypatch.setattr("asperity.sandbox.PATIENCE", 1.0)
     (tmp_path / "a.plu").write_bytes(b"content")
     with pytest.raises(InputError, match=message) as caught:
         read_surface(tmp_path / "a.plu")
@@ -282,7 +282,7 @@ def test_other_work_on_the_machine_takes_no_time_from_a_file(tmp_path, monkeypat
     """What is limited is the processor time: a file that only has to wait is read on."""
     code = "import time\ndef open_topography(path): time.sleep(2.5); raise KeyError('read on')"
     package(tmp_path, monkeypatch, code)
-    monkeypatch.setattr("asperity.apart.SECONDS", 1.5)
+    monkeypatch.setattr("asperity.sandbox.SECONDS", 1.5)
     (tmp_path / "a.plu").write_bytes(b"content")
     with pytest.raises(InputError, match="read on"):
         read_surface(tmp_path / "a.plu")

@@ -24,7 +24,6 @@ from asperity.files import (
     require_space,
     together,
 )
-from asperity.memory import give_back
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import provenance, rolling, spectra
 from asperity.store import content_key
@@ -268,7 +267,6 @@ def _write(tree: DataTree, directory: Path, *, report: bool) -> None:
 
     with together(directory, last=PAGE) as new:
         save(tree, new / "run.nc")
-        give_back()
         if report:
             from asperity.kinds.report import write_page
 

@@ -8,18 +8,18 @@ from array import array
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice, pairwise
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.apart import apart, received, send
 from asperity.arguments import no_file, shown
 from asperity.config.content import name_of
 from asperity.config.form import Section
 from asperity.decoding import lines_in, lines_of_cells, number_in, read_text
 from asperity.errors import InputError
 from asperity.files import amount
+from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.readers.guards import hostile
 from asperity.units import factor, unit_in_brackets
 
@@ -209,13 +209,13 @@ def read_columns(file: Path, columns: Sequence[tuple[str, str]]) -> NDArray[np.f
     size = file.stat().st_size
     if size > LARGEST_FILE:
         raise InputError(file.name, amount(size), f"at most {amount(LARGEST_FILE)}")
-    served = f"{serve_columns.__module__}:{serve_columns.__name__}"
-    answer = apart(served, [str(file.absolute()), list(columns)], file.name, size, "netCDF-4")
-    return received(answer)[1][0].copy()
+    arguments = [str(file.absolute()), list(columns)]
+    _, (table,) = sandboxed(columns_of_netcdf, arguments, file.name, size, "netCDF-4")
+    return table
 
 
-def serve_columns(path: str, columns: list[tuple[str, str]], answers: BinaryIO) -> None:
-    """Lay out the table of a netCDF-4 file and send it to the binary file `answers`."""
+def columns_of_netcdf(path: str, columns: list[tuple[str, str]]) -> Answer:
+    """Lay out the table of a netCDF-4 file."""
     import h5netcdf
 
     from asperity.structures.modal_files import netcdf_numbers
@@ -231,7 +231,7 @@ def serve_columns(path: str, columns: list[tuple[str, str]], answers: BinaryIO) 
             variable = opened.variables[name]
             numbers = netcdf_numbers(variable, name, unit, MOST_DIMENSIONS, file)
             found.append((tuple(variable.dimensions), numbers))
-        send(answers, ["table"], [_laid_out(found, file)])
+        return None, [_laid_out(found, file)]
 
 
 def _laid_out(found: list[tuple[tuple[str, ...], Any]], file: Path) -> NDArray[np.float64]:

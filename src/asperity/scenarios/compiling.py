@@ -27,7 +27,7 @@ from asperity.threads import processors
 
 CONTACT = "asperity.kernels.scanning.solve_positions"
 BESIDE = (
-    "from asperity.apart import end_with_parent; end_with_parent(); "
+    "from asperity.sandbox import end_with_parent; end_with_parent(); "
     "from asperity.scenarios.compiling import press_once; press_once()"
 )
 """What a second process does."""

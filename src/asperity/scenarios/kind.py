@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from asperity.memory import give_back
 from asperity.schema import contact, convergence, provenance, rolling, spectra, surface
 
 if TYPE_CHECKING:
@@ -134,10 +133,7 @@ class Kind:
         Warnings of laying out may be added to `caught`.
         """
         computed = self.offers("compute", "compute")(prepared, progress)
-        give_back()
         found: xarray.DataTree = self.offers("result", "layout")(computed, caught, brief=brief)
-        del computed
-        give_back()
         return found
 
     @property

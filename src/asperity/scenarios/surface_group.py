@@ -12,7 +12,6 @@ import xarray
 from numpy.typing import NDArray
 
 from asperity.errors import InhomogeneousWarning, ShortRecordWarning
-from asperity.memory import give_back
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.textures import Textures
 from asperity.schema import Entry, attributes, surface, variables
@@ -95,7 +94,6 @@ def _path(chain: Chain) -> _Path:
     segment = min(_segment(textures), recorded.stop - recorded.start)
     if textures.path is None or not textures.areal:
         return _along_line(textures, chain.shape.spacing[0], segment)
-    give_back()  # what spectra took: a survey takes as much
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ShortRecordWarning)
         found = survey_strip(textures.surface, segment, recorded.start, recorded.stop)

@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 
-from asperity.apart import MEMORY, limit_memory, reason
 from asperity.config.case import Case
 from asperity.config.parsing import Origin, read_toml
-from asperity.errors import AsperityError, CaseError
+from asperity.errors import AsperityError, CaseError, reason
 from asperity.kinds.cases import case_of, demo_case
+from asperity.sandbox import MEMORY, limit_process
 from asperity.serving.case_form import case_data, form_values
 from asperity.serving.uploads import examined, identifier_of, surface_named
 
@@ -144,7 +144,7 @@ def answer_all() -> None:
     """Answer what comes on standard input until it ends, as the process that `desk.Desk` starts."""
     answers = _own_output()
     with suppress(OSError, ValueError):
-        limit_memory(MEMORY)
+        limit_process(MEMORY)
     warnings.simplefilter("ignore")  # runs tell theirs; here nobody reads them
     for line in _questions():
         answers.write(json.dumps(_answered(line), default=_plain) + "\n")

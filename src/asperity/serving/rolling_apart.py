@@ -11,8 +11,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TextIO
 
-from asperity.apart import end_with_parent, reason
-from asperity.errors import TOO_MUCH_MEMORY, AsperityError
+from asperity.errors import TOO_MUCH_MEMORY, AsperityError, reason
+from asperity.sandbox import end_with_parent
 
 NICENESS = 5
 """How far it stands back for the slider."""

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.apart import apart, received, send
 from asperity.arguments import file_path, listed, no_file, shown
 from asperity.decoding import lines_of_cells, number_in, read_text
 from asperity.errors import InputError
 from asperity.files import amount
+from asperity.sandbox import Answer, sandboxed
 from asperity.structures.modal import ModalStructure
 from asperity.surfaces.readers.guards import check_claim, hostile
 from asperity.units import factor, unit_in_brackets
@@ -33,8 +33,8 @@ OUT_OF_PHASE = 0.1
 _EXPORT = "Export it again."
 
 
-def serve_universal(path: str, given: dict[str, Any], answers: BinaryIO) -> None:
-    """Read the modes of a universal file, as `read_modal_structure` is asked, and send them to `answers`."""
+def modes_of_universal(path: str, given: dict[str, Any]) -> Answer:
+    """Read the modes of a universal file, as `read_modal_structure` is asked."""
     file = Path(path)
     along, force = (_axis(name, given[name], file.name) for name in ("along", "force"))
     modes, nodes, units = _datasets(file)
@@ -45,11 +45,7 @@ def serve_universal(path: str, given: dict[str, Any], answers: BinaryIO) -> None
     order = np.argsort(places)
     normalised = np.column_stack(shapes)[order] / np.sqrt(masses) * np.sqrt(length / newtons)
     names = ["positions", "natural_frequencies", "damping_ratios", "mode_shapes"]
-    send(
-        answers,
-        names,
-        [places[order] * length, np.array(frequencies), np.array(ratios), normalised],
-    )
+    return names, [places[order] * length, np.array(frequencies), np.array(ratios), normalised]
 
 
 def _axis(name: str, given: object, source: str) -> int:
@@ -268,28 +264,21 @@ def read_modal_structure(
     }
     kind = file.suffix.lower()
     if kind in (".uff", ".unv", ".univ"):
-        return _read_from(file, "universal", serve_universal, given)
+        return _read_from(file, "universal", modes_of_universal, given)
     for name, value in given.items():
         if value is not None:
             allowed = "nothing: it is for universal files (.uff, .unv)"
             raise InputError(name, shown(value), allowed, f"{file.name} states it, in SI or with its units.")
     if kind in (".nc", ".nc4"):
-        return _read_from(file, "netCDF-4", serve_netcdf)
+        return _read_from(file, "netCDF-4", modes_of_netcdf)
     return _structure(_table_of_modes(file), file.name)
 
 
-def _read_from(file: Path, kind: str, serve: Callable[..., None], *more: Any) -> ModalStructure:
+def _read_from(file: Path, kind: str, serve: Callable[..., Answer], *more: Any) -> ModalStructure:
     """Read a file in a process of its own, by a function that sends the names and values of its arrays."""
-    answer = apart(
-        f"{serve.__module__}:{serve.__name__}",
-        [str(file.absolute()), *more],
-        file.name,
-        file.stat().st_size,
-        kind,
-    )
-    names, arrays = received(answer)
-    aligned = (array.copy() for array in arrays)  # they lie in the answer as they came
-    return _structure(dict(zip(names, aligned, strict=True)), file.name)
+    arguments = [str(file.absolute()), *more]
+    names, arrays = sandboxed(serve, arguments, file.name, file.stat().st_size, kind)
+    return _structure(dict(zip(names, arrays, strict=True)), file.name)
 
 
 def _structure(found: dict[str, Array], source: str) -> ModalStructure:
@@ -363,8 +352,8 @@ def _cell(cell: str) -> float:
         return math.nan
 
 
-def serve_netcdf(path: str, answers: BinaryIO) -> None:
-    """Read the variables of a netCDF-4 file and send them to the binary file `answers`."""
+def modes_of_netcdf(path: str) -> Answer:
+    """Read the variables of a netCDF-4 file."""
     import h5netcdf
 
     file = Path(path)
@@ -379,7 +368,7 @@ def serve_netcdf(path: str, answers: BinaryIO) -> None:
         shapes = present.index("mode_shapes")
         if opened.variables["mode_shapes"].dimensions[:1] == modes:
             arrays[shapes] = arrays[shapes].T
-    send(answers, present, arrays)
+    return present, arrays
 
 
 def netcdf_numbers(variable: Any, name: str, unit: str, dimensions: int, file: Path) -> Array:

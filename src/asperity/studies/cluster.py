@@ -9,8 +9,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from asperity.apart import reason
-from asperity.errors import ComputationError, InputError
+from asperity.errors import ComputationError, InputError, reason
 
 PATIENCE = 20.0
 """How long a scheduler may take to answer, s."""

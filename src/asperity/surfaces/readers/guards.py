@@ -14,10 +14,9 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.apart import reason
 from asperity.arguments import Array, file_path, listed, no_file, real, shown
 from asperity.decoding import number_in
-from asperity.errors import InputError
+from asperity.errors import InputError, reason
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers.headers import advice, spell
 from asperity.units import factor, quantity

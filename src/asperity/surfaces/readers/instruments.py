@@ -1,4 +1,4 @@
-"""Formats that libraries parse are read apart: see `asperity.apart`."""
+"""Formats that libraries parse are read in a sandbox: see `asperity.sandbox`."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import warnings
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 
-from asperity.apart import apart, received, send
 from asperity.arguments import listed, shown
 from asperity.errors import InputError
+from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers.guards import MAX_POINTS, Hints, Surface, hostile
 from asperity.surfaces.readers.headers import current, spelled, spelling_of
@@ -25,8 +25,7 @@ def read_apart(module: str, kind: str) -> Callable[[Path, Hints], list[Surface]]
 
     def read(path: Path, hints: Hints) -> list[Surface]:
         request = [module, str(path.absolute()), asdict(hints), current()]
-        answer = apart(f"{__name__}:serve", request, path.name, path.stat().st_size, kind)
-        description, arrays = received(answer)
+        description, arrays = sandboxed(surfaces_in, request, path.name, path.stat().st_size, kind)
         return [
             HeightMap(heights, tuple(spacing), source)
             if heights.ndim == 2
@@ -37,19 +36,15 @@ def read_apart(module: str, kind: str) -> Callable[[Path, Hints], list[Surface]]
     return read
 
 
-def serve(module: str, path: str, hints: dict[str, Any], style: list[Any], answers: BinaryIO) -> None:
-    """Read a file as `read_apart` asks, and send its surfaces to the binary file `answers`."""
+def surfaces_in(module: str, path: str, hints: dict[str, Any], style: list[Any]) -> Answer:
+    """Read a file as `read_apart` asks: spacings and sources of surfaces, and their heights."""
     reader = importlib.import_module(f"asperity.surfaces.readers.{module}")
     given = Hints(**hints)
     if given.spacing is not None:
         given = Hints(**(hints | {"spacing": tuple(given.spacing)}))
     with spelled(spelling_of(style)):
         surfaces = reader.read(Path(path), given)
-    send(
-        answers,
-        [[surface.spacing, surface.source] for surface in surfaces],
-        [surface.heights for surface in surfaces],
-    )
+    return [(each.spacing, each.source) for each in surfaces], [each.heights for each in surfaces]
 
 
 def read(path: Path, hints: Hints) -> list[Surface]:
