@@ -135,7 +135,7 @@ def by_integrator(
     def rates(t: float, y: np.ndarray) -> np.ndarray:
         force, shapes = forces(t, y)
         half = modes + n
-        modal = force @ shapes - 2 * beam.damping_ratio * natural * y[half : half + modes]
+        modal = force @ shapes - 2 * beam.damping_ratios * natural * y[half : half + modes]
         return np.concatenate([y[half:], modal - natural**2 * y[:modes], (force - load) / BALL.mass])
 
     shapes = beam.shapes(0.3 + at)[0]

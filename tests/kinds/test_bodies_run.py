@@ -45,7 +45,7 @@ def test_modes_of_a_file_are_the_beam(on_beam, tmp_path):
     beam = Beam.rectangular(1.0, 0.05, 0.01, material("steel"), highest_frequency=40e3)
     x, natural = np.linspace(0.0, 1.0, 1001), beam.natural_frequencies
     table = np.column_stack([x, beam.shapes(x)[0]])[:, :41]
-    head = [("frequency (Hz)", natural[:40]), ("damping ratio", np.full(40, beam.damping_ratio))]
+    head = [("frequency (Hz)", natural[:40]), ("damping ratio", beam.damping_ratios[:40])]
     lines = [f"{name}, " + ", ".join(repr(float(v)) for v in row) for name, row in head]
     lines += ["position (m)"]
     lines += [", ".join(repr(float(v)) for v in row) for row in table]

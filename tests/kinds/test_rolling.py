@@ -115,7 +115,7 @@ def moving_mass(beam, ball, speed, times):
         inertia = np.eye(n.size) + ball.mass * np.outer(shape, shape)
         coriolis, centripetal = 2 * speed * slope @ v, speed**2 * (-(k**2) * shape) @ q
         load = shape * (ball.static_load - ball.mass * (coriolis + centripetal))
-        restoring = 2 * beam.damping_ratio * omega * v + omega**2 * q
+        restoring = 2 * beam.damping_ratios * omega * v + omega**2 * q
         return np.concatenate([v, np.linalg.solve(inertia, load - restoring)])
 
     start = np.zeros(2 * n.size)

@@ -7,25 +7,94 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import scipy
 from numpy.polynomial.legendre import leggauss
-from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh, qr
+from numpy.typing import ArrayLike
 
-from asperity.arguments import real
+from asperity.arguments import positive, real
 from asperity.errors import InputError
 from asperity.kernels.along import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
-from asperity.structures.modal import Pieces, modal_receptance, pieces_of, shapes_at
+from asperity.structures.modal import Array, Modal, Pieces, modal_receptance, pieces_of, shapes_at
 
 SUPPORTS = ("simply-supported", "free", "clamped")
 
 
+@dataclass(frozen=True, eq=False)
+class _Uniform(Modal):
+    """What beams of one section have in common."""
+
+    length: float
+    bending_stiffness: float
+    mass_per_length: float
+
+    receptance = modal_receptance
+
+    @classmethod
+    def rectangular(
+        cls, length: float, width: float, height: float, material: Material, *more: Any, **options: Any
+    ) -> Self:
+        """Beam of rectangular section.
+
+        Parameters
+        ----------
+        length, width, height : float
+            m; the height is the dimension in the direction of bending.
+        material : Material
+            Gives E and the density.
+        *more, **options
+            Further parameters of the beam.
+
+        Returns
+        -------
+        Beam or SupportedBeam
+            With B = E b h^3/12 and m' = rho b h.
+
+        Raises
+        ------
+        InputError
+            As the beam itself.
+        """
+        stiffness = material.youngs_modulus * positive("beam width (m)", width) * height**3 / 12.0
+        mass = material.density * width * positive("beam height (m)", height)
+        return cls(length, stiffness, mass, *more, **options)
+
+    def _check(self, loss_factor: float, highest_frequency: float) -> None:
+        positive("beam length (m)", self.length)
+        positive("bending stiffness of the beam (N m^2)", self.bending_stiffness)
+        positive("mass per length of the beam (kg/m)", self.mass_per_length)
+        positive("highest frequency of the beam (Hz)", highest_frequency)
+        _check_loss("loss factor of the beam", loss_factor)
+
+    def _needs_a_mode(self, count: int, highest_frequency: float) -> None:
+        if not count:
+            what, allowed = (
+                "highest frequency of the beam (Hz)",
+                "above the first natural frequency of bending",
+            )
+            remedy = "Raise it, in a case numerics.highest_frequency, or take a longer or softer beam."
+            raise InputError(what, highest_frequency, allowed, remedy)
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Where it begins and ends, m."""
+        return 0.0, self.length
+
+    @property
+    def mass(self) -> float:
+        """Mass, kg."""
+        return self.mass_per_length * self.length
+
+
+def _check_loss(what: str, value: float) -> None:
+    real(what, value, "zero or more, below 2", at_least=0.0, below=2.0)
+
+
 @dataclass(frozen=True)
-class Beam:
+class Beam(_Uniform):
     """Uniform Euler-Bernoulli beam with modal damping.
 
     All modes have the damping ratio ``loss_factor / 2``, which dissipates at resonance what a
@@ -66,72 +135,27 @@ class Beam:
     [23.5, 93.8, 211.1]
     """
 
-    length: float
-    bending_stiffness: float
-    mass_per_length: float
     support: str = "simply-supported"
     loss_factor: float = 0.005
     highest_frequency: float = 10e3
     suspension_frequency: float = 5.0
 
     def __post_init__(self) -> None:
-        for what, value in (
-            ("beam length (m)", self.length),
-            ("bending stiffness of the beam (N m^2)", self.bending_stiffness),
-            ("mass per length of the beam (kg/m)", self.mass_per_length),
-            ("highest frequency of the beam (Hz)", self.highest_frequency),
-            ("suspension frequency of the beam (Hz)", self.suspension_frequency),
-        ):
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(what, value, "a finite positive number")
-        if not 0.0 <= self.loss_factor < 2.0:
-            raise InputError("loss factor of the beam", self.loss_factor, "zero or more, below 2")
+        self._check(self.loss_factor, self.highest_frequency)
+        positive("suspension frequency of the beam (Hz)", self.suspension_frequency)
         if self.support not in SUPPORTS:
             raise InputError("beam support", repr(self.support), "one of " + ", ".join(SUPPORTS))
-        if len(self._bending_roots) == 0:
-            raise InputError(
-                "highest frequency of the beam (Hz)",
-                self.highest_frequency,
-                "above the first natural frequency of bending",
-                "Raise it, in a case numerics.highest_frequency, or take a longer or softer beam.",
-            )
+        self._needs_a_mode(len(self._bending_roots), self.highest_frequency)
 
-    @classmethod
-    def rectangular(
-        cls, length: float, width: float, height: float, material: Material, **options: Any
-    ) -> Beam:
-        """Beam of rectangular section.
-
-        Parameters
-        ----------
-        length, width, height : float
-            m; the height is the dimension in the direction of bending.
-        material : Material
-            Gives E and the density.
-        **options
-            Further parameters of `Beam`.
-
-        Returns
-        -------
-        Beam
-            With B = E b h^3/12 and m' = rho b h.
-
-        Raises
-        ------
-        InputError
-            As `Beam`.
-        """
-        for what, value in (("beam width (m)", width), ("beam height (m)", height)):
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(what, value, "a finite positive number")
-        stiffness = material.youngs_modulus * width * height**3 / 12.0
-        return cls(length, stiffness, material.density * width * height, **options)
+    @property
+    def _unit(self) -> float:
+        """Angular frequency of a mode whose root is one, rad/s."""
+        return float(np.sqrt(self.bending_stiffness / self.mass_per_length) / self.length**2)
 
     @cached_property
-    def _bending_roots(self) -> NDArray[np.float64]:
+    def _bending_roots(self) -> Array:
         """Wavenumber times length of the bending modes up to the highest frequency."""
-        unit = np.sqrt(self.bending_stiffness / self.mass_per_length) / self.length**2  # omega of root 1
-        largest = np.sqrt(2.0 * np.pi * self.highest_frequency / unit)
+        largest = np.sqrt(2.0 * np.pi * self.highest_frequency / self._unit)
         n = np.arange(1, int(largest / np.pi) + 2)
         if self.support == "simply-supported":
             roots = n * np.pi
@@ -148,33 +172,17 @@ class Beam:
         return 2 if self.support == "free" else 0
 
     @cached_property
-    def natural_frequencies(self) -> NDArray[np.float64]:
+    def natural_frequencies(self) -> Array:
         """Undamped natural frequencies of all modes, Hz; rigid modes of a free beam first."""
-        unit = np.sqrt(self.bending_stiffness / self.mass_per_length) / self.length**2
         rigid = np.full(self._rigid_modes, self.suspension_frequency)
-        return np.concatenate([rigid, self._bending_roots**2 * unit / (2.0 * np.pi)])
+        return np.concatenate([rigid, self._bending_roots**2 * self._unit / (2.0 * np.pi)])
 
     @property
-    def damping_ratio(self) -> float:
-        """Damping ratio of every mode: half the loss factor."""
-        return 0.5 * self.loss_factor
+    def damping_ratios(self) -> Array:
+        """Of all modes alike: half the loss factor."""
+        return np.full(self.natural_frequencies.shape, 0.5 * self.loss_factor)
 
-    @property
-    def damping_ratios(self) -> NDArray[np.float64]:
-        """The same for each mode."""
-        return np.full(self.natural_frequencies.shape, self.damping_ratio)
-
-    @property
-    def extent(self) -> tuple[float, float]:
-        """Where it begins and ends, m."""
-        return 0.0, self.length
-
-    @property
-    def mass(self) -> float:
-        """Mass, kg."""
-        return self.mass_per_length * self.length
-
-    def shapes(self, x: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def shapes(self, x: ArrayLike) -> tuple[Array, Array]:
         """Mass-normalised mode shapes and their slopes.
 
         Parameters
@@ -195,9 +203,7 @@ class Beam:
         (wave, rising, falling), slopes = self._parts(x)
         return wave + rising + falling, slopes + self._wavenumbers * (rising - falling)
 
-    def shapes_along(
-        self, start: float, spacing: float, count: int
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def shapes_along(self, start: float, spacing: float, count: int) -> tuple[Array, Array]:
         """Mode shapes and slopes at equally spaced positions, as under a contact that rolls.
 
         Parameters
@@ -233,16 +239,11 @@ class Beam:
         return shapes, slopes
 
     @cached_property
-    def _wavenumbers(self) -> NDArray[np.float64]:
+    def _wavenumbers(self) -> Array:
         """Of all modes, 1/m; zero for the rigid ones."""
         return np.concatenate([np.zeros(self._rigid_modes), self._bending_roots / self.length])
 
-    def _parts(
-        self, x: ArrayLike
-    ) -> tuple[
-        tuple[NDArray[np.float64], NDArray[np.float64] | float, NDArray[np.float64] | float],
-        NDArray[np.float64],
-    ]:
+    def _parts(self, x: ArrayLike) -> tuple[tuple[Array, Array | float, Array | float], Array]:
         """Mode shapes (n, modes) in three parts, and the slope of the first.
 
         A sinusoid, or the straight line of a rigid mode, and the exponentials that rise and fall with x.
@@ -259,17 +260,13 @@ class Beam:
             return (scale * np.sin(phase), 0.0, 0.0), scale * k * np.cos(phase)
         wave, slope, rising, falling = self._centred_parts(at)
         if self.support == "free":
-            rotation = np.sqrt(12.0) / self.length
-            rigid = np.stack([np.ones_like(at), rotation * (at - 0.5 * self.length)], axis=1)
-            rigid_slopes = np.stack([np.zeros_like(at), np.full_like(at, rotation)], axis=1)
-            none = np.zeros_like(rigid)
-            wave, slope = np.hstack([rigid, wave]), np.hstack([rigid_slopes, slope])
-            rising, falling = np.hstack([none, rising]), np.hstack([none, falling])
+            turn = np.sqrt(12.0) / self.length
+            rigid = np.stack([np.ones_like(at), turn * (at - 0.5 * self.length)], axis=1)
+            wave, slope = np.hstack([rigid, wave]), np.hstack([np.full(rigid.shape, [0.0, turn]), slope])
+            rising, falling = (np.pad(each, ((0, 0), (2, 0))) for each in (rising, falling))
         return (scale * wave, scale * rising, scale * falling), scale * slope
 
-    def _centred_parts(
-        self, at: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def _centred_parts(self, at: Array) -> tuple[Array, Array, Array, Array]:
         """Bending modes of free and clamped beams, even or odd about the middle.
 
         cos(kx)/cos(kL/2) -+ cosh(kx)/cosh(kL/2) and the same with sines, written with decaying exponentials
@@ -289,30 +286,6 @@ class Beam:
         slope = k * np.where(even, -sine / np.cos(half), cosine / np.sin(half))
         return wave, slope, rising, falling
 
-    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
-        """Displacement at `x` per harmonic force at `x0`, by modal superposition.
-
-        Parameters
-        ----------
-        frequency : array_like
-            Hz; zero gives the static compliance. Time factor exp(+i omega t).
-        x, x0 : float
-            Positions of the response and of the force, m.
-
-        Returns
-        -------
-        ndarray of complex
-            m/N, of the shape of `frequency`.
-
-        Raises
-        ------
-        InputError
-            If a position is off the beam.
-        """
-        return modal_receptance(self, frequency, x, x0)
-
-
-Array = NDArray[np.float64]
 
 DEGREE = 7
 """Of the splines in which modes are looked for."""
@@ -367,12 +340,11 @@ class Support:
                 raise InputError(what, value, "0 and more, or infinite")
         if self.stiffness == 0.0 and self.rotational_stiffness == 0.0:
             raise InputError("stiffness of a support (N/m)", 0.0, "a support that holds something")
-        if not 0.0 <= self.loss_factor < 2.0:
-            raise InputError("loss factor of a support", self.loss_factor, "zero or more, below 2")
+        _check_loss("loss factor of a support", self.loss_factor)
 
 
 @dataclass(frozen=True, eq=False)
-class SupportedBeam:
+class SupportedBeam(_Uniform):
     """Uniform Euler–Bernoulli beam on supports, with modal damping.
 
     Parameters
@@ -412,23 +384,12 @@ class SupportedBeam:
     [52.4, 81.9, 209.8]
     """
 
-    length: float
-    bending_stiffness: float
-    mass_per_length: float
     supports: Sequence[Support] = field(default_factory=tuple)
     loss_factor: float = 0.005
     highest_frequency: float = 10e3
 
     def __post_init__(self) -> None:
-        for what, value in (
-            ("beam length (m)", self.length),
-            ("bending stiffness of the beam (N m^2)", self.bending_stiffness),
-            ("mass per length of the beam (kg/m)", self.mass_per_length),
-            ("highest frequency of the beam (Hz)", self.highest_frequency),
-        ):
-            real(what, value, "a finite positive number", above=0.0)
-        if not 0.0 <= self.loss_factor < 2.0:
-            raise InputError("loss factor of the beam", self.loss_factor, "zero or more, below 2")
+        self._check(self.loss_factor, self.highest_frequency)
         ordered = tuple(sorted(self.supports, key=lambda support: support.position))
         places = [support.position for support in ordered]
         if places and places[-1] > self.length * (1.0 + SAME_PLACE):
@@ -440,29 +401,7 @@ class SupportedBeam:
             received = f"{self.highest_frequency:.4g} Hz, {len(self._knots)} knots of splines"
             remedy = "Lower it, or take fewer supports."
             raise InputError("highest frequency of the beam (Hz)", received, f"{MOST_KNOTS} knots", remedy)
-        if not self.natural_frequencies.size:
-            raise InputError(
-                "highest frequency of the beam (Hz)",
-                self.highest_frequency,
-                "above its first natural frequency",
-                "Raise it, or take a longer or softer beam.",
-            )
-
-    @classmethod
-    def rectangular(
-        cls,
-        length: float,
-        width: float,
-        height: float,
-        material: Material,
-        supports: Sequence[Support],
-        **options: Any,
-    ) -> SupportedBeam:
-        """Beam of rectangular section, m, whose height is in the direction of bending; as `SupportedBeam`."""
-        for what, value in (("beam width (m)", width), ("beam height (m)", height)):
-            real(what, value, "a finite positive number", above=0.0)
-        stiffness = material.youngs_modulus * width * height**3 / 12.0
-        return cls(length, stiffness, material.density * width * height, supports, **options)
+        self._needs_a_mode(self.natural_frequencies.size, self.highest_frequency)
 
     @property
     def natural_frequencies(self) -> Array:
@@ -474,22 +413,9 @@ class SupportedBeam:
         """Of all modes, by their strain energy."""
         return self._modes[1]
 
-    @property
-    def extent(self) -> tuple[float, float]:
-        """Where it begins and ends, m."""
-        return 0.0, self.length
-
     def shapes(self, x: ArrayLike) -> tuple[Array, Array]:
         """Mass-normalised mode shapes, kg^(−1/2), and slopes (n, modes) at positions (n,), m."""
         return shapes_at(self._modes[2], x)
-
-    def shapes_along(self, start: float, spacing: float, count: int) -> tuple[Array, Array]:
-        """As `shapes`, at equally spaced positions from a first one, m."""
-        return self.shapes(start + spacing * np.arange(count))
-
-    def receptance(self, frequency: ArrayLike, x: float, x0: float) -> NDArray[np.complex128]:
-        """Displacement at `x` per harmonic force at `x0`, m/N; frequencies in Hz, e^{+iωt}."""
-        return modal_receptance(self, frequency, x, x0)
 
     @cached_property
     def _knots(self) -> Array:
@@ -534,11 +460,11 @@ class SupportedBeam:
                     lossy += support.loss_factor * spring * np.outer(row, row)
         free: Array = np.eye(len(mass))
         if fixed:
-            free = np.asarray(qr(np.array(fixed).T)[0][:, len(fixed) :], dtype=np.float64)
+            free = np.asarray(scipy.linalg.qr(np.array(fixed).T)[0][:, len(fixed) :], dtype=np.float64)
         mass, stiffness, lossy = (np.asarray(free.T @ part @ free) for part in (mass, stiffness, lossy))
         # inverted, the lowest modes have the largest values, and the fewest digits are lost in them
         shift = self.bending_stiffness / self.mass_per_length / self.length**4
-        inverse, vectors = eigh(mass, stiffness + shift * mass)
+        inverse, vectors = scipy.linalg.eigh(mass, stiffness + shift * mass)
         squares = 1.0 / inverse[::-1] - shift
         squares[: self._rigid_modes] = 0.0
         kept = squares <= (2.0 * np.pi * self.highest_frequency) ** 2
