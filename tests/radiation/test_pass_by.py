@@ -1,4 +1,4 @@
-"""Sound pressure beside the track: closed forms of what passes."""
+"""Sound pressure beside the track, and single numbers of a pass-by, against closed forms."""
 
 import numpy as np
 import pytest
@@ -6,34 +6,34 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.special import sici
 
-from asperity.errors import InputError
-from asperity.radiation.pass_by import (
-    AxleSource,
-    Passage,
-    Receiver,
-    divergence,
-    exposure,
-    squared_pressure,
-)
+from asperity.errors import ComputationError, InputError
+from asperity.radiation import pass_by
+from asperity.radiation.pass_by import FAST, AxleSource, Passage, Receiver, divergence, squared_pressure
 from asperity.radiation.track import IMPEDANCE
 
-HERE = Receiver()
 D = 7.5
-FLAT = Receiver(D, 0.0)
-WATT = np.array([1.0])
+HERE, FLAT = Receiver(), Receiver(D, 0.0)
+WATT, MILLIWATT = np.array([1.0]), AxleSource(np.array([1e-3]))
+ONE = Passage([0.0], 1.0)
 
 
-def test_a_source_at_rest_opposite_is_that_of_a_half_sphere():
+def decibels(ratio):
+    return 10 * np.log10(ratio)
+
+
+def levels(source, passage, receiver=FLAT):
+    time = passage.times(receiver, float(np.max(source.length)))
+    return pass_by.pass_by_levels(time, squared_pressure(source, passage, receiver, time), passage.passed)
+
+
+def test_a_source_opposite_is_that_of_a_half_sphere():
     # 1 W through 2π d²: L_p = 120 dB − 10 lg(2π 7.5²) + 10 lg(413 · 1e-12/4e-10)
-    found = squared_pressure(AxleSource(WATT), Passage([0.0], 1.0), FLAT, [0.0])
-    expected = 120.0 - 10 * np.log10(2 * np.pi * D**2) + 10 * np.log10(413e-12 / 4e-10)
-    assert_allclose(10 * np.log10(found[0, 0] / 4e-10), expected, atol=1e-6)
-
-
-def test_height_is_that_above_the_rail_head():
+    found = squared_pressure(AxleSource(WATT), ONE, FLAT, [0.0])[0, 0]
+    expected = 120.0 - decibels(2 * np.pi * D**2) + decibels(413e-12 / 4e-10)
+    assert_allclose(pass_by.pressure_level(found), expected, atol=1e-6)
     # a hub at 0.46 m: d² = 7.5² + 0.74²
-    found = squared_pressure(AxleSource(WATT, height=0.46), Passage([0.0], 1.0), HERE, [0.0])
-    assert_allclose(found[0, 0], IMPEDANCE / (2 * np.pi * (56.25 + 0.5476)), rtol=1e-9)
+    found = squared_pressure(AxleSource(WATT, height=0.46), ONE, HERE, [0.0])[0, 0]
+    assert_allclose(found, IMPEDANCE / (2 * np.pi * (56.25 + 0.5476)), rtol=1e-9)
 
 
 @pytest.mark.parametrize("length", [0.05, 0.5, 3.0, 30.0, 300.0])
@@ -41,11 +41,8 @@ def test_spread_opposite_the_receiver_against_the_auxiliary_function(length):
     # ∫_0^∞ exp(−aξ)/(d² + ξ²) dξ = f(ad)/d, f(x) = Ci(x) sin x + (π/2 − Si(x)) cos x
     x = 2.0 * D / length
     si, ci = sici(x)
-    assert_allclose(
-        divergence(length, D, 0.0),
-        2.0 / (length * D) * (ci * np.sin(x) + (np.pi / 2 - si) * np.cos(x)),
-        rtol=1e-9,
-    )
+    auxiliary = ci * np.sin(x) + (np.pi / 2 - si) * np.cos(x)
+    assert_allclose(divergence(length, D, 0.0), 2.0 / (length * D) * auxiliary, rtol=1e-9)
 
 
 @pytest.mark.parametrize("length", [0.3, 4.0, 60.0])
@@ -54,21 +51,16 @@ def test_spread_elsewhere_against_quadrature(length, along):
     def integrand(xi):
         return np.exp(-2.0 * abs(xi) / length) / (D**2 + (along + xi) ** 2) / length
 
-    pieces = [quad(integrand, *ends, limit=200, points=None)[0] for ends in (
-        (-40 * length, -length), (-length, 0.0), (0.0, length), (length, 40 * length)
-    )]  # fmt: skip
-    assert_allclose(divergence(length, D, along), sum(pieces), rtol=1e-6)
+    ends = length * np.array([(-40.0, -1.0), (-1.0, 0.0), (0.0, 1.0), (1.0, 40.0)])
+    total = sum(quad(integrand, *pair, limit=200)[0] for pair in ends)
+    assert_allclose(divergence(length, D, along), total, rtol=1e-6)
 
 
-def test_spread_is_continuous_where_its_series_takes_over():
-    # 2 |s − id|/ℓ passes 40
-    along = np.linspace(50.0, 70.0, 4001)
-    second = np.diff(divergence(3.0, D, along), n=2)
+def test_limits_of_the_spread():
+    # continuous where its series takes over: 2 |s − id|/ℓ passes 40
+    second = np.diff(divergence(3.0, D, np.linspace(50.0, 70.0, 4001)), n=2)
     assert_allclose(second[0], 6.0 * 0.005**2 / 50.0**4, rtol=0.1)  # of about 1/s²
     assert np.abs(np.diff(second)).max() < 1e-13
-
-
-def test_a_short_spread_is_a_point_and_a_long_one_a_line():
     along = np.linspace(-30.0, 30.0, 7)
     assert_allclose(divergence(1e-3, D, along), divergence(0.0, D, along), rtol=1e-6)
     assert_allclose(divergence(1e6, D, 0.0), np.pi / D / 1e6, rtol=2e-4)  # W/ℓ per length near the middle
@@ -79,39 +71,29 @@ def test_exposure_does_not_depend_on_the_spread(length):
     """∫ W ρc Q/(4π (d² + v² t²)) dt = W ρc Q/(4 d v), and a spread only delays parts of it."""
     passage, source = Passage([0.0], 20.0), AxleSource(WATT, length)
     closed = 1.0 * IMPEDANCE * 2.0 / (4.0 * D * 20.0)
-    assert_allclose(exposure(source, passage, FLAT), closed, rtol=1e-12)
+    assert_allclose(pass_by.exposure(source, passage, FLAT), closed, rtol=1e-12)
+    for axles, speed, receiver, share in (
+        ([0.0, 2.5], 20.0, FLAT, 2.0),
+        ([0.0, 2.5], 40.0, FLAT, 1.0),
+        ([0.0, 2.5], 20.0, Receiver(2 * D, 0.0), 1.0),
+    ):
+        found = pass_by.exposure(source, Passage(axles, speed), receiver)
+        assert_allclose(found, share * closed, rtol=1e-12)
     half = 4000.0  # m: arctan leaves 2/π d/half beyond it
     time = np.linspace(-half, half, 400_001) / 20.0
     integral = np.trapezoid(squared_pressure(source, passage, FLAT, time)[0], time)
     assert_allclose(integral, closed * (1.0 - 2.0 / np.pi * D / half), rtol=2e-5)
 
 
-def test_twice_the_speed_is_half_the_exposure_and_twice_the_distance_too():
-    source = AxleSource(WATT, 5.0)
-    one = exposure(source, Passage([0.0, 2.5], 20.0), FLAT)
-    assert_allclose(
-        10 * np.log10(exposure(source, Passage([0.0, 2.5], 40.0), FLAT) / one), -3.0103, atol=1e-4
-    )
-    assert_allclose(exposure(source, Passage([0.0, 2.5], 20.0), Receiver(2 * D, 0.0)) / one, 0.5)
-    assert_allclose(exposure(source, Passage([0.0], 20.0), FLAT) / one, 0.5)
-
-
-def test_it_is_the_same_before_and_after():
-    time = np.linspace(-2.0, 2.0, 801)
-    for length in (0.0, 8.0):
-        found = squared_pressure(AxleSource(WATT, length), Passage([0.0], 50.0), HERE, time)[0]
-        assert_allclose(found, found[::-1], rtol=1e-6)
-        assert found.argmax() == 400
-
-
-def test_axles_add_up_and_pass_one_after_the_other():
+def test_axles_pass_one_after_the_other_the_same_before_and_after():
     source, time = AxleSource(np.array([1.0, 2.0]), np.array([0.0, 6.0])), np.linspace(-1.0, 2.0, 601)
     both = squared_pressure(source, Passage([0.0, 20.0], 40.0), HERE, time)
     first, second = (squared_pressure(source, Passage([0.0], 40.0), HERE, time - lag) for lag in (0.0, 0.5))
     assert both.shape == (2, 601)
     assert_allclose(both, first + second, rtol=1e-4)
-    assert time[first[0].argmax()] == pytest.approx(0.0, abs=0.006)
-    assert time[second[0].argmax()] == pytest.approx(0.5, abs=0.006)
+    for passed, lag in ((first, 0.0), (second, 0.5)):
+        assert time[passed.argmax(axis=1)] == pytest.approx(lag, abs=0.006)
+    assert_allclose(first[:, :401], first[:, 400::-1], rtol=1e-6)
 
 
 def test_many_axles_are_a_line_source():
@@ -141,6 +123,91 @@ def test_the_record_holds_the_whole_rise_and_fall(passage, length):
     assert_allclose(np.diff(time), time[1] - time[0])
 
 
+def test_time_weighting_of_steps():
+    """1 − exp(−t/τ) from the step on; IEC 61672-1: it falls by 34.7 dB/s with F, 10 lg(e)/0.125 s."""
+    step = 1e-3
+    time = step * np.arange(-100, 600)
+    found = pass_by.time_weighted((time > -step / 2).astype(float), step)
+    after = time > -step / 2
+    # the ramp of one sample before the step: its middle lies half a sample before zero
+    assert_allclose(found[after], 1.0 - np.exp(-(time[after] + step / 2) / FAST), atol=1e-5)
+    assert (found[time < -1.5 * step] == 0.0).all()
+    values = np.ones((2, 400))
+    values[1, 100:] = 0.0
+    steady, falling = pass_by.time_weighted(values, 5e-3)
+    assert_allclose(steady, 1.0, rtol=1e-12)
+    assert_allclose(np.diff(pass_by.pressure_level(falling[110:])) / 5e-3, -34.7, atol=0.05)
+    time = np.linspace(-2.0, 2.0, 16_001)  # nothing depends on the step
+    pressure, step = 1.0 / (1.0 + (time / 0.1) ** 2), time[1] - time[0]
+    coarse = pass_by.time_weighted(pressure[::40], 40 * step)
+    assert_allclose(coarse, pass_by.time_weighted(pressure, step)[::40], rtol=2e-3)
+
+
+def test_levels_of_a_point_source_with_a_train_of_known_length():
+    """p² = A/(d² + v² t²): over |t| < T/2 the integral is 2A/(dv) arctan(vT/2d)."""
+    v, length = 25.0, 30.0
+    found = levels(MILLIWATT, Passage([0.0], v, length))
+    a, duration, half = 1e-3 * IMPEDANCE / (2 * np.pi), length / v, length / 2
+    far = np.sqrt(10 * (D**2 + half**2) - D**2)  # a tenth of what it is when the front is opposite
+    for level, reach in ((found.equivalent, half), (found.transit_exposure, far)):
+        mean = 2 * a / (D * v) * np.arctan(reach / D) / duration
+        assert_allclose(level, decibels(mean / 4e-10), atol=1e-2)
+
+
+@pytest.mark.parametrize("speed", [0.5, 20.0, 56.0, 100.0])
+def test_the_maximum_is_that_of_the_weighted_pressure(speed):
+    """Against quadrature of ∫ exp(−(t − u)/τ) p²(u) du/τ at its maximum; slowly, the level at rest."""
+    lags = np.linspace(0.0, 60.0 * FAST, 40_001)
+    t = np.linspace(0.0, 2.0, 41)[:, None] * min(D / speed, FAST)
+    weighted = np.exp(-lags / FAST) / FAST / (D**2 + (speed * (t - lags)) ** 2)
+    largest = 1e-3 * IMPEDANCE / (2 * np.pi) * np.trapezoid(weighted, lags).max()
+    found = levels(MILLIWATT, Passage([0.0], speed)).maximum[0]
+    assert found == pytest.approx(pass_by.pressure_level(largest), abs=0.02)
+    if speed == 0.5:
+        at_rest = pass_by.pressure_level(1e-3 * IMPEDANCE / (2 * np.pi * D**2))
+        assert found == pytest.approx(at_rest, abs=0.01)
+
+
+def test_a_long_train_has_the_level_of_its_line_of_axles():
+    """L_pAeq,Tp, TEL and SEL − 10 lg Tp of W' = W/a: p² = W' ρc Q/(4 d)."""
+    source, apart = AxleSource(np.array([1e-3]), 5.0), 6.0
+    passage = Passage(apart * np.arange(400), 40.0)
+    found, duration = levels(source, passage), 400 * apart / 40.0
+    line = decibels(1e-3 / apart * IMPEDANCE * 2 / (4 * D) / 4e-10)
+    exposed = pass_by.pressure_level(pass_by.exposure(source, passage, FLAT) / duration)
+    assert exposed == pytest.approx(line, abs=1e-9)
+    # a finite line of length L, mean over its own length: (2/π) (arctan L/d − (d/2L) ln(1 + L²/d²))
+    over = 400 * apart / D
+    ends = 2 / np.pi * (np.arctan(over) - np.log1p(over**2) / (2 * over))
+    assert found.equivalent[0] == pytest.approx(line + decibels(ends), abs=2e-3)
+    assert found.transit_exposure[0] == pytest.approx(line, abs=0.05)
+    assert found.equivalent[0] < found.transit_exposure[0] < line
+    assert found.maximum[0] == pytest.approx(line, abs=0.3)
+
+
+def test_sources_share_the_measured_time_and_add_up():
+    passage = Passage([0.0, 2.5], 30.0)
+    time = passage.times(FLAT, 20.0)
+    parts = [squared_pressure(AxleSource(np.array([1e-3]), s), passage, FLAT, time)[0] for s in (0.0, 20.0)]
+    found = pass_by.pass_by_levels(time, [*parts, sum(parts)], passage.passed)
+    for one in (found.equivalent, found.transit_exposure):
+        assert decibels(np.sum(10 ** (one[:2] / 10))) == pytest.approx(one[2], abs=1e-9)
+    assert found.maximum[2] < decibels(np.sum(10 ** (found.maximum[:2] / 10))) + 1e-9
+
+
+TIME = np.linspace(-1.0, 1.0, 101)
+
+
+def test_without_a_length_there_is_a_maximum_only():
+    found = pass_by.pass_by_levels(TIME, 1.0 / (1.0 + TIME[None] ** 2), None)
+    assert np.isfinite(found.maximum).all()
+    assert np.isnan([found.equivalent, found.transit_exposure]).all()
+    with pytest.raises(
+        ComputationError, match="does not fall by 10 dB before and after the train between -1"
+    ):
+        pass_by.pass_by_levels(TIME, np.ones((1, 101)), (-0.5, 0.5))
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -155,6 +222,7 @@ def test_the_record_holds_the_whole_rise_and_fall(passage, length):
         (lambda: Passage([0.0], 0.0), "speed"),
         (lambda: Passage([0.0, 20.0], 10.0, 19.0), "at least that over its axles, 20"),
         (lambda: Passage([0.0], 10.0, -1.0), "length of the train"),
+        (lambda: pass_by.time_weighted([1.0, 2.0], 0.0), "time step"),
     ],
 )
 def test_bad_input(call, message):

@@ -7,12 +7,7 @@ import pytest
 
 from asperity import Track
 from asperity.errors import InputError
-from asperity.structures.track import (
-    EN_15461_BAYS,
-    decay_rate,
-    decay_rate_en15461,
-    decay_rate_of_responses,
-)
+from asperity.structures.track import EN_15461_BAYS, decay_rate, decay_rate_en15461, decay_rate_of_responses
 
 
 def test_below_cut_on_the_decay_is_that_of_a_winkler_foundation():

@@ -345,10 +345,7 @@ def test_overrides_replace_the_other_kind_of_damping():
         ({"sleeper_spacing": 0.0}, "sleeper spacing"),
         ({"sleeper_mass": -1.0}, "sleeper mass"),
         ({"rail_loss_factor": -0.1}, "rail loss factor"),
-        (
-            {"pad_loss_factor": 0.2},
-            "pad_damping = 18000 N s/m and pad_loss_factor = 0.2; allowed: one",
-        ),
+        ({"pad_loss_factor": 0.2}, "pad_damping = 18000 N s/m and pad_loss_factor = 0.2; allowed: one"),
         ({"ballast_loss_factor": 1.0}, "damping of the ballast"),
         ({"shear_stiffness": 2e8}, "no rotary_inertia"),
         ({"rotary_inertia": 0.2}, "no shear_stiffness"),

@@ -10,12 +10,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import solve_banded
 from scipy.special import exp1
 
+from asperity.arguments import finite_array, positive, real
 from asperity.errors import ComputationError, InputError
 from asperity.radiation.track import IMPEDANCE
+from asperity.structures.modal import Array, Complex
 
 DIRECTIVITY_FACTOR = 2.0
 """Q: all of the power goes above the ground."""
@@ -33,8 +35,8 @@ class Receiver:
     height: float = 1.2
 
     def __post_init__(self) -> None:
-        _check("distance of the receiver (m)", self.distance, above=0.0)
-        _check("height of the receiver (m)", self.height)
+        positive("distance of the receiver (m)", self.distance)
+        real("height of the receiver (m)", self.height, "a finite number")
 
     def shortest(self, height: float) -> float:
         """Distance, m, from a source of this height above the rail head, m, that is just opposite."""
@@ -61,16 +63,14 @@ class AxleSource:
         If a power or a length is negative, or something is not finite.
     """
 
-    power: NDArray[np.float64]
+    power: Array
     length: ArrayLike = 0.0
     height: float = 0.0
 
     def __post_init__(self) -> None:
         for what, values in (("sound power (W)", self.power), ("length of a source (m)", self.length)):
-            given = np.asarray(values, dtype=float)
-            if not (np.isfinite(given) & (given >= 0.0)).all():
-                raise InputError(what, float(np.min(given)), "finite numbers, zero or more")
-        _check("height of a source (m)", self.height)
+            finite_array(what, values, "finite numbers, zero or more", at_least=0.0)
+        real("height of a source (m)", self.height, "a finite number")
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,20 +99,12 @@ class Passage:
 
     def __post_init__(self) -> None:
         at = np.asarray(self.axles, dtype=float)
-        if (
-            at.ndim != 1
-            or not at.size
-            or at[0] != 0.0
-            or not (np.isfinite(at).all() and (np.diff(at) > 0).all())
-        ):
+        if at.ndim != 1 or not at.size or at[0] or not np.isfinite(at).all() or (np.diff(at) <= 0.0).any():
             raise InputError("axles (m)", list(self.axles), "positions that rise from 0 m, the first axle")
-        _check("speed (m/s)", self.speed, above=0.0)
-        if self.length is not None:
-            _check("length of the train (m)", self.length, above=0.0)
-            if self.length < at[-1]:
-                raise InputError(
-                    "length of the train (m)", self.length, f"at least that over its axles, {at[-1]:g}"
-                )
+        positive("speed (m/s)", self.speed)
+        if self.length is not None and positive("length of the train (m)", self.length) < at[-1]:
+            allowed = f"at least that over its axles, {at[-1]:g}"
+            raise InputError("length of the train (m)", self.length, allowed)
 
     @property
     def passed(self) -> tuple[float, float] | None:
@@ -124,7 +116,7 @@ class Passage:
         beyond = 0.5 * (length - last)
         return -beyond / self.speed, (last + beyond) / self.speed
 
-    def times(self, receiver: Receiver, longest: float = 0.0) -> NDArray[np.float64]:
+    def times(self, receiver: Receiver, longest: float = 0.0) -> Array:
         """Times (t,), s, evenly spaced, of a record in which the level rises and falls by more than 10 dB.
 
         `longest` is the greatest length of a source, m.
@@ -137,7 +129,7 @@ class Passage:
         return np.linspace(first, last, count) / self.speed
 
 
-def divergence(length: float, distance: float, along: ArrayLike) -> NDArray[np.float64]:
+def divergence(length: float, distance: float, along: ArrayLike) -> Array:
     """Mean of 1/d² over a source that is spread along the rail, 1/m².
 
     Parameters
@@ -166,24 +158,13 @@ def divergence(length: float, distance: float, along: ArrayLike) -> NDArray[np.f
     return np.asarray((ahead + behind).imag / (length * distance))
 
 
-def squared_pressure(
-    source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike
-) -> NDArray[np.float64]:
+def squared_pressure(source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike) -> Array:
     """Mean square sound pressure (..., b, t), Pa², of what all axles make radiate, at times (t,), s."""
     spread = _divergences(source, passage, receiver, np.asarray(time, dtype=float))
     return _FACTOR * np.asarray(source.power, dtype=float)[..., None] * spread
 
 
-def weighted_squared_pressure(
-    source: AxleSource, passage: Passage, receiver: Receiver, time: ArrayLike, weights: ArrayLike
-) -> NDArray[np.float64]:
-    """The sum over the bands of `squared_pressure`, each with a weight (b,): (..., t), Pa²."""
-    spread = _divergences(source, passage, receiver, np.asarray(time, dtype=float))
-    power = np.asarray(source.power, dtype=float) * np.asarray(weights, dtype=float)
-    return _FACTOR * np.asarray(power @ spread)
-
-
-def exposure(source: AxleSource, passage: Passage, receiver: Receiver) -> NDArray[np.float64]:
+def exposure(source: AxleSource, passage: Passage, receiver: Receiver) -> Array:
     """Integral of the squared sound pressure over the whole passage (..., b), Pa² s: W ρc Q/(4 d v) per axle.
 
     However far the power is spread along the rail.
@@ -192,9 +173,7 @@ def exposure(source: AxleSource, passage: Passage, receiver: Receiver) -> NDArra
     return 4.0 * np.pi * _FACTOR * len(passage.axles) / crossing * np.asarray(source.power, dtype=float)
 
 
-def _divergences(
-    source: AxleSource, passage: Passage, receiver: Receiver, time: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _divergences(source: AxleSource, passage: Passage, receiver: Receiver, time: Array) -> Array:
     """Sum of `divergence` over the axles (b, t), 1/m², of each band's length."""
     bands = np.shape(source.power)[-1:]
     lengths = np.broadcast_to(np.asarray(source.length, dtype=float), bands).tolist()
@@ -203,7 +182,7 @@ def _divergences(
     last = passage.speed * float(time.max())
     farthest = max(-first, last)  # the same on either side
     grid = np.linspace(0.0, farthest, 2 * int(np.ceil(farthest / receiver.distance * _STEPS)) + 2)
-    heard: dict[float, NDArray[np.float64]] = {}  # those of a wheel have one length in all bands
+    heard: dict[float, Array] = {}  # those of a wheel have one length in all bands
     for length in set(lengths):
         one = divergence(length, distance, grid)
         places = (np.abs(passage.speed * time - at) for at in passage.axles)
@@ -211,7 +190,7 @@ def _divergences(
     return np.stack([heard[length] for length in lengths])
 
 
-def _scaled_exp1(z: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _scaled_exp1(z: Complex) -> Complex:
     """exp(z) E₁(z), off the negative real axis."""
     far = np.abs(z) > _FAR
     found = np.empty(z.shape, dtype=complex)
@@ -223,11 +202,6 @@ def _scaled_exp1(z: NDArray[np.complex128]) -> NDArray[np.complex128]:
         total = total + term
     found[far] = total
     return found
-
-
-def _check(what: str, value: float, above: float = -np.inf) -> None:
-    if not (np.isfinite(value) and value > above):
-        raise InputError(what, value, "a finite number" if above == -np.inf else "a finite positive number")
 
 
 REFERENCE_PRESSURE = 20e-6
@@ -242,9 +216,9 @@ DROP = 10.0
 class PassByLevels:
     """Levels of a pass-by by source, dB re 20 µPa, (s,) each; NaN where the train has no length."""
 
-    maximum: NDArray[np.float64]  # L_pAFmax, with time weighting F
-    equivalent: NDArray[np.float64]  # L_pAeq,Tp, from when the front is opposite to when the rear is
-    transit_exposure: NDArray[np.float64]  # TEL: the energy of the whole measured time, over Tp
+    maximum: Array  # L_pAFmax, with time weighting F
+    equivalent: Array  # L_pAeq,Tp, from when the front is opposite to when the rear is
+    transit_exposure: Array  # TEL: the energy of the whole measured time, over Tp
 
 
 def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, float] | None) -> PassByLevels:
@@ -285,15 +259,13 @@ def pass_by_levels(time: ArrayLike, squared: ArrayLike, passed: tuple[float, flo
     return PassByLevels(maximum, pressure_level(equivalent), pressure_level(exposed))
 
 
-def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) -> NDArray[np.float64]:
+def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) -> Array:
     """Squared pressure (..., t), Pa², with exponential time weighting, by default F.
 
     Exact for a squared pressure that is linear between its samples, `step` apart, s; it is steady before.
     """
     values = np.asarray(squared, dtype=float)
-    if not (np.isfinite(step) and step > 0.0):
-        raise InputError("time step (s)", step, "a finite positive number")
-    kept = np.exp(-step / time_constant)
+    kept = np.exp(-positive("time step (s)", step) / time_constant)
     mean = -np.expm1(-step / time_constant) * time_constant / step
     forced = (1.0 - mean) * values
     forced[..., 1:] += (mean - kept) * values[..., :-1]
@@ -303,32 +275,28 @@ def time_weighted(squared: ArrayLike, step: float, time_constant: float = FAST) 
     return np.asarray(found.T.reshape(values.shape))
 
 
-def pressure_level(squared: ArrayLike) -> NDArray[np.float64]:
+def pressure_level(squared: ArrayLike) -> Array:
     """Level of a squared sound pressure, Pa², in dB re 20 µPa."""
     with np.errstate(divide="ignore"):
         return np.asarray(10.0 * np.log10(np.asarray(squared, dtype=float) / REFERENCE_PRESSURE**2))
 
 
-def _measured(
-    time: NDArray[np.float64], whole: NDArray[np.float64], passed: tuple[float, float]
-) -> tuple[float, float]:
+def _measured(time: Array, whole: Array, passed: tuple[float, float]) -> tuple[float, float]:
     """Times before the front and after the rear at which the level has fallen by `DROP`."""
     limits = np.interp(passed, time, whole) * 10.0 ** (-DROP / 10.0)
     before = np.flatnonzero((time < passed[0]) & (whole < limits[0]))
     after = np.flatnonzero((time > passed[1]) & (whole < limits[1]))
     if not before.size or not after.size:
-        what = f"the level does not fall by {DROP:g} dB before and after the train"
-        told = f"{what} between {time[0]:.3g} s and {time[-1]:.3g} s"
-        raise ComputationError(told, "a record that begins earlier and ends later")
+        problem = f"the level does not fall by {DROP:g} dB before and after the train"
+        between = f"between {time[0]:.3g} s and {time[-1]:.3g} s"
+        raise ComputationError(f"{problem} {between}", "a record that begins earlier and ends later")
     rise, fall = (slice(at, at + 2) for at in (before[-1], after[0] - 1))
     start = np.interp(limits[0], whole[rise], time[rise])
     end = np.interp(-limits[1], -whole[fall], time[fall])
     return float(start), float(end)
 
 
-def _integral(
-    time: NDArray[np.float64], squared: NDArray[np.float64], start: float, end: float
-) -> NDArray[np.float64]:
+def _integral(time: Array, squared: Array, start: float, end: float) -> Array:
     """Integral of what is linear between its samples, (s,)."""
     within = (time > start) & (time < end)
     nodes = np.concatenate([[start], time[within], [end]])

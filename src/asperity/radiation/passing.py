@@ -9,11 +9,12 @@ from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebvander
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 
-from asperity.errors import InputError
+from asperity.arguments import finite_array
 from asperity.progress import Progress
+from asperity.structures.modal import Array, Complex
 from asperity.structures.moving_kernel import ZONES, HatResponse, MovingKernel, lagrange_weights
 from asperity.threads import one_thread_in_linear_algebra
 
@@ -32,12 +33,12 @@ DIFFERENCE = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
 
 def passed_points(
     kernel: MovingKernel,
-    forces: NDArray[np.float64],
+    forces: Array,
     origin: float,
     points: ArrayLike,
     settled: int = 0,
     progress: Progress | None = None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Displacement, m, and velocity, m/s, (runs, p, n), of the rail at fixed points under moving forces.
 
     Forces (runs, m), N, at every time step from a position `origin` on, m from the sleeper at zero, as are
@@ -50,12 +51,11 @@ def passed_points(
     track, in which a bay differs from the next by a factor, so that its forces are transformed once for all
     points.
     """
-    places = np.atleast_1d(np.asarray(points, dtype=float))
-    if not np.isfinite(places).all():
-        raise InputError("points on the rail (m)", places, "finite numbers")
+    places = np.atleast_1d(finite_array("points on the rail (m)", points))
     path = _Path(forces, origin / kernel.spacing, kernel.speed * kernel.time_step / kernel.spacing)
     displacement = np.zeros((len(forces), len(places), forces.shape[1]))
-    near, far = _Near(kernel), _Far(kernel, path.steps_in_bay)
+    near = _Waves(kernel, kernel.weights.shape[1], ZONES)
+    far = _Far(kernel, path.steps_in_bay)
     passed = [_Point(near, far, float(place)) for place in places]
     reach = [point.reach(path.bays) for point in passed]
     with one_thread_in_linear_algebra():
@@ -79,7 +79,7 @@ def passed_points(
 class _Path:
     """Forces, N, (runs, n), and where they act: first place and step, in bays from the sleeper at zero."""
 
-    forces: NDArray[np.float64]
+    forces: Array
     first: float
     stride: float
 
@@ -94,14 +94,40 @@ class _Path:
         """Steps in a bay, at most."""
         return min(self.forces.shape[1], math.ceil(1.0 / self.stride))
 
-    def within(self, bay: int) -> tuple[int, NDArray[np.float64], NDArray[np.float64]]:
+    def within(self, bay: int) -> tuple[int, Array, Array]:
         """First step in a bay, forces (runs, k) there, and their places (k,), from 0 to 1."""
         begin = max(0, math.ceil((bay - self.first) / self.stride))
         end = min(self.forces.shape[1], math.ceil((bay + 1 - self.first) / self.stride))
         return begin, self.forces[:, begin:end], self.first + self.stride * np.arange(begin, end) - bay
 
 
-class _Far:
+class _Waves:
+    """What a force at the nodes of a bay, or at places (n,) from 0 to 1, sends out on either side.
+
+    A point that has the bay on its right is on side 1, on its left −1.
+    """
+
+    def __init__(self, kernel: MovingKernel, taps: int, zones: int, places: Array | None = None) -> None:
+        self.grid = HatResponse(kernel.track, kernel.time_step, taps, zones)
+        waves = self.waves = self.grid.waves
+        self.amplitude = self.grid.hat * waves.coefficients
+        at = None if places is None else kernel.spacing * places
+        shapes = waves.shapes_at_nodes(NODES) if at is None else waves.symmetric_shapes(at)
+        self.shapes = dict(zip((1, -1), shapes, strict=True))  # (n, 2, f) for either side
+        self._powers = [np.ones_like(self.waves.multipliers)]
+
+    def felt(self, at: float) -> dict[int, Complex]:
+        """Amplitudes of the waves at a place of a bay, m, (2, f), for either side."""
+        return {1: self.amplitude * self.waves.incoming(at), -1: self.amplitude * self.waves.outgoing(at)}
+
+    def power(self, bays: int) -> Complex:
+        """Change of the waves over some bays, (2, f)."""
+        while len(self._powers) <= bays:
+            self._powers.append(self._powers[-1] * self.waves.multipliers)
+        return self._powers[bays]
+
+
+class _Far(_Waves):
     """Waves at places all over a bay, at the frequencies of a transform of its forces and what follows.
 
     A force f at the place x sends out Σ f S(ω, x) exp(−iωt), where x = x_0 + v t. The transform is long, for
@@ -116,46 +142,36 @@ class _Far:
         self.steps = 2 * next_fast_len(math.ceil(0.5 * min(1.0 / stride, wanted)))  # of all the bay
         self.between = math.ceil(wanted / self.steps)
         self.period = self.steps * self.between
-        grid = HatResponse(kernel.track, kernel.time_step, self.period // 2, 1)
-        self.waves, self.amplitude = grid.waves, grid.hat * grid.waves.coefficients
-        self.window = np.exp(grid.shift * grid.time_step * np.arange(self.period))
         nodes = chebpts1(TERMS)
         self.polynomials = np.linalg.inv(chebvander(nodes, TERMS - 1))  # by column, one at a node each
-        self.places = 0.5 * (nodes + 1.0)
-        shapes = self.waves.symmetric_shapes(kernel.spacing * self.places)
-        self.shapes = dict(zip((1, -1), shapes, strict=True))  # (TERMS, 2, f) for either side
+        places = 0.5 * (nodes + 1.0)
+        super().__init__(kernel, self.period // 2, 1, places)
+        self.window = np.exp(self.grid.shift * self.grid.time_step * np.arange(self.period))
         beside = np.arange(self.between) - self.between // 2  # of ω_m, in steps of the frequencies
         self.delay = 2.0 * np.pi / (self.period * stride) * beside
-        delayed = np.exp(-1j * self.delay * self.places[:, None])[:, None, None]
+        delayed = np.exp(-1j * self.delay * places[:, None])[:, None, None]
         self.sending = {  # (m, TERMS, 2 × between)
             side: (self.around(shape) * delayed).transpose(2, 0, 1, 3).reshape(-1, TERMS, 2 * self.between)
             for side, shape in self.shapes.items()
         }
-        self._powers = [np.ones_like(self.waves.multipliers)]
 
-    def around(self, spectra: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    def around(self, spectra: Complex) -> Complex:
         """Spectra (..., f) laid out around the frequencies ω_m, (..., m, between), zero outside."""
         before, all_in_all = self.between // 2, (self.steps // 2 + 1) * self.between
         laid_out = np.zeros((*spectra.shape[:-1], all_in_all), complex)
         laid_out[..., before : before + spectra.shape[-1]] = spectra
         return laid_out.reshape(*spectra.shape[:-1], -1, self.between)
 
-    def along(self, around: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    def along(self, around: Complex) -> Complex:
         """Spectra (..., f) from (..., m, between)."""
         before = self.between // 2
         return around.reshape(*around.shape[:-2], -1)[..., before : before + self.period // 2 + 1]
 
-    def power(self, bays: int) -> NDArray[np.complex128]:
-        """Change of the waves over some bays, (2, f)."""
-        while len(self._powers) <= bays:
-            self._powers.append(self._powers[-1] * self.waves.multipliers)
-        return self._powers[bays]
-
-    def shares(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    def shares(self, places: Array) -> Array:
         """Shares (TERMS, k) of the nodes in what acts at places (k,) from 0 to 1."""
         return np.asarray((chebvander(2.0 * places - 1.0, TERMS - 1) @ self.polynomials).T)
 
-    def in_time(self, spectra: NDArray[np.complex128], length: int) -> NDArray[np.float64]:
+    def in_time(self, spectra: Complex, length: int) -> Array:
         """What spectra (..., f) are in time, at the first `length` steps."""
         folded = spectra.copy()
         folded[..., -1] *= 2.0  # at half the sampling frequency two lines look alike
@@ -167,10 +183,10 @@ class _SentWaves:
 
     def __init__(self, far: _Far, path: _Path, bays: range) -> None:
         self.far, self.path, self.bays = far, path, bays
-        self._sent: dict[int, NDArray[np.complex128]] = {}
+        self._sent: dict[int, Complex] = {}
 
     @cached_property
-    def spectra(self) -> NDArray[np.complex128]:
+    def spectra(self) -> Complex:
         """Spectra of the forces' shares of the nodes of the bays, (m, bays × runs, TERMS)."""
         runs = len(self.path.forces)
         found = np.empty((self.far.steps // 2 + 1, len(self.bays), runs, TERMS), complex)
@@ -180,7 +196,7 @@ class _SentWaves:
             found[:, i] = rfft(shared, self.far.steps).transpose(2, 0, 1)
         return found.reshape(len(found), -1, TERMS)
 
-    def towards(self, side: int, bay: int) -> NDArray[np.complex128]:
+    def towards(self, side: int, bay: int) -> Complex:
         """Waves, (m, runs, 2, between), to points that have a bay on their right (side 1) or left (−1)."""
         if side not in self._sent:
             sent = self.spectra @ self.far.sending[side]
@@ -188,34 +204,15 @@ class _SentWaves:
         return self._sent[side][:, bay - self.bays.start]
 
 
-class _Near:
-    """Sines of a rail's free waves at the nodes of a bay, with which responses to hats of force are found."""
-
-    def __init__(self, kernel: MovingKernel) -> None:
-        self.grid = HatResponse(kernel.track, kernel.time_step, kernel.weights.shape[1], ZONES)
-        self.waves = self.grid.waves
-        self.amplitude = self.grid.hat * self.waves.coefficients
-        step = self.waves.wavenumbers * (kernel.spacing / NODES)
-        self.sines = np.zeros((NODES + 1, *step.shape), complex)
-        self.sines[1] = np.sin(step)
-        twice = 2.0 * np.cos(step)
-        for node in range(2, NODES + 1):
-            np.multiply(twice, self.sines[node - 1], out=self.sines[node])
-            self.sines[node] -= self.sines[node - 2]
-
-
 class _Point:
     """A point of the rail, m, and what forces elsewhere do there."""
 
-    def __init__(self, near: _Near, far: _Far, place: float) -> None:
+    def __init__(self, near: _Waves, far: _Far, place: float) -> None:
         self.near, self.far = near, far
-        self.spacing = near.waves.spacing
-        self.bay = math.floor(place / self.spacing)
-        self.at = place - self.bay * self.spacing
-        self._near, self._far = (
-            {1: of.amplitude * of.waves.incoming(self.at), -1: of.amplitude * of.waves.outgoing(self.at)}
-            for of in (near, far)
-        )
+        spacing = near.waves.spacing
+        self.bay = math.floor(place / spacing)
+        self.at = place / spacing - self.bay  # from 0 to 1
+        self._near, self._far = (of.felt(place - self.bay * spacing) for of in (near, far))
         self._responses = {bay: self._hats(bay) for bay in (-1, 0, 1)}
 
     def reach(self, bays: range) -> range:
@@ -239,12 +236,12 @@ class _Point:
         spectra = (received * self.far.shapes[side][:: TERMS // 2]).sum(axis=1)
         return float(np.abs(self.far.in_time(spectra, self.far.taps)).max())
 
-    def _received(self, distance: int) -> tuple[int, NDArray[np.complex128]]:
+    def _received(self, distance: int) -> tuple[int, Complex]:
         """The side of a bay further away, and what the waves sent out there are here, m/N, (2, f)."""
         side = 1 if distance > 0 else -1
         return side, self._far[side] * self.far.power(abs(distance))
 
-    def add(self, displacement: NDArray[np.float64], path: _Path, bay: int, sent: _SentWaves) -> None:
+    def add(self, displacement: Array, path: _Path, bay: int, sent: _SentWaves) -> None:
         """Add to the displacement here, m, (runs, n), what the forces in a bay do from then on."""
         begin, forces, places = path.within(bay)
         length = min(self.far.taps + len(places), displacement.shape[1] - begin)
@@ -259,29 +256,19 @@ class _Point:
         spectra += waves[:, :, 1] * here[1][:, None]
         moved += self.far.in_time(self.far.along(spectra.transpose(1, 0, 2)), length)
 
-    def _hats(self, bay: int) -> NDArray[np.float64]:
+    def _hats(self, bay: int) -> Array:
         """Responses, (NODES + 3, taps), to forces at nodes −1 … NODES + 1 of a bay; the point's is bay 0."""
-        of = self.near
-
-        @cache
-        def free(side: int, bays: int) -> NDArray[np.complex128]:
-            """Free waves of the rail in what is felt here of a force so many bays away, m/N, (2, f)."""
-            felt = self._near[side] * of.waves.multipliers**bays
-            return np.asarray(np.einsum("jf,ijf->if", felt, of.waves.weights))
-
-        places = range(bay * NODES - 1, (bay + 1) * NODES + 2)
+        of, places = self.near, range(bay * NODES - 1, (bay + 1) * NODES + 2)
         spectra = np.empty((len(places), of.amplitude.shape[1]), complex)
+        felt = cache(lambda side, bays: self._near[side] * of.power(bays))
         for place, spectrum in zip(places, spectra, strict=True):
             bays, node = divmod(place, NODES)
-            side = 1 if place * self.spacing >= NODES * self.at else -1
-            spectrum[:] = np.einsum("if,if->f", free(side, abs(bays)), of.sines[NODES - node])
-            spectrum += np.einsum("if,if->f", free(side, abs(bays) + side), of.sines[node])
+            side = 1 if place >= NODES * self.at else -1
+            np.einsum("jf,jf->f", felt(side, abs(bays)), of.shapes[side][node], out=spectrum)
         return of.grid.response(spectra)
 
 
-def _convolved(
-    forces: NDArray[np.float64], responses: NDArray[np.float64], places: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _convolved(forces: Array, responses: Array, places: Array) -> Array:
     """What forces (runs, k), N, that move through one bay do from then on, m, (runs, k + taps).
 
     The responses (nodes + 3, taps), m/N, are those to hats of unit force at the nodes −1 … nodes + 1 of the

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import h2vp, j1
 
-from asperity.errors import InputError
-from asperity.structures.periodic_rail import PeriodicWaves
+from asperity.arguments import finite_array, positive, whole
+from asperity.structures.modal import Array, Complex
 from asperity.structures.track import Track
 
 SPEED_OF_SOUND = 343.2
@@ -21,7 +22,7 @@ IMPEDANCE = 413.0
 """Density times speed of sound, Pa s/m."""
 
 
-def wavenumber(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
+def wavenumber(frequency: Array) -> Array:
     """k = ω/c of sound, rad/m, at frequencies, Hz."""
     return 2.0 * np.pi * frequency / SPEED_OF_SOUND
 
@@ -29,7 +30,7 @@ def wavenumber(frequency: NDArray[np.float64]) -> NDArray[np.float64]:
 _SMALL = 1e-2  # from here down a piston follows its series
 
 
-def cylinder(ka: ArrayLike, order: int = 1) -> NDArray[np.float64]:
+def cylinder(ka: ArrayLike, order: int = 1) -> Array:
     """Radiation ratio of a cylinder of infinite length whose surface moves as cos(nθ).
 
     Parameters
@@ -57,12 +58,11 @@ def cylinder(ka: ArrayLike, order: int = 1) -> NDArray[np.float64]:
     of its ⟨v²⟩. Limits: (π/2)(ka)³ for n = 1 and (π/2) ka for n = 0 at low ka, 1 at high ka.
     """
     ka = _positive(ka)
-    if order < 0:
-        raise InputError("order of the motion around a cylinder", order, "zero or more")
+    whole("order of the motion around a cylinder", order, "zero or more", at_least=0)
     return np.asarray(2.0 / (np.pi * ka * np.abs(h2vp(order, ka)) ** 2))
 
 
-def baffled_piston(ka: ArrayLike) -> NDArray[np.float64]:
+def baffled_piston(ka: ArrayLike) -> Array:
     """Radiation ratio of a rigid circular piston in an infinite plane, at positive ka.
 
     1 − J₁(2ka)/ka (Rayleigh 1896): (ka)²/2 at low ka, 1 at high ka. An `InputError` says if ka is not
@@ -73,22 +73,17 @@ def baffled_piston(ka: ArrayLike) -> NDArray[np.float64]:
     return np.where(ka < _SMALL, series, 1.0 - j1(2.0 * ka) / ka)
 
 
-def _positive(ka: ArrayLike) -> NDArray[np.float64]:
-    values = np.asarray(ka, dtype=float)
-    if not ((values > 0.0) & (values < np.inf)).all():
-        raise InputError("wavenumber times radius", float(np.min(values)), "finite positive numbers")
-    return values
+def _positive(ka: ArrayLike) -> Array:
+    return finite_array("wavenumber times radius", ka, "finite positive numbers", above=0.0)
 
 
-ForceOverBay = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+ForceOverBay = Callable[[Array], Array]
 """Mean square of the force at places (n,), m from a sleeper, at the frequencies (n, f), in any unit."""
 
 FEWEST_NODES = 4  # of Gauss's rule, beside one per radian of the shortest wave
 
 
-def squared_mobility(
-    track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
-) -> NDArray[np.float64]:
+def squared_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Integral along the rail of the squared mobility, mean over the places of the force in a bay.
 
     Parameters
@@ -119,49 +114,36 @@ def squared_mobility(
     (λ_i λ_j*)^p = Σ_ij u_i u_j*/(1 − λ_i λ_j*) over all bays. Within a bay by Gauss's rule, in that of the
     force from the force on. A bay is its own mirror image, so both sides of the force are alike in the mean.
     """
-    omega = 2.0 * np.pi * above_zero(frequency)
-    waves, bay = track.waves(omega), track.sleeper_spacing
-    node, weight, driven = _driven(waves)
-    along = np.stack([waves.outgoing(x) for x in node])  # (x, j, f)
-    within = np.einsum("x,xif,xjf->ijf", weight, along, along.conj(), optimize=True)
-    total = _over_bays(waves, driven, within)
-    for row, (x0, sent) in enumerate(zip(node, driven, strict=True)):
-        places, lengths = _gauss(_nodes(waves, bay - x0), bay - x0)
+    bay = _Bay(track, frequency)
+    along = np.stack([bay.waves.outgoing(x) for x in bay.node])  # (x, j, f)
+    total = bay.over_bays(np.einsum("x,xif,xjf->ijf", bay.weight, along, along.conj(), optimize=True))
+    for row, (x0, sent) in enumerate(zip(bay.node, bay.sent, strict=True)):
+        places, lengths = bay.gauss(track.sleeper_spacing - x0)
         for x, length in zip(x0 + places, lengths, strict=True):
-            total[row] += length * np.abs(np.sum(sent * waves.outgoing(x), axis=0)) ** 2
-    return 2.0 * omega**2 * _mean(total, node, weight, force)
+            total[row] += length * np.abs(np.sum(sent * bay.waves.outgoing(x), axis=0)) ** 2
+    return 2.0 * bay.mean(total, force)
 
 
-def squared_sleeper_mobility(
-    track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
-) -> NDArray[np.float64]:
+def squared_sleeper_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Sum over all half sleepers of the squared mobility, mean over the places of the force in a bay.
 
     Velocity of the sleeper per force on the rail, squared, (f,), (m/s)²/N², at positive frequencies (f,), Hz.
     A sleeper on its ballast moves by K_p/(K_p + K_b − m_s ω²) of the rail above it; the rest as in
     `squared_mobility`.
     """
-    omega = 2.0 * np.pi * above_zero(frequency)
-    waves = track.waves(omega)
-    node, weight, driven = _driven(waves)
-    above = waves.outgoing(0.0)
-    total = _over_bays(waves, driven, above[:, None] * above.conj()[None, :])
-    passed_on = np.abs(track.support.sleeper_motion(omega)) ** 2
-    return 2.0 * omega**2 * passed_on * _mean(total, node, weight, force)
+    bay = _Bay(track, frequency)
+    above = bay.waves.outgoing(0.0)
+    total = bay.over_bays(above[:, None] * above.conj()[None, :])
+    return 2.0 * np.abs(track.support.sleeper_motion(bay.omega)) ** 2 * bay.mean(total, force)
 
 
-def squared_point_mobility(
-    track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
-) -> NDArray[np.float64]:
+def squared_point_mobility(track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
     """Squared mobility of the rail at the force, mean over a bay, (f,), (m/s)²/N²; as `squared_mobility`."""
-    omega = 2.0 * np.pi * above_zero(frequency)
-    waves = track.waves(omega)
-    node, weight = _gauss(_nodes(waves, track.sleeper_spacing), track.sleeper_spacing)
-    point = np.stack([np.abs(waves.receptance(x0, x0)) ** 2 for x0 in node])
-    return omega**2 * _mean(point, node, weight, force)
+    bay = _Bay(track, frequency)
+    return bay.mean(np.stack([np.abs(bay.waves.receptance(x0, x0)) ** 2 for x0 in bay.node]), force)
 
 
-def effective_length(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
+def effective_length(track: Track, frequency: ArrayLike) -> Array:
     """Length of rail that, moving as it does at the force, holds all of the rail's mean square velocity.
 
     `squared_mobility` over `squared_point_mobility`, (f,), m; frequencies (f,), Hz, positive. Of one wave
@@ -170,52 +152,41 @@ def effective_length(track: Track, frequency: ArrayLike) -> NDArray[np.float64]:
     return squared_mobility(track, frequency) / squared_point_mobility(track, frequency)
 
 
-def above_zero(frequency: ArrayLike) -> NDArray[np.float64]:
+def above_zero(frequency: ArrayLike) -> Array:
     """Frequencies (f,), Hz, or an `InputError` where one is not positive."""
-    f = np.atleast_1d(np.asarray(frequency, dtype=float))
-    if not (np.isfinite(f) & (f > 0.0)).all():
-        raise InputError("frequency (Hz)", float(np.min(f)), "finite positive numbers")
-    return f
+    return np.atleast_1d(finite_array("frequency (Hz)", frequency, "finite positive numbers", above=0.0))
 
 
-def _mean(
-    values: NDArray[np.float64],
-    node: NDArray[np.float64],
-    weight: NDArray[np.float64],
-    force: ForceOverBay | None,
-) -> NDArray[np.float64]:
-    """Mean over a bay of values (n, f) at places (n,) with the weights of Gauss's rule and of the force."""
-    if force is None:
-        return np.asarray(weight @ values / weight.sum())
-    square = force(node)
-    return np.asarray(weight @ (square * values) / (weight @ square))
+class _Bay:
+    """Places of a force all over a bay, by Gauss's rule, and the waves that it sends out."""
 
+    def __init__(self, track: Track, frequency: ArrayLike) -> None:
+        self.omega = 2.0 * np.pi * above_zero(frequency)
+        self.waves = track.waves(self.omega)
+        self.node, self.weight = self.gauss(track.sleeper_spacing)
 
-def _driven(
-    waves: PeriodicWaves,
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.complex128]]:
-    """Places x₀ of the force (n,) in a bay, their weights (n,), and how strongly each sends out the waves."""
-    node, weight = _gauss(_nodes(waves, waves.spacing), waves.spacing)
-    return node, weight, np.stack([waves.coefficients * waves.incoming(x0) for x0 in node])
+    def gauss(self, length: float) -> tuple[Array, Array]:
+        """Nodes and weights on 0 to a length, m, fine enough for the shortest wave."""
+        count = FEWEST_NODES + math.ceil(float(np.abs(self.waves.wavenumbers).max()) * length)
+        node, weight = np.polynomial.legendre.leggauss(count)
+        return 0.5 * length * (node + 1.0), 0.5 * length * weight
 
+    @cached_property
+    def sent(self) -> Complex:
+        """How strongly a force at each place sends out the waves (n, 2, f)."""
+        return np.stack([self.waves.coefficients * self.waves.incoming(x0) for x0 in self.node])
 
-def _over_bays(
-    waves: PeriodicWaves, driven: NDArray[np.complex128], within: NDArray[np.complex128]
-) -> NDArray[np.float64]:
-    """Sum over the bays behind that of the force (n, f), of products of waves in one bay (i, j, f)."""
-    product = waves.multipliers[:, None] * waves.multipliers.conj()[None, :]
-    behind = within * product / (1.0 - product)
-    return np.einsum("xif,xjf,ijf->xf", driven, driven.conj(), behind, optimize=True).real
+    def over_bays(self, within: Complex) -> Array:
+        """Sum over the bays behind that of the force (n, f), of products of waves in one bay (i, j, f)."""
+        product = self.waves.multipliers[:, None] * self.waves.multipliers.conj()[None, :]
+        behind = within * product / (1.0 - product)
+        return np.einsum("xif,xjf,ijf->xf", self.sent, self.sent.conj(), behind, optimize=True).real
 
-
-def _nodes(waves: PeriodicWaves, length: float) -> int:
-    return FEWEST_NODES + math.ceil(float(np.abs(waves.wavenumbers).max()) * length)
-
-
-def _gauss(count: int, length: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Nodes and weights on 0 to `length`."""
-    node, weight = np.polynomial.legendre.leggauss(count)
-    return 0.5 * length * (node + 1.0), 0.5 * length * weight
+    def mean(self, values: Array, force: ForceOverBay | None) -> Array:
+        """Mean of ω² times values (n, f), by the weights of Gauss's rule and of the force."""
+        square = 1.0 if force is None else force(self.node)
+        weights = self.weight[:, None] * np.broadcast_to(square, values.shape)
+        return np.asarray(self.omega**2 * np.average(values, axis=0, weights=weights))
 
 
 STEEL_DENSITY = 7850.0
@@ -259,13 +230,11 @@ class RailSection:
     foot_width: float
     head_width: float
     area: float
-    table: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+    table: tuple[Array, Array] | None = None
 
     def __post_init__(self) -> None:
         for what in ("foot_width", "head_width", "area"):
-            value = getattr(self, what)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(f"{what} of the rail's section", value, "a finite positive number")
+            positive(f"{what} of the rail's section", getattr(self, what))
 
     @property
     def radiating_width(self) -> float:
@@ -277,7 +246,7 @@ class RailSection:
         """Area D of the section and of the air that goes with it, m²."""
         return self.area + 0.25 * np.pi * (self.foot_width**2 + self.head_width**2)
 
-    def radiation_ratio(self, frequency: ArrayLike) -> NDArray[np.float64]:
+    def radiation_ratio(self, frequency: ArrayLike) -> Array:
         """Ratio σ (f,) at positive frequencies (f,), Hz."""
         f = above_zero(frequency)
         if self.table is not None:
@@ -286,9 +255,7 @@ class RailSection:
         radius = (self.dipole_area**2 / (4.0 * np.pi * self.radiating_width)) ** (1.0 / 3.0)
         return cylinder(wavenumber(f) * radius)
 
-    def power_per_force(
-        self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
-    ) -> NDArray[np.float64]:
+    def power_per_force(self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
         """Sound power of the whole rail per mean square force on it, (f,), W/N², at frequencies (f,), Hz.
 
         `force` is how that is spread over a bay, as in `squared_mobility`.
@@ -325,9 +292,7 @@ class SleeperTop:
 
     def __post_init__(self) -> None:
         for what in ("length", "width"):
-            value = getattr(self, what)
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(f"{what} of a sleeper", value, "a finite positive number")
+            positive(f"{what} of a sleeper", getattr(self, what))
 
     @property
     def area(self) -> float:
@@ -339,13 +304,11 @@ class SleeperTop:
         """Radius of the circle of the same area, m."""
         return math.sqrt(self.area / math.pi)
 
-    def radiation_ratio(self, frequency: ArrayLike) -> NDArray[np.float64]:
+    def radiation_ratio(self, frequency: ArrayLike) -> Array:
         """Ratio σ (f,) at positive frequencies (f,), Hz: of the power to ρ c S ⟨v²⟩."""
         return baffled_piston(wavenumber(above_zero(frequency)) * self.radius)
 
-    def power_per_force(
-        self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None
-    ) -> NDArray[np.float64]:
+    def power_per_force(self, track: Track, frequency: ArrayLike, force: ForceOverBay | None = None) -> Array:
         """Sound power of all half sleepers per mean square force on the rail, (f,), W/N²; frequencies, Hz.
 
         `force` is how that is spread over a bay, as in `asperity.radiation.track.squared_mobility`.

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import beta, gamma
 
-from asperity.errors import InputError
+from asperity.arguments import finite_array, positive, whole
 from asperity.radiation.track import IMPEDANCE, SPEED_OF_SOUND, above_zero
-from asperity.structures.modal import modal_answers
+from asperity.structures.modal import Array, modal_answers
 from asperity.structures.wheel import Wheel
 
 POINTS = 41
@@ -19,12 +19,8 @@ POINTS = 41
 
 
 def modal_velocity_psd(
-    wheel: Wheel,
-    frequency: NDArray[np.float64],
-    force: NDArray[np.float64],
-    displacement: NDArray[np.float64],
-    compliance: NDArray[np.float64],
-) -> NDArray[np.float64]:
+    wheel: Wheel, frequency: Array, force: Array, displacement: Array, compliance: Array
+) -> Array:
     """PSDs of the radial velocity at the contact of the wheel's rigid motion and of each of its modes.
 
     Parameters
@@ -53,9 +49,7 @@ def modal_velocity_psd(
     return np.asarray(weight[:, None] * (compliance**2 * force + displacement))
 
 
-def _line_means(
-    wheel: Wheel, frequency: NDArray[np.float64], compliance: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _line_means(wheel: Wheel, frequency: Array, compliance: Array) -> Array:
     """Mean of ω²|α_i|²/(|α₀|² + |α_W|²) over each line (p + 1, f), with every resonance resolved."""
     step = frequency[1] - frequency[0]
     edges = np.concatenate([frequency - 0.5 * step, frequency[-1:] + 0.5 * step])
@@ -98,16 +92,13 @@ def radial_transition(nodal_diameters: int, width_ratio: float) -> float:
     (ka)^(2n+2) B(1/2, n+1)/(4^(n+1) n!²), here set equal to one.
     """
     n = _diameters(nodal_diameters)
-    if not (np.isfinite(width_ratio) and width_ratio > 0.0):
-        raise InputError("width of the tread over its radius", width_ratio, "a finite positive number")
-    limit = width_ratio * beta(0.5, n + 1.0) / (4.0 ** (n + 1) * gamma(n + 1.0) ** 2)
+    slender = positive("width of the tread over its radius", width_ratio)
+    limit = slender * beta(0.5, n + 1.0) / (4.0 ** (n + 1) * gamma(n + 1.0) ** 2)
     return float(limit ** (-1.0 / (2 * n + 2)))
 
 
 def _diameters(number: int) -> int:
-    if number != int(number) or number < 0:
-        raise InputError("number of nodal diameters", number, "a whole number, zero or more")
-    return int(number)
+    return whole("number of nodal diameters", number, "a whole number, zero or more", at_least=0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,32 +129,28 @@ class RadiatingWheel:
     radius: float
     width: float
     nodal_diameters: NDArray[np.int64]
-    axial: NDArray[np.float64]
-    radial: NDArray[np.float64]
+    axial: Array
+    radial: Array
 
     def __post_init__(self) -> None:
-        for what, value in (("radius", self.radius), ("width", self.width)):
-            if not (np.isfinite(value) and value > 0.0):
-                raise InputError(f"{what} of the wheel's tread", value, "a finite positive number")
-        shapes = {np.shape(each) for each in (self.nodal_diameters, self.axial, self.radial)}
-        if len(shapes) != 1 or len(shapes.pop()) != 1:
-            raise InputError("radiating modes", "lists of different lengths", "one value of each per mode")
+        for what in ("radius", "width"):
+            positive(f"{what} of the wheel's tread", getattr(self, what))
+        count, allowed = len(self.nodal_diameters), "finite ratios, zero or more"
         for what, values in (("axial", self.axial), ("radial", self.radial)):
-            if not (np.isfinite(values) & (np.asarray(values) >= 0.0)).all():
-                raise InputError(f"{what} velocity of a mode", values, "finite ratios, zero or more")
+            finite_array(f"{what} velocity of a mode", values, allowed, count=count, at_least=0.0)
 
-    def axial_ratio(self, frequency: ArrayLike) -> NDArray[np.float64]:
+    def axial_ratio(self, frequency: ArrayLike) -> Array:
         """σ_a (p, f) at positive frequencies (f,), Hz: 1/(1 + (f_ca/f)^(2n+4))."""
         transition = np.array([axial_transition(n) for n in self.nodal_diameters])
         return self._ratio(frequency, transition, 2 * self.nodal_diameters + 4)
 
-    def radial_ratio(self, frequency: ArrayLike) -> NDArray[np.float64]:
+    def radial_ratio(self, frequency: ArrayLike) -> Array:
         """σ_r (p, f) at positive frequencies (f,), Hz: 1/(1 + (f_cr/f)^(2n+2))."""
         slender = self.width / self.radius
         transition = np.array([radial_transition(n, slender) for n in self.nodal_diameters])
         return self._ratio(frequency, transition, 2 * self.nodal_diameters + 2)
 
-    def power(self, frequency: ArrayLike, square: NDArray[np.float64]) -> NDArray[np.float64]:
+    def power(self, frequency: ArrayLike, square: Array) -> Array:
         """Sound power (f,), W, from mean square radial velocities of the modes at the contact (p, f), m²/s².
 
         Per Hz where these are densities. Frequencies (f,), Hz.
@@ -173,8 +160,6 @@ class RadiatingWheel:
         tread = around * self.radial[:, None] ** 2 * self.radial_ratio(frequency)
         return IMPEDANCE * np.sum((disc + tread) * square, axis=0)
 
-    def _ratio(
-        self, frequency: ArrayLike, transition: NDArray[np.float64], exponent: NDArray[np.int64]
-    ) -> NDArray[np.float64]:
+    def _ratio(self, frequency: ArrayLike, transition: Array, exponent: NDArray[np.int64]) -> Array:
         over = 2.0 * np.pi * above_zero(frequency) * self.radius / SPEED_OF_SOUND / transition[:, None]
         return np.asarray(1.0 / (1.0 + over ** -exponent[:, None].astype(float)))

@@ -20,8 +20,8 @@ from asperity.radiation.pass_by import (
     exposure,
     pass_by_levels,
     pressure_level,
+    squared_pressure,
     time_weighted,
-    weighted_squared_pressure,
 )
 from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
 from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
@@ -394,9 +394,7 @@ def pass_by_group(case: CaseOnTrack, found: xarray.Dataset) -> xarray.Dataset:
     sources, band = _sources(case, found), found[spectra.BAND.name].values
     length = max(float(np.max(source.length)) for source in sources)
     time, weights = passage.times(receiver, length), 10.0 ** (a_weighting(band) / 10.0)
-    squared = _with_total(
-        [weighted_squared_pressure(source, passage, receiver, time, weights) for source in sources]
-    )
+    squared = _with_total([weights @ squared_pressure(source, passage, receiver, time) for source in sources])
     exposed = _with_total([exposure(source, passage, receiver) for source in sources])
     levels = [pass_by_levels(time, of_law, passage.passed) for of_law in squared]
     step = float(time[1] - time[0])

@@ -173,11 +173,7 @@ class _Fit:
         return np.concatenate(residuals), np.vstack(slopes)
 
     def _errors(
-        self,
-        carried: Array,
-        wanted: Array,
-        receptance: Complex,
-        change: Complex,
+        self, carried: Array, wanted: Array, receptance: Complex, change: Complex
     ) -> tuple[Array, Array]:
         """Errors of the level in each band, dB, large ones weighted, and their slopes."""
         transfer = 1.0 / (carried + receptance)

@@ -8,18 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from asperity.arguments import file_path, listed, no_file, shown
 from asperity.decoding import lines_of_cells, number_in, read_text
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.sandbox import Answer, sandboxed
-from asperity.structures.modal import ModalStructure
+from asperity.structures.modal import Array, Complex, ModalStructure
 from asperity.surfaces.readers.guards import check_claim, hostile
 from asperity.units import factor, unit_in_brackets
 
-Array = NDArray[np.float64]
+Dataset = dict[str, Any]
 
 AXES = ("x", "y", "z")
 NORMAL, COMPLEX = 2, (3, 7)
@@ -44,8 +43,7 @@ def modes_of_universal(path: str, given: dict[str, Any]) -> Answer:
     frequencies, ratios, masses, shapes = (list(values) for values in zip(*read, strict=True))
     order = np.argsort(places)
     normalised = np.column_stack(shapes)[order] / np.sqrt(masses) * np.sqrt(length / newtons)
-    names = ["positions", "natural_frequencies", "damping_ratios", "mode_shapes"]
-    return names, [places[order] * length, np.array(frequencies), np.array(ratios), normalised]
+    return NEEDED, [places[order] * length, np.array(frequencies), np.array(ratios), normalised]
 
 
 def _axis(name: str, given: object, source: str) -> int:
@@ -56,7 +54,7 @@ def _axis(name: str, given: object, source: str) -> int:
     return AXES.index(str(given))
 
 
-def _datasets(file: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]], dict[str, Any] | None]:
+def _datasets(file: Path) -> tuple[list[Dataset], list[Dataset], Dataset | None]:
     """Modes, nodes and units of a file."""
     try:
         import pyuff
@@ -66,22 +64,19 @@ def _datasets(file: Path) -> tuple[list[dict[str, Any]], list[dict[str, Any]], d
         raise InputError(file.name, "a universal file", allowed, remedy) from None
     with hostile(file.name, "universal"):
         opened = pyuff.UFF(str(file))
-        types = [str(kind).strip() for kind in opened.get_set_types()]
-        types = [kind.removesuffix(".0") for kind in types]
+        types = [str(kind).strip().removesuffix(".0") for kind in opened.get_set_types()]
         wanted = [i for i, kind in enumerate(types) if kind in ("15", "55", "164", "2411")]
-        read = [opened.read_sets(i) for i in wanted]
-    found = {"15": [], "55": [], "164": [], "2411": []}  # type: dict[str, list[dict[str, Any]]]
-    for i, content in zip(wanted, read, strict=True):
-        found[types[i]].append(content)
-    modes = [each for each in found["55"] if each.get("analysis_type") in (NORMAL, *COMPLEX)]
-    nodes = found["15"] + found["2411"]
+        sets = [(types[i], opened.read_sets(i)) for i in wanted]
+    modes = [each for kind, each in sets if kind == "55" and each.get("analysis_type") in (NORMAL, *COMPLEX)]
+    nodes = [each for kind, each in sets if kind in ("15", "2411")]
+    units = [each for kind, each in sets if kind == "164"]
     if not modes or not nodes:
         received = f"datasets {listed(types) or 'of no kind'}"
         raise InputError(file.name, received, "modes in datasets 55 and nodes in dataset 15 or 2411", _EXPORT)
-    return modes, nodes, found["164"][-1] if found["164"] else None
+    return modes, nodes, units[-1] if units else None
 
 
-def _units(stated: dict[str, Any] | None, given: dict[str, Any], source: str) -> tuple[float, float]:
+def _units(stated: Dataset | None, given: dict[str, Any], source: str) -> tuple[float, float]:
     """Length, m, and force, N, of one of the units of a file."""
     found = []
     for name, dimension in (("length", "m"), ("force", "N")):
@@ -96,11 +91,7 @@ def _units(stated: dict[str, Any] | None, given: dict[str, Any], source: str) ->
 
 
 def _path(
-    nodes: list[dict[str, Any]],
-    along: int,
-    chosen: list[int] | None,
-    modes: list[dict[str, Any]],
-    source: str,
+    nodes: list[Dataset], along: int, chosen: list[int] | None, modes: list[Dataset], source: str
 ) -> tuple[list[int], Array]:
     """Numbers of the nodes on the path and their places along it, in the file's unit of length."""
     place = {
@@ -126,7 +117,7 @@ def _path(
 
 
 def _mode(
-    mode: dict[str, Any], numbers: list[int], force: int, damping: float | None, source: str
+    mode: Dataset, numbers: list[int], force: int, damping: float | None, source: str
 ) -> tuple[float, float, float, Array]:
     """Frequency, Hz, damping ratio, modal mass and shape at the nodes, in the file's units."""
     if mode["spec_data_type"] not in DISPLACEMENT or mode["data_ch"] not in FULL:
@@ -153,7 +144,7 @@ def _mode(
     return frequency, ratio if damping is None else damping, mass, shape
 
 
-def _real_mode(values: NDArray[np.complex128], frequency: float, source: str) -> tuple[Array, complex]:
+def _real_mode(values: Complex, frequency: float, source: str) -> tuple[Array, complex]:
     """Real shape nearest to a complex one, and the factor that turns that into phase with it."""
     squares = np.sum(values**2)
     turn = complex(np.exp(-0.5j * np.angle(squares)))
@@ -178,8 +169,8 @@ VARIABLES = {
     "modal_masses": ("kg", 1),
     "residual_flexibility": ("m/N", 2),
 }
-"""Variables of a netCDF file, with SI unit and most dimensions."""
-NEEDED = ("positions", "natural_frequencies", "damping_ratios", "mode_shapes")
+"""Variables of a netCDF file, with SI unit and most dimensions, as `ModalStructure` takes them."""
+NEEDED = list(VARIABLES)[:4]
 ROWS = {
     "frequency": ("natural_frequencies", "Hz"),
     "damping ratio": ("damping_ratios", ""),
@@ -254,14 +245,9 @@ def read_modal_structure(
         raise InputError(str(file), found, "a file with modes", "Check the path.")
     if file.stat().st_size > LARGEST_FILE:
         raise InputError(file.name, amount(file.stat().st_size), f"at most {amount(LARGEST_FILE)}")
-    given = {
-        "along": along,
-        "force": force,
-        "length_unit": length_unit,
-        "force_unit": force_unit,
-        "damping": damping,
-        "nodes": None if nodes is None else [int(node) for node in nodes],
-    }
+    names = ("along", "force", "length_unit", "force_unit", "damping", "nodes")
+    numbers = None if nodes is None else [int(node) for node in nodes]
+    given = dict(zip(names, (along, force, length_unit, force_unit, damping, numbers), strict=True))
     kind = file.suffix.lower()
     if kind in (".uff", ".unv", ".univ"):
         return _read_from(file, "universal", modes_of_universal, given)
@@ -281,16 +267,10 @@ def _read_from(file: Path, kind: str, serve: Callable[..., Answer], *more: Any) 
     return _structure(dict(zip(names, arrays, strict=True)), file.name)
 
 
-def _structure(found: dict[str, Array], source: str) -> ModalStructure:
+def _structure(found: dict[str, Any], source: str) -> ModalStructure:
     try:
-        return ModalStructure(
-            found["positions"],
-            found["natural_frequencies"],
-            found["damping_ratios"],
-            found["mode_shapes"],
-            found.get("modal_masses"),
-            found.get("residual_flexibility"),
-        )
+        given: list[Any] = [found.get(name) for name in VARIABLES]
+        return ModalStructure(*given)
     except InputError as error:
         raise InputError(f"{error.what} in {source}", error.received, error.allowed, error.remedy) from None
 
@@ -302,9 +282,7 @@ def _table_of_modes(file: Path) -> dict[str, Array]:
     unit, residual = math.nan, math.nan
     for number, cells in lines_of_cells(read_text(file, file.name, _TABLE, largest=LARGEST_FILE)):
         values = [_cell(cell) for cell in cells]
-        words = 0
-        while words < len(cells) and math.isnan(values[words]):
-            words += 1
+        words = next((i for i, value in enumerate(values) if not math.isnan(value)), len(cells))
         heading = " ".join(cells[:words])
         label = heading.lower()
         row = next((row for row in ROWS if label.startswith(row)), None)
@@ -359,10 +337,9 @@ def modes_of_netcdf(path: str) -> Answer:
     file = Path(path)
     with hostile(file.name, "netCDF-4"), h5netcdf.File(file, "r") as opened:
         present = [name for name in VARIABLES if name in opened.variables]
-        for name in NEEDED:
-            if name not in present:
-                allowed = f"the variables {', '.join(NEEDED)}"
-                raise InputError(file.name, f"no variable {name}", allowed)
+        if missing := [name for name in NEEDED if name not in present]:
+            allowed = f"the variables {', '.join(NEEDED)}"
+            raise InputError(file.name, f"no variable {missing[0]}", allowed)
         arrays = [netcdf_numbers(opened.variables[name], name, *VARIABLES[name], file) for name in present]
         modes = opened.variables["natural_frequencies"].dimensions
         shapes = present.index("mode_shapes")

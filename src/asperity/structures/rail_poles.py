@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -236,8 +236,6 @@ class RailBetween:
 
     direct: RailPoles | MovingKernel  # under the force itself
     crossing: Mapping[float, RailPoles | MovingKernel]  # by how far ahead of the force, m; negative behind
-    # errors of `crossing`, rms over all lags and start positions, relative to the direct kernel
-    errors: Mapping[float, float] = field(default_factory=dict)
     reach: float = np.inf  # m, beyond which contacts do not feel each other
 
     @property
@@ -304,52 +302,37 @@ def rail_between(
         reach = not_negative("reach (m)", reach)
     apart = np.unique(np.round(np.subtract.outer(at, at), DECIMALS))
     lengths = np.unique(np.abs(apart[apart != 0.0]))
+    kernel = direct.kernel
     crossing: dict[float, RailPoles | MovingKernel] = {}
-    errors: dict[float, float] = {}
+    positions, taps = kernel.weights.shape
+    like = {"duration": taps * kernel.time_step, "positions": positions, "cache": cache}
     for done, length in enumerate(lengths):
         if reach is not None and length > reach:
             break
-        kernels = [_crossing(direct.kernel, sign * float(length), cache) for sign in (1.0, -1.0)]
-        size = max(_size(kernel.weights) for kernel in kernels) / _size(direct.kernel.weights)
+        far = [
+            moving_kernel(kernel.track, kernel.speed, kernel.time_step, distance=sign * float(length), **like)
+            for sign in (1.0, -1.0)
+        ]
+        size = max(np.linalg.norm(each.weights) for each in far) / np.linalg.norm(kernel.weights)
         if reach is None and size < NEGLIGIBLE:
             reach = float(lengths[done - 1]) if done else 0.0
             break
-        for kernel in kernels:
-            crossing[kernel.distance], errors[kernel.distance] = _fitted(direct, kernel, cache)
+        crossing |= {each.distance: _fitted(direct, each, cache) for each in far}
         if progress is not None:
             progress(done + 1, len(lengths), "rail between contacts")
-    return RailBetween(direct, crossing, errors, np.inf if reach is None else reach)
-
-
-def _size(weights: Array) -> float:
-    return float(np.linalg.norm(weights))
-
-
-def _crossing(direct: MovingKernel, distance: float, cache: Cache | None) -> MovingKernel:
-    positions, taps = direct.weights.shape
-    return moving_kernel(
-        direct.track,
-        direct.speed,
-        direct.time_step,
-        duration=taps * direct.time_step,
-        positions=positions,
-        distance=distance,
-        cache=cache,
-    )
+    return RailBetween(direct, crossing, np.inf if reach is None else reach)
 
 
 def _fitted(
     direct: RailPoles | MovingKernel, kernel: MovingKernel, cache: Cache | None
-) -> tuple[RailPoles | MovingKernel, float]:
-    """The fewest poles that are enough, else the kernel itself, and the error relative to the direct one."""
-    if isinstance(direct, RailPoles):
-        for count in COUNTS:
-            if count > most_poles(kernel.weights.shape[1]):
-                break
+) -> RailPoles | MovingKernel:
+    """The fewest poles that miss little, relative to the direct kernel; else the kernel itself."""
+    weights = direct.kernel.weights
+    for count in COUNTS if isinstance(direct, RailPoles) else ():
+        if count <= most_poles(kernel.weights.shape[1]):
             fit = rail_poles(kernel, count, cache=cache)
             left = fit.missed()
-            within = np.abs(left.sum(axis=1)).max() / np.abs(direct.kernel.weights.sum(axis=1)).min()
-            error = max(_size(left) / _size(direct.kernel.weights), float(within))
-            if error <= TOLERANCE:
-                return fit, error
-    return kernel, 0.0
+            static = np.abs(left.sum(axis=1)).max() / np.abs(weights.sum(axis=1)).min()
+            if max(np.linalg.norm(left) / np.linalg.norm(weights), static) <= TOLERANCE:
+                return fit
+    return kernel
