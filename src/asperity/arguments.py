@@ -24,6 +24,7 @@ FORMS = {"plane": 1, "quadratic": 2}  # words for polynomials of these degrees
 MOST_PASSES = 100  # of running-in
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 def require(right: object, what: str, received: object, allowed: str, remedy: str = "") -> None:

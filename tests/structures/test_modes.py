@@ -383,7 +383,7 @@ def test_what_is_no_structure_is_refused(kind, change, message):
             r"positions on the structure \(m\): received 1.2 to 1.2",
         ),
         (lambda: ModalStructure(**TABLE).with_rigid_body(-1.0), r"mass \(kg\): received -1"),
-        (lambda: material("aluminum"), "Did you mean \"aluminium"),
+        (lambda: material("aluminum"), 'Did you mean "aluminium"'),
         (lambda: Material("jelly", 0.0, 0.3, 1000.0), "Young's modulus"),
         (lambda: Material("jelly", 1e5, 0.6, 1000.0), "Poisson's ratio"),
     ],

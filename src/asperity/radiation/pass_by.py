@@ -14,10 +14,9 @@ from numpy.typing import ArrayLike
 from scipy.linalg import solve_banded
 from scipy.special import exp1
 
-from asperity.arguments import finite_array, positive, real
+from asperity.arguments import Array, Complex, finite_array, positive, real
 from asperity.errors import ComputationError, InputError
 from asperity.radiation.track import IMPEDANCE
-from asperity.structures.modal import Array, Complex
 
 DIRECTIVITY_FACTOR = 2.0
 """Q: all of the power goes above the ground."""

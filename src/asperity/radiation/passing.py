@@ -12,9 +12,8 @@ from numpy.polynomial.chebyshev import chebpts1, chebvander
 from numpy.typing import ArrayLike
 from scipy.fft import irfft, next_fast_len, rfft
 
-from asperity.arguments import finite_array
+from asperity.arguments import Array, Complex, finite_array
 from asperity.progress import Progress
-from asperity.structures.modal import Array, Complex
 from asperity.structures.moving_kernel import ZONES, HatResponse, MovingKernel, lagrange_weights
 from asperity.threads import one_thread_in_linear_algebra
 

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import h2vp, j1
 
-from asperity.arguments import finite_array, positive, whole
-from asperity.structures.modal import Array, Complex
+from asperity.arguments import Array, Complex, finite_array, positive, whole
 from asperity.structures.track import Track
 
 SPEED_OF_SOUND = 343.2

@@ -14,11 +14,11 @@ import scipy
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike
 
-from asperity.arguments import positive, real
+from asperity.arguments import Array, positive, real
 from asperity.errors import InputError
 from asperity.kernels.along import STRIDE, add_near_fields, turn_on
 from asperity.reference.materials import Material
-from asperity.structures.modal import Array, Modal, Pieces, modal_receptance, pieces_of, shapes_at
+from asperity.structures.modal import Modal, Pieces, modal_receptance, pieces_of, shapes_at
 
 SUPPORTS = ("simply-supported", "free", "clamped")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import finite_array, positive, real
+from asperity.arguments import Array, finite_array, positive, real
 from asperity.errors import InputError
 from asperity.reference.materials import Material
 
@@ -71,7 +71,6 @@ class Ball:
         return self.weight if self.load is None else self.load
 
 
-Array = NDArray[np.float64]
 CARRIED = 1e-9
 """Share of the pressing forces that may be left uncarried."""
 

@@ -17,9 +17,9 @@ import scipy
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from asperity.arguments import Array, Complex
 from asperity.spectra import third_octave_bands
 from asperity.store import Cache, content_key, made
-from asperity.structures.modal import Array, Complex
 from asperity.structures.track import Relaxation, Relaxations, Track, relaxing
 
 LOWEST, HIGHEST = 5.0, 5000.0

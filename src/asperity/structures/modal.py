@@ -12,12 +12,9 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import finite_array, positive, real, real_array
+from asperity.arguments import Array, Complex, finite_array, positive, real, real_array
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.kernels.piecewise import evaluate_pieces
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 class Modal(Protocol):

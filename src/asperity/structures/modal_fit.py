@@ -13,8 +13,9 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from asperity import errors
+from asperity.arguments import Array, Complex
 from asperity.errors import ComputationError, InputError
-from asperity.structures.modal import Array, Complex, modal_answers
+from asperity.structures.modal import modal_answers
 from asperity.threads import one_thread_in_linear_algebra
 
 

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
-from asperity.arguments import not_negative, positive, real, shown, whole
+from asperity.arguments import Array, Complex, not_negative, positive, real, shown, whole
 from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.progress import Progress
 from asperity.store import Cache, content_key, made
 from asperity.structures.causal_track import causal_track
-from asperity.structures.modal import Array, Complex
 from asperity.structures.periodic_rail import PeriodicWaves
 from asperity.structures.track import Track
 from asperity.threads import thread_count

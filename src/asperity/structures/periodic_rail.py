@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from asperity.arguments import Array, Complex
 from asperity.errors import InputError
-from asperity.structures.modal import Array, Complex
 
 _LARGEST_EXPONENT = 200.0  # products of three exponentials stay inside the range of doubles
 

@@ -12,11 +12,10 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import finite_array, not_negative
+from asperity.arguments import Array, Complex, finite_array, not_negative
 from asperity.errors import ComputationError, InputError, UnconvergedWarning
 from asperity.progress import Progress
 from asperity.store import Cache, content_key, made
-from asperity.structures.modal import Array, Complex
 from asperity.structures.modal_fit import least_squares, paired, real_basis, vector_fit
 from asperity.structures.moving_kernel import DIED_AWAY, MovingKernel, moving_kernel
 

@@ -10,11 +10,11 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from asperity.arguments import real_array
+from asperity.arguments import Array, Complex, real_array
 from asperity.errors import CoarseSamplingWarning, EnergyWarning, InputError, percent
 from asperity.structures import modal_fit
 from asperity.structures.body import GRAVITY, Body, carriage
-from asperity.structures.modal import Array, Complex, ModalStructure, modal_answers, warn_of_coarse
+from asperity.structures.modal import ModalStructure, modal_answers, warn_of_coarse
 from asperity.structures.modal_fit import RESIDUAL_DAMPING, Modes
 from asperity.structures.wheel import Wheel
 

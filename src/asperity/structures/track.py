@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import finite_array, not_negative, positive, shown
+from asperity.arguments import Array, Complex, finite_array, not_negative, positive, shown
 from asperity.errors import InputError
 from asperity.reference.tracks import named_track
-from asperity.structures.modal import Array, Complex
 from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
 
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from asperity.arguments import positive
+from asperity.arguments import Array, Complex, positive
 from asperity.errors import InputError
 from asperity.structures import modal_fit
 from asperity.structures.body import Body, no_modes, resonances
-from asperity.structures.modal import Array, Complex, modal_answers
+from asperity.structures.modal import modal_answers
 
 
 @dataclass(frozen=True, eq=False)
