@@ -14,15 +14,6 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_without_a_terminal_each_piece_of_work_is_one_line():
-    stream = io.StringIO()
-    with progress_bar(stream) as progress:
-        for message in ("scan", "roll"):
-            for done in range(100):
-                progress(done, 100, message)
-    assert stream.getvalue() == "scan …\nroll …\n"
-
-
 class Clock:
     """A clock that is set by hand."""
 
@@ -37,65 +28,51 @@ def clock(monkeypatch):
     return Clock(monkeypatch)
 
 
-def test_without_a_terminal_a_line_tells_rate_and_remaining_time_now_and_then(clock):
-    stream = io.StringIO()
-    with progress_bar(stream) as progress:
-        for clock.now, done in ((0.0, 0), (5.0, 25), (11.0, 50), (12.0, 60), (22.0, 100)):
-            progress(done, 100, "scan")
-    assert stream.getvalue() == (
-        "scan …\nscan: 50 of 100, 4.55/s, about 11 s left\nscan: 100 of 100, 4.55/s, about 0 s left\n"
-    )
+def shown(clock, *reports, verbose=False):
+    """What is written without a terminal of (time, done, total, message)."""
+    with speaking(Manner(verbose=verbose)), progress_bar(stream := io.StringIO()) as progress:
+        for clock.now, *report in reports:
+            progress(*report)
+    return stream.getvalue().splitlines()
 
 
-def test_time_of_the_compiler_counts_for_no_rate(clock):
-    """Ten steps of one second each: the 80 s in which something was compiled are none of theirs."""
-    stream = io.StringIO()
-    with speaking(Manner(verbose=True)), progress_bar(stream) as progress:
-        progress(0, 40, "scan")
-        module.COMPILATION.begin("kernel")
-        clock.now = 1.0
-        module.COMPILATION.begin("kernel inside it")
-        clock.now = 60.0
-        module.COMPILATION.end("kernel inside it")
-        clock.now = 80.0
-        module.COMPILATION.end("kernel")
-        clock.now = 90.0
-        progress(10, 40, "scan")
-        clock.now = 120.0
-        progress(40, 40, "scan")
-    assert module.COMPILATION.functions == 2
-    assert module.COMPILATION.seconds == 80.0
-    assert stream.getvalue().splitlines() == [
-        "scan …",
-        "compiling functions, once: later runs load them …",
-        "scan: 10 of 40, 1/s, about 30 s left",
-        "scan: 40 of 40, 1/s, about 0 s left",
-        "scan: 40 of 40 in 40 s, and 80 s to compile",
-    ]
+def test_without_a_terminal_each_piece_of_work_is_one_line_and_the_remaining_time_now_and_then(clock):
+    quick = [(0.0, done, 100, message) for message in ("scan", "roll") for done in range(100)]
+    assert shown(clock, *quick) == ["scan …", "roll …"]
+    slow = [(time, done, 100, "scan") for time, done in ((0, 0), (5, 25), (11, 50), (12, 60), (22, 100))]
+    assert shown(clock, *slow) == ["scan …", "scan: 50 of 100, about 11 s left", "scan: 100 of 100"]
 
 
 def test_a_rate_is_that_of_the_last_half_minute(clock):
     """What was taken as kept went by at once; what is left has to be computed."""
-    pace = module.Pace("scan", 0)
-    for clock.now, done in ((1.0, 1000), (30.0, 1010), (60.0, 1020), (90.0, 1030)):
-        pace.report(done)
-    assert pace.rate == pytest.approx(1 / 3)
-    assert pace.told(1059) == "20/min, about 87 s left"
+    reports = [(0, 0), (1, 1000), (30, 1010), (60, 1020), (90, 1030)]
+    lines = shown(clock, *((time, done, 1059, "scan") for time, done in reports))
+    assert lines[-1] == "scan: 1030 of 1059, about 87 s left"
 
 
 def test_before_anything_is_done_no_time_is_promised(clock):
-    pace = module.Pace("scan", 3)
-    clock.now = 50.0
-    pace.report(3)
-    assert pace.told(10) == ""
+    assert shown(clock, (0.0, 3, 10, "scan"), (50.0, 3, 10, "scan"))[-1] == "scan: 3 of 10"
 
 
-@pytest.mark.parametrize(
-    ("rate", "text"),
-    [(0.05, "3/min"), (0.5, "0.5/s"), (12.34, "12.3/s"), (31e3, "31 k/s"), (2.5e6, "2.5 M/s")],
-)
-def test_rates(rate, text):
-    assert module.per_second(rate) == text
+def test_what_was_compiled_is_told_once_and_what_each_piece_took_where_it_is_wanted(clock):
+    with speaking(Manner(verbose=True)), progress_bar(stream := io.StringIO()) as progress:
+        progress(0, 40, "scan")
+        for clock.now, step, name in (
+            (0.0, module.COMPILATION.begin, "outer"),
+            (1.0, module.COMPILATION.begin, "inner"),
+            (60.0, module.COMPILATION.end, "inner"),
+            (80.0, module.COMPILATION.end, "outer"),
+            (81.0, module.COMPILATION.end, "loaded, not compiled"),
+        ):
+            step(name)
+        clock.now = 120.0
+        progress(40, 40, "scan")
+    assert (module.COMPILATION.functions, module.COMPILATION.seconds) == (2, 80.0)
+    lines = ["scan …", module.COMPILING, "scan: 40 of 40", "scan: 40 of 40 in 2 min"]
+    assert stream.getvalue().splitlines() == lines
+    with progress_bar(stream := io.StringIO()):
+        module.COMPILATION.begin("another")
+    assert stream.getvalue() == ""
 
 
 def test_nothing_is_shown_where_it_shall_be_quiet():
@@ -106,23 +83,12 @@ def test_nothing_is_shown_where_it_shall_be_quiet():
 
 
 def test_on_a_terminal_there_is_a_bar_for_each_piece_of_work():
-    stream = Terminal()
-    with progress_bar(stream) as progress:
-        progress(1, 4, "scan")
-        progress(4, 4, "scan")
+    with progress_bar(stream := Terminal()) as progress:
+        progress(1, 4, "scan [b]")
+        progress(4, 4, "scan [b]")
         progress(2, 8, "roll")
-    assert "scan" in stream.getvalue()
-    assert "4/4" in stream.getvalue()
-    assert "2/8" in stream.getvalue()
-
-
-def test_a_bar_tells_rate_and_remaining_time(clock):
-    stream = Terminal()
-    with progress_bar(stream) as progress:
-        progress(0, 100, "scan")
-        clock.now = 10.0
-        progress(20, 100, "scan")
-    assert "2/s, about 40 s left" in stream.getvalue()
+    for words in ("scan [b]", "4/4", "2/8", "0:00:0"):
+        assert words in stream.getvalue()
 
 
 @pytest.mark.parametrize(

@@ -2,164 +2,109 @@
 
 from __future__ import annotations
 
-import math
 import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from html import escape
 from importlib import import_module
-from typing import Protocol, TextIO
+from typing import TextIO
 
 from asperity.printable import printable
 from asperity.terminal import manner, write
 
 NOTEBOOK_INTERVAL = 0.2  # s between drawings of a bar
 QUIET_INTERVAL = 10.0  # s between lines where standard error is not a terminal
-COMPILING_INTERVAL = 3.0  # s, likewise while functions are compiled: nobody expects that
-WINDOW = 30.0  # s over which a rate is taken
+WINDOW = 30.0  # s over which a rate is taken: what was kept went by at once, the rest has to be computed
+COMPILED = "compiled functions"
+"""The piece of work that is compiling."""
+COMPILING = "compiling functions, once: later runs load them …"
 
-
-class Progress(Protocol):
-    """What long work calls: ``progress(done, total, message)``."""
-
-    def __call__(self, done: int, total: int, message: str) -> None:
-        """Report that `done` of `total` steps of the work called `message` are finished."""
+Progress = Callable[[int, int, str], object]
+"""What long work calls, as ``progress(done, total, message)``: so many steps of the work are finished."""
 
 
 class Compilation:
-    """Time that the compiler took in this process: its first use of a kernel, never that of the work."""
+    """What was compiled in this process, its first use of kernels, and how long that took, s."""
 
     def __init__(self) -> None:
-        self.functions = 0  # that were compiled
-        self._told: Callable[[], None] | None = None
-        self._said = False
-        self._spent, self._begun = 0.0, 0.0  # s
-        self._open: set[str] = set()
+        self.functions, self.seconds = 0, 0.0
+        self._announce: Callable[[str], object] | None = None
+        self._begun: dict[str, float] = {}  # functions that are being compiled, one inside the other
         self._lock = threading.Lock()
 
-    @property
-    def seconds(self) -> float:
-        """Time until now, s."""
-        with self._lock:
-            return self._spent + (time.monotonic() - self._begun if self._open else 0.0)
-
-    def begin(self, name: str) -> None:
-        """Say that a function is being compiled; others may be inside it."""
-        with self._lock:
-            told = None if self._open else self._told
-            if not self._open:
-                self._begun = time.monotonic()
-            self._open.add(name)
-        if told is not None:
-            told()
-
     @contextmanager
-    def told_to(self, tell: Callable[[str], None]) -> Iterator[None]:
-        """Have it said, once in a process, that something is compiled while the ``with`` statement runs."""
-        before, self._told = self._told, None if self._said else lambda: self._tell_once(tell)
+    def announced(self, announce: Callable[[str], object]) -> Iterator[None]:
+        """Have the first compilation of this process announced while the ``with`` statement runs."""
+        self._announce = announce if not self.functions else None
         try:
             yield
         finally:
-            self._told = before
+            self._announce = None
 
-    def _tell_once(self, tell: Callable[[str], None]) -> None:
-        self._told, self._said = None, True
-        tell(COMPILING)
+    def begin(self, name: str) -> None:
+        """Say that a function is being compiled."""
+        with self._lock:
+            self._begun[name] = time.monotonic()
+            announce, self._announce = self._announce, None
+        if announce is not None:
+            announce(COMPILING)
 
     def end(self, name: str) -> None:
         """Say that it is done."""
         with self._lock:
-            if name in self._open:
-                self._open.discard(name)
+            if (begun := self._begun.pop(name, None)) is not None:
                 self.functions += 1
-                if not self._open:
-                    self._spent += time.monotonic() - self._begun
+                self.seconds += 0.0 if self._begun else time.monotonic() - begun
 
 
-COMPILING = "compiling functions, once: later runs load them …"
 COMPILATION = Compilation()
-"""Of this process."""
-COMPILED = "compiled functions"
-"""The piece of work that is compiling: its time counts."""
-ENOUGH = 0.2
-"""Share of it from which on the time left is told: kernels differ."""
 
 
-class Pace:
-    """How fast a piece of work goes: steps done over the time it took without the compiler's, lately."""
+class _Piece:
+    """A piece of work: what is done of it, and how long the rest will take."""
 
-    def __init__(self, message: str, done: int) -> None:
-        self.message = message
-        self.begun, self._compiled = time.monotonic(), COMPILATION.seconds
-        self._seen = deque([(0.0, done)])
+    def __init__(self, message: str, done: int, total: int) -> None:
+        self.message, self.done, self.total = message, done, total
+        self.begun = self._shown = time.monotonic()
+        self._seen = deque([(self.begun, done)])
 
-    def report(self, done: int) -> None:
-        """Take down that so many steps are done now."""
-        now = self.worked
+    def report(self, done: int, total: int, interval: float) -> bool:
+        """Take down that so many steps are done now; return whether that is to be shown."""
+        now, self.done, self.total = time.monotonic(), done, total
         self._seen.append((now, done))
         while len(self._seen) > 2 and self._seen[1][0] < now - WINDOW:
             self._seen.popleft()
+        due = now - self._shown >= interval
+        self._shown = now if due else self._shown
+        return due
 
     @property
-    def compiling(self) -> float:
-        """Time in which something was compiled meanwhile, s; none of it where this is the work."""
-        return 0.0 if self.message == COMPILED else COMPILATION.seconds - self._compiled
-
-    @property
-    def worked(self) -> float:
-        """Time since the beginning, without the compiler's, s."""
-        return max(time.monotonic() - self.begun - self.compiling, 0.0)
-
-    @property
-    def rate(self) -> float:
-        """Steps per second over the last `WINDOW`; NaN before any is done."""
+    def words(self) -> str:
+        """How far it is, as ``"scan: 5 of 9, about 4 s left"``; no time before anything is done."""
         (first, before), (last, done) = self._seen[0], self._seen[-1]
-        return (done - before) / (last - first) if done > before and last > first else math.nan
-
-    def left(self, total: int) -> float:
-        """Time, s, that the rest will take at this rate; NaN before any is done."""
-        return (total - self._seen[-1][1]) / self.rate
-
-    def told(self, total: int) -> str:
-        """Rate and time left in words, as ``"5.2/s, about 9 s left"``; nothing before any is done."""
-        if self.message == COMPILED and self._seen[-1][1] < ENOUGH * total:
-            return ""
-        rate, left = self.rate, self.left(total)
-        return f"{per_second(rate)}, about {duration(left)} left" if math.isfinite(left) else ""
-
-
-def per_second(rate: float) -> str:
-    """Write a rate for people: ``"5.2/s"``, ``"31 k/s"``, ``"4/min"``."""
-    if rate < 0.5:
-        return f"{60 * rate:.2g}/min"
-    for size, prefix in ((1e6, " M"), (1e3, " k")):
-        if rate >= size:
-            return f"{rate / size:.3g}{prefix}/s"
-    return f"{rate:.3g}/s"
+        left = (self.total - done) * (last - first) / (done - before) if done > before else 0.0
+        return f"{self.message}: {done} of {self.total}" + f", about {duration(left)} left" * (left > 0.0)
 
 
 @contextmanager
 def progress_bar(stream: TextIO | None = None) -> Iterator[Progress]:
-    """Show progress while the body of the ``with`` statement runs.
+    """Show progress while the body of the ``with`` statement runs, by default on standard error.
 
     It gives a callable ``progress(done, total, message)``, where a new `message` starts a new piece of work.
-    On a terminal every piece has a bar with its share, its rate and the remaining time; elsewhere a plain
-    line is written when it starts and every 10 s. By default on standard error. Time of the compiler counts
-    for no rate. Where it shall be quiet nothing is shown; where more is wanted, what each piece took.
+    On a terminal every piece has a bar with its counts and the remaining time; elsewhere a plain line is
+    written when it starts and every 10 s. Where it shall be quiet nothing is shown; where more is wanted,
+    what each piece took.
     """
     stream = sys.stderr if stream is None else stream
     if manner().quiet:
         yield lambda done, total, message: None
     elif stream is None or not stream.isatty():  # None: standard error is closed
-        plain = _PlainProgress(stream)
-        try:
-            with COMPILATION.told_to(lambda text: write(stream, text)):
-                yield plain
-        finally:
-            plain.finish()
+        announced = COMPILATION.announced(lambda text: write(stream, text))
+        with announced, closing(_PlainProgress(stream)) as plain:
+            yield plain
     else:
         with _bars(stream) as update:
             yield update
@@ -168,34 +113,25 @@ def progress_bar(stream: TextIO | None = None) -> Iterator[Progress]:
 @contextmanager
 def _bars(stream: TextIO) -> Iterator[Progress]:
     """A bar for each piece of work, drawn by rich."""
+    from rich import progress
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn
 
-    words, pace = (
-        TextColumn("{task.description}", markup=False),
-        TextColumn("{task.fields[told]}", markup=False),
+    tasks: dict[str, progress.TaskID] = {}
+    columns = (
+        progress.TextColumn("{task.description}", markup=False),
+        progress.BarColumn(),
+        progress.MofNCompleteColumn(),
+        progress.TimeRemainingColumn(elapsed_when_finished=True),
     )
-    tasks: dict[str, TaskID] = {}
-    paces: dict[str, Pace] = {}
-    with Progress(words, BarColumn(), MofNCompleteColumn(), pace, console=Console(file=stream)) as bars:
+    with progress.Progress(*columns, console=Console(file=stream)) as bars:
 
         def update(done: int, total: int, message: str) -> None:
             if message not in tasks:
-                tasks[message] = bars.add_task(printable(message), total=total, told="")
-                paces[message] = Pace(message, done)
-            here = paces[message]
-            here.report(done)
-            told = _took(here) if done >= total else here.told(total)
-            bars.update(tasks[message], completed=done, total=total, told=told)
+                tasks[message] = bars.add_task(printable(message))
+            bars.update(tasks[message], completed=done, total=total)
 
-        with COMPILATION.told_to(lambda text: bars.console.print(text, markup=False, highlight=False)):
+        with COMPILATION.announced(lambda text: bars.console.print(text, markup=False, highlight=False)):
             yield update
-
-
-def _took(pace: Pace) -> str:
-    """Time that a piece has taken, and how much of it the compiler took."""
-    compiling = f", and {duration(pace.compiling)} to compile" if pace.compiling >= 1.0 else ""
-    return f"{duration(pace.worked)}{compiling}"
 
 
 @contextmanager
@@ -204,7 +140,7 @@ def shown_progress(progress: Progress | None) -> Iterator[Progress]:
     if progress is not None:
         yield progress
     elif _in_notebook():
-        with _NotebookProgress() as shown:
+        with closing(_NotebookProgress()) as shown:
             yield shown
     else:
         yield lambda done, total, message: None
@@ -221,70 +157,51 @@ class _NotebookProgress:
     """A bar beneath the cell that is run, which goes when the work ends."""
 
     def __init__(self) -> None:
-        self.line = "", 0, 1, ""  # message, done, total, rate and time left
-        self.pace = Pace("", 0)
-        self.drawn = time.monotonic()
+        self.piece: _Piece | None = None
         self.handle = import_module("IPython.display").display(self, display_id=True)
 
-    def __enter__(self) -> _NotebookProgress:
-        return self
-
-    def __exit__(self, *caught: object) -> None:
-        self.line = "", 0, 1, ""
+    def __call__(self, done: int, total: int, message: str) -> None:
+        if self.piece is None or message != self.piece.message:
+            self.piece = _Piece(message, done, total)
+        elif not self.piece.report(done, total, NOTEBOOK_INTERVAL) and done < total:
+            return
         self.handle.update(self)
 
-    def __call__(self, done: int, total: int, message: str) -> None:
-        now = time.monotonic()
-        if message != self.pace.message:
-            self.pace = Pace(message, done)
-        else:
-            self.pace.report(done)
-            if now - self.drawn < NOTEBOOK_INTERVAL and done < total:
-                return
-        self.line, self.drawn = (message, done, total, self.pace.told(total)), now
+    def close(self) -> None:
+        """Take the bar away."""
+        self.piece = None
         self.handle.update(self)
 
     def __repr__(self) -> str:
-        message, done, total, _ = self.line
-        return f"{message}: {done} of {total}" if message else ""
+        return self.piece.words if self.piece else ""
 
     def _repr_html_(self) -> str:
-        message, done, total, told = self.line
-        if not message:
+        if not self.piece:
             return ""
-        bar = f'<progress value="{done}" max="{max(total, 1)}"></progress>'
-        rest = f", {told}" if told and 0 < done < total else ""
-        return f"{bar} {escape(printable(message))}: {done} of {total}{rest}"
+        bar = f'<progress value="{self.piece.done}" max="{max(self.piece.total, 1)}"></progress>'
+        return f"{bar} {escape(printable(self.piece.words))}"
 
 
 class _PlainProgress:
     """A line at the start of a piece of work, and one every few seconds."""
 
     def __init__(self, stream: TextIO | None) -> None:
-        self.stream = stream
-        self.pace: Pace | None = None
-        self.done, self.total = 0, 0
-        self.written = 0.0
+        self.stream, self.piece = stream, _Piece("", 0, 0)
 
     def __call__(self, done: int, total: int, message: str) -> None:
-        now = time.monotonic()
-        if self.pace is None or message != self.pace.message:
-            self.finish()
-            self.pace, self.written = Pace(message, done), now
+        if message != self.piece.message:
+            self.close()
+            self.piece = _Piece(message, done, total)
             write(self.stream, f"{message} …")
-        else:
-            self.pace.report(done)
-            if now - self.written >= (COMPILING_INTERVAL if message == COMPILED else QUIET_INTERVAL):
-                self.written = now
-                told = self.pace.told(total)
-                write(self.stream, f"{message}: {done} of {total}" + f", {told}" * bool(told))
-        self.done, self.total = done, total
+        elif self.piece.report(done, total, QUIET_INTERVAL):
+            write(self.stream, self.piece.words)
 
-    def finish(self) -> None:
+    def close(self) -> None:
         """Say what the piece took that ends here, where that is wanted."""
-        if self.pace is not None and manner().verbose:
-            write(self.stream, f"{self.pace.message}: {self.done} of {self.total} in {_took(self.pace)}")
-        self.pace = None
+        piece = self.piece
+        if piece.message and manner().verbose:
+            took = duration(time.monotonic() - piece.begun)
+            write(self.stream, f"{piece.message}: {piece.done} of {piece.total} in {took}")
 
 
 def duration(seconds: float) -> str:
