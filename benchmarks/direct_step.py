@@ -59,21 +59,18 @@ Timed = dict[str, float]
 def rolled(name: str) -> tuple[Any, Callable[[Clock], Any]]:
     """Prepare a case; its law, and what rolls it."""
     from asperity.kinds.cases import parse_case
+    from asperity.rolling.roll import roll_bodies
     from asperity.running import prepare_case
-    from asperity.scenes import compute as ball
-    from asperity.scenes import compute as wheel
+    from asperity.scenes.compute import compute
 
     prepared = prepare_case(parse_case(CASES[name]))
-    case, quiet = prepared.case, lambda *_: None
-    if name == "ball":
-        found, path = ball.compute(prepared, quiet), ("speed", "start", "duration", "time_step")
-        bodies, roll = (found.beam, found.ball), ball.roll_ball
-        options = {"sensors": case.beam.sensor_positions}
-    else:
-        found, path = wheel.compute(prepared, quiet), ("start", "duration", "settling")
-        bodies, roll, options = (found.rail, found.wheel), wheel.roll_wheel, {}
-    law, options = found.chain.laws["direct"], options | {key: getattr(case, key) for key in path}
-    return law, lambda clock: roll(*bodies, law, progress=clock, **options)
+    case, found = prepared.case, compute(prepared, lambda *_: None)
+    law, scene = found.chain.laws["direct"], found.scene
+    path = {"speed": case.speed, "start": case.record_start, "time_step": case.time_step}
+    path |= {"duration": case.rolled_time, "settling": case.settled_time, "sensors": scene.sensors}
+    return law, lambda clock: roll_bodies(
+        found.over, scene.rolling, [law], positions=scene.positions, progress=clock, **path
+    )
 
 
 def scanned(law: Any, run: Any) -> float:
@@ -81,7 +78,7 @@ def scanned(law: Any, run: Any) -> float:
     from asperity.contact.halfspace import HalfSpace
 
     space = HalfSpace(law.body.shape, law.spacing, law.modulus, law.hardness)
-    stride = max(1, round(float(run.position[1] - run.position[0]) / law.spacing[0]))
+    stride = max(1, round(float(run.positions[0, 1] - run.positions[0, 0]) / law.spacing[0]))
     rows = law.heights[: (SCANNED - 1) * stride + len(law.body)]
     approach, planes = np.array([run.relative_displacement.mean()]), np.zeros(SCANNED)
     began = time.process_time()

@@ -24,7 +24,6 @@ from asperity.kinds.cases import kind_of, parse_case
 from asperity.laws.layout import force
 from asperity.progress import Progress
 from asperity.reference.law_accuracy import HIGH, LOW
-from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case
 from asperity.scenarios.chain import Chain
 from asperity.scenarios.law_choice import place_of
@@ -156,13 +155,13 @@ def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[st
             if str(kept["case"]) == case.text:
                 return dict(kept)
     chain = chain_of(case, progress)
-    run = first_contact(chain.runs["direct"])
+    run = chain.runs["direct"]
     found = {
         "case": np.array(case.text),
-        "force": run.contact_force,
-        "position": run.position,
-        "displacement": run.relative_displacement,
-        "loss": np.array(run.contact_loss_share),
+        "force": run.contact_force[0],
+        "position": run.positions[0],
+        "displacement": run.relative_displacement[0],
+        "loss": np.array(1.0 - run.in_contact.mean()),
         "seconds": np.array(chain.seconds["law direct"]),
         "unconverged": np.array(run.unconverged_steps),
     }
@@ -184,13 +183,12 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
         name: float(direct[name]) for name in ("loss", "seconds", "unconverged")
     }
     kept["direct"]["energy"] = (10.0 ** (levels / 10.0)).tolist()
-    for name, each in chain.runs.items():
-        run = first_contact(each)
+    for name, run in chain.runs.items():
         course = force(built[name], direct["position"], direct["displacement"])
         kept[name] = {
-            "energy": (10.0 ** (energies(run.contact_force)[1] / 10.0)).tolist(),
+            "energy": (10.0 ** (energies(run.contact_force[0])[1] / 10.0)).tolist(),
             "mean": float(run.contact_force.mean()),
-            "loss": run.contact_loss_share,
+            "loss": 1.0 - float(run.in_contact.mean()),
             "course": float(np.sqrt(np.mean((course - reference) ** 2)) / reference.std()),
             "seconds": chain.seconds[f"law {name}"],
             "unconverged": run.unconverged_steps,

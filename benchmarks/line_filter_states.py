@@ -25,7 +25,6 @@ from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.laws.layout import force
 from asperity.progress import progress_bar
 from asperity.reference.cnossos import rail_roughness
-from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case
 from asperity.scenes.compute import compute
 from asperity.spectra import band_levels, psd
@@ -90,17 +89,17 @@ def away_of(found, wanted) -> str:
 def compare(name, case) -> None:
     """Print the lines of a case: records, and forces on the course of `direct`."""
     chain, step = rolled(case), case.time_step
-    runs = {law: first_contact(run) for law, run in chain.runs.items()}
-    direct = runs["direct"]
-    wanted = levels(direct.contact_force, step)
-    for law, run in runs.items():
-        line = f"| {name} | {law} | {100 * run.contact_loss_share:.1f} | "
-        line += f"{away_of(levels(run.contact_force, step), wanted)} | "
+    direct = chain.runs["direct"]
+    followed = direct.contact_force[0]
+    wanted = levels(followed, step)
+    for law, run in chain.runs.items():
+        line = f"| {name} | {law} | {100 * (1.0 - run.in_contact.mean()):.1f} | "
+        line += f"{away_of(levels(run.contact_force[0], step), wanted)} | "
         if law != "direct":
-            course = force(chain.workshop.build(law), direct.position, direct.relative_displacement)
-            off = np.sqrt(np.mean((course - direct.contact_force) ** 2)) / direct.contact_force.std()
-            slope = np.cov(course, direct.contact_force)[0, 1] / direct.contact_force.var()
-            line += f"{100 * off:.0f} | {slope:.2f} | {course.mean() / direct.contact_force.mean():.2f} |"
+            course = force(chain.workshop.build(law), direct.positions[0], direct.relative_displacement[0])
+            off = np.sqrt(np.mean((course - followed) ** 2)) / followed.std()
+            slope = np.cov(course, followed)[0, 1] / followed.var()
+            line += f"{100 * off:.0f} | {slope:.2f} | {course.mean() / followed.mean():.2f} |"
         print(line, flush=True)
 
 
@@ -109,10 +108,9 @@ def average(first, load, rms, longest, shortest) -> None:
     energies, lost = {law: [] for law in LAWS[:-1]}, {law: [] for law in LAWS[:-1]}
     for seed in range(first, first + 8):
         case = ball(seed, load, rms, longest, shortest, LAWS[:-1])
-        for law, each in rolled(case).runs.items():
-            run = first_contact(each)
-            energies[law].append(10 ** (levels(run.contact_force, case.time_step) / 10))
-            lost[law].append(run.contact_loss_share)
+        for law, run in rolled(case).runs.items():
+            energies[law].append(10 ** (levels(run.contact_force[0], case.time_step) / 10))
+            lost[law].append(1.0 - run.in_contact.mean())
     mean = {law: 10 * np.log10(np.mean(found, axis=0)) for law, found in energies.items()}
     for law, found in mean.items():
         print(

@@ -31,11 +31,11 @@ from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
-from asperity.rolling.roll import roll_wheel
+from asperity.rolling.roll import roll_bodies
+from asperity.structures.body import Body
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
-from asperity.structures.rail_poles import RailPoles, rail_poles
+from asperity.structures.rail_poles import RailBetween, RailPoles, rail_poles
 from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
 from asperity.surfaces.synthesis import from_bands
 
 SPEED, STEP, LOAD, MASS = 56.0, 40e-6, 65e3, 600.0  # m/s, s (25 kHz), N, kg
@@ -86,7 +86,10 @@ def laws(duration: float) -> dict[str, Law]:
 def timed(rail: RailPoles | MovingKernel, law: LaidOut, duration: float) -> float:
     """CPU time per step, s."""
     clock = Clock()
-    roll_wheel(rail, Wheel(MASS, LOAD), law, start=0.0, duration=duration, settling=0.0, progress=clock)  # type: ignore[arg-type]
+    roll_bodies(
+        RailBetween(rail, {}), [Body.rigid(MASS, LOAD)], [law], positions=[0.0], start=0.0, duration=duration,
+        speed=SPEED, time_step=STEP, progress=clock,
+    )  # type: ignore[arg-type] # fmt: skip
     return clock.seconds_per_step
 
 

@@ -33,13 +33,12 @@ from step_clock import Clock
 from asperity.laws import HertzLaw
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling.roll import roll_ball, roll_bodies, roll_wheel
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import RailBetween, RailPoles, rail_between, rail_poles
 from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
 
 STEEL = material("steel")
 BALL = Ball(0.025, STEEL)
@@ -74,8 +73,8 @@ def balls(count: int, beam: Beam, law: HertzLaw, steps: int) -> tuple[float, flo
     )
     single = [
         seconds_per_step(
-            lambda clock, start=0.3 + place: roll_ball(
-                beam, BALL, law, sensors=[], start=start, progress=clock, **path
+            lambda clock, start=0.3 + place: roll_bodies(
+                beam, bodies[:1], [law], positions=[0.0], start=start, progress=clock, **path
             )
         )
         for place in at
@@ -88,7 +87,7 @@ def wheels(
 ) -> tuple[float, float]:
     """The same of the wheels of a train."""
     at = (COACH + COACHES * np.arange(8)[:, None]).ravel()[:count]
-    body, wheel = Body.rigid(600.0, 65e3), Wheel(600.0, 65e3)
+    body = Body.rigid(600.0, 65e3)
     together = seconds_per_step(
         lambda clock: roll_bodies(
             between, [body] * count, [law] * count, positions=at, start=0.3, speed=SPEED, time_step=STEP,
@@ -97,8 +96,16 @@ def wheels(
     )  # fmt: skip
     single = [
         seconds_per_step(
-            lambda clock, start=0.3 + place: roll_wheel(
-                rail, wheel, law, start=start, duration=steps * STEP, settling=0.0, progress=clock
+            lambda clock, start=0.3 + place: roll_bodies(
+                RailBetween(rail, {}),
+                [body],
+                [law],
+                positions=[0.0],
+                start=start,
+                speed=SPEED,
+                time_step=STEP,
+                duration=steps * STEP,
+                progress=clock,
             )
         )
         for place in at

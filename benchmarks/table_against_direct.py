@@ -27,7 +27,6 @@ from asperity.errors import PhysicsWarning
 from asperity.kinds.ball_on_beam.case import BallOnBeam
 from asperity.kinds.cases import parse_case
 from asperity.progress import progress_bar
-from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case
 from asperity.scenes.compute import Computed, compute
 from asperity.spectra import band_levels, psd
@@ -51,14 +50,14 @@ class Ensemble:
 
     def add(self, computed: Computed) -> None:
         """Add a path."""
-        runs = {law: first_contact(run) for law, run in computed.chain.runs.items()}
+        runs = computed.chain.runs
         step = computed.case.time_step
-        force = np.stack([runs[law].contact_force for law in LAWS])
+        force = np.stack([runs[law].contact_force[0] for law in LAWS])
         segment = min(force.shape[1], round(0.1 / step))
         self.centres, levels = band_levels(*psd(force, step, segment=segment), low=LOW, high=HIGH)
         self.energies.append(10 ** (levels / 10))
         self.correlations.append(np.corrcoef(force)[0])
-        self.losses.append(np.array([runs[law].contact_loss_share for law in LAWS]))
+        self.losses.append(np.array([1.0 - runs[law].in_contact.mean() for law in LAWS]))
         self.unconverged += runs["direct"].unconverged_steps
         self.steps += force.shape[1] - 1
 

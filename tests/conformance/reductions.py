@@ -16,9 +16,9 @@ from asperity.reduction.filter import punch_taps, response
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.reference.materials import material
-from asperity.rolling.roll import roll_ball
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball
+from one_contact import roll_ball
 
 STEEL = material("steel")
 

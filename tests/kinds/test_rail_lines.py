@@ -8,12 +8,12 @@ import pytest
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.kinds.cases import parse_case
 from asperity.kinds.wheel_on_rail.textures import textures_of
-from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case, run
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.linear_force import force_transfer
 from asperity.scenes.compute import compute
 from like_measured import either, wheel_lines, where_measured
+from one_contact import first_contact
 
 CASE = """
 kind = "wheel-on-rail"

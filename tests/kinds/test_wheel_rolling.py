@@ -10,7 +10,6 @@ from asperity.laws import HertzLaw, Linear
 from asperity.radiation.passing import _Path, passed_points
 from asperity.reduction.texture import StateTexture
 from asperity.reference import cnossos
-from asperity.rolling.roll import roll_wheel
 from asperity.scenarios.linear_force import linear_force_psd
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store
@@ -19,6 +18,7 @@ from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 from asperity.surfaces.synthesis import from_bands
+from one_contact import roll_wheel
 
 SPEED, STEP = 56.0, 50e-6
 TRACK = Track(
@@ -187,7 +187,7 @@ class TestPassedPoints:
         texture = roughness(0.0, 1.2)
         run = roll_wheel(kernel, WHEEL, linear(texture), start=0.0, duration=0.6, settling=0.2)
         points = np.array([16.2, 16.5, 16.61])
-        history, origin = run.every.history, run.every.history_start[0]
+        history, origin = run.history, run.history_start[0]
         settled = history.shape[1] - len(run.time)
         displacement, velocity = passed_points(kernel, history, origin, points, settled)
         for i, x in enumerate(points):

@@ -12,13 +12,14 @@ from shelf import Shelf
 from asperity.laws import HertzLaw, Linear
 from asperity.laws.layout import force
 from asperity.reduction.texture import StateTexture
-from asperity.rolling.roll import first_contact, roll_bodies, roll_wheel
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.body import Body
 from asperity.structures.modal import STATIC, STATIC_DAMPING
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
+from one_contact import first_contact, roll_wheel
 
 TRACK = Track(
     bending_stiffness=4.725e6, mass_per_length=60.0, rail_loss_factor=0.004, pad_stiffness=300e6,

@@ -7,12 +7,13 @@ from asperity.contact import HalfSpace
 from asperity.laws import Direct
 from asperity.reference.materials import material
 from asperity.rolling import stepper as stepping
-from asperity.rolling.roll import roll_ball, roll_bodies, roll_wheel
+from asperity.rolling.roll import roll_bodies
 from asperity.structures.beam import Beam
 from asperity.structures.body import Ball, Body
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
+from one_contact import roll_ball, roll_wheel
 
 STEEL, MODULUS, CELLS, RTOL = material("steel"), 115e9, 31, 1e-6
 BALL, BEAM = Ball(0.025, STEEL), Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)

@@ -12,7 +12,7 @@ from asperity.errors import CoarseSamplingWarning, ComputationError, LargeDeflec
 from asperity.laws import HertzLaw, Linear
 from asperity.reduction.texture import StateTexture
 from asperity.reference.materials import material
-from asperity.rolling import roll, stability
+from asperity.rolling import stability
 from asperity.rolling.assembly import alternating, system_of
 from asperity.rolling.ground import ground_of
 from asperity.rolling.path import Path
@@ -23,6 +23,7 @@ from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.rail_poles import RailBetween, rail_poles
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
+from one_contact import roll_ball, roll_wheel
 
 STEEL = material("steel")
 BEAM = Beam.rectangular(1.0, 0.05, 0.01, STEEL, highest_frequency=5e3)
@@ -55,7 +56,7 @@ def test_no_step_of_a_ball_grows(mass, stiffness, damping, time_step):
     law = Linear(5.0, stiffness, 0.0, texture, damping)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)
-        run = roll.roll_ball(
+        run = roll_ball(
             BEAM, ball, law, speed=speed, start=0.3, duration=(STEPS - 2) * time_step,
             time_step=time_step, sensors=[0.5],
         )  # fmt: skip
@@ -75,7 +76,7 @@ def test_no_flight_of_a_ball_grows(mass, stiffness, time_step, flight):
     law = HertzLaw(stiffness, StateTexture.unfiltered(texture, speed * time_step, 0.3))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        run = roll.roll_ball(
+        run = roll_ball(
             BEAM, Ball(0.025, STEEL, load, mass), law, speed=speed, start=0.3,
             duration=(STEPS - 2) * time_step, time_step=time_step, sensors=[0.5],
         )  # fmt: skip
@@ -123,7 +124,7 @@ def test_no_step_of_a_wheel_grows(poles, data):
     texture = bump(56.0 * 50e-6, 0.0, 1.0 / stiffness)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", CoarseSamplingWarning)
-        run = roll.roll_wheel(
+        run = roll_wheel(
             poles, wheel, Linear(65e3, stiffness, 0.0, texture, damping),
             start=0.0, duration=(STEPS - 2) * 50e-6, settling=0.0,
         )  # fmt: skip
@@ -206,7 +207,7 @@ def test_softened_contact_has_the_frequency_of_newmark():
     heavy = Beam(1.0, 4e12, 1e8, highest_frequency=5e3)
     texture = bump(1e-3 * h, 0.3, 1e-3 / stiffness)
     with pytest.warns(CoarseSamplingWarning):
-        run = roll.roll_ball(
+        run = roll_ball(
             heavy, Ball(0.025, STEEL, 5.0, mass), Linear(5.0, stiffness, 0.0, texture), speed=1e-3, start=0.3,
             duration=(STEPS - 2) * h, time_step=h, sensors=[0.5],
         )  # fmt: skip
@@ -222,7 +223,7 @@ def test_a_motion_that_runs_away_is_told():
         pytest.warns(LargeDeflectionWarning),
         pytest.raises(ComputationError, match=r"the motion runs away: at step \d+.*under a load of 5 N"),
     ):
-        roll.roll_ball(
+        roll_ball(
             BEAM, Ball(0.025, STEEL, 5.0, 0.5), HertzLaw(1e12, texture), speed=1.0, start=0.3, duration=9e-4,
             time_step=1e-5, sensors=[0.5],
         )  # fmt: skip
@@ -239,7 +240,7 @@ def test_a_strong_damper_stays_below_what_a_rigid_contact_does():
     for damping in (1e8, 1e10):
         law = HertzLaw(9.413e10, texture, damping)
         with pytest.warns(CoarseSamplingWarning, match=r"softening the contact by 2.2 %"):
-            run = roll.roll_wheel(pole_model, Wheel(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0)
+            run = roll_wheel(pole_model, Wheel(600.0, 65e3), law, start=0.0, duration=0.09, settling=0.0)
         assert run.contact_loss_share == 0.0
         forces.append(run.contact_force)
     assert forces[1].std() == pytest.approx(forces[0].std(), rel=0.02)
@@ -251,7 +252,7 @@ def test_a_beam_that_bends_too_far_is_told():
     with pytest.warns(
         LargeDeflectionWarning, match=f"up to {static:.3g} m under the contact, 43 % of its length"
     ):
-        roll.roll_ball(
+        roll_ball(
             soft, Ball(0.025, STEEL, 20.0), HertzLaw(1e10), speed=1.0, start=15.0, duration=1e-3,
             time_step=1e-5, sensors=[0.5],
         )  # fmt: skip

@@ -8,10 +8,10 @@ import pytest
 from asperity.errors import PhysicsWarning
 from asperity.kinds.cases import kind_of, parse_case
 from asperity.laws.layout import force
-from asperity.rolling.roll import first_contact
 from asperity.running import prepare_case
 from asperity.scenarios.reducing import chosen_states, filtered_loads, touched_places
 from asperity.scenes.compute import compute
+from one_contact import first_contact
 
 HEAVY_BALL = """
 kind = "ball-on-beam"

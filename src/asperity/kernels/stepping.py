@@ -25,7 +25,9 @@ SETTLED = 4.0 * FORCE_TOLERANCE
 """Change of a force over a sweep, of itself plus the load, that counts as none."""
 MISSED, FOUND, AS_GUESSED = range(3)
 """How the force of one contact was found, with the others held."""
-OVER_DAMPING, BODY_DAMPING, CONTACT_DAMPING, THROUGHPUT, CONTACT_WORK, SLOPE_WORK = range(6)
+BOOKED = ("structure_damping", "body_damping", "contact_damping", "throughput", "contact", "slope")
+"""What the ledger adds up, J: what `asperity.rolling.roll.Ledger` says of each."""
+OVER_DAMPING, BODY_DAMPING, CONTACT_DAMPING, THROUGHPUT, CONTACT_WORK, SLOPE_WORK = range(len(BOOKED))
 POWERS = 4
 """Those of the ledger that are integrated from their powers; work of contacts and slope is by the step."""
 
@@ -80,7 +82,7 @@ class Motion(NamedTuple):
     rate: NDArray  # (n,), of the approach, on a rail of the body alone, m/s
     climb: NDArray  # (n,), on the slope of the structure, m/s
     power: NDArray  # (POWERS,), now, W
-    ledger: NDArray  # (6,), since the start, J, in the order of the names above
+    ledger: NDArray  # (6,), since the start, J, in the order of BOOKED
     counts: NDArray  # (3,), steps done, steps not converged, evaluations of the laws
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,11 +18,9 @@ from asperity.rolling.ground import warn_if_bent
 from asperity.rolling.path import Path
 from asperity.rolling.stepper import Stepper
 from asperity.store import Checkpoint
-from asperity.structures.body import Ball, Body
+from asperity.structures.body import Body
 from asperity.structures.modal import Modal
-from asperity.structures.moving_kernel import MovingKernel
-from asperity.structures.rail_poles import RailBetween, RailPoles
-from asperity.structures.wheel import Wheel
+from asperity.structures.rail_poles import RailBetween
 
 Array = NDArray[np.float64]
 
@@ -89,44 +86,6 @@ class RolledBodies:
     evaluations: int  # of the laws, in run-in and run
     unconverged_steps: int  # time steps in which a contact force missed the tolerance, of run-in and run
     outcome: Outcome  # whether all steps converged
-
-
-@dataclass(frozen=True, eq=False)
-class FirstContact:
-    """What the first contact of bodies that have rolled recorded, and beside it what all of them did."""
-
-    every: RolledBodies
-    position: Array  # (n,), of the contact, m
-    contact_force: Array  # (n,), N, compression positive
-    relative_displacement: Array  # (n,), approach of the mean surfaces, m, positive closing
-    over_displacement: Array  # (n,), of what is rolled over, at the contact, m, positive downwards
-    rolling_displacement: Array  # (n,), of what rolls, at the contact, m, positive downwards
-    in_contact: NDArray[np.bool_]  # (n,), whether the bodies touch
-    contact_loss: list[outcome.ContactLoss]  # flights
-    time: Array  # this and the next ones as of all contacts
-    acceleration: Array
-    energy: Ledger
-    evaluations: int
-    unconverged_steps: int
-    outcome: Outcome
-
-    @property
-    def contact_loss_share(self) -> float:
-        """Share of the time out of contact."""
-        return 1.0 - float(np.mean(self.in_contact))
-
-    @property
-    def longest_loss(self) -> float:
-        """Duration of the longest flight, s."""
-        return max((event.duration for event in self.contact_loss), default=0.0)
-
-
-def first_contact(every: RolledBodies) -> FirstContact:
-    """Take the first contact of bodies that have rolled."""
-    names = [field.name for field in fields(FirstContact)[2:]]
-    own = {name: getattr(every, name) for name in names}
-    own |= {name: own[name][0] for name in names[: names.index("time")]}
-    return FirstContact(every, every.positions[0], **own)
 
 
 def roll_bodies(
@@ -259,39 +218,5 @@ def _refuse_missed_loads(assembly: Assembly, record: stepping.Histories, apart: 
 def _ledger(assembly: Assembly, before: tuple[float, float, float]) -> Ledger:
     """Balance of a run that started with these energies of structure, of bodies and of their loads, J."""
     structure, bodies, loads = (now - then for now, then in zip(assembly.energies(), before, strict=True))
-    ledger = assembly.motion.ledger.tolist()
-    return Ledger(
-        loads=-loads,
-        bodies=bodies,
-        body_damping=ledger[stepping.BODY_DAMPING],
-        structure=structure,
-        structure_damping=ledger[stepping.OVER_DAMPING],
-        contact=ledger[stepping.CONTACT_WORK],
-        slope=ledger[stepping.SLOPE_WORK],
-        contact_damping=ledger[stepping.CONTACT_DAMPING],
-        throughput=ledger[stepping.THROUGHPUT],
-    )
-
-
-def roll_ball(beam: Modal, ball: Ball, law: Law, *, sensors: ArrayLike, **path: Any) -> FirstContact:
-    """Roll a ball over a beam at constant speed, and keep what follows the run-in.
-
-    Sensors (k,) on the beam, m; all else as of `roll_bodies`, of which this is one rigid body.
-    """
-    body = Body.rigid(ball.mass, ball.static_load)
-    return first_contact(roll_bodies(beam, [body], [law], positions=[0.0], sensors=sensors, **path))
-
-
-def roll_wheel(rail: RailPoles | MovingKernel, wheel: Wheel, law: Law, **path: Any) -> FirstContact:
-    """Roll a wheel along a track at constant speed, and keep what follows the run-in.
-
-    The track is given for one speed and time step, as poles, or scattered; the contact is at `start` at time
-    zero, m from a sleeper. All else as of `roll_bodies`, of which this is one body.
-    """
-    between = RailBetween(rail, {})
-    own: dict[str, Any] = {
-        "positions": [0.0],
-        "speed": between.kernel.speed,
-        "time_step": between.kernel.time_step,
-    }
-    return first_contact(roll_bodies(between, [wheel.body], [law], **own, **path))
+    booked = dict(zip(stepping.BOOKED, assembly.motion.ledger.tolist(), strict=True))
+    return Ledger(loads=-loads, bodies=bodies, structure=structure, **booked)
