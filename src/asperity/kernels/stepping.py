@@ -25,9 +25,7 @@ SETTLED = 4.0 * FORCE_TOLERANCE
 """Change of a force over a sweep, of itself plus the load, that counts as none."""
 MISSED, FOUND, AS_GUESSED = range(3)
 """How the force of one contact was found, with the others held."""
-BOOKED = ("structure_damping", "body_damping", "contact_damping", "throughput", "contact", "slope")
-"""What the ledger adds up, J: what `asperity.rolling.roll.Ledger` says of each."""
-OVER_DAMPING, BODY_DAMPING, CONTACT_DAMPING, THROUGHPUT, CONTACT_WORK, SLOPE_WORK = range(len(BOOKED))
+OVER_DAMPING, BODY_DAMPING, CONTACT_DAMPING, THROUGHPUT, CONTACT_WORK, SLOPE_WORK = range(6)
 POWERS = 4
 """Those of the ledger that are integrated from their powers; work of contacts and slope is by the step."""
 
@@ -82,17 +80,17 @@ class Motion(NamedTuple):
     rate: NDArray  # (n,), of the approach, on a rail of the body alone, m/s
     climb: NDArray  # (n,), on the slope of the structure, m/s
     power: NDArray  # (POWERS,), now, W
-    ledger: NDArray  # (6,), since the start, J, in the order of BOOKED
+    ledger: NDArray  # (6,), since the start, J, in the order of the names above
     counts: NDArray  # (3,), steps done, steps not converged, evaluations of the laws
 
 
 class Histories(NamedTuple):
     """Time histories of t steps, written in place; displacements positive downwards."""
 
-    force: NDArray  # (n, t), N
-    approach: NDArray  # (n, t), m
-    over: NDArray  # (n, t), of what is rolled over, at the contact, m
-    rolling: NDArray  # (n, t), of what rolls, at the contact, m
+    contact_force: NDArray  # (n, t), N
+    relative_displacement: NDArray  # (n, t), approach, m
+    over_displacement: NDArray  # (n, t), of what is rolled over, at the contact, m
+    rolling_displacement: NDArray  # (n, t), of what rolls, at the contact, m
     core: NDArray  # (b, d, t), coordinates, positive upwards
     acceleration: NDArray  # (sensors, t), m/s²
 
@@ -344,13 +342,14 @@ def observe_contact(system, motion, record, step, shapes, slopes, k):  # type: i
     over, over_rate, climb, body, body_rate = contact_rates(system, motion, shapes, slopes, k)
     h, force, rise, rate = system.time_step, motion.force[0, k], 0.0, -(body_rate + over_rate + climb)
     on_rail = system.channels.source.shape[0] > 0
-    record.force[k, step], record.approach[k, step] = force, -(over + body)
-    record.over[k, step], record.rolling[k, step] = over, -body
+    approach, rolling = record.relative_displacement[k], record.rolling_displacement[k]
+    record.contact_force[k, step], record.over_displacement[k, step] = force, over
+    approach[step], rolling[step] = -(over + body), -body
     motion.power[THROUGHPUT] += abs(force * over_rate) + abs(force * body_rate)
     if step > 0:
-        closer = record.approach[k, step] - record.approach[k, step - 1]
+        closer = approach[step] - approach[step - 1]
         if on_rail:
-            closer = record.rolling[k, step] - record.rolling[k, step - 1]
+            closer = rolling[step] - rolling[step - 1]
         before = motion.force[1, k]
         rise = force - before
         closing = 0.5 * (before + force) * closer
@@ -359,7 +358,7 @@ def observe_contact(system, motion, record, step, shapes, slopes, k):  # type: i
         motion.ledger[SLOPE_WORK] += h * product
     motion.rate[k], motion.climb[k] = rate, climb
     motion.approach[1, k] = motion.approach[0, k]
-    motion.approach[0, k] = record.approach[k, step] - system.softening[k] * force
+    motion.approach[0, k] = approach[step] - system.softening[k] * force
     if on_rail:
         rate = (motion.approach[0, k] - motion.approach[1, k]) / h
     motion.power[CONTACT_DAMPING] += (force - motion.elastic[k]) * rate

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.errors import CoarseSamplingWarning, InputError
-from asperity.kernels.pointforce import Prepared
-from asperity.kernels.stepping import Motion, System
-from asperity.laws.base import Law, SteppedLaw
+from asperity.errors import InputError
+from asperity.kernels.stepping import System
+from asperity.laws.base import Law
 from asperity.rolling import stability
 from asperity.rolling.ground import Ground, ground_of
 from asperity.rolling.path import Path
 from asperity.rolling.rest import Rest, start_at_rest
+from asperity.rolling.stepper import Stepper
 from asperity.rolling.steps import alternating_of_modes, body_step, padded, resolved_step
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
@@ -27,33 +25,6 @@ RUNAWAY = 1e4
 """Times the load, or the largest force that the law was made for, that no contact force reaches."""
 
 
-@dataclass(frozen=True, eq=False)
-class Assembly:
-    """Bodies that stand on what they roll over, ready to roll under laws of their n contacts."""
-
-    over: Modal | RailBetween | None
-    bodies: Sequence[Body]
-    laws: Sequence[Law]
-    path: Path
-    prepared: Sequence[Prepared | SteppedLaw]  # the laws, on their paths
-    system: System
-    motion: Motion
-    largest: float  # contact force that makes no sense any more, N
-    softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
-
-    def energies(self) -> tuple[float, float, float]:
-        """Now, J: of the structure, of the bodies, and of the bodies under their constant forces."""
-        motion, system, f = self.motion, self.system, self.system.shapes.shape[1]
-        modes = 0.5 * (motion.velocity**2 + system.stiffness * motion.displacement**2)
-        structure = len(modes) - f * len(self.bodies)
-        d, stored, pressed = system.core_shapes.shape[1], float(modes[structure:].sum()), 0.0
-        for body, core in zip(self.bodies, motion.core, strict=True):
-            y, rate = core[: len(body.mass)], core[d : d + len(body.mass)]
-            stored += 0.5 * float(rate @ body.mass @ rate + y @ body.stiffness @ y)
-            pressed += float(body.pressing @ y)
-        return float(modes[:structure].sum()), stored, pressed
-
-
 def assemble(
     over: Modal | RailBetween | None,
     bodies: Sequence[Body],
@@ -62,7 +33,7 @@ def assemble(
     positions: Array,
     sensors: Array,
     highest_frequency: float | None,
-) -> Assembly:
+) -> Stepper:
     """Set bodies at `positions` ahead of a path, m, at rest on what they roll over; see `roll_bodies`."""
     path = whole.ahead(_offsets(bodies, laws, positions))
     ground = ground_of(over, path, sensors)
@@ -72,12 +43,15 @@ def assemble(
     own = alternating(system)
     limits = _limits(ground, system, bodies, ground.alternating + own, rest, highest_frequency)
     stability.warn_if_coarse(path.time_step, limits)
-    both = ground.alternating + own, ground.thrown + own
-    softer, largest = _softened(laws, prepared, both, rest, path.time_step)
+    values = [stability.largest_values(*each) for each in zip(prepared, rest.stiffness.tolist(), strict=True)]
+    stiffest, impacts, forces = np.array(values).T
+    damping, largest = np.array([law.damping for law in laws]), RUNAWAY * max(*rest.force, *forces)
+    least, thrown = ground.alternating + own, ground.thrown + own
+    softer = stability.softening(least, thrown, stiffest, impacts, damping, rest.stiffness, path.time_step)
     if softer.any():
         system = system._replace(softening=softer)
         rest, motion = start_at_rest(ground, bodies, system, prepared)
-    return Assembly(over, bodies, laws, path, prepared, system, motion, largest, ground.softest)
+    return Stepper(over, bodies, laws, path, prepared, system, motion, largest, ground.softest)
 
 
 def _offsets(bodies: Sequence[Body], laws: Sequence[Law], positions: Array) -> Array:
@@ -165,34 +139,8 @@ def _limits(
         direct = system.own + ground.shapes**2 @ system.coefficients[3, : len(ground.natural)]
         resonances = stability.contact_resonance(rest.stiffness, direct, least, system.time_step)
         yield "the contact resonance", float(resonances.max()), 10.0
-    yield from ground.limits
+    yield ground.limit
     natural = np.concatenate([body.natural_frequencies for body in bodies])
     asked = natural[natural <= (highest_frequency or np.inf)]  # of others nobody asked
     yield "the highest mode of a body", float(asked.max(initial=0.0)), 4.0
     yield "the highest frequency asked for", highest_frequency or 0.0, 5.0 if ground.bay else 10.0
-
-
-def _softened(
-    laws: Sequence[Law],
-    prepared: Sequence[Prepared | SteppedLaw],
-    alternating: tuple[Array, Array],
-    rest: Rest,
-    time_step: float,
-) -> tuple[Array, float]:
-    """Compliances in series with the contacts, m/N, and the force that makes no sense any more, N.
-
-    The contact that is softened most is warned of.
-    """
-    softer, largest, messages = np.zeros(len(laws)), 0.0, []
-    for k, (law, laid) in enumerate(zip(laws, prepared, strict=True)):
-        stiffness = float(rest.stiffness[k])
-        stiffest, in_impacts, strongest = stability.largest_values(laid, stiffness)
-        least = float(alternating[0][k]), float(alternating[1][k])
-        softer[k], message = stability.softening(
-            least, (stiffest, in_impacts), law.damping, stiffness, time_step
-        )
-        messages += [(softer[k] * stiffness, message)] if message else []
-        largest = max(largest, RUNAWAY * max(float(rest.force[k]), strongest))
-    if messages:
-        warnings.warn(max(messages)[1], CoarseSamplingWarning, stacklevel=4)
-    return softer, largest

@@ -12,7 +12,7 @@ from asperity.errors import InputError, LargeDeflectionWarning
 from asperity.kernels.rail import Channels
 from asperity.rolling.path import Path
 from asperity.rolling.stability import Limit
-from asperity.rolling.steps import alternating_of_modes, resolved_step
+from asperity.rolling.steps import alternating_of_modes, padded, resolved_step
 from asperity.structures.beam import Beam, SupportedBeam
 from asperity.structures.modal import STATIC, Modal
 from asperity.structures.moving_kernel import MovingKernel
@@ -35,29 +35,50 @@ class Ground:
     slopes: Array  # (n, s), likewise, per metre
     sensors: Array  # (sensors, s)
     channels: Channels  # of a rail, else none
-    yields: Array  # (n, n), mean static compliance of a rail, m/N; zero of modes
     softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
-    alternating: float = 0.0  # least alternating compliance of all contacts at once, m/N
-    thrown: float = 0.0  # that of what throws bodies apart: an endless rail carries impacts away
-    limits: tuple[Limit, ...] = ()  # what a time step must resolve
+    alternating: float  # least alternating compliance of all contacts at once, m/N
+    thrown: float  # that of what throws bodies apart: an endless rail carries impacts away
+    limit: Limit  # what a time step must resolve
+    yields: Array  # (n, n), mean static compliance of a rail, m/N; zero of modes
     bay: float = 0.0  # mass of a bay of rail, kg
     memory: int = 0  # time steps that a rail remembers
 
 
 def ground_of(over: Modal | RailBetween | None, path: Path, sensors: Array) -> Ground:
     """Look at what is rolled over along a path, and at sensors (k,), m; refuse where it does not fit."""
-    if isinstance(over, RailBetween):
-        return _rail(over, path, sensors)
-    n, channels = len(path.positions), no_channels(len(path.positions))
+    return _rail(over, path, sensors) if isinstance(over, RailBetween) else _modes(over, path, sensors)
+
+
+def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
+    """A structure by its modes, or a plane that does not move, without any."""
+    natural, ratios, n = np.zeros(0), np.zeros(0), len(path.positions)
     if over is not None:
-        return _modes(over, path, sensors, channels)
-    if sensors.size:
+        _refuse_to_leave(over, path)
+        natural, ratios = 2.0 * np.pi * over.natural_frequencies, over.damping_ratios
+    elif sensors.size:
         raise InputError("sensors", f"{sensors.size} on a rigid plane", "none: it does not move")
-    none, shapes = np.zeros(0), np.zeros((n, 0))
-    return Ground(none, none, shapes, shapes, np.zeros((0, 0)), channels, np.zeros((n, n)), 0.0)
+
+    def shapes(x: Array) -> tuple[Array, Array]:
+        none = np.zeros((x.size, natural.size))
+        return over.shapes(x) if over is not None and x.size else (none, none)
+
+    chosen = path.positions[:, :: max(1, (path.total + 1) // PLACES)].T
+    along = shapes(chosen.ravel())[0].reshape(*chosen.shape, natural.size)
+    each = alternating_of_modes(resolved_step(natural, ratios, path.time_step))
+    least = float(np.linalg.eigvalsh((along * each) @ along.transpose(0, 2, 1)).min())
+    softest = float(((along / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf
+    frequencies = natural / (2.0 * np.pi)
+    followed = frequencies[frequencies < STATIC]  # others are meant to be static
+    limit = "the highest mode of the structure", float(followed.max(initial=0.0)), 4.0
+    none, first = np.zeros(0, dtype=np.int64), np.zeros(n + 1, dtype=np.int64)
+    decay, residue, now, scattered = map(np.zeros, ((0, 0), (0, 1, 0), (0, 1), (0, 1, 1)))
+    kernels = decay, residue, now, scattered, np.zeros(0, dtype=bool)
+    channels = Channels(none, none, none, first, np.zeros(n), 0.0, *kernels)
+    under, seen = shapes(path.starts), shapes(sensors)[0]
+    return Ground(natural, ratios, *under, seen, channels, softest, least, least, limit, np.zeros((n, n)))
 
 
-def _modes(over: Modal, path: Path, sensors: Array, channels: Channels) -> Ground:
+def _refuse_to_leave(over: Modal, path: Path) -> None:
     low, high = over.extent
     margin = 1e-9 * (high - low)
     for k, positions in enumerate(path.positions):
@@ -68,24 +89,6 @@ def _modes(over: Modal, path: Path, sensors: Array, channels: Channels) -> Groun
                 f"{low:.6g} to {high:.6g}, on the structure",
                 "Choose start, duration, run-in and positions so that all contacts stay on it.",
             )
-    natural, ratios = 2.0 * np.pi * over.natural_frequencies, over.damping_ratios
-    chosen = path.positions[:, :: max(1, (path.total + 1) // PLACES)].T
-    along = over.shapes(chosen.ravel())[0].reshape(*chosen.shape, len(natural))
-    each = alternating_of_modes(resolved_step(natural, ratios, path.time_step))
-    least = float(np.linalg.eigvalsh((along * each) @ along.transpose(0, 2, 1)).min())
-    followed = over.natural_frequencies[over.natural_frequencies < STATIC]  # others are meant to be static
-    return Ground(
-        natural,
-        ratios,
-        *over.shapes(path.starts),
-        over.shapes(sensors)[0] if sensors.size else np.zeros((0, len(natural))),
-        channels,
-        np.zeros((len(path.positions), len(path.positions))),
-        float(((along / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf,
-        least,
-        least,
-        (("the highest mode of the structure", float(followed.max(initial=0.0)), 4.0),),
-    )
 
 
 def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
@@ -99,34 +102,24 @@ def _rail(rail: RailBetween, path: Path, sensors: Array) -> Ground:
     if sensors.size:
         allowed = "none: a rail is known under the contacts alone"
         raise InputError("sensors", f"{sensors.size} on a rail", allowed)
-    channels, tables = _channels(rail, path.starts)
-    static = np.array([each.weights.sum(axis=1).mean() for each in map(_kernel, tables)])
-    found = np.zeros((n, n))
+    channels, weights = _channels(rail, path.starts)
+    found, static = np.zeros((n, n)), np.array([each.sum(axis=1).mean() for each in weights])
     found[channels.receiver, channels.source] = static[channels.table]
     squares, vectors = np.linalg.eigh(0.5 * (found + found.T))
     none, modes, taps = np.zeros(0), np.zeros((n, 0)), kernel.weights.shape[1]
+    softest = float(kernel.weights.sum(axis=1).max())
+    least = float((kernel.weights @ (-1.0) ** np.arange(taps)).min())  # of all places in a bay
+    limit = "the passing of sleepers v/L", kernel.speed / kernel.spacing, 20.0
+    yields = np.asarray((vectors * squares.clip(0.0)) @ vectors.T)
+    bay = kernel.track.mass_per_length * kernel.spacing
+    at_sensors = np.zeros((0, 0))
     return Ground(
-        none,
-        none,
-        modes,
-        modes,
-        np.zeros((0, 0)),
-        channels,
-        np.asarray((vectors * np.maximum(squares, 0.0)) @ vectors.T),
-        float(kernel.weights.sum(axis=1).max()),
-        float((kernel.weights @ (-1.0) ** np.arange(taps)).min()),  # of all places in a bay
-        limits=(("the passing of sleepers v/L", kernel.speed / kernel.spacing, 20.0),),
-        bay=kernel.track.mass_per_length * kernel.spacing,
-        memory=taps,
+        none, none, modes, modes, at_sensors, channels, softest, least, 0.0, limit, yields, bay, taps
     )
 
 
-def _kernel(rail: RailPoles | MovingKernel) -> MovingKernel:
-    return rail.kernel if isinstance(rail, RailPoles) else rail
-
-
-def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[RailPoles | MovingKernel]]:
-    """Channels between all contacts within reach, and the kernels that they carry, the direct one first."""
+def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[Array]]:
+    """Channels between all contacts within reach, and the weights of the kernels that they carry."""
     tables: list[RailPoles | MovingKernel] = [rail.direct]
     pairs = []
     for source, here in enumerate(starts):
@@ -137,49 +130,32 @@ def _channels(rail: RailBetween, starts: Array) -> tuple[Channels, list[RailPole
                 tables += [] if known else [found]
                 pairs.append((source, receiver, known[0] if known else len(tables) - 1))
     source, receiver, table = np.array(pairs, dtype=np.int64).T.copy()
-    poles = max((len(each.poles) for each in tables if isinstance(each, RailPoles)), default=0)
-    scatters = np.array([not isinstance(each, RailPoles) for each in tables])
-    rows, taps = rail.kernel.weights.shape if scatters.any() else (1, 1)
-    decay, residue = np.zeros((len(tables), 2, poles)), np.zeros((len(tables), CELLS + 1, 2, poles))
-    scattered = np.zeros((len(tables), rows, taps))
-    for t, each in enumerate(tables):
-        if isinstance(each, RailPoles):
-            own, residues = len(each.poles), over_the_bay(each.residues)
-            decay[t, :, :own] = each.poles.real, each.poles.imag
-            residue[t, :, 0, :own], residue[t, :, 1, :own] = residues.real, residues.imag
-        else:
-            scattered[t] = each.weights
-    return Channels(
+    none, weights = (
+        np.zeros(0),
+        [(each.kernel if isinstance(each, RailPoles) else each).weights for each in tables],
+    )
+    laid = [
+        (each.poles, over_the_bay(each.residues), np.zeros((1, 1)))
+        if isinstance(each, RailPoles)
+        else (none, np.zeros((CELLS + 1, 0)), each.weights)
+        for each in tables
+    ]
+    decay = padded([np.stack([poles.real, poles.imag]) for poles, _, _ in laid])
+    residue = padded([np.stack([residues.real, residues.imag], axis=1) for _, residues, _ in laid])
+    channels = Channels(
         source=source,
         receiver=receiver,
         table=table,
         first=np.searchsorted(source, np.arange(len(starts) + 1)),
         place=starts / rail.kernel.spacing,
         stride=rail.kernel.speed * rail.kernel.time_step / rail.kernel.spacing,
-        decay=decay.reshape(len(tables), 2 * poles),
-        residue=residue.reshape(len(tables), CELLS + 1, 2 * poles),
-        now=np.array([over_the_bay(each.weights[:, 0]) for each in map(_kernel, tables)]),
-        scattered=scattered,
-        scatters=scatters,
-    ), tables
-
-
-def no_channels(contacts: int) -> Channels:
-    """Those of what is no rail."""
-    none = np.zeros(0, dtype=np.int64)
-    return Channels(
-        source=none,
-        receiver=none,
-        table=none,
-        first=np.zeros(contacts + 1, dtype=np.int64),
-        place=np.zeros(contacts),
-        stride=0.0,
-        decay=np.zeros((0, 0)),
-        residue=np.zeros((0, 1, 0)),
-        now=np.zeros((0, 1)),
-        scattered=np.zeros((0, 1, 1)),
-        scatters=np.zeros(0, dtype=bool),
+        decay=decay.reshape(len(tables), -1),
+        residue=residue.reshape(len(tables), CELLS + 1, -1),
+        now=np.array([over_the_bay(each[:, 0]) for each in weights]),
+        scattered=padded([scattered for *_, scattered in laid]),
+        scatters=np.array([not isinstance(each, RailPoles) for each in tables]),
     )
+    return channels, weights
 
 
 def warn_if_bent(over: Modal | RailBetween | None, displaced: Array) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,14 +67,14 @@ def at_rest(
     loads = np.concatenate([body.static_loads for body in bodies])
     scale, most = np.maximum(loads, loads.clip(0.0).mean()), FIRST_MOVE
 
-    def evaluated(x: Array) -> tuple[Array, Array, Array, Array]:
+    def state(x: Array) -> tuple[Array, Array, Array, Array]:
         """Approaches, forces, stiffnesses, and the gradient of the energy."""
         approach = -(displaced + shapes @ x)
         force, stiffness = np.array([law(float(at)) for law, at in zip(laws, approach, strict=True)]).T
         return approach, force, stiffness, matrix @ x + pressing - shapes.T @ force
 
     x = np.zeros(len(pressing))
-    approach, force, stiffness, gradient = evaluated(x)
+    approach, force, stiffness, gradient = state(x)
     for _ in range(ITERATIONS):
         firm = np.maximum(stiffness, scale / LARGEST_MOVE)
         move = -np.linalg.solve(matrix + (shapes.T * firm) @ shapes, gradient)
@@ -84,7 +86,7 @@ def at_rest(
         move *= min(1.0, most / float(np.abs(closer).max()))
         most, slope = min(2.0 * most, LARGEST_MOVE), float(gradient @ move)
         for _ in range(60):
-            approach, force, stiffness, gradient = evaluated(x + move)
+            approach, force, stiffness, gradient = state(x + move)
             if float(gradient @ move) <= 0.5 * abs(slope):
                 break
             move, slope = 0.5 * move, 0.5 * slope
@@ -100,16 +102,12 @@ def _some(values: Array) -> str:
     return ", ".join(f"{value:.4g}" for value in values[:8])
 
 
-def evaluation(prepared: Prepared | SteppedLaw) -> Evaluation:
-    """Force, N, and stiffness, N/m, of a law at the start, as a function of the approach, m."""
-    if not isinstance(prepared, Prepared):
-        return lambda approach: prepared.evaluate(0, float(approach))
-
-    def evaluate(approach: float) -> tuple[float, float]:
-        force, stiffness, _ = evaluate_all(prepared, np.array([approach], dtype=np.float64), 0)
-        return float(force[0]), float(stiffness[0])
-
-    return evaluate
+def evaluated(law: Prepared | SteppedLaw, approach: float) -> tuple[float, float]:
+    """Force, N, and stiffness, N/m, of a law at the start, for an approach, m."""
+    if not isinstance(law, Prepared):
+        return law.evaluate(0, approach)
+    force, stiffness, _ = evaluate_all(law, np.array([approach]), 0)
+    return float(force[0]), float(stiffness[0])
 
 
 def start_at_rest(
@@ -121,16 +119,17 @@ def start_at_rest(
     static ones: what is left to ring is less by (k v/ω)² than that of a mode of wavenumber k. A force on a
     support has just come onto a structure at rest; so are modes that nothing holds.
     """
-    n, f = system.shapes.shape
+    n, (s, f) = len(system.loads), (len(ground.natural), system.shapes.shape[1])
     flexible = np.zeros((n, len(bodies), f))
     flexible[np.arange(n), system.body] = system.shapes
     shapes = np.hstack([ground.shapes, flexible.reshape(n, -1)])
-    softest = np.divide(
-        1.0, system.stiffness, out=np.zeros(len(system.stiffness)), where=system.stiffness > 0.0
+    held = system.stiffness > 0.0
+    softness = np.divide(1.0, system.stiffness, out=np.zeros(len(held)), where=held)
+    compliance = ground.yields + (shapes * softness) @ shapes.T + np.diag(system.softening)
+    compiled, laws = (
+        all(isinstance(law, Prepared) for law in prepared),
+        [partial(evaluated, law) for law in prepared],
     )
-    compliance = ground.yields + (shapes * softest) @ shapes.T + np.diag(system.softening)
-    laws = [evaluation(law) for law in prepared]
-    compiled = all(isinstance(law, Prepared) for law in prepared)
     relative = TOLERANCE if compiled else STEPPED_TOLERANCE
     force, displaced, rates = np.concatenate([body.static_loads for body in bodies]), np.zeros(n), np.zeros(n)
     motion = at_zero(system)
@@ -143,23 +142,18 @@ def start_at_rest(
         change, force = np.abs(rest.force - force).max(), rest.force
         if change <= relative * np.abs(force).max():
             break
-    held = np.abs(ground.shapes).max(axis=1, initial=0.0) > ON_SUPPORT * np.abs(ground.slopes).max(
-        axis=1, initial=0.0
-    )
+    largest, steepest = (np.abs(each).max(axis=1, initial=0.0) for each in (ground.shapes, ground.slopes))
+    moving = force * (largest > ON_SUPPORT * steepest)
     motion.push[:] = force @ shapes
-    motion.displacement[:] = motion.push * softest
-    s = len(ground.natural)
-    motion.velocity[:s] = system.speed * ((force * held) @ ground.slopes) * softest[:s]
-    rates = (
-        rates + ground.shapes @ motion.velocity[:s] + system.speed * (ground.slopes @ motion.displacement[:s])
-    )
+    motion.displacement[:] = motion.push * softness
+    motion.velocity[:s] = system.speed * (moving @ ground.slopes) * softness[:s]
+    rates = rates + ground.shapes @ motion.velocity[:s]
+    rates += system.speed * (ground.slopes @ motion.displacement[:s])
     d, first = system.core_shapes.shape[1], 0
     for index, body in enumerate(bodies):
-        count = len(body.mass)
+        own, count = rates[system.body == index], len(body.mass)
         motion.core[index, :count] = rest.displacement[first : first + count]
-        motion.core[index, d : d + count] = np.linalg.lstsq(
-            body.contacts, -rates[system.body == index], rcond=None
-        )[0]
+        motion.core[index, d : d + count] = np.linalg.lstsq(body.contacts, -own, rcond=None)[0]
         first += count
     motion.force[:] = motion.trial[:] = motion.elastic[:] = force
     motion.approach[:] = rest.approach
@@ -177,27 +171,14 @@ def _rolled_up(system: System, motion: Motion, force: Array, steps: int) -> tupl
 
 def at_zero(system: System) -> Motion:
     """A state of all zeros."""
-    modes, n, channels = len(system.stiffness), len(system.loads), system.channels
-    taps = channels.scattered.shape[2] if len(channels.source) else 0
-    return Motion(
-        displacement=np.zeros(modes),
-        velocity=np.zeros(modes),
-        ahead=np.zeros(modes),
-        push=np.zeros(modes),
-        core=np.zeros(system.core_pressed.shape),
-        core_ahead=np.zeros(system.core_pressed.shape),
-        force=np.zeros((2, n)),
-        elastic=np.zeros(n),
-        approach=np.zeros((2, n)),
-        rail=np.zeros((len(channels.source), channels.decay.shape[1])),
-        ring=np.zeros((n, taps)),
-        rail_ahead=np.zeros(n),
-        rail_now=np.zeros(len(channels.source)),
-        trial=np.zeros(n),
-        compliance=np.zeros(n),
-        rate=np.zeros(n),
-        climb=np.zeros(n),
-        power=np.zeros(POWERS),
-        ledger=np.zeros(6),
-        counts=np.zeros(3, dtype=np.int64),
-    )
+    m, n, p = len(system.stiffness), len(system.loads), len(system.channels.source)
+    modal = ("displacement", "velocity", "push", "ahead")
+    of_contacts = ("elastic", "rail_ahead", "trial", "compliance", "rate", "climb")
+    shapes: dict[str, Any] = dict.fromkeys(modal, m) | dict.fromkeys(of_contacts, n)
+    shapes |= dict.fromkeys(("core", "core_ahead"), system.core_pressed.shape)
+    shapes |= dict.fromkeys(("force", "approach"), (2, n))
+    shapes |= {"rail": (p, system.channels.decay.shape[1]), "rail_now": p}
+    shapes |= {"ring": (n, system.channels.scattered.shape[2] if p else 0)}
+    shapes |= {"power": POWERS, "ledger": 6}
+    arrays = {name: np.zeros(shape) for name, shape in shapes.items()}
+    return Motion(**arrays, counts=np.zeros(3, dtype=np.int64))

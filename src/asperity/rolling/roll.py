@@ -13,7 +13,7 @@ from asperity.kernels import stepping
 from asperity.laws.base import Law
 from asperity.progress import Progress
 from asperity.rolling import outcome
-from asperity.rolling.assembly import Assembly, assemble
+from asperity.rolling.assembly import assemble
 from asperity.rolling.ground import warn_if_bent
 from asperity.rolling.path import Path
 from asperity.rolling.stepper import Stepper
@@ -29,40 +29,24 @@ Array = NDArray[np.float64]
 class Ledger:
     """Energies gained and work done since the start, J, in run-in and run.
 
-    The work of the loads equals the sum of the others, up to what the time step leaves open: the integrals
+    The work of the loads, the constant forces that press the bodies down, equals the sum of kinetic and
+    elastic energy gained by bodies and structure, of what their damping dissipated, of the work on the
+    contacts (stored, damped, less what textures feed in), and of that against the slope of the bent
+    structure, given up to the drive that keeps the speed; up to what the time step leaves open: the integrals
     are taken by the trapezoidal rule from the motion, the energies from the states at start and end. On a
-    rail, of which displacements alone are known, `contact` holds what goes into contacts and rail together,
+    rail, of which displacements alone are known, the contacts hold what goes into contacts and rail together,
     and the terms of the structure are zero.
     """
 
-    loads: float  # work of the constant forces that press the bodies down
-    bodies: float  # kinetic and elastic energy gained by the bodies
-    body_damping: float  # dissipated in their dampers and modes
-    structure: float  # kinetic and elastic energy gained by what is rolled over
-    structure_damping: float  # dissipated there
-    contact: float  # work on the contacts: stored, damped, less what textures feed in
-    slope: float  # work against the slope of the bent structure, given up to the drive that keeps the speed
-    contact_damping: float  # the part of `contact` that their dampers took
+    shares: dict[str, float]  # by their names in results; the first equals the sum of the others
+    contact_damping: float  # what the dampers of the contacts took of their share
     throughput: float  # time integral of the moduli of the powers at both sides of all contacts
 
     @property
     def residual(self) -> float:
         """What the balance leaves open, relative to the throughput."""
-        gained = self.bodies + self.body_damping + self.structure + self.structure_damping
-        left = self.loads - gained - self.contact - self.slope
-        return abs(left) / self.throughput if self.throughput > 0.0 else 0.0
-
-    def shares(self) -> dict[str, float]:
-        """The terms by their names in results, J; the first equals the sum of the others."""
-        return {
-            "work of the loads": self.loads,
-            "bodies": self.bodies,
-            "damping of the bodies": self.body_damping,
-            "structure": self.structure,
-            "damping of the structure": self.structure_damping,
-            "contacts": self.contact,
-            "slope of the structure": self.slope,
-        }
+        loads, *others = self.shares.values()
+        return abs(loads - sum(others)) / self.throughput if self.throughput > 0.0 else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,68 +139,70 @@ def roll_bodies(
     """
     whole = Path.laid(start, speed, time_step, duration, settling)
     ahead, seen = (np.atleast_1d(np.asarray(given, dtype=float)) for given in (positions, sensors))
-    assembly = assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
-    stepper = Stepper(assembly)
-    energies = assembly.energies()
+    stepper = assemble(over, bodies, laws, whole, ahead, seen, highest_frequency)
+    energies = stepper.energies()
     try:
         stepper.run(progress, checkpoint)
     finally:  # why a motion may have run away
-        warn_if_bent(over, stepper.record.over)
-    return _rolled(assembly, stepper.record, energies)
+        warn_if_bent(over, stepper.record.over_displacement)
+    return _rolled(stepper, energies)
 
 
-def _rolled(
-    assembly: Assembly, record: stepping.Histories, energies: tuple[float, float, float]
-) -> RolledBodies:
+def _rolled(stepper: Stepper, energies: tuple[float, float, float]) -> RolledBodies:
     """What is kept of a run that started with these energies."""
-    path, system, counts = assembly.path, assembly.system, assembly.motion.counts
-    seen, kept = record.approach - system.softening[:, None] * record.force, slice(path.settled, None)
-    apart = np.array(list(map(outcome.flying, assembly.prepared, record.force, seen)))
-    outcome.warn_of_steps([law.name for law in assembly.laws], assembly.prepared, counts, seen)
-    _refuse_missed_loads(assembly, record, apart)
+    path, record, system, counts = stepper.path, stepper.record, stepper.system, stepper.motion.counts
+    kept, softened = slice(path.settled, None), system.softening[:, None] * record.contact_force
+    seen = record.relative_displacement - softened
+    apart = np.array(list(map(outcome.flying, stepper.prepared, record.contact_force, seen)))
+    outcome.warn_of_steps([law.name for law in stepper.laws], stepper.prepared, counts, seen)
+    _refuse_missed_loads(stepper, apart)
     apart = apart[:, kept]
+    records = {name: value[..., kept] for name, value in record._asdict().items()}
+    cores = zip(stepper.bodies, records.pop("core"), strict=True)
     return RolledBodies(
+        **records,
         time=path.time,
         positions=path.positions[:, kept],
         body=system.body,
-        contact_force=record.force[:, kept],
-        history=record.force,
+        history=record.contact_force,
         history_start=path.starts,
-        relative_displacement=record.approach[:, kept],
-        over_displacement=record.over[:, kept],
-        rolling_displacement=record.rolling[:, kept],
-        degrees_of_freedom=tuple(
-            core[: len(body.mass), kept] for body, core in zip(assembly.bodies, record.core, strict=True)
-        ),
-        acceleration=record.acceleration[:, kept],
+        degrees_of_freedom=tuple(core[: len(body.mass)] for body, core in cores),
         in_contact=~apart,
         contact_loss=tuple(outcome.contact_losses(each, path.time_step) for each in apart),
-        energy=_ledger(assembly, energies),
+        energy=_ledger(stepper, energies),
         evaluations=int(counts[2]),
         unconverged_steps=int(counts[1]),
         outcome=Outcome.STEPS_UNCONVERGED if counts[1] else Outcome.CONVERGED,
     )
 
 
-def _refuse_missed_loads(assembly: Assembly, record: stepping.Histories, apart: NDArray[np.bool_]) -> None:
+def _refuse_missed_loads(stepper: Stepper, apart: NDArray[np.bool_]) -> None:
     """Hold each body that nothing but its contacts holds to its load; `apart` (c, n) at every step."""
-    path, of, names = assembly.path, assembly.system.body, [law.name for law in assembly.laws]
-    # how far texture and contact displace bodies while they touch
-    touched = [
-        np.ptp(at[~off]) if not off.all() else 0.0 for at, off in zip(record.approach, apart, strict=True)
-    ]
-    sunk = assembly.softest * sum(float(np.abs(body.static_loads).sum()) for body in assembly.bodies)
-    for k, body in enumerate(assembly.bodies):
+    path, record, of = stepper.path, stepper.record, stepper.system.body
+    touched = []  # how far texture and contact displace bodies while they touch, m
+    for approach, off in zip(record.relative_displacement, apart, strict=True):
+        touched.append(0.0 if off.all() else float(np.ptp(approach[~off])))
+    sunk = stepper.softest * sum(float(np.abs(body.static_loads).sum()) for body in stepper.bodies)
+    for k, body in enumerate(stepper.bodies):
         own = of == k
         if (free := outcome.free_motion(body)) is not None:
             shape, mass, load = free
-            name, reach = names[int(np.argmax(own))], sunk + float(max(np.compress(own, touched)))
-            force = shape @ record.force[own]
+            name, reach = stepper.laws[int(np.argmax(own))].name, sunk + max(np.compress(own, touched))
+            force = shape @ record.contact_force[own]
             outcome.refuse_missed_load(name, force, load, mass, reach, path.time_step, path.settled)
 
 
-def _ledger(assembly: Assembly, before: tuple[float, float, float]) -> Ledger:
+def _ledger(stepper: Stepper, before: tuple[float, float, float]) -> Ledger:
     """Balance of a run that started with these energies of structure, of bodies and of their loads, J."""
-    structure, bodies, loads = (now - then for now, then in zip(assembly.energies(), before, strict=True))
-    booked = dict(zip(stepping.BOOKED, assembly.motion.ledger.tolist(), strict=True))
-    return Ledger(loads=-loads, bodies=bodies, structure=structure, **booked)
+    structure, bodies, loads = (now - then for now, then in zip(stepper.energies(), before, strict=True))
+    ledger = stepper.motion.ledger.tolist()
+    shares = {
+        "work of the loads": -loads,
+        "bodies": bodies,
+        "damping of the bodies": ledger[stepping.BODY_DAMPING],
+        "structure": structure,
+        "damping of the structure": ledger[stepping.OVER_DAMPING],
+        "contacts": ledger[stepping.CONTACT_WORK],
+        "slope of the structure": ledger[stepping.SLOPE_WORK],
+    }
+    return Ledger(shares, ledger[stepping.CONTACT_DAMPING], ledger[stepping.THROUGHPUT])

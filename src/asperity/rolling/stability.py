@@ -64,32 +64,37 @@ def largest_values(law: Prepared | SteppedLaw, at_rest: float) -> tuple[float, f
 
 
 def softening(
-    alternating: tuple[float, float],
-    stiffness: tuple[float, float],
-    damping: float,
-    at_rest: float,
+    alternating: Array,
+    thrown: Array,
+    stiffness: Array,
+    impacts: Array,
+    damping: Array,
+    at_rest: Array,
     time_step: float,
-) -> tuple[float, str]:
-    """Compliance in series with the contact, m/N, that keeps a time step stable, s, and impacts elastic.
+) -> Array:
+    """Compliances in series with contacts (n,), m/N, that keep a time step stable, s, and impacts elastic.
 
-    Zero if they are so already. `alternating` holds the least compliance of both bodies, and of what throws
-    them apart, m/N; `stiffness` the largest of the contact, and that of impacts, and `at_rest` that at rest,
-    N/m; damping in N s/m. With it, for a contact that becomes softer by more than NEGLIGIBLE, what to tell.
+    Zero if they are so already. Least alternating compliances of both bodies, and of what throws them apart,
+    m/N; the largest stiffness of the contacts, that of impacts, and that at rest, N/m; damping in N s/m. Of
+    contacts that become softer by more than NEGLIGIBLE, the one that does most is warned of.
     """
-    both, thrown = (-value for value in alternating)
-    opposed = both * (stiffness[0] + 4.0 * damping / time_step) / MARGIN
-    impact = ELASTIC * thrown * stiffness[1]
-    softer = max(
-        STABLE * both if opposed > 1.0 else 0.0, (impact - 1.0) / stiffness[1] if impact > 1.0 else 0.0
-    )
-    if softer * at_rest < NEGLIGIBLE:
-        return softer, ""
-    shorter = max(opposed if damping > 0.0 else np.sqrt(max(opposed, 0.0)), np.sqrt(max(impact, 0.0)))
-    return softer, (
-        f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies as "
-        f"light: it is kept stable by softening the contact by {100 * softer * at_rest:.2g} %, "
-        f"and motion near {0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s"
-    )
+    opposed = -alternating * (stiffness + 4.0 * damping / time_step) / MARGIN
+    impact = ELASTIC * -thrown * impacts
+    rigid = np.where(impact > 1.0, (impact - 1.0) / np.where(impacts > 0.0, impacts, 1.0), 0.0)
+    softer = np.maximum(np.where(opposed > 1.0, STABLE * -alternating, 0.0), rigid)
+    worst = int(np.argmax(softer * at_rest))
+    share = float(softer[worst] * at_rest[worst])
+    if share >= NEGLIGIBLE:
+        stable = opposed if damping[worst] > 0.0 else np.sqrt(np.maximum(opposed, 0.0))
+        shorter = max(stable[worst], np.sqrt(max(impact[worst], 0.0)))
+        warnings.warn(
+            f"the time step of {time_step:.2g} s is too long for a contact as stiff, or as damped, on bodies "
+            f"as light: it is kept stable by softening the contact by {100 * share:.2g} %, and motion near "
+            f"{0.5 / time_step:.2g} Hz is distorted; take at most {time_step / shorter:.2g} s",
+            CoarseSamplingWarning,
+            stacklevel=4,
+        )
+    return softer
 
 
 def contact_resonance(stiffness: Array, direct: Array, alternating: Array, time_step: float) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,13 @@ from numpy.typing import NDArray
 from asperity.errors import ComputationError, InputError
 from asperity.kernels import stepping
 from asperity.kernels.pointforce import Prepared, evaluate
-from asperity.laws.base import SettlingLaw, SteppedLaw, settles
+from asperity.laws.base import Law, SettlingLaw, SteppedLaw, settles
 from asperity.progress import Progress
-from asperity.rolling.assembly import Assembly
+from asperity.rolling.path import Path
 from asperity.rolling.steps import padded
 from asperity.store import Checkpoint
+from asperity.structures.body import Body
+from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
 
 Array = NDArray[np.float64]
@@ -39,52 +42,72 @@ def stacked(prepared: Sequence[Any], names: Iterable[str], rows: Any = ...) -> d
     return {name: padded(parts) for name, parts in fields.items()}
 
 
+@dataclass(eq=False)
 class Stepper:
-    """Structure and bodies that contact forces couple, advanced step by step."""
+    """Bodies at rest on what they roll over, under laws of their n contacts, to be advanced step by step."""
 
-    def __init__(self, assembly: Assembly) -> None:
-        self.assembly, self.system, self.motion = assembly, assembly.system, assembly.motion
-        n, steps = assembly.path.positions.shape
+    over: Modal | RailBetween | None
+    bodies: Sequence[Body]
+    laws: Sequence[Law]
+    path: Path
+    prepared: Sequence[Prepared | SteppedLaw]  # the laws, on their paths
+    system: stepping.System
+    motion: stepping.Motion
+    largest: float  # contact force that makes no sense any more, N
+    softest: float  # largest static compliance under a contact on its path, m/N; infinite if nothing holds it
+
+    def __post_init__(self) -> None:
+        n, steps = self.path.positions.shape
         (b, states), modes = self.system.core_pressed.shape, self.system.sensors.shape[1]
         force, approach, over, rolling = np.zeros((4, n, steps))
         core, acceleration = np.zeros((b, states // 2, steps)), np.zeros((len(self.system.sensors), steps))
         self.record = stepping.Histories(force, approach, over, rolling, core, acceleration)
-        self.stepped = {k: law for k, law in enumerate(assembly.prepared) if not isinstance(law, Prepared)}
+        self.stepped = {k: law for k, law in enumerate(self.prepared) if not isinstance(law, Prepared)}
         self.length = int(np.clip(SHAPES_AT_ONCE // max(n * modes, 1), LEAST, LONGEST))
         self.offset = self.end = -1
         # one place for all chunks: fresh memory takes longer than what is computed
         self.shapes, self.slopes = np.zeros((2, self.length + 1, n, modes))
-        self.laws: Any = assembly.prepared
+        self.laid: Any = self.prepared
         if not self.stepped:  # one kernel serves any number and mix
-            self.fixed = stacked(assembly.prepared, set(Prepared._fields).difference(ALONG))
-            sizes = [[len(getattr(law, name)) for law in self.laws] for name in ("states", "knots")]
-            self.sizes = np.array(sizes)
+            self.fixed = stacked(self.laid, set(Prepared._fields).difference(ALONG))
+            self.sizes = np.array(
+                [[len(getattr(law, name)) for law in self.laid] for name in ("states", "knots")]
+            )
         self.motion.counts[0] = -1
         self._advance(0, np.inf)
         self.motion.approach[1] = self.motion.approach[0]
 
+    def energies(self) -> tuple[float, float, float]:
+        """Now, J: of the structure, of the bodies, and of the bodies under their constant forces."""
+        motion, system, structure = self.motion, self.system, self.system.sensors.shape[1]
+        modes = 0.5 * (motion.velocity**2 + system.stiffness * motion.displacement**2)
+        d, stored, pressed = system.core_shapes.shape[1], float(modes[structure:].sum()), 0.0
+        for body, core in zip(self.bodies, motion.core, strict=True):
+            y, rate = core[: len(body.mass)], core[d : d + len(body.mass)]
+            stored += 0.5 * float(rate @ body.mass @ rate + y @ body.stiffness @ y)
+            pressed += float(body.pressing @ y)
+        return float(modes[:structure].sum()), stored, pressed
+
     def run(self, progress: Progress | None, checkpoint: Checkpoint | None) -> None:
         """Go on to the end of the path, from where a checkpoint was left, if it was."""
-        assembly, motion, saved = self.assembly, self.motion, time.monotonic()
+        motion, saved = self.motion, time.monotonic()
         if checkpoint is not None:
             self._restore(checkpoint)
         state = self._state()
         try:
-            while motion.counts[0] < assembly.path.total:
+            while motion.counts[0] < self.path.total:
                 done = int(motion.counts[0])
-                if not self._advance(
-                    done + STEPPED_BLOCK if self.stepped else assembly.path.total, assembly.largest
-                ):
+                if not self._advance(done + STEPPED_BLOCK if self.stepped else self.path.total, self.largest):
                     raise self._ran_away()
                 state = self._state()
                 if progress is not None:
-                    progress(int(motion.counts[0]), assembly.path.total, "rolling")
+                    progress(int(motion.counts[0]), self.path.total, "rolling")
                 if checkpoint is not None and time.monotonic() - saved > SAVE_EVERY:
                     checkpoint.save(state | self._histories(state))
                     saved = time.monotonic()
         finally:
             # at the end, and whatever stopped the run, maybe amid a step: it goes on from the last steps done
-            if checkpoint is not None and np.all(np.abs(motion.force[0]) <= assembly.largest):
+            if checkpoint is not None and np.all(np.abs(motion.force[0]) <= self.largest):
                 checkpoint.save(state | self._histories(state))
 
     def _advance(self, stop: int, largest: float) -> bool:
@@ -94,10 +117,10 @@ class Stepper:
         stop = min(stop, self.end)
         state, along = (self.system, self.motion, self.record), (self.shapes, self.slopes, self.offset)
         if not self.stepped:
-            return bool(stepping.roll_prepared(*state, self.laws, *along, stop, largest))
+            return bool(stepping.roll_prepared(*state, self.laid, *along, stop, largest))
         for step in range(done + 1, stop + 1):
             loops = stepping.solve_contacts.py_func, self._solve
-            if not stepping.roll.py_func(*loops, *state, self.laws, *along, step, largest):
+            if not stepping.roll.py_func(*loops, *state, self.laid, *along, step, largest):
                 return False
             for law in self.stepped.values() if step else ():
                 law.accept(step)
@@ -105,7 +128,7 @@ class Stepper:
 
     def _hold(self, step: int) -> None:
         """Make ready the chunk of a step, whose bounds do not depend on where a run was taken up."""
-        path, over = self.assembly.path, self.assembly.over
+        path, over = self.path, self.over
         offset = max(step - 1, 0) // self.length * self.length
         if offset == self.offset:
             return
@@ -116,15 +139,15 @@ class Stepper:
                 shapes, slopes = over.shapes_along(float(place), path.speed * path.time_step, count)
                 self.shapes[:count, k], self.slopes[:count, k] = shapes, slopes
         if not self.stepped:
-            along = stacked(self.assembly.prepared, ALONG, slice(offset, self.end + 1))
-            self.laws = Prepared(**self.fixed, **along), self.sizes
+            along = stacked(self.prepared, ALONG, slice(offset, self.end + 1))
+            self.laid = Prepared(**self.fixed, **along), self.sizes
 
     def _solve(self, laws: Any, k: int, row: int, free: Free, load: float, guess: float) -> Found:
         """As `asperity.kernels.stepping.solve_prepared`, by any law.
 
         One that settles with the bodies does without iteration, but where its damper engages or lets go.
         """
-        step, law, damping = self.offset + row, laws[k], float(self.assembly.laws[k].damping)
+        step, law, damping = self.offset + row, laws[k], float(self.laws[k].damping)
         solve = stepping.solve_law.py_func
         if isinstance(law, Prepared):
             in_flight = law.damped_in_flight
@@ -136,7 +159,7 @@ class Stepper:
         return solve(_evaluate, law, step, free, load, guess, damping, False, STEPPED_TOLERANCE)
 
     def _ran_away(self) -> ComputationError:
-        motion, path = self.motion, self.assembly.path
+        motion, path = self.motion, self.path
         step, worst = int(motion.counts[0]), int(np.argmax(np.abs(motion.force[0])))
         return ComputationError(
             f"the motion runs away: at step {step}, time {step * path.time_step:.6g} s, position "
@@ -167,14 +190,14 @@ class Stepper:
         ours |= {f"record.{name}": value for name, value in self.record._asdict().items()}
         for name, value in ours.items():
             kept = arrays.get(name, np.zeros(0))
-            last = value.shape[-1] if name.startswith("motion.") else kept.shape[-1]
+            last = kept.shape[-1] if name.startswith("record.") else value.shape[-1]
             if kept.shape != (*value.shape[:-1], last) or last > value.shape[-1]:
-                remedy = "Clear what was kept, and roll anew."
-                raise InputError(
-                    "checkpoint", "a run with other modes, sensors or duration", "this run", remedy
+                what, remedy = (
+                    "a run with other modes, sensors or duration",
+                    "Clear what was kept, and roll anew.",
                 )
-        for name, value in ours.items():
-            value[..., : arrays[name].shape[-1]] = arrays[name]
+                raise InputError("checkpoint", what, "this run", remedy)
+            value[..., :last] = kept
         for k, law in self.stepped.items():
             own = f"law.{k}."
             law.restore({name.removeprefix(own): v for name, v in arrays.items() if name.startswith(own)})

@@ -105,7 +105,7 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
     scene, stack = computed.scene, computed.chain.stacked
     runs = list(computed.chain.runs.values())
-    terms = list(runs[0].energy.shares())
+    terms = list(runs[0].energy.shares)
     losses = [run.contact_loss for run in runs]
     over, rolls = scene.displacements or USUAL
     laid_out: dict[Entry, Any] = {
@@ -127,7 +127,7 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
         schema.ROLLING_DEGREE: list(scene.levers),
         schema.BODY_DISPLACEMENT: _motion(computed),
         schema.ENERGY_TERM: terms,
-        schema.ENERGY: [[run.energy.shares()[term] for term in terms] for run in runs],
+        schema.ENERGY: [[run.energy.shares[term] for term in terms] for run in runs],
         schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
     }
     if scene.sensors:
