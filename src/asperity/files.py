@@ -10,7 +10,7 @@ import secrets
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -26,7 +26,6 @@ _SEAL = b"\nasperity sha256 "
 _SEAL_SIZE = len(_SEAL) + 64
 _CHUNK = 2**20
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG) if hasattr(errno, "EDQUOT") else (errno.ENOSPC, errno.EFBIG)
-_WRITABLE = "a folder that can be written to"
 _swept: set[Path] = set()
 
 
@@ -55,11 +54,13 @@ def replace(
 ) -> Path:
     """Write a file as `atomic_write` does, for those who go on without it: failures are OSErrors."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    _sweep_once(path.parent)
-    temporary = None
+    if path.parent not in _swept:  # what an earlier process left there
+        _swept.add(path.parent)
+        remove_left_overs(path.parent)
+    file = _new_part(path)
+    part = Path(file.name)
     try:
-        with _new_part(path) as file:
-            temporary = Path(file.name)
+        with file:
             write(file)
             if sealed:
                 file.write(_seal_of(file, file.seek(0, os.SEEK_END)))
@@ -67,13 +68,12 @@ def replace(
             if lasting:
                 os.fsync(file.fileno())
             if fcntl is not None:  # while it is locked nobody takes it for a left-over
-                os.replace(temporary, path)
+                os.replace(part, path)
         if fcntl is None:
-            os.replace(temporary, path)
+            os.replace(part, path)
     finally:
-        if temporary is not None:
-            with suppress(OSError):
-                temporary.unlink(missing_ok=True)
+        with suppress(OSError):
+            part.unlink()
     return path
 
 
@@ -102,37 +102,29 @@ def _existing(path: Path) -> Path:
     return next(place for place in (path, *path.parents) if place.exists() or place.is_symlink())
 
 
-def lasting(path: Path) -> Path:
+def final_place(path: Path) -> Path:
     """Where a file of a new folder ends up, see `together`."""
     return Path(*(part for part in path.parts if not _PART.fullmatch(part)))
 
 
 def _not_written(path: Path, error: OSError) -> AsperityError:
-    path = lasting(path)
+    path, remedy = final_place(path), "another folder, or free space on this disk"
+    why = error.strerror or str(error)
     if error.errno == errno.ENAMETOOLONG:
         return InputError(str(path), "a name that is too long", "names that the disk can hold")
-    if error.errno in _FULL:
+    if error.errno == errno.EFBIG:
+        why = "files may not grow as large here"
+        remedy = "a larger limit on the size of files, as 'ulimit -f unlimited' sets it"
+    elif error.errno in _FULL:
         with suppress(OSError):
-            if error.errno == errno.EFBIG:
-                return ComputationError(
-                    f"{path} could not be written (files may not grow as large here)",
-                    "a larger limit on the size of files, as 'ulimit -f unlimited' sets it",
-                )
             return _too_large(path, 0, free_space(path))
-    return ComputationError(
-        f"{path} could not be written ({error.strerror or error})",
-        "another folder, or free space on this disk",
-    )
+    return ComputationError(f"{path} could not be written ({why})", remedy)
 
 
 def _too_large(path: Path, size: float, free: int) -> ComputationError:
-    needed = (
-        f"{amount(size)} are needed, {amount(free)} are free" if size > free else f"{amount(free)} are free"
-    )
-    return ComputationError(
-        f"{lasting(path)} could not be written: the disk is full ({needed})",
-        "another folder, or free space on this disk",
-    )
+    needed = f"{amount(size)} are needed, " if size > free else ""
+    what = f"{final_place(path)} could not be written: the disk is full ({needed}{amount(free)} are free)"
+    return ComputationError(what, "another folder, or free space on this disk")
 
 
 def amount(size: float) -> str:
@@ -161,11 +153,9 @@ def is_sealed(file: BinaryIO) -> bool | None:
     shows damage, not malice: anybody can make one. The file stands at its start afterwards.
     """
     size = file.seek(0, os.SEEK_END) - _SEAL_SIZE
-    if size < 0:
-        return None
-    file.seek(size)
+    file.seek(max(size, 0))
     seal = file.read()
-    same = _seal_of(file, size) == seal if seal.startswith(_SEAL) else None
+    same = _seal_of(file, size) == seal if size >= 0 and seal.startswith(_SEAL) else None
     file.seek(0)
     return same
 
@@ -184,34 +174,60 @@ def _new_part(path: Path) -> BinaryIO:
         file.close()
 
 
-def is_part(path: Path) -> bool:
-    """Whether a file is one that is being written, or was when its program ended."""
-    return _PART.fullmatch(path.name) is not None
-
-
 def left_overs(folder: Path) -> list[Path]:
     """Files that an interrupted write left in a folder, and that nobody writes any more."""
-    left = []
-    for part in _parts(folder):
-        with suppress(OSError), _taken(part):
-            left.append(part)
-    return left
+    try:
+        return sorted(path for path in folder.iterdir() if _PART.fullmatch(path.name) and _abandoned(path))
+    except OSError:
+        return []
+
+
+def _abandoned(part: Path) -> bool:
+    with suppress(OSError), _locked(part) as free:
+        return bool(free)
+    return False
 
 
 def remove_left_overs(folder: Path) -> int:
     """Remove the left-overs of a folder; return how many there were."""
-    return sum(discard(part) for part in _parts(folder))
+    return sum(map(discard, left_overs(folder)))
 
 
 def discard(path: Path) -> bool:
     """Remove a file, if it can be; a part only where nobody writes it. Return whether it went."""
-    with suppress(OSError), _taken(path) if is_part(path) else nullcontext():
-        if path.is_dir() and not path.is_symlink():
+    with suppress(OSError), _locked(path) if _PART.fullmatch(path.name) else nullcontext(True) as free:
+        if free and path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)
-        else:
+        elif free:
             path.unlink()
-        return True
+        return bool(free)
     return False
+
+
+@contextmanager
+def _locked(path: Path, flags: int = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)) -> Iterator[bool | None]:
+    """Lock a file or folder, if nobody else has; tell whether it is locked, None where none can be.
+
+    A part must be removed while it is locked: a writer may have made it and be about to lock it.
+    """
+    if fcntl is None:  # an open file cannot be removed then
+        yield True
+        return
+    descriptor, free = os.open(path, flags, 0o600), None
+    try:
+        with suppress(OSError):  # a file system without locks
+            free = _lock(descriptor)
+        yield free
+    finally:
+        os.close(descriptor)
+
+
+def _lock(descriptor: int) -> bool:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True
 
 
 @contextmanager
@@ -223,91 +239,39 @@ def together(folder: Path, last: str) -> Iterator[Path]:
     """
     remove_left_overs(folder)
     new = folder / f".new.{secrets.token_hex(4)}.part"
-    descriptor = None
     try:
         new.mkdir(parents=True)
-        if fcntl is not None:  # while it is locked nobody takes it for a left-over
-            descriptor = os.open(new, os.O_RDONLY)
-            _lock(descriptor)
-        yield new
-        for file in sorted(filter(Path.is_file, new.rglob("*")), key=lambda file: file.name == last):
-            target = folder / file.relative_to(new)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            os.replace(file, target)
+        with _locked(new):  # so that nobody takes it for a left-over
+            yield new
+            for file in sorted(filter(Path.is_file, new.rglob("*")), key=lambda file: file.name == last):
+                target = folder / file.relative_to(new)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                os.replace(file, target)
     except OSError as error:
         raise _not_written(folder, error) from error
     finally:
-        if descriptor is not None:
-            os.close(descriptor)
         shutil.rmtree(new, ignore_errors=True)
 
 
-def _parts(folder: Path) -> list[Path]:
-    try:
-        return sorted(path for path in folder.iterdir() if is_part(path))
-    except OSError:
-        return []
-
-
 @contextmanager
-def _taken(part: Path) -> Iterator[None]:
-    """Hold a part that nobody writes; an OSError if somebody does, or if that cannot be known.
-
-    It must be removed while it is held: a writer may have made it and be about to lock it.
-    """
-    if fcntl is None:  # an open file cannot be removed then
-        yield
-        return
-    descriptor = os.open(part, os.O_RDONLY | os.O_NONBLOCK)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        yield
-    finally:
-        os.close(descriptor)
-
-
-def _lock(descriptor: int) -> bool:
-    """Lock a file, if nobody else has; whether it is free, as any is on a file system without locks."""
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        return True
-    return True
-
-
-@contextmanager
-def taken(path: Path) -> Iterator[bool]:
-    """Hold what stands for a file that is to be made, until it is; tell whether nobody else holds it.
+def claimed_file(path: Path) -> Iterator[bool]:
+    """Claim a file that is to be made, until it is; tell whether nobody else does.
 
     What stands for it is an empty file beside it, swept like a part if its process ends. Where such files
-    cannot be made or locked, nobody holds any.
+    cannot be made or locked, nobody claims any.
     """
     stand_in = path.with_name(f".{path.name}.{'0' * 8}.part")
-    descriptor = None
-    try:
-        if fcntl is not None:
-            with suppress(OSError):
-                path.parent.mkdir(parents=True, exist_ok=True)
-                descriptor = os.open(stand_in, os.O_RDWR | os.O_CREAT, 0o600)
-        free = descriptor is None or _lock(descriptor)
+    with ExitStack() as stack:
+        free: bool | None = None
+        with suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            free = stack.enter_context(_locked(stand_in, os.O_RDWR | os.O_CREAT))
         try:
-            yield free
+            yield free is not False
         finally:
-            if descriptor is not None and free:
+            if free is not False:
                 with suppress(OSError):
                     stand_in.unlink()
-    finally:
-        if descriptor is not None:
-            os.close(descriptor)
-
-
-def _sweep_once(folder: Path) -> None:
-    """Remove the left-overs of a folder when this process first writes into it."""
-    if folder not in _swept:
-        _swept.add(folder)
-        remove_left_overs(folder)
 
 
 @contextmanager
@@ -316,27 +280,26 @@ def alone_in(folder: Path) -> Iterator[None]:
 
     The folder itself is locked, so that nothing can be left in it; on Windows nothing is.
     """
-    try:
-        made = not folder.exists()
-        folder.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(folder, os.O_RDONLY) if fcntl is not None else None
-    except OSError as error:
-        raise _not_written(folder, error) from error
-    try:
-        if descriptor is not None and not _lock(descriptor):
-            raise InputError(
-                str(folder),
+    with ExitStack() as stack:
+        try:
+            made = not folder.exists()
+            folder.mkdir(parents=True, exist_ok=True)
+            free = stack.enter_context(_locked(folder))
+        except OSError as error:
+            raise _not_written(folder, error) from error
+        if free is False:
+            received, allowed = (
                 "a folder into which another run is writing",
                 "a folder of its own for each run",
-                "Wait for that run, or choose another folder with -o.",
             )
-        yield
-    finally:
-        if descriptor is not None:
-            os.close(descriptor)
-        if made:
-            with suppress(OSError):  # it is removed only if it is empty
-                folder.rmdir()
+            remedy = "Wait for that run, or choose another folder with -o."
+            raise InputError(str(folder), received, allowed, remedy)
+        try:
+            yield
+        finally:
+            if made:
+                with suppress(OSError):  # it is removed only if it is empty
+                    folder.rmdir()
 
 
 def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:
@@ -345,19 +308,16 @@ def refuse_unwritable(folder: Path, what: str, remedy: str) -> None:
     The message says `what` it is for, and what to do. Where it is missing, the first folder above it that
     exists must take a new file.
     """
+    where: Path | None = None
     try:
-        existing = _existing(folder)
-    except OSError as error:  # a name that is too long, a loop of links
-        raise InputError(what, f"{folder} ({error.strerror})", _WRITABLE, remedy) from None
-    try:
-        with tempfile.TemporaryFile(dir=existing):
+        where = _existing(folder)
+        with tempfile.TemporaryFile(dir=where):
             return
-    except OSError as error:
+    except OSError as error:  # also a name that is too long, a loop of links
         if error.errno in _FULL:
             raise _too_large(folder, 0, 0) from error
-        reason = f"{existing}: {error.strerror or error}"
-        if existing.is_file():
-            reason = f"{existing} is a file"
-        elif not existing.exists():
-            reason = f"{existing} is a link that leads nowhere"
-    raise InputError(what, f"{folder} ({reason})", _WRITABLE, remedy) from None
+        why = error.strerror or str(error)
+    if where is not None:
+        link = "" if where.exists() else f"{where} is a link that leads nowhere"
+        why = f"{where} is a file" if where.is_file() else link or f"{where}: {why}"
+    raise InputError(what, f"{folder} ({why})", "a folder that can be written to", remedy)

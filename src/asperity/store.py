@@ -12,7 +12,7 @@ import time
 import warnings
 import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from asperity.arguments import no_file
 from asperity.errors import ComputationError, InputError
-from asperity.files import amount, atomic_write, discard, is_sealed, left_overs, taken
+from asperity.files import amount, atomic_write, claimed_file, is_sealed
 
 FORMAT = 2  # raise it when a stored result no longer means what it meant
 LARGEST_FILE = 4 * 2**30  # bytes; an archive that claims to unpack to more is not ours
@@ -162,14 +162,12 @@ class Store:
             )
         self._held[key] = {name: value.copy() for name, value in arrays.items()}
 
-    @contextmanager
-    def claim(self, key: str) -> Iterator[bool]:
-        """Try to be the only process, and thread, that makes the result called `key`; tell whether it is.
+    def claim(self, key: str) -> AbstractContextManager[bool]:
+        """Try to be the only process, and thread, that makes the result called `key`; tells whether it is.
 
         A claim ends with the context, or with its process. Where files cannot be locked all are free.
         """
-        with taken(self.path(key)) as free:
-            yield free
+        return claimed_file(self.path(key))
 
     def files(self) -> list[Path]:
         """List the files of this store, sorted by name."""
@@ -181,17 +179,6 @@ class Store:
     def size(self) -> int:
         """Total size of the files, in bytes."""
         return sum(path.stat().st_size for path in self.files())
-
-    def left_overs(self) -> list[Path]:
-        """List what interrupted writes left in the folder; not what another run is writing."""
-        return left_overs(self.root)
-
-    def clear(self) -> int:
-        """Delete all results, and what interrupted writes left; return how many results went."""
-        files = self.files()
-        for path in [*files, *self.left_overs()]:
-            discard(path)
-        return len(files)
 
 
 def claimed(cache: Cache, key: str) -> AbstractContextManager[bool]:

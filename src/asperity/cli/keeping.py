@@ -29,7 +29,7 @@ def _kept() -> Iterator[tuple[str, Path, list[Path]]]:
     """What is kept, where, and its files; results are named even where there are none."""
     store = Store()
     yield "results", store.root, store.files()
-    left = {store.root: store.left_overs()}
+    left = {store.root: left_overs(store.root)}
     for folder in kernel_folders():
         kernels, left[folder] = _kernels(folder)
         if kernels:

@@ -13,7 +13,7 @@ import xarray
 from asperity.arguments import shown
 from asperity.comma_separated import write_csv
 from asperity.errors import InputError
-from asperity.files import alone_in, discard, lasting, refuse_unwritable, together, write_bytes
+from asperity.files import alone_in, discard, final_place, refuse_unwritable, together, write_bytes
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
 from asperity.reporting.law_entries import line_style, read_entries
@@ -44,7 +44,7 @@ def write_mean(means: xarray.Dataset | None, directory: Path) -> dict[str, Path]
         return {}
     write_csv(path, *columns_of(means))
     over = f"{means.attrs['members']} values of {SEED}"
-    say(f"Means:   {lasting(path).resolve()}, over {over}, ± their standard deviation")
+    say(f"Means:   {final_place(path).resolve()}, over {over}, ± their standard deviation")
     return {"mean": path}
 
 
@@ -55,7 +55,7 @@ def write_ensemble(bands: xarray.Dataset | None, directory: Path) -> dict[str, P
     file = directory / "ensemble.csv"
     swept = [str(name) for name in bands["force_level"].dims if name not in ("law", "band")]
     write_csv(file, *long_columns(bands, [*swept, "law", "band"]))
-    say(f"Seeds:   {lasting(file).resolve()}")
+    say(f"Seeds:   {final_place(file).resolve()}")
     say(str(bands.attrs["meaning"]))
     return {"ensemble": file}
 
@@ -94,7 +94,7 @@ def write_study_page(
     files = {what: file for what, file in held.items() if (directory / file).exists()}
     path = directory / "study.html"
     write_bytes(path, figures_page("Study", summary, figures, files).encode())
-    say(f"Page:    {lasting(path).resolve()}")
+    say(f"Page:    {final_place(path).resolve()}")
     return {"page": path}
 
 
@@ -178,8 +178,8 @@ def _study_alone(
     with together(directory, last="study.nc") as new:
         files = {"results": save(DataTree(table), new / "study.nc")}
         files["table"] = write_csv(new / "study.csv", *columns_of(table))
-        say(f"Results: {lasting(files['results']).resolve()}")
-        say(f"Table:   {lasting(files['table']).resolve()}")
+        say(f"Results: {final_place(files['results']).resolve()}")
+        say(f"Table:   {final_place(files['table']).resolve()}")
         bands = band_over_seeds(table)
         files |= write_mean(means, new) | write_ensemble(bands, new)
         files |= write_study_page(table, means, bands, asked or USUAL_IN_FIGURES, new)
@@ -196,7 +196,7 @@ def _study_alone(
         "rows": rows,
         "warnings": json.loads(table.attrs["warnings"]),
         "failures": json.loads(table.attrs["failures"]),
-        "files": {name: str(lasting(path).resolve()) for name, path in files.items()},
+        "files": {name: str(final_place(path).resolve()) for name, path in files.items()},
     }
 
 
