@@ -4,7 +4,7 @@ import atexit
 import os
 import sys
 
-from asperity.interrupts import interruptible
+from asperity.interrupts import interruptible, was_interrupted
 
 _code = 1
 
@@ -21,7 +21,9 @@ def start(name: str = "asperity") -> None:
         global _code
         _code = end.code if isinstance(end.code, int) else int(end.code is not None)
         raise
-    except KeyboardInterrupt:
+    except BaseException:  # an import may have made another error of the interrupt
+        if not was_interrupted():
+            raise
         if sys.stderr is not None:  # it is closed
             sys.stderr.write("interrupted\n")
             sys.stderr.flush()
