@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.laws.base import check_damping
-from asperity.laws.spec import LawSpec, Look, Need
+from asperity.laws import base, spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from asperity.kernels.pointforce import Prepared
-    from asperity.laws.materials import Materials
     from asperity.reduction.stiffness import ForceCurve
     from asperity.reduction.texture import StateTexture
 
@@ -35,11 +33,6 @@ class Areal:
     plane : StateTexture, optional
         Plane that the patch feels under the working load, m: states count from it, so that waves longer
         than the patch do not change its size.
-
-    Raises
-    ------
-    InputError
-        If the damping is negative.
     """
 
     curve: ForceCurve
@@ -48,27 +41,17 @@ class Areal:
     plane: StateTexture | None = None
     name: str = "areal"
 
-    def __post_init__(self) -> None:
-        check_damping(self.damping)
-
     def prepare(self, positions: ArrayLike) -> Prepared:
-        """Lay the law out on positions (n,) of the contact, m."""
+        """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
         from asperity.laws.layout import on_curve
 
         return on_curve(self.curve, self.texture, positions, damping=self.damping, plane=self.plane)
 
 
-def _build(materials: Materials) -> Areal:
-    """Build the law from the materials of a case."""
-    return Areal(
-        materials.curve, materials.areal, materials.damping, plane=materials.plane, name=materials.name
-    )
-
-
-LAW = LawSpec(
+LAW = spec.LawSpec(
     "areal",
     "Force on the texture averaged over the contact by the flat-punch weight.",
-    _build,
-    frozenset({Need.SAMPLES, Need.AREAL}),
-    look=Look("#0067a5", "-", "o"),
+    base.from_materials(Areal, texture="areal"),
+    {spec.Need.SAMPLES, spec.Need.AREAL},
+    look=spec.Look("#0067a5", "-", "o"),
 )

@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from asperity.errors import InputError
-from asperity.laws.base import check_damping
-from asperity.laws.spec import LawSpec, Look, Need, Role
+from asperity.arguments import Array, not_negative, require
+from asperity.laws import base, spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
     from scipy.interpolate import BSpline
 
     from asperity.contact.in_place import ContactInPlace
-    from asperity.laws.materials import Materials
 
 AT_REST = 1e-6
 """Largest tolerance of contacts at rest, before anything rolls: they must carry the load to five digits."""
@@ -51,8 +49,8 @@ class Direct:
         If the sizes do not fit or the damping is negative.
     """
 
-    heights: NDArray[np.float64]
-    body: NDArray[np.float64]
+    heights: Array
+    body: Array
     spacing: tuple[float, float]
     modulus: float
     start: float
@@ -62,42 +60,46 @@ class Direct:
     name: str = "direct"
 
     def __post_init__(self) -> None:
-        check_damping(self.damping)
-        rows, ny = self.heights.shape
-        if self.body.shape[1] != ny or self.body.shape[0] % 2 == 0 or rows < self.body.shape[0]:
-            raise InputError(
-                "direct contact",
-                f"a body of {self.body.shape} cells on a path of {self.heights.shape}",
-                "a body as wide as the path, not longer, with an odd number of rows",
-            )
+        not_negative("contact damping (N s/m)", self.damping)
+        (rows, ny), (nx, wide) = self.heights.shape, self.body.shape
+        received = f"a body of {self.body.shape} cells on a path of {self.heights.shape}"
+        allowed = "a body as wide as the path, not longer, with an odd number of rows"
+        require(wide == ny and nx % 2 == 1 and rows >= nx, "direct contact", received, allowed)
 
     def prepare(self, positions: ArrayLike) -> DirectOnPath:
         """Lay the law out on positions (n,) of the contact, m."""
         from asperity.contact.halfspace import HalfSpace
         from asperity.contact.in_place import ContactInPlace
 
-        index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / self.spacing[0]
-        half = self.body.shape[0] // 2
+        (dx, _), half = self.spacing, self.body.shape[0] // 2
+        index = (np.atleast_1d(np.asarray(positions, dtype=np.float64)) - self.start) / dx
         last = self.heights.shape[0] - 1 - half
-        if index.min() < half - 1e-6 or index.max() > last + 1e-6:
-            first, end = (self.start + self.spacing[0] * i for i in (half, last))
-            raise InputError(
-                "path (m)",
-                f"{self.start + self.spacing[0] * index.min():.6g} to "
-                f"{self.start + self.spacing[0] * index.max():.6g}",
-                f"{first:.6g} to {end:.6g}, where the texture fills the contact window",
-                "Shorten the duration or provide a longer texture.",
-            )
-        shape = (self.body.shape[0], self.body.shape[1])
-        half_space = HalfSpace(shape, self.spacing, self.modulus, self.hardness)
+        asked, known = (
+            f"{self.start + dx * low:.6g} to {self.start + dx * high:.6g}"
+            for low, high in ((index.min(), index.max()), (half, last))
+        )
+        require(
+            half - 1e-6 <= index.min() and index.max() <= last + 1e-6,
+            "path (m)",
+            asked,
+            f"{known}, where the texture fills the contact window",
+            "Shorten the duration or provide a longer texture.",
+        )
+        half_space = HalfSpace(self.body.shape, self.spacing, self.modulus, self.hardness)
         return DirectOnPath(self, ContactInPlace(half_space, self.body, self.rtol), index - half)
 
 
-@dataclass(eq=False)
+class Accepted(NamedTuple):
+    """A pressure (nx, ny), Pa, and the first row of its window."""
+
+    pressure: Array
+    row: int
+
+
 class DirectOnPath:
     """The law on a path, with the pressures that the next solution starts from.
 
-    Attributes
+    Parameters
     ----------
     law : Direct
         The law.
@@ -105,23 +107,21 @@ class DirectOnPath:
         The solver.
     offsets : ndarray, shape (n,)
         First row of the window at each position; between rows the texture is interpolated.
-    iterations, solves, unconverged, truncated : int
-        Counts so far.
+
+    Attributes
+    ----------
+    counts : ndarray, shape (4,)
+        Solutions in contact so far, iterations, solutions that missed the tolerance, and those cut off.
     """
 
-    law: Direct
-    contact: ContactInPlace
-    offsets: NDArray[np.float64]
-    iterations: int = 0
-    solves: int = 0
-    unconverged: int = 0
-    truncated: int = 0
-    overlap: float = 0.0
-    _under: tuple[int, NDArray[np.float64]] | None = None
-    _tried: bool = False
-    _spline: BSpline | None = None
-    _last: _Accepted | None = None
-    _before: _Accepted | None = None
+    def __init__(self, law: Direct, contact: ContactInPlace, offsets: Array) -> None:
+        self.law, self.contact, self.offsets = law, contact, offsets
+        self.counts, self.overlap = np.zeros(4, dtype=np.int64), 0.0
+        self._step, self._heights = -1, np.zeros(0)
+        self._tried = False  # whether there is a solution of this step
+        self._spline: BSpline | None = None
+        self._last: Accepted | None = None
+        self._before: Accepted | None = None
 
     def evaluate(self, step: int, approach: float) -> tuple[float, float]:
         """Elastic force, N, and its exact tangent dF/dδ, N/m, at a step of the path."""
@@ -131,19 +131,17 @@ class DirectOnPath:
 
     def settle(self, step: int, approach: float, compliance: float) -> float:
         """Elastic force, N, of bodies that yield to it by a compliance, m/N; approach without force, m."""
-        heights = self._heights_at(step)
+        if self._step != step:
+            self._step, self._heights, self._tried = step, self._rows_at(float(self.offsets[step])), False
         if self._tried:
             self.contact.start_again()
         else:
             self._start(step)
         rtol = min(self.law.rtol, AT_REST) if self._last is None else self.law.rtol
-        found = self.contact.solve(heights, approach, compliance, rtol)
+        found = self.contact.solve(self._heights, approach, compliance, rtol)
         self._tried = True
-        self.truncated += found.truncated
         self.overlap = max(self.overlap, found.overlap)
-        self.iterations += found.iterations
-        self.solves += found.force > 0.0
-        self.unconverged += not found.converged
+        self.counts += (found.force > 0.0, found.iterations, not found.converged, found.truncated)
         return found.force
 
     def accept(self, step: int) -> None:
@@ -151,26 +149,25 @@ class DirectOnPath:
         if self._tried:
             kept = self._before.pressure if self._before else np.empty_like(self.contact.pressure)
             kept[:] = self.contact.pressure
-            self._before, self._last = self._last, _Accepted(kept, round(self.offsets[step]))
+            self._before, self._last = self._last, Accepted(kept, round(self.offsets[step]))
         self._tried = False
 
     def state(self) -> dict[str, NDArray[Any]]:
         """What `restore` needs to go on from here exactly."""
-        held = [a for a in (self._last, self._before) if a is not None]
+        held = [each for each in (self._last, self._before) if each is not None]
         return {
-            "counts": np.array([self.iterations, self.solves, self.unconverged, self.truncated]),
+            "counts": self.counts.copy(),
             "overlap": np.array(self.overlap),
-            "pressures": np.array([a.pressure for a in held]),
-            "rows": np.array([a.row for a in held], dtype=np.int64),
+            "pressures": np.array([each.pressure for each in held]),
+            "rows": np.array([each.row for each in held], dtype=np.int64),
         }
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
         """Go on from a saved state."""
-        self.iterations, self.solves, self.unconverged, self.truncated = state["counts"].tolist()
-        self.overlap = float(state["overlap"])
-        held = [_Accepted(p.copy(), int(r)) for p, r in zip(state["pressures"], state["rows"], strict=True)]
+        self.counts[:], self.overlap = state["counts"], float(state["overlap"])
+        held = [Accepted(p.copy(), int(r)) for p, r in zip(state["pressures"], state["rows"], strict=True)]
         self._last, self._before = [*held, None, None][:2]
-        self._under, self._tried = None, False
+        self._step, self._tried = -1, False
 
     def warn_of_flaws(self) -> None:
         """Warn of contacts that did not converge or were cut off."""
@@ -178,15 +175,9 @@ class DirectOnPath:
 
         window = window_for(self.law.body, self.law.spacing, self.overlap)
         remedy = f'contact.window = "{window * 1e3:.3g} mm" holds them.'
-        counts = Counts(self.solves, self.iterations, self.unconverged, self.truncated)
-        warn_of_flaws(counts, "the direct law", "numerics.rtol", remedy)
+        warn_of_flaws(Counts(*self.counts.tolist()), "the direct law", "numerics.rtol", remedy)
 
-    def _heights_at(self, step: int) -> NDArray[np.float64]:
-        if self._under is None or self._under[0] != step:
-            self._under, self._tried = (step, self._rows_at(float(self.offsets[step]))), False
-        return self._under[1]
-
-    def _rows_at(self, offset: float) -> NDArray[np.float64]:
+    def _rows_at(self, offset: float) -> Array:
         """Rows of the texture from an offset on; between rows by quintic splines, which keep short waves."""
         first, count = round(offset), self.law.body.shape[0]
         if abs(offset - first) < 1e-6:
@@ -209,34 +200,12 @@ class DirectOnPath:
         self.contact.start_from(last.pressure, before.pressure, rows, last.row - before.row)
 
 
-class _Accepted(NamedTuple):
-    """A pressure (nx, ny), Pa, and the first row of its window."""
-
-    pressure: NDArray[np.float64]
-    row: int
-
-
-def _build(materials: Materials) -> Direct:
-    """Build the law from the materials of a case."""
-    return Direct(
-        materials.heights,
-        materials.body,
-        materials.spacing,
-        materials.modulus,
-        materials.start,
-        materials.hardness,
-        materials.rtol,
-        materials.damping,
-        materials.name,
-    )
-
-
-LAW = LawSpec(
+LAW = spec.LawSpec(
     "direct",
     "The three-dimensional contact, solved in every time step: the reference.",
-    _build,
-    frozenset({Need.SURFACE}),
+    base.from_materials(Direct),
+    {spec.Need.SURFACE},
     solved_every_step=True,
-    role=Role.REFERENCE,
-    look=Look("#1c2126", (0, (16, 2)), "v"),
+    role=spec.Role.REFERENCE,
+    look=spec.Look("#1c2126", (0, (16, 2)), "v"),
 )

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.laws.base import check_damping
-from asperity.laws.spec import LawSpec, Look, Need, Variant
+from asperity.laws import spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -30,11 +29,6 @@ class HertzLaw:
         c, N s/m.
     plane : StateTexture, optional
         Plane from which the states of the texture count, m, as in `Areal`; the mean plane by default.
-
-    Raises
-    ------
-    InputError
-        If the constant is not positive or the damping is negative.
     """
 
     stiffness: float
@@ -43,14 +37,8 @@ class HertzLaw:
     name: str = "hertz"
     plane: StateTexture | None = None
 
-    def __post_init__(self) -> None:
-        from asperity.reduction.stiffness import ForceCurve
-
-        check_damping(self.damping)
-        ForceCurve.hertz(self.stiffness)
-
     def prepare(self, positions: ArrayLike) -> Prepared:
-        """Lay the law out on positions (n,) of the contact, m."""
+        """Lay the law out on positions (n,) of the contact, m; refuse numbers out of range."""
         from asperity.laws.layout import on_curve
         from asperity.reduction.stiffness import ForceCurve
 
@@ -62,22 +50,21 @@ def _build(materials: Materials) -> HertzLaw:
     """Build the law from the materials of a case; a filter is read by force, as rough contact is softer."""
     from asperity.reduction.stiffness import ForceCurve
 
-    constant = materials.hertz_constant
-    line = materials.line_on(ForceCurve.hertz(constant))
-    return HertzLaw(constant, line, materials.damping, materials.name, materials.line_at_load)
+    line = materials.line_on(ForceCurve.hertz(materials.hertz_constant))
+    of_case = materials.damping, materials.name, materials.line_at_load
+    return HertzLaw(materials.hertz_constant, line, *of_case)
 
 
-LAW = LawSpec(
+FILTERED = spec.Variant(
+    "filtered",
+    "Here with the filtered line texture.",
+    {spec.Need.FILTER},
+    look=spec.Look("#2c3e91", (0, (1.5, 1.5, 4, 1.5)), "*"),
+)
+LAW = spec.LawSpec(
     "hertz",
     "Smooth bodies: Hertzian contact.",
     _build,
-    look=Look("#2a93c4", (0, (1.5, 1.5)), "P"),
-    variants=(
-        Variant(
-            "filtered",
-            "Here with the filtered line texture.",
-            frozenset({Need.FILTER}),
-            look=Look("#2c3e91", (0, (1.5, 1.5, 4, 1.5)), "*"),
-        ),
-    ),
+    look=spec.Look("#2a93c4", (0, (1.5, 1.5)), "P"),
+    variants=(FILTERED,),
 )

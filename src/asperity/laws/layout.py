@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from asperity.arguments import Array, not_negative
 from asperity.kernels.piecewise import continued_to_touch, monotone_slopes, zero_crossing
-from asperity.kernels.pointforce import SHIFTED, TABLE, Prepared, evaluate_all
+from asperity.kernels.pointforce import SECANT, SHIFTED, TABLE, Prepared, evaluate_all
 from asperity.laws.base import Law
 from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import PIECE, ForceTable
 from asperity.reduction.texture import StateTexture
+
+DAMPING = "contact damping (N s/m)"
 
 
 def on_curve(
@@ -18,42 +21,29 @@ def on_curve(
     texture: StateTexture | None,
     positions: ArrayLike,
     *,
-    form: int = SHIFTED,
-    datum: float = 0.0,
+    datum: float | None = None,
     damping: float = 0.0,
     damped_in_flight: bool = False,
     plane: StateTexture | None = None,
 ) -> Prepared:
     """Lay out a law that is a force curve following a line texture, at positions (n,) of the contact, m.
 
-    The form is `SHIFTED` or `SECANT` of `asperity.kernels.pointforce`, where the rest is explained; without
-    texture the path is smooth. The states of the texture count from the plane, m, by default the mean plane.
+    With a datum its form is `SECANT` of `asperity.kernels.pointforce`, where the rest is explained, else
+    `SHIFTED`. Without texture the path is smooth. The states of the texture count from the plane, m, by
+    default the mean plane.
     """
     at = np.atleast_1d(np.asarray(positions, dtype=float))
-    states = np.zeros(1) if texture is None else texture.approaches
-    values = np.zeros((at.size, 1)) if texture is None else texture.at(at)
-    planes = plane_at(plane, at)
-    if plane is not None:
-        values -= planes[:, None]
-    return Prepared(
-        form,
-        planes,
-        np.ascontiguousarray(states, dtype=float),
-        np.ascontiguousarray(values, dtype=float),
-        np.zeros((0, len(states))),
-        np.zeros(0),
-        np.ascontiguousarray(curve.knots, dtype=float),
-        np.ascontiguousarray(curve.coefficients, dtype=float),
-        float(curve.exponent),
-        bool(curve.bilateral),
-        float(datum),
-        float(damping),
-        bool(damped_in_flight),
-        float(curve.upper),
-    )
+    planes = _plane_at(plane, at)
+    states = np.zeros(1) if texture is None else np.ascontiguousarray(texture.approaches, dtype=float)
+    values = (np.zeros((at.size, 1)) if texture is None else texture.at(at)) - planes[:, None]
+    followed = states, values, np.zeros((0, len(states))), np.zeros(0)
+    force = curve.knots, curve.coefficients, float(curve.exponent), curve.bilateral
+    damper = not_negative(DAMPING, damping), damped_in_flight
+    form = SHIFTED if datum is None else SECANT
+    return Prepared(form, planes, *followed, *force, float(datum or 0.0), *damper, float(curve.upper))
 
 
-def plane_at(plane: StateTexture | None, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+def _plane_at(plane: StateTexture | None, positions: Array) -> Array:
     """Plane (n,) from which states count at positions (n,) of the path, m, positive away from contact.
 
     None is the mean plane.
@@ -70,32 +60,19 @@ def on_table(
     table's approaches count from the plane, m, by default the mean plane.
     """
     at = np.atleast_1d(np.asarray(positions, dtype=float))
-    root, slopes = np.empty((2, at.size, len(table.approaches)))
+    states = np.ascontiguousarray(table.approaches, dtype=float)
+    root, slopes = np.empty((2, at.size, len(states)))
     touches = np.empty(at.size)
     for first in range(0, at.size, PIECE):
         piece = slice(first, first + PIECE)
         root[piece], slopes[piece], touches[piece] = _laid_out(table, at[piece])
-    return Prepared(
-        TABLE,
-        plane_at(plane, at),
-        np.ascontiguousarray(table.approaches, dtype=float),
-        root,
-        slopes,
-        touches,
-        np.zeros(2),
-        np.zeros((1, 4)),
-        1.5,
-        False,
-        0.0,
-        float(damping),
-        False,
-        float(table.approaches[-1]),
-    )
+    no_curve = np.zeros(2), np.zeros((1, 4)), 1.5, False
+    damper = not_negative(DAMPING, damping), False
+    planes = _plane_at(plane, at)
+    return Prepared(TABLE, planes, states, root, slopes, touches, *no_curve, 0.0, *damper, float(states[-1]))
 
 
-def _laid_out(
-    table: ForceTable, at: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _laid_out(table: ForceTable, at: Array) -> tuple[Array, Array, Array]:
     """g = F^(2/3), its slopes and the first touch at some positions."""
     root = np.cbrt(table.at(at)) ** 2
     touches = table.touch_at(at)
@@ -106,9 +83,7 @@ def _laid_out(
     return root, monotone_slopes(table.approaches, root), touches
 
 
-def _straight_to_touch(
-    states: NDArray[np.float64], root: NDArray[np.float64], touches: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _straight_to_touch(states: Array, root: Array, touches: Array) -> Array:
     """Replace g before first touch, and a little after, by the line through the touch and the next state."""
     beyond = states - touches[:, None] > 0.2 * np.gradient(states)
     first = np.minimum(np.argmax(beyond, axis=1), len(states) - 1)
@@ -118,7 +93,7 @@ def _straight_to_touch(
     return np.where(beyond, root, line)
 
 
-def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> NDArray[np.float64]:
+def force(law: Law, positions: ArrayLike, approach: ArrayLike) -> Array:
     """Elastic contact force of a law, (n,), N, without damping, at positions (n,) and approaches, m."""
     at = np.atleast_1d(np.asarray(positions, dtype=float))
     delta = np.ascontiguousarray(np.broadcast_to(np.asarray(approach, dtype=float), at.shape))

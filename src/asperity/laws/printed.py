@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.errors import InputError
-from asperity.laws.base import check_damping
-from asperity.laws.spec import LawSpec, Look, Need, Variant
+from asperity.arguments import real
+from asperity.laws import base, spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from asperity.kernels.pointforce import Prepared
-    from asperity.laws.materials import Materials
     from asperity.reduction.stiffness import ForceCurve
     from asperity.reduction.texture import StateTexture
 
@@ -41,7 +39,7 @@ class Printed:
     Raises
     ------
     InputError
-        If the datum leaves r <= 0 in contact, or the damping is negative.
+        If the datum leaves r <= 0 in contact.
     """
 
     curve: ForceCurve
@@ -51,46 +49,31 @@ class Printed:
     name: str = "printed"
 
     def __post_init__(self) -> None:
-        check_damping(self.damping)
         lowest = -self.curve.first_touch
-        if not self.datum >= lowest * (1.0 - 1e-9):
-            remedy = "Take the highest first touch of all samples as the datum."
-            raise InputError("datum of the state (m)", self.datum, f"at least {lowest:.6g}", remedy)
+        remedy = "Take the highest first touch of all samples as the datum."
+        least = lowest * (1.0 - 1e-9)
+        real("datum of the state (m)", self.datum, f"at least {lowest:.6g}", at_least=least, remedy=remedy)
 
     def prepare(self, positions: ArrayLike) -> Prepared:
-        """Lay the law out on positions (n,) of the contact, m."""
-        from asperity.kernels.pointforce import SECANT
+        """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
         from asperity.laws.layout import on_curve
 
-        return on_curve(
-            self.curve,
-            self.texture,
-            positions,
-            form=SECANT,
-            datum=self.datum,
-            damping=self.damping,
-            damped_in_flight=True,
-        )
+        following = self.curve, self.texture, positions
+        return on_curve(*following, datum=self.datum, damping=self.damping, damped_in_flight=True)
 
 
-def _build(materials: Materials) -> Printed:
-    """Build the law from the materials of a case."""
-    return Printed(materials.curve, materials.line, materials.datum, materials.damping, materials.name)
-
-
-LAW = LawSpec(
+UNFILTERED = spec.Variant(
+    "unfiltered",
+    "Here without the filter.",
+    {spec.Need.SAMPLES, spec.Need.DATUM},
+    look=spec.Look("#6750b8", (0, (6, 1.5, 1.5, 1.5, 1.5, 1.5)), ">"),
+)
+LAW = spec.LawSpec(
     "printed",
     "The thesis as printed: states from the mean plane, secant stiffness times the filtered line texture.",
-    _build,
-    frozenset({Need.SAMPLES, Need.DATUM, Need.FILTER}),
+    base.from_materials(Printed, texture="line"),
+    {spec.Need.SAMPLES, spec.Need.DATUM, spec.Need.FILTER},
     normalise="low-wavenumber",
-    look=Look("#a8458f", (0, (6, 1.5, 1.5, 1.5)), "^"),
-    variants=(
-        Variant(
-            "unfiltered",
-            "Here without the filter.",
-            frozenset({Need.SAMPLES, Need.DATUM}),
-            look=Look("#6750b8", (0, (6, 1.5, 1.5, 1.5, 1.5, 1.5)), ">"),
-        ),
-    ),
+    look=spec.Look("#a8458f", (0, (6, 1.5, 1.5, 1.5)), "^"),
+    variants=(UNFILTERED,),
 )

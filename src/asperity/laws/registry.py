@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Iterable
 
-from asperity.arguments import nearest, shown
+from asperity.arguments import nearest, require, shown
 from asperity.errors import InputError
 from asperity.laws.spec import LawSpec, Need, Role
 
@@ -64,16 +64,15 @@ def register(law: LawSpec) -> None:
     True
     >>> laws.unregister("stiffer")
     """
-    if not isinstance(law, LawSpec):
-        raise InputError("law", shown(law), "an asperity.laws.LawSpec")
-    taken = {spec.role: spec.name for spec in _specs.values() if spec.role is not None}
+    require(isinstance(law, LawSpec), "law", shown(law), "an asperity.laws.LawSpec")
+    taken: dict[Role | None, str] = {spec.role: spec.name for spec in _specs.values() if spec.role}
+    remedy = "Take another name, or unregister that law first."
     for spec in law.family:
-        if spec.name in _specs:
-            remedy = "Take another name, or unregister that law first."
-            raise InputError("name of a law", shown(spec.name), "a name that no other law has", remedy)
-        if spec.role in taken:
-            received = f'"{spec.role}", which the law {taken[spec.role]} has'
-            raise InputError(f"role of law {spec.name}", received, "a role that no other law has, or None")
+        allowed = "a name that no other law has"
+        require(spec.name not in _specs, "name of a law", shown(spec.name), allowed, remedy)
+        received = f'"{spec.role}", which the law {taken.get(spec.role)} has'
+        allowed = "a role that no other law has, or None"
+        require(spec.role not in taken, f"role of law {spec.name}", received, allowed)
     _specs.update({spec.name: spec for spec in law.family})
     _families[law.name] = tuple(spec.name for spec in law.family)
 
@@ -81,9 +80,9 @@ def register(law: LawSpec) -> None:
 def unregister(name: str) -> None:
     """Forget a law that was registered, with its variants; those that come with the program stay."""
     spec_of(name)
-    if name in BUILT_IN or name not in _families:
-        own = ", ".join(f'"{own}"' for own in _families if own not in BUILT_IN) or "none is"
-        raise InputError("law", shown(name), f"a law that was registered ({own})")
+    own = [law for law in _families if law not in BUILT_IN]
+    registered = ", ".join(f'"{law}"' for law in own) or "none is"
+    require(name in own, "law", shown(name), f"a law that was registered ({registered})")
     for member in _families.pop(name):
         del _specs[member]
 

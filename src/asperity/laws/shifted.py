@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.laws.base import check_damping
-from asperity.laws.spec import LawSpec, Look, Need, Variant
+from asperity.laws import base, spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from asperity.kernels.pointforce import Prepared
-    from asperity.laws.materials import Materials
     from asperity.reduction.stiffness import ForceCurve
     from asperity.reduction.texture import StateTexture
 
@@ -31,11 +29,6 @@ class Shifted:
         c, N s/m.
     plane : StateTexture, optional
         Plane from which the states of the texture count, m, as in `Areal`; the mean plane by default.
-
-    Raises
-    ------
-    InputError
-        If the damping is negative.
     """
 
     curve: ForceCurve
@@ -44,33 +37,24 @@ class Shifted:
     name: str = "shifted"
     plane: StateTexture | None = None
 
-    def __post_init__(self) -> None:
-        check_damping(self.damping)
-
     def prepare(self, positions: ArrayLike) -> Prepared:
-        """Lay the law out on positions (n,) of the contact, m."""
+        """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
         from asperity.laws.layout import on_curve
 
         return on_curve(self.curve, self.texture, positions, damping=self.damping, plane=self.plane)
 
 
-def _build(materials: Materials) -> Shifted:
-    """Build the law from the materials of a case."""
-    return Shifted(materials.curve, materials.line, materials.damping, materials.name, materials.line_at_load)
-
-
-LAW = LawSpec(
+UNFILTERED = spec.Variant(
+    "unfiltered",
+    "Here without the filter.",
+    {spec.Need.SAMPLES},
+    look=spec.Look("#b01b3c", (0, (3, 1.5, 3, 1.5, 1, 1.5)), "d"),
+)
+LAW = spec.LawSpec(
     "shifted",
     "The state functions, shifted by the filtered line texture: follows slow bumps.",
-    _build,
-    frozenset({Need.SAMPLES, Need.FILTER}),
-    look=Look("#c8500a", (0, (6, 1.5)), "s"),
-    variants=(
-        Variant(
-            "unfiltered",
-            "Here without the filter.",
-            frozenset({Need.SAMPLES}),
-            look=Look("#b01b3c", (0, (3, 1.5, 3, 1.5, 1, 1.5)), "d"),
-        ),
-    ),
+    base.from_materials(Shifted, texture="line", plane="line_at_load"),
+    {spec.Need.SAMPLES, spec.Need.FILTER},
+    look=spec.Look("#c8500a", (0, (6, 1.5)), "s"),
+    variants=(UNFILTERED,),
 )

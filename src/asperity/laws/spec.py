@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Literal
 
-from asperity.arguments import shown
+from asperity.arguments import require, shown
 from asperity.errors import InputError
 from asperity.schema import spectra
 
@@ -77,23 +77,20 @@ class Look:
     marker: str = "<"
 
     def __post_init__(self) -> None:
-        if not re.fullmatch("#[0-9a-f]{6}", str(self.colour)):
-            raise InputError("colour of a law", shown(self.colour), 'six digits and letters, as "#0067a5"')
-        if self.marker not in MARKERS:
-            raise InputError("marker of a law", shown(self.marker), " ".join(MARKERS))
-        if not _are_dashes(self.dashes):
-            allowed = '"-", or an offset and lengths of dashes and gaps, as (0, (6, 1.5))'
-            raise InputError("dashes of a law", shown(self.dashes), allowed)
+        allowed = 'six digits and letters, as "#0067a5"'
+        require(
+            re.fullmatch("#[0-9a-f]{6}", str(self.colour)), "colour of a law", shown(self.colour), allowed
+        )
+        require(self.marker in MARKERS, "marker of a law", shown(self.marker), " ".join(MARKERS))
+        allowed = '"-", or an offset and lengths of dashes and gaps, as (0, (6, 1.5))'
+        require(_are_dashes(self.dashes), "dashes of a law", shown(self.dashes), allowed)
 
 
 def _are_dashes(dashes: object) -> bool:
     match dashes:
-        case "-":
-            return True
-        case (int() | float(), tuple() as lengths):
-            return len(lengths) > 0 and all(isinstance(n, int | float) and n > 0 for n in lengths)
-        case _:
-            return False
+        case (int() | float(), (_, *_) as lengths):
+            return all(isinstance(length, int | float) and length > 0 for length in lengths)
+    return dashes == "-"
 
 
 VARIANT_DASHES: Dashes = (0, (8, 1.5, 1, 1.5, 1, 1.5))
@@ -109,7 +106,7 @@ class Variant:
         Behind the name of the law and a hyphen, as ``"filtered"``.
     meaning : str
         One sentence that follows the meaning of the law.
-    needs : frozenset of Need
+    needs : set of Need
         All that the variant needs.
     role : Role, optional
         What it is to the others.
@@ -119,7 +116,7 @@ class Variant:
 
     suffix: str
     meaning: str
-    needs: frozenset[Need]
+    needs: Set[Need]
     role: Role | None = None
     look: Look | None = None
 
@@ -162,7 +159,7 @@ class LawSpec:
     name: str
     meaning: str
     build: Callable[[Materials], Law]
-    needs: frozenset[Need] = frozenset()
+    needs: Set[Need] = frozenset()
     normalise: Literal["tangent", "low-wavenumber"] = "tangent"
     may_pull: bool = False
     solved_every_step: bool = False
@@ -171,24 +168,20 @@ class LawSpec:
     variants: tuple[Variant, ...] = ()
 
     def __post_init__(self) -> None:
-        if not isinstance(self.name, str) or not re.fullmatch(_WORD, self.name):
-            allowed = 'small letters and digits, with hyphens between words, as "my-law"'
-            raise InputError("name of a law", shown(self.name), allowed)
-        what = f"law {self.name}"
-        if not isinstance(self.meaning, str) or not re.fullmatch(r"\S.*\.", self.meaning):
-            raise InputError(f"meaning of {what}", shown(self.meaning), "one line that ends with a full stop")
-        if not callable(self.build):
-            raise InputError(f"build of {what}", shown(self.build), "a function of the materials")
-        if self.normalise not in ("tangent", "low-wavenumber"):
-            allowed = '"tangent" or "low-wavenumber"'
-            raise InputError(f"normalise of {what}", shown(self.normalise), allowed)
-        object.__setattr__(self, "needs", _checked(f"needs of {what}", self.needs))
-        if not isinstance(self.look, Look):
-            raise InputError(f"look of {what}", shown(self.look), "a Look of colour, dashes and marker")
-        if self.role is not None and not isinstance(self.role, Role):
-            raise InputError(f"role of {what}", shown(self.role), "None, or a Role")
-        if not all(isinstance(variant, Variant) for variant in self.variants):
-            raise InputError(f"variants of {what}", shown(self.variants), "a tuple of Variant")
+        allowed = 'small letters and digits, with hyphens between words, as "my-law"'
+        require(_matches(_WORD, self.name), "name of a law", shown(self.name), allowed)
+        of = f"of law {self.name}"
+        checks = {
+            "meaning": (_matches(r"\S.*\.", self.meaning), "one line that ends with a full stop"),
+            "build": (callable(self.build), "a function of the materials"),
+            "normalise": (self.normalise in ("tangent", "low-wavenumber"), '"tangent" or "low-wavenumber"'),
+            "look": (isinstance(self.look, Look), "a Look of colour, dashes and marker"),
+            "role": (self.role is None or isinstance(self.role, Role), "None, or a Role"),
+            "variants": (all(isinstance(each, Variant) for each in self.variants), "a tuple of Variant"),
+        }
+        for name, (right, allowed) in checks.items():
+            require(right, f"{name} {of}", shown(getattr(self, name)), allowed)
+        object.__setattr__(self, "needs", _checked(f"needs {of}", self.needs))
         if self.variants:
             _ = self.family  # checks each of them
 
@@ -225,23 +218,19 @@ class LawSpec:
 
     def entry(self) -> Mapping[str, Any]:
         """What a result says of the law, fit for JSON."""
-        return {
-            "name": self.name,
-            "meaning": self.meaning,
-            "colour": self.look.colour,
-            "dashes": self.look.dashes,
-            "marker": self.look.marker,
-            "may_pull": self.may_pull,
-            "needs": sorted(self.needs),
-            "role": self.role or "",
-        }
+        of_law = {name: getattr(self, name) for name in ("name", "meaning", "may_pull")}
+        return of_law | vars(self.look) | {"needs": sorted(self.needs), "role": self.role or ""}
+
+
+def _matches(pattern: str, text: object) -> bool:
+    return isinstance(text, str) and re.fullmatch(pattern, text) is not None
 
 
 def _checked(what: str, needs: object) -> frozenset[Need]:
     """Needs as a set of `Need`, from members or their words, with what they need themselves."""
     words = ", ".join(f'"{need}"' for need in Need)
     try:
-        found = frozenset(Need(need) for need in needs)  # type: ignore[attr-defined]
+        found = frozenset(map(Need, needs))  # type: ignore[call-overload]
     except (TypeError, ValueError):
         raise InputError(what, shown(needs), f"a set of {words}") from None
     return found | {Need.SAMPLES} if found & {Need.DATUM, Need.AREAL, Need.SCAN} else found

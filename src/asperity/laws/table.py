@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from asperity.laws.base import check_damping
-from asperity.laws.spec import LawSpec, Look, Need, Role
+from asperity.laws import base, spec
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from asperity.kernels.pointforce import Prepared
-    from asperity.laws.materials import Materials
     from asperity.reduction.table import ForceTable
     from asperity.reduction.texture import StateTexture
 
@@ -32,11 +30,6 @@ class Table:
         c, N s/m.
     plane : StateTexture, optional
         Plane from which the table's approaches count, m; the mean plane by default.
-
-    Raises
-    ------
-    InputError
-        If the damping is negative.
     """
 
     table: ForceTable
@@ -44,26 +37,18 @@ class Table:
     plane: StateTexture | None = None
     name: str = "table"
 
-    def __post_init__(self) -> None:
-        check_damping(self.damping)
-
     def prepare(self, positions: ArrayLike) -> Prepared:
-        """Lay the law out on positions (n,) of the contact, m."""
+        """Lay the law out on positions (n,) of the contact, m; refuse a damping that is negative."""
         from asperity.laws.layout import on_table
 
         return on_table(self.table, positions, damping=self.damping, plane=self.plane)
 
 
-def _build(materials: Materials) -> Table:
-    """Build the law from the materials of a case."""
-    return Table(materials.table, materials.damping, plane=materials.plane, name=materials.name)
-
-
-LAW = LawSpec(
+LAW = spec.LawSpec(
     "table",
     "The scanned three-dimensional contact force, looked up.",
-    _build,
-    frozenset({Need.SAMPLES, Need.SCAN}),
-    role=Role.STAND_IN,
-    look=Look("#00805c", (0, (10, 1.5, 4, 1.5)), "D"),
+    base.from_materials(Table),
+    {spec.Need.SAMPLES, spec.Need.SCAN},
+    role=spec.Role.STAND_IN,
+    look=spec.Look("#00805c", (0, (10, 1.5, 4, 1.5)), "D"),
 )

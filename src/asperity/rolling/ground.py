@@ -6,8 +6,8 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import InputError, LargeDeflectionWarning
 from asperity.kernels.rail import Channels
 from asperity.rolling.path import Path
@@ -18,7 +18,6 @@ from asperity.structures.modal import STATIC, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_bay
 
-Array = NDArray[np.float64]
 PLACES = 256
 """Positions at which mode shapes are looked at."""
 LARGEST_DEFLECTION = 0.02

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import ComputationError, ExtrapolationWarning, Grade, UnconvergedWarning, percent
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.base import SteppedLaw
 from asperity.structures.body import Body
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

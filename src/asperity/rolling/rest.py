@@ -8,9 +8,9 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from asperity.arguments import Array
 from asperity.errors import ComputationError
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.kernels.rail import preload_channels
@@ -19,7 +19,6 @@ from asperity.laws.base import SteppedLaw
 from asperity.rolling.ground import Ground
 from asperity.structures.body import Body
 
-Array = NDArray[np.float64]
 Evaluation = Callable[[float], tuple[float, float]]
 FIRST_MOVE = 1e-6  # m, of the contacts; doubled until they are at rest
 LARGEST_MOVE = 1.0  # m

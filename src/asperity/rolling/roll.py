@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.arguments import Array
 from asperity.errors import Outcome
 from asperity.kernels import stepping
 from asperity.laws.base import Law
@@ -21,8 +22,6 @@ from asperity.store import Checkpoint
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

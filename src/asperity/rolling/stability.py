@@ -25,13 +25,12 @@ import warnings
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from asperity.arguments import Array
 from asperity.errors import CoarseSamplingWarning
 from asperity.kernels.pointforce import Prepared, evaluate_all
 from asperity.laws.base import SteppedLaw
 
-Array = NDArray[np.float64]
 MARGIN = 0.5
 """Share of the bound up to which a step is taken as it is."""
 STABLE = 1.1

@@ -22,7 +22,6 @@ from asperity.structures.body import Body
 from asperity.structures.modal import Modal
 from asperity.structures.rail_poles import RailBetween
 
-Array = NDArray[np.float64]
 Free = tuple[float, float, float, float]
 Found = tuple[float, float, int, int]
 STEPPED_BLOCK = 8  # steps between looks at the clock when a law is evaluated from Python

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag, eigh
 
+from asperity.arguments import Array
 from asperity.errors import InputError
 from asperity.structures.body import Body
 
-Array = NDArray[np.float64]
 TAYLOR_RADIUS, TAYLOR_TERMS = 0.5, 14  # remainder below 1e-16
 RESOLVED = 0.9 * np.pi
 """Angle by which a mode may turn in a step to be followed."""
