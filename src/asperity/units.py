@@ -35,20 +35,8 @@ _OTHERS = {
 
 
 _WRITTEN = (
-    "km/h",
-    "mm/s",
-    "N/mm",
-    "kN/mm",
-    "kg/m",
-    "kg/m^3",
-    "mm^2",
-    "N s/mm",
-    "kN s/m",
-    "deg",
-    "rad",
-    "kg",
-    "t",
-)
+    "km/h", "mm/s", "N/mm", "kN/mm", "kg/m", "kg/m^3", "mm^2", "N s/mm", "kN s/m", "deg", "rad", "kg", "t"
+)  # fmt: skip
 """Units that people write beside SI units and their prefixes."""
 
 
@@ -78,25 +66,16 @@ def factor(unit: str, dimension: str) -> float:
     if "dB" in (unit, dimension):  # a level is not a multiple of a physical unit
         raise InputError("unit", repr(unit), allowed, f"Write the quantity as in '1 {dimension}'.")
     misread = unit.lower().endswith(("mph", "kph")) and len(unit) > 3  # "kmph" is no thousand miles per hour
-    if len(unit) > _LONGEST or misread or not _UNIT.fullmatch(unit):
-        raise InputError(
-            "unit",
-            repr(unit[:_LONGEST]),
-            allowed,
-            _meant(unit, dimension) or "Write names, '/', '*' and powers, as in 'kg/m^3'.",
-        )
-    try:
-        return float(_registry().Quantity(1.0, unit.replace("·", "*")).to(dimension).magnitude)
-    except pint.DimensionalityError:
-        remedy = _meant(unit, dimension) or (
-            f"Write the quantity with such a unit, as in '1 {dimension}'."
-            if dimension
-            else "Leave the unit away."
-        )
-        raise InputError("unit", repr(unit), allowed, remedy) from None
-    except Exception:  # pint raises errors of many kinds on malformed text
-        remedy = _meant(unit, dimension) or "Check its spelling."
-        raise InputError("unit", repr(unit), allowed, remedy) from None
+    remedy = "Write names, '/', '*' and powers, as in 'kg/m^3'."
+    if len(unit) <= _LONGEST and not misread and _UNIT.fullmatch(unit):
+        try:
+            return float(_registry().Quantity(1.0, unit.replace("·", "*")).to(dimension).magnitude)
+        except pint.DimensionalityError:
+            such = f"Write the quantity with such a unit, as in '1 {dimension}'."
+            remedy = such if dimension else "Leave the unit away."
+        except Exception:  # pint raises errors of many kinds on malformed text
+            remedy = "Check its spelling."
+    raise InputError("unit", repr(unit[:_LONGEST]), allowed, _meant(unit, dimension) or remedy)
 
 
 def _meant(unit: str, dimension: str) -> str:
@@ -123,21 +102,20 @@ def quantity(text: str, dimension: str) -> float:
     received = repr(text if len(text) <= _LONGEST else text[:_LONGEST] + "…")
     allowed = f"a number and a unit, as '1 {dimension}'" if dimension else "a number"
     match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST_QUANTITY else None
+    value, unit = (float(match[1]), match[2].strip()) if match else (math.nan, "")
+    infinite = match is not None and "inf" in match[1].lower()
     if match is None:
         remedy = "Write the number first, with a decimal point, then the unit."
-        raise InputError("quantity", received, allowed, remedy)
-    number, unit = match[1].lower(), match[2].strip()
-    value = float(number)
-    infinite = number.lstrip("+-") == "inf"
-    if math.isnan(value):
-        raise InputError("quantity", received, allowed, "NaN is not a value; give a number.")
-    if not unit and dimension and not infinite:
-        raise InputError("quantity", received, allowed, "Add the unit.")
-    if unit:
-        value *= factor(unit, dimension)
-    if math.isinf(value) and not infinite:
-        raise InputError("quantity", received, allowed, "The number is too large; 'inf' stands for infinity.")
-    return value
+    elif math.isnan(value):
+        remedy = "NaN is not a value; give a number."
+    elif dimension and not unit and not infinite:
+        remedy = "Add the unit."
+    else:
+        value *= factor(unit, dimension) if unit else 1.0
+        if infinite or math.isfinite(value):
+            return value
+        remedy = "The number is too large; 'inf' stands for infinity."
+    raise InputError("quantity", received, allowed, remedy)
 
 
 def unit_in(text: str) -> str:
