@@ -16,7 +16,6 @@ from asperity.config.describing import entries
 from asperity.config.parsing import read_toml
 from asperity.config.tables import LEVELS, read_levels, read_table
 from asperity.config.values import Quantity, value_kind
-from asperity.decoding import number_in
 from asperity.errors import CaseError, ComputationError, InputError
 from asperity.files import alone_in, refuse_unwritable, write_bytes
 from asperity.kinds import KINDS
@@ -29,6 +28,7 @@ from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.readers import read_surface
 from asperity.surfaces.readers.headers import parsed_header
 from asperity.surfaces.synthesis import likeness
+from asperity.text_files import number_in
 from asperity.units import quantity
 
 BALL = 'kind = "ball-on-beam"\n'

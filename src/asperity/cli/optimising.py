@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from asperity.comma_separated import write_csv
 from asperity.config.content import content, file_digest
 from asperity.config.describing import in_toml, toml_text
 from asperity.config.parsing import read_definition
@@ -28,6 +27,7 @@ from asperity.reporting.tables import ReportTable
 from asperity.results import save
 from asperity.store import content_key
 from asperity.terminal import say
+from asperity.text_files import write_csv
 
 TEXTURE, CASE, TABLE, PAGE, TRIALS = (
     "texture.csv", "case.toml", "bands.csv", "bands.html", "trials.csv",

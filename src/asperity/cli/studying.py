@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import xarray
 
 from asperity.arguments import shown
-from asperity.comma_separated import write_csv
 from asperity.errors import InputError
 from asperity.files import alone_in, discard, final_place, refuse_unwritable, together, write_bytes
 from asperity.laws import spec_of
@@ -25,6 +24,7 @@ from asperity.studies.ensemble import FEWEST, SCATTER, mean_and_scatter, predict
 from asperity.studies.member import PLACES, names_kept
 from asperity.studies.table import OVER, USUAL, USUAL_IN_FIGURES, axes_of, chosen, columns_of, long_columns
 from asperity.terminal import line_width, remark, say, say_table
+from asperity.text_files import write_csv
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor

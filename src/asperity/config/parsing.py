@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 from pydantic import ValidationError
 
-from asperity import decoding
+from asperity import text_files
 from asperity.config.form import Section
 from asperity.config.messages import case_error
 from asperity.config.values import BACKSLASH
@@ -79,7 +79,7 @@ def read_definition(path: str | os.PathLike[str], what: str, remedy: str) -> str
     `what` it holds, and the remedy if it is missing, are for messages.
     """
     allowed = f"the path of a {what} file (TOML)"
-    return decoding.read_text(Path(path), str(path), allowed, largest=LARGEST_CASE, remedy=remedy)
+    return text_files.read_text(Path(path), str(path), allowed, largest=LARGEST_CASE, remedy=remedy)
 
 
 def read_toml(text: str, what: str, source: str | os.PathLike[str]) -> dict[str, Any]:

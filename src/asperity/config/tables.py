@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from asperity.arguments import no_file, shown
 from asperity.config.content import name_of
 from asperity.config.form import Section
-from asperity.decoding import lines_in, lines_of_cells, number_in, read_text
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.sandbox import Answer, sandboxed
 from asperity.surfaces.readers.guards import hostile
+from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
 
 LARGEST_TABLE = 10 * 2**20  # bytes of text

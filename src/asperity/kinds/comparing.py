@@ -10,7 +10,6 @@ import xarray
 from xarray import DataTree
 
 from asperity.arguments import file_path, shown
-from asperity.comma_separated import csv_text
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.printable import printable
@@ -20,6 +19,7 @@ from asperity.results import read_result
 from asperity.scenes.schema import KEPT
 from asperity.schema import Entry
 from asperity.schema.spectra import FORCE_LEVEL
+from asperity.text_files import csv_text
 
 TABLE = "comparison.csv"
 LEVEL = "dB re"

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.arguments import shown
-from asperity.comma_separated import csv_text
 from asperity.errors import InputError
 from asperity.files import atomic_write, write_bytes
 from asperity.reporting.chart import Chart
 from asperity.reporting.data import laws, of_law, present, values
 from asperity.schema import Entry
+from asperity.text_files import csv_text
 
 Columns = dict[str, NDArray[np.float64]]
 """Columns of a CSV file: ``"quantity [unit]"`` → numbers, all of one length, in SI units."""

@@ -19,11 +19,11 @@ from scipy.signal.windows import tukey
 from xarray import DataArray, DataTree
 
 from asperity.arguments import file_path, shown
-from asperity.comma_separated import write_csv
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.schema.rolling import CONTACT, CONTACT_FORCE, LAW, SPEED, TIME
 from asperity.spectra import HALF_BAND, a_weighting, band_energies, energy_sum
+from asperity.text_files import write_csv
 
 PASS_BY = "pass_by_pressure"
 """Name of what is heard."""

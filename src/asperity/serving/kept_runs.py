@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from asperity.config.parsing import LARGEST_CASE
-from asperity.decoding import read_text
 from asperity.errors import InputError
 from asperity.files import discard, write_bytes
 from asperity.printable import printable
+from asperity.text_files import read_text
 
 CASE, RESULT, REPORT, SOUNDS = "case.toml", "run.nc", "report.html", "sounds"
 COMPARISON = "comparison.html"

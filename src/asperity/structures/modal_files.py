@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, Complex, file_path, listed, no_file, shown
-from asperity.decoding import lines_of_cells, number_in, read_text
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.sandbox import Answer, sandboxed
 from asperity.structures.modal import ModalStructure
 from asperity.surfaces.readers.guards import check_claim, hostile
+from asperity.text_files import lines_of_cells, number_in, read_text
 from asperity.units import factor, unit_in_brackets
 
 Dataset = dict[str, Any]

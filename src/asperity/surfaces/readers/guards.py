@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array, file_path, listed, no_file, real, shown
-from asperity.decoding import number_in
 from asperity.errors import InputError, reason
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers.headers import advice, spell
+from asperity.text_files import number_in
 from asperity.units import factor, quantity
 
 MAX_FILE_BYTES = 4 << 30  # largest file, and largest content of an archive

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.readers.guards import (
     Hints,
@@ -21,6 +20,7 @@ from asperity.surfaces.readers.guards import (
     scaled,
     surfaces_of,
 )
+from asperity.text_files import number_in
 
 DATA_TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")  # by the code in the header
 # Integers of 16 and 32 bits mark a missing point by the largest unsigned or the smallest signed value.

@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from asperity.arguments import Array
-from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers.arrays import line, rasterised
 from asperity.surfaces.readers.guards import MAX_POINTS, Hints, Surface, check_claim, hostile, surfaces_of
 from asperity.surfaces.readers.headers import Header, advice, parsed_header, spell
+from asperity.text_files import number_in
 
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import Array
-from asperity.decoding import number_in
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.readers.arrays import line, rasterised
@@ -29,6 +28,7 @@ from asperity.surfaces.readers.guards import (
     parse_xml,
     surfaces_of,
 )
+from asperity.text_files import number_in
 
 DATA_TYPES = {"I": "<i2", "L": "<i4", "F": "<f4", "D": "<f8"}
 

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from asperity.comma_separated import csv_text, write_csv
 from asperity.reporting import part
+from asperity.text_files import csv_text, write_csv
 
 
 @pytest.mark.parametrize("word", ["=cmd|' /C calc'!A0", "+1+1", "-2+3", "@SUM(A1)"])

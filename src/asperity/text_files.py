@@ -1,17 +1,22 @@
-"""Text that people have written: UTF-8, or UTF-16 as PowerShell writes it."""
+"""Text files: what people have written is read, in UTF-8 or as PowerShell writes it; tables are written."""
 
 from __future__ import annotations
 
 import codecs
+import csv
 import io
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from asperity.arguments import no_file
 from asperity.errors import InputError
-from asperity.files import amount
+from asperity.files import amount, write_bytes
+from asperity.printable import printable
 
 _MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_FORMULA = ("=", "+", "-", "@")
+"""First characters of what spreadsheets take for a formula, and would compute or even run."""
 
 
 def read_text(
@@ -86,3 +91,28 @@ def number_in(text: str | bytes) -> float:
     if (b"_" if isinstance(text, bytes) else "_") in text:  # type: ignore[operator]
         raise ValueError(f"no number: {text!r}")
     return float(text)
+
+
+def csv_text(heading: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """Write out a table of numbers and words under titles of its columns.
+
+    A missing number (NaN) is an empty field; a word that a spreadsheet would take for a formula begins with
+    an apostrophe.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(map(_field, heading))
+    writer.writerows(map(_field, row) for row in rows)
+    return text.getvalue()
+
+
+def write_csv(path: Path, heading: Sequence[str], rows: Iterable[Sequence[object]]) -> Path:
+    """Write a table to a file, completely or not at all, as `csv_text` writes it out."""
+    return write_bytes(path, csv_text(heading, rows).encode("utf-8"))
+
+
+def _field(value: object) -> object:
+    if isinstance(value, str):
+        shown = printable(value)  # no tab or line end is left, either
+        return f"'{shown}" if shown.startswith(_FORMULA) else shown
+    return "" if isinstance(value, float) and math.isnan(value) else value
