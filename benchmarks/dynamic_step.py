@@ -34,9 +34,7 @@ from asperity.laws import Law
 from asperity.progress import progress_bar
 from asperity.rolling.roll import RolledBodies, roll_bodies
 from asperity.running import prepare_case
-from asperity.scenarios.laws import Workshop
 from asperity.scenes.compute import Computed, compute
-from asperity.store import Store
 
 COMPILED = ["linear", "hertz", "printed", "shifted", "areal", "table"]
 
@@ -88,18 +86,7 @@ def prepared_case(load: float, rms: float, duration: float) -> Computed:
 
 def direct_law(computed: Computed) -> Law:
     """Make the law that solves the contact in every step of the same path."""
-    case, chain = computed.case, computed.chain
-    workshop = Workshop(
-        case.contact,
-        case.numerics,
-        chain.textures,
-        chain.shape,
-        chain.reduction,
-        None,
-        Store(),
-        lambda *_: None,
-    )
-    return workshop.build("direct")
+    return computed.materials.build("direct")
 
 
 def rolled(computed: Computed, law: Law, duration: float) -> tuple[float, float, RolledBodies]:
@@ -127,8 +114,8 @@ def report(
     case = computed.case
     modes, sensors = len(computed.over.natural_frequencies), len(computed.scene.sensors)
     print(
-        f"\nBall on beam, {computed.chain.shape.load:g} N, window {computed.chain.shape.body.shape[0]} x "
-        f"{computed.chain.shape.body.shape[1]} cells, {modes} beam modes, {sensors} sensors, "
+        f"\nBall on beam, {computed.shape.load:g} N, window {computed.shape.body.shape[0]} x "
+        f"{computed.shape.body.shape[1]} cells, {modes} beam modes, {sensors} sensors, "
         f"time step {1e6 * case.time_step:.3g} us, CPU time\n"
     )
     print("| law | steps | us per step | to areal | direct to it | evaluations per step | laying out, ms |")
@@ -157,7 +144,7 @@ def main() -> None:
     options = parser.parse_args()
     warnings.simplefilter("ignore", PhysicsWarning)  # what is timed is not what is concluded
     computed = prepared_case(options.load, options.rms, options.duration)
-    laws = computed.chain.laws | {"direct": direct_law(computed)}
+    laws = computed.laws | {"direct": direct_law(computed)}
     steps: dict[str, list[float]] = {name: [] for name in laws}
     layouts: dict[str, list[float]] = {name: [] for name in laws}
     runs: dict[str, RolledBodies] = {}

@@ -25,9 +25,8 @@ from asperity.laws.layout import force
 from asperity.progress import Progress
 from asperity.reference.law_accuracy import HIGH, LOW
 from asperity.running import prepare_case
-from asperity.scenarios.chain import Chain
 from asperity.scenarios.law_choice import place_of
-from asperity.scenes.compute import compute
+from asperity.scenes.compute import Computed, compute
 from asperity.spectra import band_levels, psd
 from asperity.surfaces.spectra import CORRELATION_THRESHOLD
 
@@ -142,9 +141,9 @@ def case_of(point: Point, seed: int, laws: Sequence[str]) -> Case:
     )
 
 
-def chain_of(case: Case, progress: Progress) -> Chain[Any]:
+def computed_of(case: Case, progress: Progress) -> Computed:
     """Roll all laws of a case."""
-    return compute(prepare_case(case), progress).chain  # type: ignore[no-any-return]
+    return compute(prepare_case(case), progress)  # type: ignore[no-any-return]
 
 
 def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[str, NDArray[Any]]:
@@ -154,15 +153,15 @@ def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[st
         with np.load(file, allow_pickle=False) as kept:
             if str(kept["case"]) == case.text:
                 return dict(kept)
-    chain = chain_of(case, progress)
-    run = chain.runs["direct"]
+    computed = computed_of(case, progress)
+    run = computed.runs["direct"]
     found = {
         "case": np.array(case.text),
         "force": run.contact_force[0],
         "position": run.positions[0],
         "displacement": run.relative_displacement[0],
         "loss": np.array(1.0 - run.in_contact.mean()),
-        "seconds": np.array(chain.seconds["law direct"]),
+        "seconds": np.array(computed.seconds["law direct"]),
         "unconverged": np.array(run.unconverged_steps),
     }
     folder.mkdir(parents=True, exist_ok=True)
@@ -172,8 +171,8 @@ def solved(point: Point, seed: int, folder: Path, progress: Progress) -> dict[st
 
 def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -> dict[str, Any]:
     """Roll one path with all laws of a case, and keep what the map needs of it."""
-    chain, step, kept = chain_of(case, progress), case.time_step, {}
-    reference, built = direct["force"], chain.laws
+    computed, step, kept = computed_of(case, progress), case.time_step, {}
+    reference, built = direct["force"], computed.laws
 
     def energies(contact_force: NDArray[np.float64]) -> list[NDArray[np.float64]]:
         return list(band_levels(*psd(contact_force, step, segment=round(SEGMENT / step)), low=LOW, high=HIGH))
@@ -183,14 +182,14 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
         name: float(direct[name]) for name in ("loss", "seconds", "unconverged")
     }
     kept["direct"]["energy"] = (10.0 ** (levels / 10.0)).tolist()
-    for name, run in chain.runs.items():
+    for name, run in computed.runs.items():
         course = force(built[name], direct["position"], direct["displacement"])
         kept[name] = {
             "energy": (10.0 ** (energies(run.contact_force[0])[1] / 10.0)).tolist(),
             "mean": float(run.contact_force.mean()),
             "loss": 1.0 - float(run.in_contact.mean()),
             "course": float(np.sqrt(np.mean((course - reference) ** 2)) / reference.std()),
-            "seconds": chain.seconds[f"law {name}"],
+            "seconds": computed.seconds[f"law {name}"],
             "unconverged": run.unconverged_steps,
         }
     return {
@@ -198,7 +197,7 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
         "steps": reference.size,
         "centres": centres.tolist(),
         "dynamic": float(reference.std()),
-        "area_ratio": chain.reduction.area_ratio,
+        "area_ratio": computed.reduction.pressed.area_ratio,
     }
 
 

@@ -77,7 +77,7 @@ def levels(signal, step):
 def rolled(case):
     """Roll a case: what was computed."""
     with progress_bar() as progress:
-        return compute(prepare_case(case), progress).chain
+        return compute(prepare_case(case), progress)
 
 
 def away_of(found, wanted) -> str:
@@ -88,15 +88,17 @@ def away_of(found, wanted) -> str:
 
 def compare(name, case) -> None:
     """Print the lines of a case: records, and forces on the course of `direct`."""
-    chain, step = rolled(case), case.time_step
-    direct = chain.runs["direct"]
+    computed, step = rolled(case), case.time_step
+    direct = computed.runs["direct"]
     followed = direct.contact_force[0]
     wanted = levels(followed, step)
-    for law, run in chain.runs.items():
+    for law, run in computed.runs.items():
         line = f"| {name} | {law} | {100 * (1.0 - run.in_contact.mean()):.1f} | "
         line += f"{away_of(levels(run.contact_force[0], step), wanted)} | "
         if law != "direct":
-            course = force(chain.workshop.build(law), direct.positions[0], direct.relative_displacement[0])
+            course = force(
+                computed.materials.build(law), direct.positions[0], direct.relative_displacement[0]
+            )
             off = np.sqrt(np.mean((course - followed) ** 2)) / followed.std()
             slope = np.cov(course, followed)[0, 1] / followed.var()
             line += f"{100 * off:.0f} | {slope:.2f} | {course.mean() / followed.mean():.2f} |"

@@ -22,8 +22,8 @@ from asperity.reporting.axes import frequency_axis
 from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, Line, Panel
 from asperity.reporting.part import write_chart
 from asperity.scenarios.linear_force import force_transfer
-from asperity.scenes.sound import rolling_sound_power
-from asperity.spectra import nominal
+from asperity.scenes.noise import rolling_sound_power
+from asperity.spectra import a_weighted_total, nominal
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "radiation"))
 import railway_wheel
@@ -82,7 +82,7 @@ def transfer(pads: float) -> dict[str, np.ndarray]:
 def total(levels: np.ndarray) -> float:
     """A-weighted sound power of a track, dB, at 100 km/h, roughnesses and contact filter of CNOSSOS-EU."""
     silent = np.full(len(BANDS), -200.0)
-    power = rolling_sound_power(
+    _, power = rolling_sound_power(
         SPEED,
         cnossos.rail_roughness("iso3095"),
         cnossos.wheel_roughness("disc"),
@@ -90,7 +90,7 @@ def total(levels: np.ndarray) -> float:
         (BANDS, silent),
         contact_filter=cnossos.contact_filter("50 kN, 920 mm"),
     )
-    return float(power.a_weighted[0])
+    return float(a_weighted_total(power[0], BANDS))
 
 
 def wheel_transfer(pads: float) -> np.ndarray:

@@ -50,7 +50,7 @@ class Ensemble:
 
     def add(self, computed: Computed) -> None:
         """Add a path."""
-        runs = computed.chain.runs
+        runs = computed.runs
         step = computed.case.time_step
         force = np.stack([runs[law].contact_force[0] for law in LAWS])
         segment = min(force.shape[1], round(0.1 / step))

@@ -10,7 +10,7 @@ import yaml
 
 import asperity
 from asperity.kernels import options
-from asperity.scenarios.tree import METHOD
+from asperity.scenes.result import METHOD
 
 ROOT = Path(__file__).parents[1]
 READ = (".py", ".md", ".bib", ".rst", ".toml")

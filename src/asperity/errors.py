@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterable
+from dataclasses import dataclass
 from enum import Enum
 
 from asperity.printable import printable
@@ -128,6 +131,49 @@ class PhysicsWarning(UserWarning):
     def __init__(self, message: str, grade: Grade = Grade.WARNING) -> None:
         self.grade = grade
         super().__init__(message)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One quantity of a case, how far it may go, and what to make of it."""
+
+    quantity: str  # what was found, or asked
+    value: str  # its number
+    limit: str  # where its range ends
+    grade: Grade | None  # None where it is inside its range
+    meaning: str  # of being outside; of a question the answer
+    remedy: str  # what to do
+    brief: str = ""  # quantity and number in a few words, for a headline
+    laws: tuple[str, ...] = ()  # of the case that it concerns
+    warned: bool = False  # whether it has been warned of where it was found
+    effect: float | None = None  # on levels, dB, where that is what is judged
+
+    def concerns(self, law: str) -> bool:
+        """Whether it makes a law doubtful."""
+        return self.grade in (Grade.WARNING, Grade.OUT) and law in self.laws
+
+    @property
+    def message(self) -> str:
+        """All of it in one or two sentences."""
+        return f"{self.quantity}: {self.number}, in range {self.limit}. {self.meaning} {self.remedy}"
+
+    @property
+    def number(self) -> str:
+        """Its number, with its effect on levels if that is judged."""
+        return self.value if self.effect is None else f"{self.value}: {self.effect:.1f} dB"
+
+    def row(self) -> dict[str, str]:
+        """Lay it out for a result file."""
+        names = ("quantity", "number", "limit", "meaning", "remedy")
+        words = {name.replace("number", "value"): getattr(self, name) for name in names}
+        return words | {"grade": "" if self.grade is None else self.grade.value}
+
+
+def warn_of_findings(findings: Iterable[Finding]) -> None:
+    """Warn of what is outside its range and was not warned of where it was found."""
+    for finding in findings:
+        if finding.grade is not None and not finding.warned:
+            warnings.warn(OutOfRangeWarning(finding.message, finding.grade), stacklevel=2)
 
 
 class HalfSpaceWarning(PhysicsWarning):

@@ -789,7 +789,7 @@ def test_a_path_of_ten_metres_is_planned_and_announced(monkeypatch):
 
 def test_a_scan_that_the_disk_cannot_hold_is_refused(monkeypatch):
     Path("long.toml").write_text(LONG)
-    monkeypatch.setattr("asperity.scenarios.scan_sizes.free_space", lambda path: 2**20)
+    monkeypatch.setattr("asperity.scenarios.expecting.free_space", lambda path: 2**20)
     message = call("run", "long.toml", "-o", "out", code=2).stderr
     assert "disk of the cache: received 1 MiB free" in message
     assert "ASPERITY_CACHE" in message

@@ -11,7 +11,8 @@ from ledger import Check
 
 from asperity.reference import cnossos
 from asperity.scenarios.linear_force import force_transfer
-from asperity.scenes.sound import SoundPower, rolling_sound_power
+from asperity.scenes.noise import rolling_sound_power
+from asperity.spectra import a_weighted_total
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
@@ -77,8 +78,8 @@ def power():
     rail, disc = cnossos.rail_roughness("iso3095"), cnossos.wheel_roughness("disc")
     track, wheel = cnossos.track_transfer("medium"), cnossos.wheel_transfer("920 mm")
     a3 = cnossos.contact_filter("50 kN, 920 mm")
-    power = rolling_sound_power(10**1.7, rail, disc, track, wheel, contact_filter=a3, axles=4)
-    at = int(np.argmin(np.abs(power.band - 1000.0)))
+    band, power = rolling_sound_power(10**1.7, rail, disc, track, wheel, contact_filter=a3, axles=4)
+    at = int(np.argmin(np.abs(band - 1000.0)))
     excitation = (
         10 * mp.log10(mp.mpf(10) ** mp.mpf("-0.11") + mp.mpf(10) ** mp.mpf("-0.16"))
         - mp.mpf("1.1")
@@ -89,7 +90,7 @@ def power():
         "CNOSSOS, 1 kHz at 50.1 m/s: sound power of the track",
         f"{source}, 104.4 dB",
         float(excitation + mp.mpf("104.4")),
-        float(power.levels[0, at]),
+        float(power[0, at]),
         1e-6,
         "dB",
         absolute=True,
@@ -98,17 +99,16 @@ def power():
         "CNOSSOS, 1 kHz at 50.1 m/s: sound power of the wheel",
         f"{source}, 94.9 dB",
         float(excitation + mp.mpf("94.9")),
-        float(power.levels[1, at]),
+        float(power[1, at]),
         1e-6,
         "dB",
         absolute=True,
     )
-    one = SoundPower(np.array([10**2.4]), np.array([[90.0], [90.0], [90.0]]))
     yield Check(
         "A-weighted power of 90 dB at 250 Hz",
         "IEC 61672-1, Table 3, −8.6 dB",
         81.4,
-        float(one.a_weighted[2]),
+        float(a_weighted_total([90.0], [10**2.4])),
         0.0501,
         "dB",
         absolute=True,

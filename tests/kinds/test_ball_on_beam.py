@@ -433,7 +433,7 @@ class TestBands:
 class TestLinear:
     def laws(self, linearise, laws=("linear-filtered", "linear"), surface=SYNTHETIC):
         small = case(surface, laws=list(laws), contact=f'linearise = "{linearise}"')
-        return ball_on_beam.compute(prepare_case(small), lambda done, total, message: None).chain
+        return ball_on_beam.compute(prepare_case(small), lambda done, total, message: None)
 
     def test_the_filtered_linear_contact_is_linear(self):
         """The force grows with the approach by k alone, everywhere: the filter does not follow the state."""

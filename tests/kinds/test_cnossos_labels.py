@@ -6,7 +6,7 @@ from asperity import WheelOnRail
 from asperity.errors import Grade, InputError, OutOfRangeWarning
 from asperity.reference.cnossos import nearest_pad_class, nearest_wheel_transfer
 from asperity.running import prepare_case
-from asperity.scenes.cnossos_labels import findings_of_labels, track_label, wheel_label
+from asperity.scenes.noise import findings_of_labels, track_label, wheel_label
 from asperity.scenes.plan import rows
 
 

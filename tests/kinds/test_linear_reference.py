@@ -13,7 +13,8 @@ from asperity.scenarios.linear_force import (
     linear_force_psd,
     mean_square_transfer,
 )
-from asperity.scenes import track as spectra
+from asperity.scenes.track import linear_reference
+from asperity.spectra import psd
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 
@@ -104,21 +105,20 @@ def test_psd_holds_the_mean_square_of_the_moving_texture():
         )
 
 
-def test_between_cells_the_reference_passes_the_texture_that_the_laws_follow(monkeypatch):
+def test_between_cells_the_reference_passes_the_texture_that_the_laws_follow():
     """Waves of six cells, in steps of three quarters of a cell: 5 kHz at 30 m/s."""
-    cells, steps, speed = 1e-3 * np.arange(3000), np.arange(3000), 30.0
+    cells = 1e-3 * np.arange(3000)
     line = 1e-6 * np.sin(2 * np.pi * cells / 6e-3)
-    case = SimpleNamespace(time_step=25e-6, speed=speed, contact=SimpleNamespace(spacing=1e-3))
-    run = SimpleNamespace(positions=[0.1 + 0.75e-3 * steps])
-    textures = SimpleNamespace(start=0.0, line=line, followed=line)
-    chain = SimpleNamespace(runs={"linear": run}, textures=textures, shape=None, reduction=None)
-    monkeypatch.setattr(spectra, "working_point", lambda *_: (0.0, STIFFNESS))
+    step, at = 25e-6, 0.1 + 0.75e-3 * np.arange(3000)
+    case = SimpleNamespace(speed=30.0, contact=SimpleNamespace(spacing=1e-3))
     computed = SimpleNamespace(
-        case=case, chain=chain, scene=SimpleNamespace(first=WHEEL, offsets=(0.0,)), track=Spring()
-    )
-    frequency = np.fft.rfftfreq(1024, 25e-6)
-    _, texture = spectra.linear_reference(computed, frequency, 1024)
-    assert 10 * np.log10(texture.sum() * frequency[1] / 0.5e-12) == pytest.approx(0.0, abs=0.1)
+        case=case, textures=SimpleNamespace(start=0.0, line=line, followed=line), track=Spring(),
+        scene=SimpleNamespace(first=WHEEL, offsets=(0.0,)), first=SimpleNamespace(positions=[at]),
+        stiffness=STIFFNESS, frequency=np.fft.rfftfreq(1024, step),
+        psd=lambda line: psd(line, step, segment=1024)[1],
+    )  # fmt: skip
+    _, texture = linear_reference(computed)
+    assert 10 * np.log10(texture.sum() * computed.frequency[1] / 0.5e-12) == pytest.approx(0.0, abs=0.1)
 
 
 def test_wheel_resonance_is_seen_in_the_force():

@@ -8,8 +8,8 @@ import pytest
 
 from asperity import Track
 from asperity.errors import LossFactorWarning
-from asperity.scenes import loss_factors as losses
-from asperity.scenes.loss_factors import loss_factor_error, warn_of_loss_factors
+from asperity.scenes import track as losses
+from asperity.scenes.track import loss_factor_error, warn_of_loss_factors
 from asperity.spectra import nominal_frequency
 from asperity.structures.moving_kernel import moving_kernel
 from asperity.structures.wheel import Wheel

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from asperity import WheelOnRail
 from asperity.errors import CaseError
 from asperity.scenes.figures.pass_by import PASS_BY_PART, pass_by_caption, pass_by_table
-from asperity.scenes.sound import pass_by_group
+from asperity.scenes.noise import pass_by_group
 
 BAND = 1000.0 * 10.0 ** (np.arange(-6, 7) / 10.0)
 KILOHERTZ = 6  # where the A-weighting is zero

@@ -15,7 +15,7 @@ from asperity.scenes.figures.radiated import (
     RADIATED,
     radiated_table,
 )
-from asperity.scenes.sound import RADIATORS, rail_section, silent_wheel
+from asperity.scenes.noise import RADIATORS, rail_section, silent_wheel
 from asperity.scenes.sound_answers import noise_answers
 from asperity.spectra import HALF_BAND, band_energies, psd
 

@@ -169,7 +169,7 @@ def test_impact_of_a_measured_flat_is_that_of_the_receptances(folder, measured, 
     )  # fmt: skip
     prepared = prepare_case(parse_case(text, folder / "case.toml"))
     computed = compute(prepared, lambda done, total, message: None)
-    chain = computed.chain
+    chain = computed
     wheel = first_contact(chain.runs["linear"])
     # the middle lines are lowest at 0.267 m; the wheel strikes where it reaches the flat's far end
     struck = float(wheel.position[np.argmax(wheel.contact_force)])

@@ -17,7 +17,7 @@ from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.reference.cnossos import rail_roughness
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.running import prepare_case, run
-from asperity.scenes.loss_factors import described_losses, loss_factor_error, relaxed
+from asperity.scenes.track import described_losses, loss_factor_error, relaxed
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel
 from asperity.studies.running import study
@@ -70,7 +70,7 @@ def tree():
 class TestResult:
     def test_statistics_and_line_are_those_of_the_whole_path(self, monkeypatch):
         """A flat 2 m along the path, beyond what is kept to be looked at from above."""
-        monkeypatch.setattr("asperity.scenarios.surface_group.PATH_ROWS", 100)
+        monkeypatch.setattr("asperity.scenes.groups.PATH_ROWS", 100)
         found = run(case(wheel='flat_depth = "0.3 mm"\nflat_position = "1 m"', laws=["linear"]))["surface"]
         assert found["path_heights"].shape[0] == 100
         assert found["line"].size == round(56 * 40e-3 / 1e-3) + 1
@@ -193,7 +193,7 @@ class TestLossFactors:
         assert "of the nominal one: rail 0.9" in numerics["stiffness at rest"]
 
     def test_a_large_one_is_warned_of(self, tree, monkeypatch):
-        monkeypatch.setattr("asperity.scenes.loss_factors.DOUBTFUL", 0.01)
+        monkeypatch.setattr("asperity.scenes.track.DOUBTFUL", 0.01)
         again = run(case(laws=["linear"]))  # the same track, kept
         assert "LossFactorWarning" in [entry["category"] for entry in json.loads(again.attrs["warnings"])]
         assert "LossFactorWarning" not in tree.attrs["warnings"]

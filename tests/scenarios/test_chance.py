@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import gamma
 
-from asperity.scenarios.chance import chance_and_start, values_seen
+from asperity.scenes.chance import chance_and_start, values_seen
 from asperity.spectra import band_product, level_deviation
 
 CENTRE = 100.0

@@ -6,9 +6,7 @@ import pytest
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import parse_case
 from asperity.running import prepare_case
-from asperity.scenarios.expecting import expect
-from asperity.scenarios.scan_sizes import scan_sizes
-from asperity.scenarios.trial import try_contacts
+from asperity.scenarios.expecting import expect, scan_sizes, try_contacts
 from asperity.scenes.compute import compute
 from asperity.store import Store
 
@@ -40,7 +38,7 @@ def test_size_on_disk_and_number_of_positions(spacing):
     """At 6 µm, an eighth of the patch is two rows."""
     prepared = prepare_case(parse_case(CASE.format(spacing=spacing)))
     expected = scan_sizes(prepared.case, prepared.shape, prepared.textures)["path"]
-    scanned = compute(prepared, quiet).chain.scan
+    scanned = compute(prepared, quiet).scan
     states, positions = scanned.forces.shape
     assert (states, positions) == (expected.states, expected.positions)
     assert expected.single == scanned.single
@@ -51,8 +49,8 @@ def test_size_on_disk_and_number_of_positions(spacing):
 
 def test_the_states_that_are_tried_are_much_like_those_of_the_run():
     prepared = prepare_case(parse_case(CASE.format(spacing="10 um")))
-    tried = try_contacts(prepared, quiet)
-    reduction = compute(prepared, quiet).chain.reduction
+    tried = try_contacts(prepared.case, prepared.shape, prepared.textures, quiet)
+    reduction = compute(prepared, quiet).reduction
     reach = np.ptp(reduction.approaches)
     np.testing.assert_allclose(tried.approaches, reduction.approaches, atol=0.1 * reach)
     assert tried.working == pytest.approx(reduction.ensemble.curve.inverse(prepared.shape.load), rel=0.1)

@@ -17,16 +17,16 @@ from asperity.reference.law_accuracy import Place, law_map, mapped_points
 from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work
 from asperity.scenarios.law_choice import (
+    UNMAPPED,
     ExpectedError,
     choose,
     correlation_lengths,
     expected_error,
     law_choice,
-    law_to_take,
     place_of,
     without_slow,
 )
-from asperity.scenarios.validity import doubted_by_area
+from asperity.scenes.validity import doubted_by_area
 from asperity.surfaces.heightmap import HeightMap
 
 ROOT = Path(__file__).parents[2]
@@ -256,7 +256,7 @@ def test_real_contact_and_the_map_advise_the_same(high, doubted):
         assert doubted_by_area(("linear", "areal"), ratio, choice) == ("linear", *doubted[:1])
         assert doubted_by_area(("areal", "table"), ratio, None) == ("areal",)
     assert doubted_by_area(("areal", "linear"), 0.95, None) == ()
-    assert law_to_take(choice) == choice.taken == ("table" if doubted else "areal")
+    assert choice.taken == ("table" if doubted else "areal")
 
 
 @pytest.mark.parametrize(
@@ -265,7 +265,7 @@ def test_real_contact_and_the_map_advise_the_same(high, doubted):
 def test_over_a_defect_the_law_to_take_is_the_default(defect):
     """The map knows nothing there: messages advise the law that such a case rolls where it names none."""
     struck = WheelOnRail(**({"surface": {"smooth": True}} | defect))
-    assert law_to_take(None) == struck.laws[0] == "direct"
+    assert UNMAPPED == struck.laws[0] == "direct"
 
 
 @pytest.mark.parametrize("surface", ['line = "line.csv"', "smooth = true"])

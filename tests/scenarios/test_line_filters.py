@@ -71,7 +71,7 @@ def computed(case):
     kind = ball_on_beam if case.kind == "ball-on-beam" else wheel_on_rail
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)
-        return kind.compute(prepare_case(case), lambda done, total, message: None).chain
+        return kind.compute(prepare_case(case), lambda done, total, message: None)
 
 
 def at_load(tree):
@@ -217,7 +217,7 @@ class TestLaws:
         load, positions = found.shape.load, found.runs["shifted"].positions[0]
         held_at = float(found.reduction.ensemble.curve.inverse(load))
         followed = found.laws["shifted"].texture.held_at(held_at).at(positions)[:, 0]
-        assert np.ptp(followed) > 2.0 * found.reduction.working_approach
+        assert np.ptp(followed) > 2.0 * found.reduction.pressed.approach
         np.testing.assert_allclose(
             force(found.laws["shifted"], positions, held_at + followed), load, rtol=1e-9
         )
@@ -225,7 +225,7 @@ class TestLaws:
         np.testing.assert_allclose(planes["hertz-filtered"], followed, atol=1e-15)
         # smooth bodies carry the load at another approach, but between the same two states
         smooth = found.shape.hertz.approach(load)
-        assert smooth > held_at + 0.1 * found.reduction.working_approach
+        assert smooth > held_at + 0.1 * found.reduction.pressed.approach
         pressed = force(found.laws["hertz-filtered"], positions, smooth + followed)
         np.testing.assert_allclose(pressed, load, rtol=2e-3)
         assert not planes["printed"].any()

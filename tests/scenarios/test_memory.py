@@ -7,7 +7,7 @@ import pytest
 
 from asperity.kinds.cases import as_case
 from asperity.running import prepare_case, run
-from asperity.scenarios.laws import Workshop
+from asperity.scenarios.laws import LawMaterials
 from asperity.scenes import compute as ball_on_beam
 from asperity.scenes import compute as wheel_on_rail
 from small_cases import BALL, WHEEL
@@ -36,18 +36,18 @@ def recorded(monkeypatch, owner, name):
 
 
 def test_laws_are_not_held_once_they_are_rolled(monkeypatch):
-    laws = recorded(monkeypatch, Workshop, "build")
+    laws = recorded(monkeypatch, LawMaterials, "build")
     computed = ball_on_beam.compute(prepare_case(as_case(BALL)), quiet)
     gc.collect()
-    assert set(computed.chain.runs) == set(BALL["laws"])
+    assert set(computed.runs) == set(BALL["laws"])
     assert len(laws) == len(BALL["laws"])
     assert [law() for law in laws] == [None] * len(laws)
 
 
 @pytest.mark.parametrize(("kind", "case"), [(ball_on_beam, BALL), (wheel_on_rail, WHEEL)])
 def test_textures_and_state_functions_do_not_outlive_the_computation(monkeypatch, kind, case):
-    chains = recorded(monkeypatch, kind, "reduce_and_roll")
+    states = recorded(monkeypatch, kind, "reduce")
     result = run(case)
     gc.collect()
     assert "force_level" in result["spectra"]
-    assert [chain() for chain in chains] == [None]
+    assert [state() for state in states] == [None]

@@ -8,7 +8,7 @@ from scipy import stats
 
 import asperity
 from asperity.reporting.tables import population_table
-from asperity.scenarios.population import along_over_across, levels_along, told_apart
+from asperity.scenes.population import along_over_across, levels_along, told_apart
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.synthesis import self_affine
 from small_cases import COARSE
@@ -29,13 +29,13 @@ class TestToldApart:
         """Against another program, with groups of unequal size."""
         rng = np.random.default_rng(3)
         groups = [rng.normal(loc, 1.0, size) for loc, size in ((0.0, 3), (0.5, 5), (2.0, 4))]
-        p, _ = told_apart(groups)
+        p, *_ = told_apart(groups)
         assert p == pytest.approx(stats.f_oneway(*groups).pvalue, rel=1e-9)
 
     def test_the_scatter_between_groups_is_found_without_that_inside_them(self):
         rng = np.random.default_rng(0)
         groups = list(rng.normal(0.0, 2.0, (400, 1)) + rng.normal(0.0, 3.0, (400, 8)))
-        p, beyond = told_apart(groups)
+        p, beyond, _ = told_apart(groups)
         assert p < 1e-6
         assert beyond == pytest.approx(2.0, rel=0.1)
 
@@ -45,8 +45,8 @@ class TestToldApart:
         assert np.mean(np.array(found) <= 0.05) == pytest.approx(0.05, abs=0.02)
 
     def test_groups_without_scatter(self):
-        assert told_apart([np.ones(3), np.ones(2)]) == (1.0, 0.0)
-        p, beyond = told_apart([np.zeros(3), np.full(3, 2.0)])
+        assert told_apart([np.ones(3), np.ones(2)]) == (1.0, 0.0, False)
+        p, beyond, _ = told_apart([np.zeros(3), np.full(3, 2.0)])
         assert (p, beyond) == (0.0, pytest.approx(np.sqrt(2.0)))
 
 
@@ -60,7 +60,7 @@ class TestAlongThePath:
         """Known levels: from −3 dB to +3 dB along the path, or 6 dB on a quarter of it."""
         at = np.linspace(0.0, 1.0, PATH)
         level = 6.0 * at - 3.0 if shape == "trend" else 6.0 * (abs(at - 0.5) < 0.125)
-        p, beyond = told_apart(list(levels_along(noise(1) * 10 ** (level / 20), PATCH)))
+        p, beyond, _ = told_apart(list(levels_along(noise(1) * 10 ** (level / 20), PATCH)))
         assert p < 1e-3
         assert beyond == pytest.approx(np.std(level), rel=0.25)
 

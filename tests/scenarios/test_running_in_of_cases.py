@@ -12,6 +12,7 @@ from asperity.kinds.cases import as_case
 from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
 from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
+from asperity.schema import contact
 from asperity.store import Store
 from asperity.studies.member import kept
 from asperity.studies.table import USUAL
@@ -139,10 +140,10 @@ class TestBallOnBeam:
         shape, case = prepared.shape, prepared.case
         found = run_in_case(case, prepared.textures, shape, None, lambda *_: None)
         again = run_in_case(case, found.textures, shape, None, lambda *_: None)
-        assert len(again.largest) == 1
-        assert again.largest[0] <= 1e-3 * shape.hertz.approach(shape.load) * 1.01
-        assert again.yielded_share == 0.0
-        assert found.yielded_share > 0.02
+        assert len(again.entries[contact.RUNNING_IN_LOWERING]) == 1
+        assert again.entries[contact.RUNNING_IN_LOWERING][0] <= 1e-3 * shape.hertz.approach(shape.load) * 1.01
+        assert again.facts[contact.YIELDED_SHARE] == 0.0
+        assert found.facts[contact.YIELDED_SHARE] > 0.02
 
     def test_direct_does_not_take_up_what_another_surface_left(self):
         """Kept solutions of `direct` are known by the passes before them, too."""
@@ -161,7 +162,7 @@ class TestBallOnBeam:
         found = run_in_case(prepared.case, prepared.textures, prepared.shape, None, lambda *_: None)
         assert all(map_.shape[1] == prepared.shape.body.shape[1] for map_ in found.textures.maps)
         assert found.textures.widest_window == prepared.textures.widest_window
-        assert found.largest[0] > 5e-9
+        assert found.entries[contact.RUNNING_IN_LOWERING][0] > 5e-9
 
     def test_a_line_of_the_path_stays_as_it_is(self):
         keys = ball(running_in=1) | {"laws": ["shifted"]}

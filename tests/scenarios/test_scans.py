@@ -47,10 +47,10 @@ def test_first_touch_along_the_path_is_found_once(monkeypatch):
         looked_at.append(surface)
         return first_touch(surface, body, stride)
 
-    for module in (laws, reducing):
+    for module in (laws, reducing.scan):
         monkeypatch.setattr(module, "first_touch", counted)
     prepared = prepare_case(parse_case(CASE))
-    chain = compute(prepared, quiet).chain
+    chain = compute(prepared, quiet)
     path, shape = prepared.textures.path, prepared.shape
     assert sum(surface is path for surface in looked_at) == 1
     stride, half = table_stride(shape), shape.body.shape[0] // 2

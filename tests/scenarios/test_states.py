@@ -60,7 +60,7 @@ def chain(request):
     case = parse_case(request.param)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", PhysicsWarning)  # windows are small
-        return compute(prepare_case(case), lambda *_: None).chain
+        return compute(prepare_case(case), lambda *_: None)
 
 
 def test_tables_hold_where_the_rms_is_three_approaches(chain):

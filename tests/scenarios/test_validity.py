@@ -15,7 +15,7 @@ from asperity.errors import Grade, PhysicsWarning
 from asperity.kinds.cases import parse_case
 from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work
-from asperity.scenarios.validity import SLOPE
+from asperity.scenes.validity import SLOPE
 from asperity.surfaces.levelling import band_limit
 from asperity.surfaces.statistics import rms_slope, shortest_wave_for
 from asperity.surfaces.synthesis import self_affine

@@ -20,10 +20,9 @@ from asperity.threads import THREADS, processors
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from asperity.scenarios.expecting import Work
+    from asperity.scenarios.expecting import ScanSize, Work
     from asperity.scenarios.law_choice import LawChoice
     from asperity.scenarios.preparing import PreparedCase
-    from asperity.scenarios.scan_sizes import Expected
 
 
 def show_plan(case: Case, source: str, *, converge: bool = False) -> dict[str, Any]:
@@ -80,7 +79,7 @@ ANNOUNCED = 1_000_000  # contact solutions of a scan that is announced before it
 def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]:
     """What will be computed from a case, with convergence if it is asked for: rows, seconds and warnings."""
     from asperity.scenarios.expecting import expect
-    from asperity.scenarios.validity import foreseen
+    from asperity.scenes.validity import foreseen
 
     with progress_bar() as progress:
         expected = expect(prepared, progress)
@@ -174,7 +173,12 @@ def _real_contact(expected: Work) -> list[tuple[str, str]]:
     """Real contact of the sample that was tried."""
     if expected.tried is None:
         return []
-    return [("real contact", f"about {100 * expected.tried.area_ratio:.0f} % of the area of smooth bodies")]
+    return [
+        (
+            "real contact",
+            f"about {100 * expected.tried.pressed.area_ratio:.0f} % of the area of smooth bodies",
+        )
+    ]
 
 
 def about(seconds: float) -> str:
@@ -196,7 +200,7 @@ def _described_convergence(prepared: PreparedCase, work: Work) -> str:
     return f"{text}; not changed: {', '.join(unchanged)}" if unchanged else text
 
 
-def described_scan(scan: Expected) -> str:
+def described_scan(scan: ScanSize) -> str:
     """Describe the scan of a path in a sentence: its size, disk use, and what an interruption costs."""
     root, size = Store().root, f"{scan.bytes / 2**20:.1f} MiB"
     return (
@@ -209,7 +213,7 @@ def described_scan(scan: Expected) -> str:
 
 def announce_scan(prepared: PreparedCase) -> None:
     """Before a long scan of a path starts, say how long it is."""
-    from asperity.scenarios.scan_sizes import scan_sizes
+    from asperity.scenarios.expecting import scan_sizes
 
     scan = scan_sizes(prepared.case, prepared.shape, prepared.textures).get("path")
     if scan is not None and scan.solutions >= ANNOUNCED:

@@ -11,9 +11,9 @@ import xarray
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.scenarios.tree import spectrum_segment
-from asperity.scenarios.validity import compared_bands
 from asperity.scenes import schema as scene
+from asperity.scenes.compute import spectrum_segment
+from asperity.scenes.validity import compared_bands
 from asperity.schema import Entry, attributes, contact, convergence, rolling, spectra, variables
 from asperity.spectra import band_levels, nominal_frequency, psd
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from asperity.config.case import Case
     from asperity.progress import Progress
     from asperity.reporting.chapter import Chapter
-    from asperity.scenarios.chain import Further
     from asperity.scenarios.geometry import Geometry
+    from asperity.scenarios.laws import OwnContact
     from asperity.scenarios.measure import Measure
     from asperity.scenarios.preparing import PreparedCase
     from asperity.scenarios.refining import Setting
@@ -103,12 +103,12 @@ class Kind:
         found: Geometry = self.offers("bodies", "geometry_of")(case)
         return found
 
-    def contacts_of(self, case: Case, loads: NDArray[np.float64]) -> tuple[list[int], list[Further]]:
+    def contacts_of(self, case: Case, loads: NDArray[np.float64]) -> tuple[list[int], list[OwnContact]]:
         """Which law each contact rolls by: 0 for that of the first, k for that of the k-th that differs.
 
         Static loads (c,), N. With the contacts that differ from the first.
         """
-        found: tuple[list[int], list[Further]] = self.offers("textures", "contacts_of")(case, loads)
+        found: tuple[list[int], list[OwnContact]] = self.offers("textures", "contacts_of")(case, loads)
         return found
 
     def textures_of(self, case: Case) -> Textures:

@@ -218,8 +218,8 @@ class LawChoice:
             f"rms {place.roughness:.2g} approaches, {place.within:.2g} within the patch; correlation length "
             f"{place.correlation:.2g} contacts; dynamic force about {place.dynamic:.2g} of the load; k a of "
             f"{HIGH / 1e3:g} kHz {place.highest_wavenumber:.2g}, mapped from {self.reach[0]:.2g} to "
-            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {_force(near.load)}, {near.speed:g} m/s, "
-            f"{self.distance:.1f} half decades away{off}",
+            f"{self.reach[1]:.2g}. Nearest point: {near.kind}, {written_force(near.load)}, "
+            f"{near.speed:g} m/s, {self.distance:.1f} half decades away{off}",
         )
 
     def entries(self) -> dict[str, Any]:
@@ -255,11 +255,6 @@ class LawChoice:
         if self.loss > LOST:
             text += f"; with contact lost {percent(self.loss)} of the time, levels of short records scatter"
         return text
-
-
-def law_to_take(choice: LawChoice | None) -> str:
-    """The law that every message advises: the map's where it knows, else the one all are held against."""
-    return UNMAPPED if choice is None else choice.taken
 
 
 def law_choice(case: Case, shape: Geometry, textures: Textures, scene: Scene) -> LawChoice | None:
@@ -337,5 +332,6 @@ def _db(error: float) -> str:
     return f"{error:.1f}" if error < 9.95 else f"{error:.0f}"
 
 
-def _force(newtons: float) -> str:
+def written_force(newtons: float) -> str:
+    """Write a force in N or kN."""
     return f"{newtons:.3g} N" if newtons < 1e3 else f"{newtons / 1e3:.3g} kN"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,37 +15,48 @@ from asperity.arguments import shown
 from asperity.config.sections import ContactCase, Numerics
 from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, warn_of_flaws
 from asperity.errors import InputError
-from asperity.laws import Law, LawSpec, Need, spec_of
+from asperity.laws import Law, LawSpec, Materials, Need, spec_of
 from asperity.progress import Progress
 from asperity.reduction.filter import filtered_texture, punch_taps
-from asperity.reduction.stiffness import ForceCurve
 from asperity.reduction.table import ForceTable, StoredForces, scan_into
 from asperity.reduction.texture import StateTexture, areal_texture
+from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.line_filters import normalisation, warn_of_filter
-from asperity.scenarios.reducing import SCAN_TOLERANCE, Reduction
 from asperity.scenarios.textures import Textures
 from asperity.store import Cache
 
 
+class OwnContact(NamedTuple):
+    """A contact that differs from the first of a case."""
+
+    textures: Callable[[Textures], Textures]  # its own, from those of the first
+    load: float  # N
+
+
 @dataclass(frozen=True, eq=False)
-class Workshop:
-    """What the laws of one case are made of."""
+class LawMaterials:
+    """What the laws of one contact of a case are made of."""
 
     contact: ContactCase
     numerics: Numerics  # how accurately contacts are solved
     textures: Textures
     shape: Geometry
-    reduction: Reduction | None  # state functions; None where the case has no samples
+    reduction: reducing.Reduction | None  # state functions; None where the case has no samples
     # (rows,), height of the plane that the nominal patch feels along the path, m, peaks positive
     planes: NDArray[np.float64] | None
     cache: Cache  # for the scan of the path
     progress: Progress
 
+    def of_contact(self, own: OwnContact) -> LawMaterials:
+        """Those of another contact of the same bodies."""
+        textures, shape = own.textures(self.textures), replace(self.shape, load=own.load)
+        planes = None if textures.path is None else reducing.patch_planes(textures.path, self.shape)
+        return replace(self, textures=textures, shape=shape, planes=planes)
+
     def build(self, name: str) -> Law:
         """Build a law of the case by its name, on positions along the path, m."""
         spec = spec_of(name)
-        law = spec.build(LaidReady(self, spec))
+        law = spec.build(self._of_law(spec))
         if not isinstance(law, Law):
             allowed = "an object with name, damping and prepare(positions)"
             raise InputError(f"law {name}", shown(law), allowed)
@@ -52,26 +65,40 @@ class Workshop:
             raise InputError(f"law {name}", f"one built as {shown(law.name)}", shown(name), remedy)
         return law
 
+    def _of_law(self, spec: LawSpec) -> Materials:
+        contact, shape = self.contact, self.shape
+        made_by: dict[str, Callable[[], Any]] = {
+            "line": partial(self._line, spec),
+            "areal": self._areal,
+            "plane": lambda: self.plane,
+            "table": self._table,
+            "heights": lambda: self.textures.surface.rows(0, self.textures.surface.shape[0]),
+        }
+        if self.reduction is not None:
+            ensemble = self.reduction.ensemble
+            made_by |= {"curve": lambda: ensemble.curve, "datum": lambda: ensemble.datum}
+        return Materials(
+            spec, contact.damping, shape.load, shape.hertz.stiffness_constant, shape.modulus,
+            working_point(contact, shape, self.reduction), self.textures.start, shape.body, shape.spacing,
+            contact.hardness, self.numerics.rtol, made_by,
+        )  # fmt: skip
+
     @cached_property
-    def reduced(self) -> Reduction:
-        """The state functions, which the case must have."""
+    def _reduced(self) -> reducing.Reduction:
         assert self.reduction is not None
         return self.reduction
 
-    @property
-    def line(self) -> StateTexture:
-        """Line texture of the path, not filtered."""
-        return StateTexture.unfiltered(-self.textures.followed, self.shape.spacing[0], self.textures.start)
-
-    def filtered_line(self, law: LawSpec) -> StateTexture:
-        """Line texture of the path, through the filter of a law."""
+    def _line(self, law: LawSpec) -> StateTexture:
+        """Line texture of the path, through the filter of a law that needs it."""
         dx, start = self.shape.spacing[0], self.textures.start
+        if Need.FILTER not in law.needs:
+            return StateTexture.unfiltered(-self.textures.followed, dx, start)
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
             taps, states = punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
         else:
-            found = self.reduction.filters[normalisation(self.contact, law)]
-            warn_of_filter(found, law.name, self.reduction.working_approach)
-            taps, states = found.taps, found.contact_filter.approaches
+            line_filter = self.reduction.filters[reducing.normalisation(self.contact, law)]
+            reducing.warn_of_filter(line_filter, law.name, self.reduction.pressed.approach)
+            taps, states = line_filter.taps, line_filter.contact_filter.approaches
         return self._over_defects(filtered_texture(self.textures.line, dx, taps, states, start))
 
     def _over_defects(self, texture: StateTexture) -> StateTexture:
@@ -82,42 +109,30 @@ class Workshop:
 
     @cached_property
     def plane(self) -> StateTexture:
-        """Plane that the nominal patch feels under the working load, along the path."""
+        """Plane that the nominal patch feels under the working load, along the path, with defects."""
         assert self.planes is not None
-        return self._over_defects(
-            StateTexture.unfiltered(-self.planes, self.shape.spacing[0], self.textures.start)
-        )
+        dx, start = self.shape.spacing[0], self.textures.start
+        return self._over_defects(StateTexture.unfiltered(-self.planes, dx, start))
 
-    @property
-    def areal(self) -> StateTexture:
+    def _areal(self) -> StateTexture:
         """Texture averaged under the patch of each state; not held, as it is as long as the path in each."""
-        assert self.textures.path is not None
-        loaded = self.reduced.semi_axes[:, 0] > 0.0
-        return self._over_defects(
-            areal_texture(
-                self.textures.path,
-                self.shape.spacing,
-                self.reduced.approaches[loaded],
-                np.minimum(self.reduced.semi_axes[loaded], 0.5 * self.textures.path.size[1]),
-                self.textures.start,
-            )
-        )
+        path, axes, approaches = self.textures.path, self._reduced.semi_axes, self._reduced.approaches
+        assert path is not None
+        loaded = axes[:, 0] > 0.0
+        within = np.minimum(axes[loaded], 0.5 * path.size[1])
+        spacing, start = self.shape.spacing, self.textures.start
+        return self._over_defects(areal_texture(path, spacing, approaches[loaded], within, start))
 
     @cached_property
     def scan(self) -> ScannedForces[StoredForces]:
         """The scan of the path."""
-        reduction = self.reduced
         job = ScanJob(
             self.shape.half_space(self.contact.hardness), self.textures.surface, self.shape.body,
-            reduction.approaches, table_stride(self.shape), rtol_for(self.numerics.force_accuracy),
+            self._reduced.approaches, table_stride(self.shape), rtol_for(self.numerics.force_accuracy),
             self._scanned_planes, self.textures.before,
         )  # fmt: skip
         scanned = scan_into(self.cache, job, progress=self.progress, message="scanning the path")
-        widest = self.textures.widest_window
-        remedy = self.shape.remedy_for_cut_off(
-            float(reduction.approaches[-1]), reduction.working_approach, reduction.datums["path"], widest
-        )
-        warn_of_flaws(scanned.counts, "the path", SCAN_TOLERANCE, remedy)
+        warn_of_flaws(scanned.counts, "the path", reducing.SCAN_TOLERANCE, self._reduced.remedy)
         return scanned
 
     @property
@@ -135,143 +150,16 @@ class Workshop:
         stride = table_stride(self.shape)
         return slice(self.textures.before % stride, None, stride)
 
-    @cached_property
-    def table(self) -> ForceTable:
+    def _table(self) -> ForceTable:
         """The scan of the path, to look forces up in."""
         rows, dx, body = self._scanned_rows, self.shape.spacing[0], self.shape.body
         if self.textures.defects is not None:
             touches = first_touch(self.textures.surface, body, rows.step, rows.start) + self._scanned_planes
         else:
-            assert self.reduced.touches is not None
-            touches = self.reduced.touches[rows]
+            assert self._reduced.touches is not None
+            touches = self._reduced.touches[rows]
         start = self.textures.start + (rows.start + body.shape[0] // 2) * dx
-        return ForceTable(self.scan.forces, self.reduced.approaches, start, rows.step * dx, touches)
-
-
-@dataclass(frozen=True, eq=False)
-class LaidReady:
-    """The materials of one law, see `asperity.laws.Materials`."""
-
-    workshop: Workshop
-    law: LawSpec
-
-    def _take_out(self, material: str, *needs: Need) -> None:
-        """Refuse a material that the law does not say it needs: what is planned and checked follows needs."""
-        if not self.law.needs & set(needs):
-            wanted = " or ".join(f'"{need}"' for need in needs)
-            allowed = f"materials that it needs; this one goes with {wanted}"
-            raise InputError(f"materials of law {self.law.name}", material, allowed)
-
-    @property
-    def name(self) -> str:
-        """See `Materials`, as for all that follows."""
-        return self.law.name
-
-    @property
-    def damping(self) -> float:
-        """Contact damping, N s/m."""
-        return self.workshop.contact.damping
-
-    @property
-    def load(self) -> float:
-        """Working load, N."""
-        return self.workshop.shape.load
-
-    @property
-    def hertz_constant(self) -> float:
-        """K of smooth bodies, N/m^1.5."""
-        return self.workshop.shape.hertz.stiffness_constant
-
-    @property
-    def modulus(self) -> float:
-        """Contact modulus, Pa."""
-        return self.workshop.shape.modulus
-
-    @property
-    def working_point(self) -> tuple[float, float]:
-        """Approach, m, and stiffness, N/m, under the working load."""
-        return working_point(self.workshop.contact, self.workshop.shape, self.workshop.reduction)
-
-    @cached_property
-    def line(self) -> StateTexture:
-        """Line texture, filtered where the law needs it, m."""
-        return self.workshop.filtered_line(self.law) if Need.FILTER in self.law.needs else self.workshop.line
-
-    def line_on(self, curve: ForceCurve) -> StateTexture:
-        """Line texture with its states where a curve carries their forces, m."""
-        if self.workshop.reduction is None or Need.FILTER not in self.law.needs:
-            return self.line
-        forces = self.workshop.reduction.ensemble.curve.force(self.line.approaches)
-        return replace(self.line, approaches=curve.inverse(forces))
-
-    @property
-    def line_at_load(self) -> StateTexture:
-        """Line texture of the state under the working load, m."""
-        reduction, load = self.workshop.reduction, self.load
-        held_at = 0.0 if reduction is None else float(reduction.ensemble.curve.inverse(load))
-        return self.line.held_at(held_at)
-
-    @property
-    def curve(self) -> ForceCurve:
-        """Force over approach."""
-        self._take_out("curve", Need.SAMPLES)
-        return self.workshop.reduced.ensemble.curve
-
-    @property
-    def datum(self) -> float:
-        """Datum of the state, m."""
-        self._take_out("datum", Need.DATUM)
-        return self.workshop.reduced.ensemble.datum
-
-    @property
-    def areal(self) -> StateTexture:
-        """Texture averaged under the patch, m."""
-        self._take_out("areal", Need.AREAL)
-        return self.workshop.areal
-
-    @property
-    def plane(self) -> StateTexture:
-        """Plane that the patch feels, m."""
-        self._take_out("plane", Need.AREAL, Need.SCAN, Need.SURFACE)
-        return self.workshop.plane
-
-    @property
-    def table(self) -> ForceTable:
-        """Scanned force, N."""
-        self._take_out("table", Need.SCAN)
-        return self.workshop.table
-
-    @property
-    def heights(self) -> NDArray[np.float64]:
-        """Heights of the path, m, shape (rows, ny)."""
-        self._take_out("heights", Need.SURFACE)
-        surface = self.workshop.textures.surface
-        return surface.rows(0, surface.shape[0])
-
-    @property
-    def start(self) -> float:
-        """Position of the first row, m."""
-        return self.workshop.textures.start
-
-    @property
-    def body(self) -> NDArray[np.float64]:
-        """Shape of the smooth body, m, shape (nx, ny)."""
-        return self.workshop.shape.body
-
-    @property
-    def spacing(self) -> tuple[float, float]:
-        """Steps of the grid, m."""
-        return self.workshop.shape.spacing
-
-    @property
-    def hardness(self) -> float | None:
-        """Pressure cap, Pa."""
-        return self.workshop.contact.hardness
-
-    @property
-    def rtol(self) -> float:
-        """Tolerance of a solution."""
-        return self.workshop.numerics.rtol
+        return ForceTable(self.scan.forces, self._reduced.approaches, start, rows.step * dx, touches)
 
 
 def table_stride(shape: Geometry) -> int:
@@ -279,7 +167,9 @@ def table_stride(shape: Geometry) -> int:
     return max(1, math.floor(shape.class_axes[0] / 8 / shape.spacing[0]))
 
 
-def working_point(contact: ContactCase, shape: Geometry, reduction: Reduction | None) -> tuple[float, float]:
+def working_point(
+    contact: ContactCase, shape: Geometry, reduction: reducing.Reduction | None
+) -> tuple[float, float]:
     """Approach under the working load, m, and the stiffness that a linear contact has there, N/m.
 
     dF/dr of the smooth or the rough contact, or F/r of the rough one (thesis Eq. 2.3), as the case says; of

@@ -8,41 +8,23 @@ Vibration (Elsevier, 2009).
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from asperity.errors import InputError
 
-MOST_COUPLED = 8
-"""Contacts that the linear reference takes as coupled: the work grows with their square."""
 
-
-class WheelReceptance(Protocol):
-    """A wheel, as far as the linear reference knows it."""
+class AtContact(Protocol):
+    """What rolls, as the linear reference knows it."""
 
     def receptance(self, frequency: ArrayLike, /) -> NDArray[np.complex128]:
         """Displacement per force at the contact point, m/N."""
 
 
-class OverReceptance(Protocol):
-    """What is rolled over, as far as the linear reference knows it."""
-
-    def receptance(self, frequency: ArrayLike, x: ArrayLike, x0: ArrayLike, /) -> NDArray[np.complex128]:
-        """Displacement at places `x` (n,) per force at `x0` (n,), (n, f), or the same at all, (f,), m/N."""
-
-
-class RailReceptance(OverReceptance, Protocol):
-    """A rail on equal supports."""
-
-    @property
-    def sleeper_spacing(self) -> float:
-        """Length of a bay, m."""
-
-
 def force_transfer(
-    frequency: ArrayLike, wheel: WheelReceptance, track: OverReceptance, stiffness: float, x: ArrayLike
+    frequency: ArrayLike, wheel: AtContact, track: Any, stiffness: float, x: ArrayLike
 ) -> NDArray[np.complex128]:
     """Contact force per height of the texture, the wheel at given positions on the rail: (n, f), N/m.
 
@@ -64,8 +46,8 @@ def force_transfer(
 
 def mean_square_transfer(
     frequency: ArrayLike,
-    wheel: WheelReceptance,
-    track: RailReceptance,
+    wheel: AtContact,
+    track: Any,
     stiffness: float,
     positions: int = 12,
 ) -> NDArray[np.float64]:
@@ -84,8 +66,8 @@ def linear_force_psd(
     frequency: ArrayLike,
     texture_psd: ArrayLike,
     speed: float,
-    wheel: WheelReceptance,
-    track: RailReceptance,
+    wheel: AtContact,
+    track: Any,
     stiffness: float,
     positions: int = 12,
 ) -> NDArray[np.float64]:
@@ -105,44 +87,3 @@ def linear_force_psd(
     if f.shape != texture.shape:
         raise InputError("texture_psd", f"shape {texture.shape}", f"one value per frequency, {f.shape}")
     return mean_square_transfer(f, wheel, track, stiffness, positions) * texture / speed
-
-
-class Coupled(Protocol):
-    """A scene, as far as the linear reference of several contacts knows it."""
-
-    @property
-    def offsets(self) -> tuple[float, ...]:
-        """Contacts ahead of the position of the run, m."""
-
-    def coupled_transfer(
-        self, stiffness: float, place: float, frequency: NDArray[np.float64], count: int, /
-    ) -> NDArray[np.complex128]:
-        """Forces per height under each contact (count, count, f), N/m, the run at a place, m."""
-
-
-def coupled_force_psd(
-    frequency: NDArray[np.float64],
-    path_psd: NDArray[np.float64],
-    own_psd: NDArray[np.float64],
-    speed: float,
-    scene: Coupled,
-    stiffness: float,
-    places: ArrayLike,
-) -> NDArray[np.float64]:
-    """One-sided PSD of the force of several linear contacts, mean of them, (f,), N²/Hz.
-
-    The contacts pass the same path one after the other, and each has a texture of its own: of these are the
-    PSDs (f,), m²/Hz. With T_ij = F_i/z_j that of a contact i is |Σ T_ij exp(iω d_j/v)|² S_path
-    + Σ |T_ij|² S_own, sums over j, d_j ahead of the first, as a mean over the places (p,) of the run, m.
-    Frequencies (f,), Hz, above zero; speed, m/s. As `linear_force_psd` without motion; of the contacts those
-    `MOST_COUPLED` that are numbered first.
-    """
-    count = min(len(scene.offsets), MOST_COUPLED)
-    ahead = np.array(scene.offsets[:count]) - scene.offsets[0]
-    delay = np.exp(2j * np.pi * np.outer(ahead, frequency) / speed)
-    density, at = np.zeros(len(frequency)), np.atleast_1d(np.asarray(places, dtype=float))
-    for place in at:
-        transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)
-        density += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0) * path_psd
-        density += np.mean(np.sum(np.abs(transfer) ** 2, axis=1), axis=0) * own_psd
-    return np.asarray(density / at.size)

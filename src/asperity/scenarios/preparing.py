@@ -16,10 +16,10 @@ from asperity.config.chosen import with_chosen_window
 from asperity.contact.batched import find_device
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.reduction.filter import FEWEST_POSITIONS
+from asperity.scenarios.expecting import problem_of_disk, scan_sizes
 from asperity.scenarios.geometry import Geometry, window_cells
 from asperity.scenarios.kind import Kind
-from asperity.scenarios.line_filters import filter_stride
-from asperity.scenarios.scan_sizes import problem_of_disk, scan_sizes
+from asperity.scenarios.reducing import filter_stride
 from asperity.scenarios.textures import Textures
 from asperity.store import Store
 from asperity.threads import one_thread_in_linear_algebra, thread_count

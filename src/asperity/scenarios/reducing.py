@@ -1,34 +1,32 @@
-"""The reduction of a case: from textures to the state functions that the laws use."""
+"""The reduction of a case: from textures to the state functions and line filters that the laws use."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.sections import ContactCase, Numerics
-from asperity.contact import Contact, HalfSpace
-from asperity.contact.scan import FILTER_SHARE, Counts, first_touch, rtol_for, total, warn_of_flaws
-from asperity.errors import InputError
+from asperity.config.case import Case
+from asperity.config.sections import ContactCase
+from asperity.contact import Contact, HalfSpace, scan
+from asperity.contact.batched import find_device
+from asperity.errors import ContactFilterWarning, InputError
+from asperity.laws import LawSpec, Need, spec_of
 from asperity.progress import Progress
-from asperity.reduction.filter import Normalise
-from asperity.reduction.stiffness import (
-    ForceCurve,
-    StiffnessEnsemble,
-    isolated_share,
-    patches,
-    stiffness_ensemble,
-)
+from asperity.reduction import filter, stiffness
 from asperity.reduction.texture import areal_texture, punch_weights
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.line_filters import LineFilters, line_filters
 from asperity.scenarios.textures import Textures
 from asperity.store import Cache
+from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import Strip
+from asperity.threads import in_order, thread_count
 
+Array = NDArray[np.float64]
 STATES = 16
 """States chosen where the case names no approaches; up to twice as many where the path is touched earlier."""
 EVENLY = 1.0 / 3.0
@@ -47,27 +45,62 @@ LEAST_DATUM = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
+class PressedSamples:
+    """Samples of a case under its working load, and the smooth body beside them."""
+
+    half_space: HalfSpace  # on which the areas of the smooth body and tangent stiffnesses are taken
+    contacts: list[Contact]
+    smooth: Contact
+
+    @property
+    def approach(self) -> float:
+        """Mean approach, m."""
+        return float(np.mean([each.approach for each in self.contacts]))
+
+    @property
+    def stiffnesses(self) -> Array:
+        """Tangent stiffness of each sample (N,), N/m."""
+        return np.array([self.half_space.tangent_stiffness(each.pressure) for each in self.contacts])
+
+    @property
+    def area_ratio(self) -> float:
+        """Contact area over that of smooth bodies, mean."""
+        return float(np.mean([each.area for each in self.contacts])) / self.smooth.area
+
+    @property
+    def isolated_share(self) -> float:
+        """Share of the load on cells that touch alone, mean."""
+        return float(np.mean([stiffness.isolated_share(each.pressure) for each in self.contacts]))
+
+
+def samples_of(
+    case: Case, shape: Geometry, maps: Iterable[HeightMap], axes: tuple[float, float]
+) -> list[Array]:
+    """Samples (nx, ny) of a case, cut from maps, about the plane felt by a patch of these semi-axes, m."""
+    cells = (shape.body.shape[0], shape.body.shape[1])
+    weights = punch_weights(shape.spacing, axes)
+    return stiffness.patches([each.heights for each in maps], cells, case.contact.samples, weights)
+
+
+@dataclass(frozen=True, eq=False)
 class Reduction:
     """State functions of a case."""
 
-    approaches: NDArray[np.float64]  # (k,), of the states from the plane that the nominal patch feels, m
-    ensemble: StiffnessEnsemble  # loading curves
+    approaches: Array  # (k,), of the states from the plane that the nominal patch feels, m
+    ensemble: stiffness.StiffnessEnsemble  # loading curves
     # d0, m, by what it counts from: ``"samples"``, or ``"path"`` with strips and path as well
     datums: dict[str, float]
-    semi_axes: NDArray[np.float64]  # (k, 2), of the nominal patch at the mean force of each state, m
+    semi_axes: Array  # (k, 2), of the nominal patch at the mean force of each state, m
     filters: LineFilters  # of the states that carry load, on their own approaches, by normalisation
-    working: Contact  # first sample under the working load
-    stiffnesses: NDArray[np.float64]  # (N,), tangent stiffness of each sample under the working load, N/m
-    working_approach: float  # mean of the samples under the working load, m
-    area_ratio: float  # contact area under the working load over that of smooth bodies, mean
-    isolated_share: float  # of that load on cells that touch alone, mean
+    pressed: PressedSamples  # under the working load
+    remedy: str  # a window that holds the contacts of all states
     # (positions,), first touch along the path, before defects are put on it, at every row on which the window
     # may begin, m; None where the path is a line
-    touches: NDArray[np.float64] | None
-    counts: Counts  # contact solutions done for the filters
+    touches: Array | None
+    counts: scan.Counts  # contact solutions done for the filters
 
 
-def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
+def patch_planes(path: Strip, shape: Geometry) -> Array:
     """Height (rows,) of the plane that the nominal patch feels at each row of a path, m, peaks positive.
 
     The mean under the patch of the class of the geometry's working load, centred on each row.
@@ -76,68 +109,53 @@ def patch_planes(path: Strip, shape: Geometry) -> NDArray[np.float64]:
 
 
 def reduce(
-    contact: ContactCase,
-    numerics: Numerics,
+    case: Case,
     textures: Textures,
     shape: Geometry,
-    planes: NDArray[np.float64] | None,
-    needed: Iterable[Normalise],
+    planes: Array | None,
     cache: Cache | None,
     progress: Progress,
 ) -> Reduction:
     """Press and move the body on the samples, and reduce the forces to stiffness and filters.
 
-    `planes` (rows,), m, are from `patch_planes` for the path, where it is areal; `needed` are the
-    normalisations of the filters that the laws use. The cache keeps finished scans.
+    `planes` (rows,), m, are from `patch_planes` for the path, where it is areal. The cache keeps finished
+    scans.
     """
-    weights = punch_weights(shape.spacing, shape.class_axes)
-    cells = (shape.body.shape[0], shape.body.shape[1])
-    samples = patches([m.heights for m in textures.maps], cells, contact.samples, weights)
+    contact, numerics = case.contact, case.numerics
     half_space = shape.half_space(contact.hardness)
-    contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=numerics.rtol) for s in samples]
-    smooth = half_space.solve(shape.body, load=shape.load, rtol=numerics.rtol)
+    samples = samples_of(case, shape, textures.maps, shape.class_axes)
+    pressed = PressedSamples(
+        half_space,
+        [half_space.solve(shape.body - each, load=shape.load, rtol=numerics.rtol) for each in samples],
+        half_space.solve(shape.body, load=shape.load, rtol=numerics.rtol),
+    )
     along = None
     if textures.path is not None and planes is not None:
-        along = first_touch(textures.path, shape.body) + _centred(planes, shape)
+        along = scan.first_touch(textures.path, shape.body) + _centred(planes, shape)
     lowest = _lowest_touches(textures, shape, along, samples)
     approaches = _approaches(contact, textures, shape, along, samples, half_space)
     if not (np.isfinite(approaches).all() and (np.diff(approaches) > 0.0).all()):
         raise _too_rough(textures, f"first touch at {1e6 * approaches[0]:.3g} um")
-    working = float(np.mean([c.approach for c in contacts]))
-    remedy = shape.remedy_for_cut_off(float(approaches[-1]), working, -lowest["path"], textures.widest_window)
-    ensemble = stiffness_ensemble(
-        samples, half_space, shape.body, approaches, 0.0, rtol=rtol_for(numerics.force_accuracy),
+    remedy = shape.remedy_for_cut_off(
+        float(approaches[-1]), pressed.approach, -lowest["path"], textures.widest_window
+    )
+    ensemble = stiffness.stiffness_ensemble(
+        samples, half_space, shape.body, approaches, 0.0, rtol=scan.rtol_for(numerics.force_accuracy),
         progress=progress, tolerance=SCAN_TOLERANCE, remedy=remedy,
     )  # fmt: skip
     mean = ensemble.mean_force
     if contact.approaches is None and np.count_nonzero(mean) < 2:
         raise _too_rough(textures, f"contact in {np.count_nonzero(mean)} of {len(mean)} states")
-    refuse_low_states(approaches, mean, shape, contacts[0].approach)
+    refuse_low_states(approaches, mean, shape, pressed.contacts[0].approach)
     # the curve, drawn through few states, may start a little before the first touch
     datums = {
         name: -min(lowest[name], ensemble.curve.first_touch, -LEAST_DATUM) for name in ("samples", "path")
     }
     ensemble = replace(ensemble, datum=datums[contact.datum])
-    filters, scans = line_filters(
-        contact, textures, shape, ensemble, filtered_loads(contact, shape), needed,
-        rtol=rtol_for(FILTER_SHARE * numerics.force_accuracy), cache=cache, progress=progress,
-    )  # fmt: skip
-    counts = total(scan.counts for scan in scans)
-    warn_of_flaws(counts, "the filters", SCAN_TOLERANCE, remedy)
-    return Reduction(
-        approaches,
-        ensemble,
-        datums,
-        np.array([shape.axes(f) for f in mean]),
-        filters,
-        contacts[0],
-        np.array([half_space.tangent_stiffness(c.pressure) for c in contacts]),
-        working,
-        float(np.mean([c.area for c in contacts])) / smooth.area,
-        float(np.mean([isolated_share(c.pressure) for c in contacts])),
-        along,
-        counts,
-    )
+    filters, counts = line_filters(case, textures, shape, ensemble, cache, progress)
+    scan.warn_of_flaws(counts, "the filters", SCAN_TOLERANCE, remedy)
+    axes = np.array([shape.axes(f) for f in mean])
+    return Reduction(approaches, ensemble, datums, axes, filters, pressed, remedy, along, counts)
 
 
 def filtered_loads(contact: ContactCase, shape: Geometry) -> tuple[float, float]:
@@ -149,9 +167,7 @@ def filtered_loads(contact: ContactCase, shape: Geometry) -> tuple[float, float]
     return LIGHTEST_STATE * shape.class_load / FILTERED, largest * FILTERED
 
 
-def refuse_low_states(
-    approaches: NDArray[np.float64], highest: NDArray[np.float64], shape: Geometry, working_approach: float
-) -> None:
+def refuse_low_states(approaches: Array, highest: Array, shape: Geometry, working_approach: float) -> None:
     """Refuse states (k,), m, that do not reach the working load, or of which only one is in contact.
 
     `highest` are the mean forces of the samples in the last states, two or more, N; the working approach, m,
@@ -159,46 +175,34 @@ def refuse_low_states(
     """
     reached = f"up to {approaches[-1] * 1e6:.4g} um, where the samples carry {highest[-1]:.3g} N"
     if highest[-1] < shape.load:
-        raise InputError(
-            "contact.approaches",
-            reached,
-            f"approaches that reach the working load of {shape.load:.3g} N and beyond",
-            f"Go to {2e6 * working_approach:.3g} um or more, or leave the key out.",
-        )
+        allowed = f"approaches that reach the working load of {shape.load:.3g} N and beyond"
+        remedy = f"Go to {2e6 * working_approach:.3g} um or more, or leave the key out."
+        raise InputError("contact.approaches", reached, allowed, remedy)
     if not highest[-2] > 0.0:
-        raise InputError(
-            "contact.approaches",
-            f"{reached}, and none at {approaches[-2] * 1e6:.4g} um",
-            "at least two approaches in contact",
-            f"Add some around {1e6 * working_approach:.3g} um, or leave the key out.",
-        )
+        received = f"{reached}, and none at {approaches[-2] * 1e6:.4g} um"
+        remedy = f"Add some around {1e6 * working_approach:.3g} um, or leave the key out."
+        raise InputError("contact.approaches", received, "at least two approaches in contact", remedy)
 
 
 def _too_rough(textures: Textures, sign: str) -> InputError:
     """Error about samples on which no contact can be followed from touch to load."""
     rms = float(np.mean([np.std(sample.heights) for sample in textures.maps]))
-    return InputError(
-        "surface",
-        f"samples of {1e6 * rms:.3g} um rms, with {sign}",
-        "heights that are small against the window, and states of contact from the touch to the load",
-        "Check the unit of the heights.",
-    )
+    allowed = "heights that are small against the window, and states of contact from the touch to the load"
+    received = f"samples of {1e6 * rms:.3g} um rms, with {sign}"
+    return InputError("surface", received, allowed, "Check the unit of the heights.")
 
 
 def _lowest_touches(
-    textures: Textures,
-    shape: Geometry,
-    along: NDArray[np.float64] | None,
-    samples: Sequence[NDArray[np.float64]],
+    textures: Textures, shape: Geometry, along: Array | None, samples: Sequence[Array]
 ) -> dict[str, float]:
     """Lowest approach of first touch of all samples, and of these, strips and path, m."""
-    lowest = min(float(first_touch(s, shape.body).min()) for s in samples)
-    strips = min([lowest, *(float(first_touch(s.heights, shape.body).min()) for s in textures.strips)])
-    path = strips if along is None else min(strips, float(along.min()))
-    return {"samples": lowest, "path": path}
+    touches = [float(scan.first_touch(each, shape.body).min()) for each in samples]
+    strips = [float(scan.first_touch(each.heights, shape.body).min()) for each in textures.strips]
+    path = [] if along is None else [float(along.min())]
+    return {"samples": min(touches), "path": min(touches + strips + path)}
 
 
-def _centred(planes: NDArray[np.float64], shape: Geometry) -> NDArray[np.float64]:
+def _centred(planes: Array, shape: Geometry) -> Array:
     """Planes at the middle rows of the window's positions."""
     half = shape.body.shape[0] // 2
     return planes[half : len(planes) - half]
@@ -208,10 +212,10 @@ def _approaches(
     contact: ContactCase,
     textures: Textures,
     shape: Geometry,
-    along: NDArray[np.float64] | None,
-    samples: Sequence[NDArray[np.float64]],
+    along: Array | None,
+    samples: Sequence[Array],
     half_space: HalfSpace,
-) -> NDArray[np.float64]:
+) -> Array:
     """States as given, or by the load that places carry.
 
     Those of the samples do not depend on the path; more lie below where it is touched earlier, by whole
@@ -229,7 +233,7 @@ def _approaches(
     return np.concatenate([states[0] - max(step, earlier / max(count, 1)) * np.arange(count, 0, -1), states])
 
 
-def touched_places(textures: Textures, shape: Geometry) -> list[NDArray[np.float64]]:
+def touched_places(textures: Textures, shape: Geometry) -> list[Array]:
     """Places (nx, ny) of each strip that are touched first and last, levelled to their patch planes, m.
 
     A few samples seldom meet the highest peak, nor the flattest place, which takes the largest forces last.
@@ -237,15 +241,13 @@ def touched_places(textures: Textures, shape: Geometry) -> list[NDArray[np.float
     places, nx = [], shape.body.shape[0]
     for strip in textures.strips:
         planes = patch_planes(strip, shape)
-        touches = first_touch(strip.heights, shape.body) + _centred(planes, shape)
+        touches = scan.first_touch(strip.heights, shape.body) + _centred(planes, shape)
         for row in (int(np.argmin(touches)), int(np.argmax(touches))):
             places.append(strip.heights[row : row + nx] - planes[row + nx // 2])
     return places
 
 
-def chosen_states(
-    places: Sequence[NDArray[np.float64]], shape: Geometry, half_space: HalfSpace
-) -> NDArray[np.float64]:
+def chosen_states(places: Sequence[Array], shape: Geometry, half_space: HalfSpace) -> Array:
     """States from a light load to the largest force at all of some places (nx, ny), m; shape (STATES,).
 
     From the touch of a place to its load F^(2/3) is bent, and straight beyond: few states suffice where many
@@ -255,15 +257,151 @@ def chosen_states(
     forces = np.geomspace(light, shape.largest_force, PRESSED)
     curves = []
     for place in places:
-        pressed, start = [], None
+        approaches, start = [], None
         for force in forces:
-            found = half_space.solve(shape.body - place, load=force, start=start, rtol=1e-3)
-            pressed.append(found.approach)
-            start = found.pressure
-        curves.append(ForceCurve.from_samples(pressed, forces))
+            contact = half_space.solve(shape.body - place, load=force, start=start, rtol=1e-3)
+            approaches.append(contact.approach)
+            start = contact.pressure
+        curves.append(stiffness.ForceCurve.from_samples(approaches, forces))
     lowest = min(curve.first_touch for curve in curves)
     highest = max(float(curve.inverse(shape.largest_force)) for curve in curves)
-    approaches = np.linspace(lowest, highest, 64 * STATES)
-    mean = np.mean([curve.force(approaches) for curve in curves], axis=0)
+    at = np.linspace(lowest, highest, 64 * STATES)
+    mean = np.mean([curve.force(at) for curve in curves], axis=0)
     even = np.linspace(light**EVENLY, mean[-1] ** EVENLY, STATES)
-    return np.interp(even, mean**EVENLY, approaches)
+    return np.interp(even, mean**EVENLY, at)
+
+
+# --- line filters: scanned on the strips, normalised as the laws want, designed for the path
+
+LONG_WAVE = 0.5
+"""k a below which a filter is taken to be at its asymptote: sin q/q is 0.96 there."""
+LEAST_LONG_WAVES = 0.5
+"""Least share of the lines' power at such wavenumbers for which the printed asymptote is one."""
+LARGEST_MISS = 1.0
+"""Largest distance of an applied filter from its fit that passes without a warning, dB."""
+SMOOTH_WAVENUMBERS = 120
+"""Wavenumbers of the closed-form filter where a case has no texture."""
+
+LineFilters = Mapping[filter.Normalise, filter.LineFilter]
+
+
+def normalisation(contact: ContactCase, law: LawSpec) -> filter.Normalise:
+    """How the filter of a law is normalised: as the case says, else as the law wants it."""
+    return law.normalise if contact.normalise is None else contact.normalise  # type: ignore[return-value]
+
+
+def filter_stride(shape: Geometry) -> int:
+    """Rows of the contact grid between the positions of a scan for a filter: a sixth of the patch."""
+    return max(1, math.floor(shape.class_axes[0] / 6 / shape.spacing[0]))
+
+
+def line_filters(
+    case: Case,
+    textures: Textures,
+    shape: Geometry,
+    ensemble: stiffness.StiffnessEnsemble,
+    cache: Cache | None,
+    progress: Progress,
+) -> tuple[LineFilters, scan.Counts]:
+    """Scan the strips, and design a filter for every normalisation that a law needs, or that is shown.
+
+    That of the tangent stiffness is shown in any case, unless the case names another. States whose mean force
+    is out of `filtered_loads` have no filter. Filters of bodies without texture are sin q/q in closed form.
+    """
+    contact, dx, force = case.contact, shape.spacing[0], ensemble.mean_force
+    least, largest = filtered_loads(contact, shape)
+    loaded = (force >= least) & (force <= largest)
+    approaches, tangent = ensemble.approaches[loaded], ensemble.curve.stiffness(ensemble.approaches[loaded])
+    axes = np.array([shape.axes(f) for f in force[loaded]])
+    filtered = (spec for spec in map(spec_of, case.laws) if Need.FILTER in spec.needs)
+    shown: filter.Normalise = contact.normalise or "tangent"  # type: ignore[assignment]
+    needed = dict.fromkeys([shown, *(normalisation(contact, spec) for spec in filtered)])
+    if not any(np.ptp(strip.heights) for strip in textures.strips):
+        wavenumber = np.geomspace(0.01, 2.0, SMOOTH_WAVENUMBERS) / axes[:, 0].max()
+        smooth = filter.closed_form(approaches, wavenumber, axes[:, 0], tangent)
+        taps = filter.punch_taps(axes[:, 0], dx)
+        return dict.fromkeys(needed, filter.LineFilter(smooth, taps, dx)), scan.total([])
+    scans = _scanned_strips(case, textures, shape, approaches, cache, progress)
+    spectra = [
+        _spectra(strip, scanned, shape, axes[:, 1])
+        for strip, scanned in zip(textures.strips, scans, strict=True)
+    ]
+    fewest, most = filter.tap_count(dx, float(axes[:, 0].max())), len(textures.line) - 1
+    filters = {}
+    for normalise in needed:
+        estimated = filter.estimate_filter(
+            spectra, approaches, tangent, normalise=normalise, degree=contact.filter_degree,
+            asymptote=LONG_WAVE / (2 * math.pi * axes[:, 0]),
+        )  # fmt: skip
+        filters[normalise] = filter.design_fir(estimated, dx, contact.filter_taps, least=fewest, most=most)
+    return filters, scan.total(each.counts for each in scans)
+
+
+def _scanned_strips(
+    case: Case,
+    textures: Textures,
+    shape: Geometry,
+    approaches: Array,
+    cache: Cache | None,
+    progress: Progress,
+) -> list[scan.ScannedForces[Array]]:
+    """Forces at constant approach along each strip."""
+    half_space, device = shape.half_space(case.contact.hardness), find_device()
+    rtol = scan.rtol_for(scan.FILTER_SHARE * case.numerics.force_accuracy)
+    jobs = [
+        scan.ScanJob(half_space, strip, shape.body, approaches, filter_stride(shape), rtol, device=device)
+        for strip in textures.strips
+    ]
+    workers = thread_count() if device is None else 1  # one block fills a device
+    message = "scanning for the contact filters"
+
+    def scanned(job: scan.ScanJob) -> scan.ScannedForces[Array]:
+        # one strip is a block or two: strips beside each other keep all processors busy
+        return scan.scan_forces(job, cache=cache, workers=math.ceil(workers / len(jobs)), beside=jobs)
+
+    progress(0, len(jobs), message)
+    scans = []
+    for each in in_order(scanned, jobs, workers):
+        scans.append(each)
+        progress(len(scans), len(jobs), message)
+    return scans
+
+
+def _spectra(
+    strip: HeightMap, scanned: scan.ScannedForces[Array], shape: Geometry, semi_axes: Array
+) -> filter.FilterSpectra:
+    """Spectra of a scan, and of the lines under the patch of each state at every row of the grid."""
+    dx, dy = shape.spacing
+    half = shape.body.shape[0] // 2
+    rows = scanned.forces.shape[1] * filter_stride(shape)
+    lines = strip.heights[half : half + rows].T
+    return filter.filter_spectra(scanned.forces, lines, dx, (semi_axes / dy).astype(int))
+
+
+def warn_of_filter(found: filter.LineFilter, law: str, working_approach: float) -> None:
+    """Say what of a filter a law that uses it should not rest on, with the working approach, m.
+
+    That the texture lacks the long waves at which the printed filter is one, or that the taps miss the fit.
+    """
+    if found.miss > LARGEST_MISS:
+        order = found.taps.shape[1] - 1
+        warnings.warn(
+            f"the filter of the law {law} with J = {order} misses the fitted one by {found.miss:.2g} dB "
+            "above −30 dB: the report shows both. Leave out contact.filter_taps, or roll over a longer path.",
+            ContactFilterWarning,
+            stacklevel=2,
+        )
+    estimated = found.contact_filter
+    share = float(np.interp(working_approach, estimated.approaches, estimated.long_wave_share))
+    if estimated.normalise == "tangent" or share >= LEAST_LONG_WAVES:
+        return
+    ratios = estimated.asymptotic_stiffness / estimated.tangent_stiffness
+    ratio = float(np.interp(working_approach, estimated.approaches, ratios))
+    warnings.warn(
+        f"only {100 * share:.0f} % of the texture's power lies in waves with k a < {LONG_WAVE:g}, where the "
+        f"filter of the law {law} is set to one: k_0/k_t = {ratio:.2f} under the working load, so its "
+        f"force keeps {-20 * math.log10(ratio):.1f} dB that the contact averages away across the path. "
+        'Set contact.normalise = "tangent", or take a law that has it by default.',
+        ContactFilterWarning,
+        stacklevel=2,
+    )

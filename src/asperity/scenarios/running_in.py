@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import passes_of
 from asperity.config.case import Case
-from asperity.contact import HalfSpace
 from asperity.contact.running_in import RunInHeights, RunningIn, run_in, tolerance_of, warn_of_running_in
 from asperity.contact.scan import total
 from asperity.progress import Progress
-from asperity.reduction.stiffness import patches
-from asperity.reduction.texture import punch_weights
 from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.laws import table_stride
+from asperity.scenarios.reducing import PressedSamples, samples_of
 from asperity.scenarios.textures import Textures
+from asperity.schema import Attribute, Entry, contact
 from asperity.store import Cache
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.statistics import rms_slope
@@ -31,26 +31,12 @@ EXPECTED_PASSES = 10
 
 
 @dataclass(frozen=True, eq=False)
-class Condition:
-    """A surface before or after running-in, on the track: as wide as the nominal patch."""
-
-    rms: float  # height, m
-    slope: float  # rms, both directions
-    area_ratio: float  # real contact area under the working load over that of smooth bodies
-    stiffness: float  # dF/dr that small vibration feels under that load: elastic, N/m
-
-
-@dataclass(frozen=True, eq=False)
 class RunInCase:
     """Textures of a case after running-in, and what the passes did to samples and path together."""
 
     textures: Textures
-    largest: NDArray[np.float64]  # (passes,), largest lowering of a place in each, m
-    yielding: NDArray[np.float64]  # (passes,), share of the touched area that yielded in each
-    yielded_share: float  # of the touched area, in all passes
-    settled: bool  # whether the last pass changed nothing
-    before: Condition
-    after: Condition
+    entries: dict[Entry, Any]  # each pass, and the surface before and after them
+    facts: dict[Attribute, float]
 
 
 def run_in_case(
@@ -61,50 +47,59 @@ def run_in_case(
     Samples are then cut from the strips, whose middles the body has passed. A path that is a line alone stays
     as it is. The cache keeps what was rolled.
     """
-    job = running_in_job(case, shape)
+    half_space = shape.half_space(case.contact.hardness)
+    job = RunningIn(
+        half_space, shape.body, shape.load, passes_of(case.contact.running_in),
+        tolerance_of(half_space, shape.body, shape.load), table_stride(shape), case.numerics.rtol,
+    )  # fmt: skip
     roll = partial(run_in, job=job, cache=cache, progress=progress)
-    single = partial(roll, workers=1)
-    strips = list(in_order(lambda strip: single(strip.heights), textures.strips, thread_count()))
-    found, line, path, parts = [*strips], textures.line, textures.path, textures.parts
+    strips = list(in_order(lambda strip: roll(strip.heights, workers=1), textures.strips, thread_count()))
+    surfaces, line, path, parts = [*strips], textures.line, textures.path, textures.parts
     if textures.path is not None:
         along = roll(textures.path.rows(0, textures.path.shape[0]))
-        found.append(along)
+        surfaces.append(along)
         path = Rows(along.heights, textures.path.spacing)
         lowered = along.lowering[:, along.lowering.shape[1] // 2]
         line = line - lowered
         if parts:  # what is rolled over stands first, and takes it all
             over = next(iter(parts))
             parts = parts | {over: parts[over] - lowered}
-    worst = max(found, key=lambda each: float(each.largest[-1]))
-    together = replace(worst, counts=total(each.counts for each in found))
+    worst = max(surfaces, key=lambda each: float(each.largest[-1]))
+    together = replace(worst, counts=total(each.counts for each in surfaces))
     warn_of_running_in(together, job, "numerics.rtol", _remedy(shape))
     maps = tuple(HeightMap(s.heights, shape.spacing, "run in") for s in strips)
+    origin = f"{textures.origin}; {_words(surfaces, job, textures)}"
     after = replace(
-        textures, maps=maps, strips=maps, path=path, line=line, parts=parts, untouched=textures,
-        origin=f"{textures.origin}; {_words(found, job, textures)}",
-    )  # fmt: skip
-    conditions = [_condition(case, shape, each) for each in (replace(textures, maps=textures.strips), after)]
-    weights = np.array([np.count_nonzero(each.touched) for each in found], dtype=np.float64)
-    weights /= max(weights.sum(), 1.0)
-    passes = max(len(each.largest) for each in found)
-    padded = [np.pad(each.yielding, (0, passes - len(each.yielding))) for each in found]
-    return RunInCase(
-        after,
-        np.max([np.pad(each.largest, (0, passes - len(each.largest))) for each in found], axis=0),
-        weights @ np.array(padded),
-        float(weights @ np.array([each.yielded_share for each in found])),
-        all(each.settled for each in found),
-        *conditions,
+        textures, maps=maps, strips=maps, path=path, line=line, parts=parts, untouched=textures, origin=origin
     )
+    before = replace(textures, maps=textures.strips)
+    conditions = np.array([_condition(case, shape, each) for each in (before, after)])
+    return RunInCase(after, *_passes(surfaces, conditions))
 
 
-def running_in_job(case: Case, shape: Geometry) -> RunningIn:
-    """The body of a case under its working load, and how often it rolls."""
-    half_space = shape.half_space(case.contact.hardness)
-    return RunningIn(
-        half_space, shape.body, shape.load, passes_of(case.contact.running_in),
-        tolerance_of(half_space, shape.body, shape.load), table_stride(shape), case.numerics.rtol,
-    )  # fmt: skip
+def _passes(
+    surfaces: Sequence[RunInHeights], conditions: NDArray[np.float64]
+) -> tuple[dict[Entry, Any], dict[Attribute, float]]:
+    """What each pass did to all surfaces together, and their conditions (2, 4) before and after."""
+    weights = np.array([np.count_nonzero(each.touched) for each in surfaces], dtype=np.float64)
+    weights /= max(weights.sum(), 1.0)
+    passes = max(len(each.largest) for each in surfaces)
+    largest, yielding = (
+        np.array([np.pad(values, (0, passes - len(values))) for values in every])
+        for every in ([each.largest for each in surfaces], [each.yielding for each in surfaces])
+    )
+    names = (contact.TRACK_RMS, contact.TRACK_SLOPE, contact.TRACK_AREA_RATIO, contact.TRACK_STIFFNESS)
+    entries = {
+        contact.RUNNING_IN_PASS: np.arange(1, passes + 1),
+        contact.RUNNING_IN_LOWERING: largest.max(axis=0),
+        contact.RUNNING_IN_YIELDING: weights @ yielding,
+        contact.CONDITION: ["before", "after"],
+        **dict(zip(names, conditions.T, strict=True)),
+    }
+    return entries, {
+        contact.YIELDED_SHARE: float(weights @ np.array([each.yielded_share for each in surfaces])),
+        contact.SHAKEN_DOWN: int(all(each.settled for each in surfaces)),
+    }
 
 
 def running_in_passes(case: Case) -> int:
@@ -119,9 +114,9 @@ def running_in_positions(shape: Geometry, textures: Textures) -> int:
     return sum(rows // table_stride(shape) + 1 for rows in spare)
 
 
-def _words(found: Sequence[RunInHeights], job: RunningIn, textures: Textures) -> str:
+def _words(surfaces: Sequence[RunInHeights], job: RunningIn, textures: Textures) -> str:
     what = "samples" if textures.path is None else "samples and path"
-    passes = sorted({len(each.largest) for each in found})
+    passes = sorted({len(each.largest) for each in surfaces})
     number = " to ".join(map(str, sorted({passes[0], passes[-1]})))
     words = f"{what} run in by {number} pass{'es' if passes[-1] > 1 else ''} under {job.load:.3g} N"
     return words if textures.path is not None else f"{words}, line of the path as given"
@@ -132,26 +127,22 @@ def _remedy(shape: Geometry) -> str:
     return f"Enlarge contact.window, now {side * 1e3:.3g} mm, or leave long waves out by surface.longest."
 
 
-def _condition(case: Case, shape: Geometry, textures: Textures) -> Condition:
-    """Describe samples and path, and press the body on the samples."""
-    half_space, (nx, ny) = shape.half_space(case.contact.hardness), shape.body.shape
-    elastic = HalfSpace((nx, ny), shape.spacing, shape.modulus)
-    weights = punch_weights(shape.spacing, shape.semi_axes)
-    samples = patches([m.heights for m in textures.maps], (nx, ny), case.contact.samples, weights)
-    contacts = [half_space.solve(shape.body - s, load=shape.load, rtol=case.numerics.rtol) for s in samples]
-    smooth = elastic.solve(shape.body, load=shape.load, rtol=case.numerics.rtol)
+def _condition(case: Case, shape: Geometry, textures: Textures) -> tuple[float, float, float, float]:
+    """Of samples and path rms height, m, and slope on the track; pressed, area ratio, and stiffness, N/m.
+
+    The track is as wide as the nominal patch; the stiffness is that which small vibration feels: elastic.
+    """
+    half_space, elastic = shape.half_space(case.contact.hardness), shape.half_space(None)
+    samples, rtol = samples_of(case, shape, textures.maps, shape.semi_axes), case.numerics.rtol
+    contacts = [half_space.solve(shape.body - each, load=shape.load, rtol=rtol) for each in samples]
+    pressed = PressedSamples(elastic, contacts, elastic.solve(shape.body, load=shape.load, rtol=rtol))
     tracks = [_track(strip.heights, shape) for strip in textures.strips]
     if textures.path is not None:
         tracks.append(_track(textures.path.rows(0, textures.path.shape[0]), shape))
     weights = np.array([track.heights.size for track in tracks], dtype=np.float64)
     squares = np.array([[np.var(track.heights), rms_slope(track) ** 2] for track in tracks])
     rms, slope = np.sqrt(weights @ squares / weights.sum())
-    return Condition(
-        float(rms),
-        float(slope),
-        float(np.mean([c.area for c in contacts])) / smooth.area,
-        float(np.mean([elastic.tangent_stiffness(c.pressure) for c in contacts])),
-    )
+    return float(rms), float(slope), pressed.area_ratio, float(np.mean(pressed.stiffnesses))
 
 
 def _track(heights: NDArray[np.float64], shape: Geometry) -> HeightMap:

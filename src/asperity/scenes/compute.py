@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import time
+import warnings
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,22 +15,30 @@ from numpy.typing import NDArray
 from asperity import __version__
 from asperity.config.case import Case
 from asperity.config.content import content, file_digest
-from asperity.laws import Law, spec_of
+from asperity.contact.scan import ScannedForces
+from asperity.errors import PhysicsWarning
+from asperity.laws import Law, Need, needs_of, spec_of
 from asperity.progress import Progress
 from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies
-from asperity.scenarios.chain import Chain, Stopwatch, reduce_and_roll
 from asperity.scenarios.compiling import compile_kernels
+from asperity.scenarios.geometry import Geometry
 from asperity.scenarios.kind import Kind
+from asperity.scenarios.laws import LawMaterials, working_point
 from asperity.scenarios.preparing import PreparedCase
+from asperity.scenarios.reducing import Reduction, patch_planes, reduce
+from asperity.scenarios.running_in import RunInCase, run_in_case
 from asperity.scenarios.scene import Scene
+from asperity.scenarios.textures import Textures
 from asperity.scenes.textures import recorded_time
+from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
 from asperity.structures.moving_kernel import MovingKernel, moving_kernel
 from asperity.structures.rail_poles import RailBetween, RailPoles, poles_or_kernel, rail_between
 from asperity.structures.track import Track
 
+Array = NDArray[np.float64]
 FORMAT = 2
 """Of a state of motion that is kept: raise it where one is laid out anew."""
 TOLD_OF = ("laws", "noise")
@@ -42,9 +53,52 @@ class Computed:
     case: Any
     scene: Scene
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
-    chain: Chain  # textures, state functions, laws and runs
+    materials: (
+        LawMaterials  # of the first contact: textures, geometry, state functions; without what laws made
+    )
+    runs: dict[str, RolledBodies]  # time histories, by law
+    scan: ScannedForces[Any] | None  # of the path
+    running_in: RunInCase | None  # what passes before did to the textures; None where there were none
+    seconds: dict[str, float]  # wall time of each part, s
     # (laws, points, n), displacement, m, and velocity, m/s, of the rail at the points that are passed
-    points: tuple[NDArray[np.float64], ...] = ()
+    points: tuple[Array, ...] = ()
+
+    @property
+    def textures(self) -> Textures:
+        """What was rolled over, as it was run in."""
+        return self.materials.textures
+
+    @property
+    def shape(self) -> Geometry:
+        """The gap of the bodies on the contact grid."""
+        return self.materials.shape
+
+    @property
+    def reduction(self) -> Reduction | None:
+        """State functions; None without samples."""
+        return self.materials.reduction
+
+    @property
+    def laws(self) -> dict[str, Law]:
+        """Its laws by name, in the order of the case, built again: each holds all the path in every state."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PhysicsWarning)  # of that was warned when they were rolled
+            return {name: self.materials.build(name) for name in self.runs}
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness of a linear contact under the working load, N/m."""
+        return working_point(self.materials.contact, self.shape, self.reduction)[1]
+
+    @property
+    def highest(self) -> float:
+        """Highest frequency of the spectra, Hz."""
+        return float(self.case.numerics.highest_frequency)
+
+    @property
+    def first(self) -> RolledBodies:
+        """The run by the main law."""
+        return next(iter(self.runs.values()))
 
     @property
     def track(self) -> Track:
@@ -64,22 +118,95 @@ class Computed:
         assert isinstance(self.over, RailBetween)
         return self.over.kernel
 
+    def stacked(self, name: str) -> Array:
+        """Stack one record of all runs, (laws, contacts or sensors, ...), by the name of its attribute."""
+        return np.stack([getattr(run, name) for run in self.runs.values()])
+
+    # over frequency: all records in segments of one length, which make the lines of all spectra
+
+    @cached_property
+    def segment(self) -> int:
+        """Length of these segments, in time steps."""
+        return spectrum_segment(len(self.first.time), self.case.time_step)
+
+    def psd(self, signals: Array) -> Array:
+        """One-sided PSDs (..., f) of records (..., n), on all lines from zero."""
+        return psd(signals, self.case.time_step, segment=self.segment)[1]
+
+    @cached_property
+    def frequency(self) -> Array:
+        """All lines (f,), from zero, Hz."""
+        return np.asarray(np.fft.rfftfreq(self.segment, self.case.time_step), dtype=np.float64)
+
+    @cached_property
+    def shown(self) -> NDArray[np.bool_]:
+        """Which lines a result holds: up to the edge of the one-third octave of the highest frequency."""
+        return np.asarray((self.frequency > 0.0) & (self.frequency <= 1.13 * self.highest))
+
+    def levels(self, density: Array, reference: float = 1.0) -> Array:
+        """One-third-octave levels (..., b), dB, of PSDs on all lines."""
+        return band_levels(self.frequency, density, reference, high=self.highest)[1]
+
+    @cached_property
+    def force_psd(self) -> Array:
+        """PSDs of the forces of all contacts (laws, c, f), N²/Hz, on all lines."""
+        return self.psd(self.stacked("contact_force"))
+
+    @cached_property
+    def force_levels(self) -> Array:
+        """Levels of the forces of all contacts (laws, c, b), dB re 1 N."""
+        return self.levels(self.force_psd)
+
+    @cached_property
+    def band(self) -> Array:
+        """Centres of the one-third octaves (b,), Hz."""
+        return band_levels(self.frequency, self.force_psd, high=self.highest)[0]
+
+
+SEGMENT = (0.025, 0.2)
+"""Shortest and longest segment of the spectra, s: lines 40 Hz and 5 Hz apart."""
+
+
+def spectrum_segment(samples: int, step: float) -> int:
+    """Length of the segments that spectra are averaged over, in time steps.
+
+    A quarter of the record within `SEGMENT`, so that windows leave most of it.
+    """
+    shortest, longest = (round(length / step) for length in SEGMENT)
+    return min(max(samples // 4, shortest), longest, samples)
+
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
-    """Reduce and roll a case from `asperity.running.prepare_case`."""
-    case, scene, textures = prepared.case, prepared.bodies, prepared.textures
+    """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
+    case, scene, textures, shape = prepared.case, prepared.bodies, prepared.textures, prepared.shape
     assert isinstance(scene, Scene)
-    store, watch = Store(), Stopwatch(textures=prepared.seconds)
+    store, seconds, last, ran = Store(), {"textures": prepared.seconds}, time.perf_counter(), None
+
+    def book(part: str) -> None:
+        """Book the time since the last part on this one."""
+        nonlocal last
+        now = time.perf_counter()
+        seconds[part], last = now - last, now
+
     compile_kernels(progress)  # not before the files are known to be right
-    watch.lap("compiled functions")
+    book("compiled functions")
     over = in_time(scene, case, store, progress)
-    watch.lap("what is rolled over")
+    book("what is rolled over")
     which, others = prepared.kind.contacts_of(case, scene.loads)
     duration = recorded_time(case, textures)
-
-    def roll_laws(first: Law, *further: Law) -> RolledBodies:
-        laws = (first, *further)
-        return roll_bodies(
+    if case.contact.running_in is not None:
+        ran = run_in_case(case, textures, shape, store, progress)
+        textures = ran.textures
+        book("running in")
+    planes = None if textures.path is None else patch_planes(textures.path, shape)
+    reduction = reduce(case, textures, shape, planes, store, progress) if textures.maps else None
+    book("reduction")
+    first = LawMaterials(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
+    every, unused = [first, *(first.of_contact(own) for own in others)], replace(first)
+    runs: dict[str, RolledBodies] = {}
+    for name in case.laws:
+        laws = [materials.build(name) for materials in every]
+        runs[name] = roll_bodies(
             over,
             scene.rolling,
             [laws[k] for k in which],
@@ -92,14 +219,15 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
             sensors=scene.sensors,
             highest_frequency=case.numerics.highest_frequency,
             progress=progress,
-            checkpoint=checkpoint_of(first, prepared, store),
+            checkpoint=checkpoint_of(laws[0], prepared, store),
         )
-
-    chain = reduce_and_roll(prepared, roll_laws, store, progress, watch, others)
-    computed = Computed(prepared.kind, case, scene, over, chain)
+        del laws
+        book(f"law {name}")
+    scan = first.scan if Need.SCAN in needs_of(case.laws) else None
+    computed = Computed(prepared.kind, case, scene, over, unused, runs, scan, ran, seconds)
     if scene.points:
         computed = replace(computed, points=_passed(computed, progress))
-        watch.lap("passed points")
+        book("passed points")
     return computed
 
 
@@ -116,7 +244,7 @@ def in_time(
 
 def _passed(computed: Computed, progress: Progress) -> tuple[NDArray[np.float64], ...]:
     """Displacement, m, and velocity, m/s, of the rail at its points (laws, p, n), under all contacts."""
-    runs = list(computed.chain.runs.values())
+    runs = list(computed.runs.values())
     forces, settled = np.stack([run.history for run in runs]), runs[0].history.shape[1] - len(runs[0].time)
     parts = [
         passed_points(computed.kernel, forces[:, k], float(origin), computed.scene.points, settled, progress)

@@ -9,15 +9,14 @@ from numpy.typing import NDArray
 from xarray import DataTree
 
 from asperity.config.case import Case
+from asperity.errors import warn_of_findings
 from asperity.laws import Role, in_role
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.measure import A_WEIGHTED, Measure, a_weighted, density_of
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.refining import Setting
-from asperity.scenarios.validity import warn_of_findings
-from asperity.scenes.cnossos_labels import findings_of_labels, track_label, wheel_label
-from asperity.scenes.loss_factors import described_losses, loss_factor_error, warn_of_loss_factors
-from asperity.scenes.sound import silent_wheel
+from asperity.scenes import noise
+from asperity.scenes.track import described_losses, loss_factor_error, warn_of_loss_factors
 from asperity.schema import spectra
 from asperity.structures.track import Track
 
@@ -40,11 +39,13 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
     losses = loss_factor_error(track, scene.first, stiffness, highest)
     warn_of_loss_factors(losses)
     known = "rail, sleepers and wheel"
-    if reason := silent_wheel(case):
+    if reason := noise.silent_wheel(case):
         known = f"rail and sleepers, for {reason}"
     if in_role(Role.BARE, case.laws) is not None:
-        known += f"; by CNOSSOS-EU for {track_label(case)} pads and a wheel of {wheel_label(case)}"
-        warn_of_findings(findings_of_labels(case))
+        known += (
+            f"; by CNOSSOS-EU for {noise.track_label(case)} pads and a wheel of {noise.wheel_label(case)}"
+        )
+        warn_of_findings(noise.findings_of_labels(case))
     frequencies = f"pinned–pinned {track.pinned_pinned_frequency:.4g} Hz, sleeper passing"
     passing = f"{case.speed / track.sleeper_spacing:.4g} Hz, critical speed {track.critical_speed:.4g} m/s"
     points = ", ".join(f"{position:g} m" for position in scene.points)

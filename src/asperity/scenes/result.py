@@ -3,35 +3,46 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 import xarray
 from numpy.typing import NDArray
 
-from asperity.reference.cnossos import CITATION
-from asperity.scenarios import tree, validity
-from asperity.scenarios.contact_group import contact_group
-from asperity.scenarios.surface_group import surface_group
-from asperity.scenes import schema
-from asperity.scenes.cnossos_labels import findings_of_labels
+from asperity import __version__, laws
+from asperity.contact.batched import find_device
+from asperity.errors import Grade, PhysicsWarning, warn_of_findings
+from asperity.reference import cnossos
+from asperity.results import checked
+from asperity.scenarios.law_choice import LawChoice
+from asperity.scenes import noise, schema, track, validity
+from asperity.scenes.chance import sureness
 from asperity.scenes.compute import Computed
-from asperity.scenes.loss_factors import (
-    described_losses,
-    error_of_losses,
-    findings_of_losses,
-    warn_of_loss_factors,
-)
-from asperity.scenes.sound import pass_by_group, warn_of_silence
-from asperity.scenes.track import track_facts, track_group, track_spectra
-from asperity.schema import Entry, attributes, rolling, spectra, variables
-from asperity.spectra import averaging_time, band_levels, psd
+from asperity.scenes.groups import as_json, contact_group, surface_group
+from asperity.scenes.population import answers
+from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
 from asperity.structures.rail_poles import RailBetween, RailPoles
 from asperity.structures.track import Track
 
-USUAL = (schema.OVER_DISPLACEMENT, schema.ROLLING_DISPLACEMENT)
-"""What displacements at a contact are called."""
+METHOD = (
+    "O. Lundberg, licentiate thesis, KTH Stockholm (2014).",
+    "Lundberg, Finnveden, Björklund, Pärssinen and Lopez Arteaga, A nonlinear state-dependent model for "
+    "vibrations excited by roughness in rolling contacts, submitted to J. Sound Vib. (2014): its paper A.",
+    "Lundberg, Nordborg, Lopez Arteaga and Finnveden, Estimation of nonlinearities in the wheel-rail rolling "
+    "noise generation process, ISMA (2014): its paper B.",
+    "H. Hertz, J. reine angew. Math. 92 (1882) 156 (contact of smooth bodies).",
+)
+ROUGH_CONTACT = (
+    "A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929) 377 (influence coefficients).",
+    "I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206 (projected conjugate gradients).",
+    "E. A. H. Vollebregt, A new solver for the elastic normal contact problem using conjugate gradients, "
+    "deflation, and an FFT-based preconditioner (2014).",
+)
+BANDS = ("IEC 61260-1:2014 (one-third octaves, base 10).",)
+EXPECTED = ("G. Matheron, Economic Geology 58 (1963) 1246 (kriging, of the expected errors of laws).",)
 
 
 def layout(
@@ -43,48 +54,105 @@ def layout(
     added to it. In brief without what only a report shows: what the path is like, and the choice of a law
     where nothing depends on it.
     """
-    chain, scene = computed.chain, computed.scene
-    over_frequency = spectra_group(computed)
-    choice = validity.choice_of(chain, scene, brief=brief)
-    found, own, citations = validity.findings(chain, choice), dict[str, xarray.Dataset](), tuple[str, ...]()
+    case, scene, over_frequency = computed.case, computed.scene, spectra_group(computed)
+    choice, population = validity.choice_of(computed, brief=brief), answers(computed)
+    found, own = validity.findings(computed, population, choice), dict[str, xarray.Dataset]()
+    losses = power = None
+    sources = METHOD + (ROUGH_CONTACT if computed.reduction else ()) + BANDS + (EXPECTED if choice else ())
     if isinstance(scene.over, Track):
-        losses = error_of_losses(computed)
-        found += findings_of_losses(losses)
-        if schema.SOUND_POWER_LEVEL.name in over_frequency:
-            found += findings_of_labels(computed.case)
-        own = {"/track": track_group(computed), "/pass_by": pass_by_group(computed.case, over_frequency)}
-        citations = (*scene.over.sources, CITATION)
-        warn_of_silence(computed.case)
-        warn_of_loss_factors(losses)
-    validity.warn_of_findings(found)
+        losses = track.error_of_losses(computed)
+        found += track.findings_of_losses(losses)
+        if schema.SOUND_POWER_LEVEL_A.name in over_frequency:
+            power = over_frequency[schema.SOUND_POWER_LEVEL_A.name].sel(source="total")
+            found += noise.findings_of_labels(case)
+        own = {
+            "/track": track.track_group(computed, losses),
+            "/pass_by": noise.pass_by_group(case, over_frequency),
+        }
+        sources += (*scene.over.sources, cnossos.CITATION)
+        noise.warn_of_silence(case)
+        track.warn_of_loss_factors(losses)
+    warn_of_findings(found)
+    scenario = {
+        provenance.KIND: case.kind,
+        provenance.PARAMETERS: as_json(case.parameters()),
+        provenance.LAWS: as_json([laws.spec_of(name).entry() for name in case.laws]),
+    } | ({provenance.EXPECTED_ERRORS: as_json(choice.entries())} if choice else {})
     groups = {
-        "/surface": surface_group(chain, brief=brief),
-        "/contact": contact_group(chain, found),
+        "/surface": surface_group(computed, brief=brief),
+        "/contact": contact_group(computed, found, population),
         "/rolling": rolling_group(computed),
         "/spectra": over_frequency,
     }
-    power = _sound_power(over_frequency)
-    return tree.assembled(
-        chain,
-        groups | own,
-        caught,
-        title=scene.title,
-        verdict=validity.verdict(chain, over_frequency, found, computed.kind.rolling, power, choice),
-        numerics=_numerics(computed),
-        citations=citations,
-        choice=choice,
+    numerics = [{"name": name, "value": value} for name, value in _numerics(computed, choice, losses)]
+    scenario |= {provenance.NUMERICS: as_json(numerics)}
+    groups = {"/scenario": xarray.Dataset(attrs=attributes(scenario))} | groups | own
+    tree = xarray.DataTree.from_dict(groups)
+    tree.attrs = attributes(
+        {
+            provenance.TITLE: scene.title,
+            provenance.ASPERITY_VERSION: __version__,
+            provenance.SCHEMA_VERSION: VERSION,
+            provenance.CREATED: datetime.now(UTC).isoformat(timespec="seconds"),
+            provenance.CASE: case.text,
+            provenance.SEED: case.seed,
+            provenance.CITATIONS: as_json(sources),
+            provenance.VERDICT: validity.verdict(computed, over_frequency, found, power, choice),
+            provenance.WARNINGS: as_json(_collected(caught)),
+        }
     )
+    return checked(tree)
 
 
-def _sound_power(over_frequency: xarray.Dataset) -> xarray.DataArray | None:
-    level = over_frequency.get(schema.SOUND_POWER_LEVEL_A.name)
-    return None if level is None else level.sel(source="total")
+def _collected(caught: list[warnings.WarningMessage]) -> list[dict[str, Any]]:
+    """Warnings on the physics, each once with its number, the gravest first."""
+    physics = [m.message for m in caught if isinstance(m.message, PhysicsWarning)]
+    counts = Counter((type(m).__name__, str(m), m.grade) for m in physics)
+    order = list(Grade)
+    return [
+        {"category": category, "message": message, "grade": grade.value, "count": n}
+        for (category, message, grade), n in sorted(counts.items(), key=lambda c: -order.index(c[0][2]))
+    ]
 
 
-def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:
-    over = computed.over
+def _numerics(
+    computed: Computed, choice: LawChoice | None, losses: track.LossFactorError | None
+) -> Iterator[tuple[str, str]]:
+    """Numbers of the computation: names and values."""
+    case, (nx, ny), runs = computed.case, computed.shape.body.shape, computed.runs
+    yield "time step", f"{case.time_step * 1e6:.4g} µs"
+    yield "time steps", f"{max(len(run.time) for run in runs.values()) - 1}"
+    yield "contact window", f"{nx} × {ny} cells of {case.contact.spacing * 1e6:.4g} µm"
+    if (device := find_device()) is not None:
+        yield "scans solved on", device.name
+    if (reduction := computed.reduction) is not None:
+        yield "contacts solved for the filters", f"{reduction.counts.solved}"
+        iterations = reduction.counts.iterations / max(reduction.counts.solved, 1)
+        yield "iterations per contact", f"{iterations:.1f}"
+        orders = {each.taps.shape[1] - 1 for each in reduction.filters.values()}
+        yield "filter order J", ", ".join(map(str, sorted(orders)))
+    if (scan := computed.scan) is not None:
+        precision = "single" if scan.single else "double"
+        yield "contacts solved for the table", f"{scan.counts.solved} in {precision} precision"
+        yield "contacts of the table not converged", f"{scan.counts.unconverged}"
+    parts = np.array_split(computed.first.contact_force, 3, axis=1)
+    thirds = ", ".join(f"{validity.rms_about_mean(part):.3g}" for part in parts)
+    yield f"rms of the contact force in thirds of the record, {next(iter(runs))}", f"{thirds} N"
+    for name, run in runs.items():
+        yield f"time steps not converged, {name}", f"{run.unconverged_steps}"
     if len(computed.scene.offsets) > 1:
         yield "contacts", f"{len(computed.scene.offsets)}"
+    yield from _of_structure(computed)
+    yield from track.described_losses(losses, computed.shape.load) if losses else ()
+    for name, run in runs.items():
+        yield f"energy residual, {name}", f"{run.energy.residual:.1e}"
+    yield from choice.rows() if choice else ()
+    for part, seconds in computed.seconds.items():
+        yield f"wall time, {part}", f"{seconds:.2f} s"
+
+
+def _of_structure(computed: Computed) -> Iterator[tuple[str, str]]:
+    over = computed.over
     if isinstance(over, RailBetween):
         weights, lag = computed.kernel.weights, computed.kernel.lag
         yield "start positions of the moving kernel", f"{weights.shape[0]} in a bay"
@@ -94,24 +162,19 @@ def _numerics(computed: Computed) -> Iterable[tuple[str, str]]:
             yield "error of the fitted poles, relative", f"{over.direct.fit_error:.1e}"
         else:
             yield "track in time", "scattered from the moving kernel"
-        yield from described_losses(error_of_losses(computed), computed.chain.shape.load)
     elif over is not None:
         yield "modes of what is rolled over", f"{len(over.natural_frequencies)}"
-    for name, run in computed.chain.runs.items():
-        yield f"energy residual, {name}", f"{run.energy.residual:.1e}"
 
 
 def rolling_group(computed: Computed) -> xarray.Dataset:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
-    scene, stack = computed.scene, computed.chain.stacked
-    runs = list(computed.chain.runs.values())
-    terms = list(runs[0].energy.shares)
-    losses = [run.contact_loss for run in runs]
-    over, rolls = scene.displacements or USUAL
+    scene, stack, first = computed.scene, computed.stacked, computed.first
+    runs, losses = computed.runs.values(), [run.contact_loss for run in computed.runs.values()]
+    over, rolls = scene.displacements or (schema.OVER_DISPLACEMENT, schema.ROLLING_DISPLACEMENT)
     laid_out: dict[Entry, Any] = {
-        rolling.LAW: list(computed.chain.runs),
-        rolling.TIME: runs[0].time,
-        rolling.POSITION: runs[0].positions[0],
+        rolling.LAW: list(computed.runs),
+        rolling.TIME: first.time,
+        rolling.POSITION: first.positions[0],
         rolling.CONTACT: 1 + np.arange(len(scene.offsets)),
         rolling.OFFSET: scene.offsets,
         rolling.STATIC_LOAD: scene.loads,
@@ -126,8 +189,8 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
         ],
         schema.ROLLING_DEGREE: list(scene.levers),
         schema.BODY_DISPLACEMENT: _motion(computed),
-        schema.ENERGY_TERM: terms,
-        schema.ENERGY: [[run.energy.shares[term] for term in terms] for run in runs],
+        schema.ENERGY_TERM: list(first.energy.shares),
+        schema.ENERGY: [list(run.energy.shares.values()) for run in runs],
         schema.ENERGY_RESIDUAL: [run.energy.residual for run in runs],
     }
     if scene.sensors:
@@ -142,8 +205,7 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
 def _motion(computed: Computed) -> NDArray[np.float64]:
     """Degrees of freedom of all bodies (laws, d, n), positive downwards, m."""
     levers = np.array(list(computed.scene.levers.values()))[:, None]
-    runs = computed.chain.runs.values()
-    return np.stack([-levers * np.concatenate(run.degrees_of_freedom) for run in runs])
+    return np.stack([-levers * np.concatenate(run.degrees_of_freedom) for run in computed.runs.values()])
 
 
 def spectra_group(computed: Computed) -> xarray.Dataset:
@@ -151,64 +213,55 @@ def spectra_group(computed: Computed) -> xarray.Dataset:
 
     With how sure the levels are, and how far the laws are from each other.
     """
-    chain, scene, case = computed.chain, computed.scene, computed.case
-    forces, step, highest = chain.stacked("contact_force"), case.time_step, highest_of(computed)
-    segment = tree.spectrum_segment(forces.shape[-1], step)
-    frequency, of_contacts = psd(forces, step, segment=segment)
-    density, shown = of_contacts.mean(axis=1), tree.drawn(frequency, highest)
-    band, level = band_levels(frequency, density, high=highest)
-    levels = band_levels(frequency, of_contacts, high=highest)[1]
+    scene, forces, shown = computed.scene, computed.stacked("contact_force"), computed.shown
+    density = computed.force_psd.mean(axis=1)
+    level = computed.levels(density)
     laid_out: dict[Entry, Any] = {
-        spectra.LAW: list(chain.runs),
-        spectra.FREQUENCY: frequency[shown],
-        spectra.BAND: band,
+        spectra.LAW: list(computed.runs),
+        spectra.FREQUENCY: computed.frequency[shown],
+        spectra.BAND: computed.band,
         spectra.CONTACT: 1 + np.arange(forces.shape[1]),
         spectra.FORCE_PSD: density[..., shown],
         spectra.FORCE_LEVEL: level,
-        spectra.CONTACT_FORCE_PSD: of_contacts[..., shown],
-        spectra.CONTACT_FORCE_LEVEL: levels,
-        **tree.sureness(chain, band, averaging_time(forces.shape[-1], step, segment=segment), scene.transfer),
-        **tree.level_differences(list(chain.runs), level),
-        **_bodies(computed, frequency, segment),
+        spectra.CONTACT_FORCE_PSD: computed.force_psd[..., shown],
+        spectra.CONTACT_FORCE_LEVEL: computed.force_levels,
     }
+    laid_out |= sureness(computed) | level_differences(list(computed.runs), level) | _bodies(computed)
     if forces.shape[1] > 1:
-        laid_out[schema.SUM_PSD] = psd(forces.sum(axis=1), step, segment=segment)[1][..., shown]
-        tones = passing_frequencies(scene.offsets, case.speed, highest)
+        laid_out[schema.SUM_PSD] = computed.psd(forces.sum(axis=1))[..., shown]
+        tones = passing_frequencies(scene.offsets, computed.case.speed, computed.highest)
         laid_out |= {schema.PASSING_FREQUENCY: tones} if tones.size else {}
     if scene.sensors:
-        laid_out |= _accelerations(computed, segment)
+        density = computed.psd(computed.stacked("acceleration"))
+        laid_out[schema.SPECTRA_SENSOR] = scene.sensors
+        laid_out[schema.ACCELERATION_PSD] = density[..., shown]
+        laid_out[schema.ACCELERATION_LEVEL] = computed.levels(density, schema.ACCELERATION_REFERENCE)
     facts = {}
     if isinstance(scene.over, Track):
-        laid_out |= track_spectra(computed, frequency, of_contacts, band, levels)
-        facts = attributes(track_facts(computed))
+        laid_out |= track.track_spectra(computed)
+        facts = attributes(track.tones(computed))
     return xarray.Dataset(variables(laid_out), attrs=facts)
 
 
-def highest_of(computed: Computed) -> float:
-    """Highest frequency of the spectra, Hz."""
-    return computed.case.numerics.highest_frequency
+def level_differences(names: list[str], force_level: NDArray[np.float64]) -> dict[Entry, xarray.Variable]:
+    """Differences of force levels (laws, bands), dB, to the linear laws, and to a reference if any."""
+    compared = {validity.difference_to(law): law for law in laws.baselines(names)}
+    if (solved := laws.reference(names)) is not None:
+        compared[spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE] = solved
+    return {
+        entry: entry.variable(force_level - force_level[names.index(law)], reference=law)
+        for entry, law in compared.items()
+    }
 
 
-def _bodies(computed: Computed, frequency: NDArray[np.float64], segment: int) -> Mapping[Entry, Any]:
+def _bodies(computed: Computed) -> dict[Entry, Any]:
     """Acceleration of the bodies in their degrees of freedom, from second differences of their motion."""
     step = computed.case.time_step
     curvature = np.pad(np.diff(_motion(computed), 2) / step**2, ((0, 0), (0, 0), (1, 1)), mode="edge")
-    _, curved = psd(curvature, step, segment=segment)
-    half = np.pi * frequency * step
+    half = np.pi * computed.frequency * step
     to_acceleration = (half / np.sin(np.maximum(half, 1e-12))) ** 4
-    density = (curved * to_acceleration)[..., tree.drawn(frequency, highest_of(computed))]
+    density = (computed.psd(curvature) * to_acceleration)[..., computed.shown]
     return {schema.SPECTRA_DEGREE: list(computed.scene.levers), schema.BODY_ACCELERATION_PSD: density}
-
-
-def _accelerations(computed: Computed, segment: int) -> Mapping[Entry, Any]:
-    highest, motion = highest_of(computed), computed.chain.stacked("acceleration")
-    frequency, density = psd(motion, computed.case.time_step, segment=segment)
-    _, level = band_levels(frequency, density, schema.ACCELERATION_REFERENCE, high=highest)
-    return {
-        schema.SPECTRA_SENSOR: computed.scene.sensors,
-        schema.ACCELERATION_PSD: density[..., tree.drawn(frequency, highest)],
-        schema.ACCELERATION_LEVEL: level,
-    }
 
 
 EQUAL = 1e-6

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.case import Case
+from asperity.config.case import SETTLED, Case
 from asperity.config.content import name_of
-from asperity.errors import InputError
-from asperity.scenarios.chain import Further, warn_of_start
+from asperity.errors import InputError, ShortRecordWarning
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
+from asperity.scenarios.laws import OwnContact
 from asperity.scenarios.records import Grid, Record, read_lines, spectrum_levels, spectrum_strip
 from asperity.scenarios.textures import (
     Textures,
@@ -46,7 +47,19 @@ def warn_of(case: Case, shape: Geometry, textures: Textures) -> None:
     warn_of_start(case, "shorten the duration or start farther along the path")
 
 
-def contacts_of(case: Case, loads: NDArray[np.float64]) -> tuple[list[int], list[Further]]:
+def warn_of_start(case: Case, remedy: str) -> None:
+    """Warn of a record that holds the start from rest; `remedy` is how to make room for a run-in."""
+    settling = case.settled_time
+    if settling < SETTLED * (1 - 1e-9):
+        warnings.warn(
+            f"the record starts {settling * 1e3:.3g} ms after rest, less than {SETTLED * 1e3:.3g} ms: its "
+            f"levels hold the start. So that there is time for settling, {remedy}.",
+            ShortRecordWarning,
+            stacklevel=3,
+        )
+
+
+def contacts_of(case: Case, loads: NDArray[np.float64]) -> tuple[list[int], list[OwnContact]]:
     """All contacts roll by the laws of the first."""
     return [0] * len(loads), []
 

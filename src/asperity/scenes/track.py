@@ -1,127 +1,156 @@
-"""What is looked at where a track is rolled over: texture, linear reference, the rail and its answer."""
+"""What is looked at where a track is rolled over: texture, linear reference, the rail and its losses."""
 
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from asperity.errors import Finding, Grade, LossFactorWarning
 from asperity.reduction.texture import along_path
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
-from asperity.scenarios.laws import working_point
-from asperity.scenarios.linear_force import coupled_force_psd, linear_force_psd
-from asperity.scenarios.tree import drawn, product_of_bands, spectrum_segment
-from asperity.scenes import schema
+from asperity.scenarios.linear_force import AtContact, linear_force_psd
+from asperity.scenarios.scene import Scene
+from asperity.scenes import noise, schema
 from asperity.scenes.compute import Computed
-from asperity.scenes.loss_factors import error_of_losses, relaxed
-from asperity.scenes.sound import noise, radiation
+from asperity.scenes.validity import signed_level
 from asperity.schema import Attribute, Entry, attributes, variables
-from asperity.spectra import averaging_time, band_levels, psd
+from asperity.spectra import (
+    LEAST_PRODUCT,
+    averaging_time,
+    band_product,
+    nominal_frequency,
+    third_octave_bands,
+)
+from asperity.structures.causal_track import causal_track
 from asperity.structures.rail_poles import RailPoles
-from asperity.structures.track import decay_rate, decay_rate_en15461
+from asperity.structures.track import Track, decay_rate, decay_rate_en15461
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
+Array = NDArray[np.float64]
 
-def track_spectra(
-    computed: Computed,
-    frequency: NDArray[np.float64],
-    force: NDArray[np.float64],
-    band: NDArray[np.float64],
-    force_level: NDArray[np.float64],
-) -> dict[Entry, Any]:
-    """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track.
 
-    Frequencies of the spectra (f,), from zero, Hz; PSDs (laws, c, f), N²/Hz, and levels (laws, c, b), dB
-    re 1 N, of all contact forces, in bands with centres (b,), Hz.
-    """
-    step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
-    samples = len(next(iter(computed.chain.runs.values())).time)
-    segment = spectrum_segment(samples, step)
-    shown = drawn(frequency, highest)
-    reference, texture = linear_reference(computed, frequency, segment)
-    found: dict[Entry, Any] = {
+def track_spectra(computed: Computed) -> dict[Entry, Any]:
+    """Lay out texture, linear reference, motion of the rail, and sound power, of what rolls over a track."""
+    shown, case = computed.shown, computed.case
+    reference, texture = linear_reference(computed)
+    velocity = computed.psd(computed.points[1])
+    laid_out: dict[Entry, Any] = {
         schema.TEXTURE_PSD: texture[shown],
         schema.LINEAR_REFERENCE_PSD: reference[shown],
-        schema.LINEAR_REFERENCE_LEVEL: band_levels(frequency, reference, high=highest)[1],
+        schema.LINEAR_REFERENCE_LEVEL: computed.levels(reference),
+        schema.SPECTRA_POINT: computed.scene.points,
+        schema.POINT_VELOCITY_PSD: velocity[..., shown],
+        schema.POINT_VELOCITY_LEVEL: computed.levels(velocity, schema.VELOCITY_REFERENCE),
     }
-    found |= _points(computed, segment) | _roughness(computed) | noise(computed, band, force_level)
-    found |= radiation(computed, band, frequency, force, segment)
-    if schema.NOISE_BAND in found:
-        centres, time = found[schema.NOISE_BAND], averaging_time(samples, step, segment=segment)
-        product = product_of_bands(schema.NOISE_BAND_TIME_PRODUCT, centres, time)
-        found[schema.NOISE_BAND_TIME_PRODUCT] = product
-    return found
+    laid_out |= _roughness(computed) | noise.noise(computed) | noise.radiation(computed)
+    if schema.NOISE_BAND in laid_out:
+        time = averaging_time(len(computed.first.time), case.time_step, segment=computed.segment)
+        product = product_of_bands(schema.NOISE_BAND_TIME_PRODUCT, laid_out[schema.NOISE_BAND], time)
+        laid_out[schema.NOISE_BAND_TIME_PRODUCT] = product
+    return laid_out
 
 
-def linear_reference(
-    computed: Computed, frequency: NDArray[np.float64], segment: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def product_of_bands(entry: Entry, centres: Array, time: float) -> xarray.Variable:
+    """Lay out the product B T of bands, from which one sees which levels say little.
+
+    Centres (b,), Hz or cycles per metre; averaging time, s, or length, m. The least product of a level that
+    says something is in its attributes.
+    """
+    return entry.variable(band_product(centres, time), least=LEAST_PRODUCT)
+
+
+PLACES = 12
+"""Of several contacts in a bay, over which their linear forces are averaged."""
+
+
+def linear_reference(computed: Computed) -> tuple[Array, Array]:
     """One-sided PSDs (f,) of the force of the linear contact, N²/Hz, and of the texture passed, m²/Hz.
 
-    In the frequency domain; the track is the nominal one, with constant loss factors. Frequencies (f,) of the
-    spectra, from zero, Hz; segments in time steps.
+    In the frequency domain, of several contacts their mean; the track is the nominal one, with constant loss
+    factors.
     """
-    case, chain = computed.case, computed.chain
-    textures, position = chain.textures, next(iter(chain.runs.values())).positions[0]
+    case, textures, scene, track = computed.case, computed.textures, computed.scene, computed.track
+    position, frequency = computed.first.positions[0], computed.frequency
 
-    def passed(line: NDArray[np.float64]) -> NDArray[np.float64]:
+    def passed(line: Array) -> Array:
         """PSD of a line at the contact."""
         at = along_path("texture", line[None, :], textures.start, case.contact.spacing, position)[:, 0]
-        return psd(at, case.time_step, segment=segment)[1]
+        return computed.psd(at)
 
     texture = passed(textures.followed)
-    _, stiffness = working_point(case.contact, chain.shape, chain.reduction)
     force, above = np.zeros_like(texture), frequency > 0.0
-    lines, speed, scene, track = frequency[above], case.speed, computed.scene, computed.track
+    lines, speed, stiffness = frequency[above], case.speed, computed.stiffness
     if len(scene.offsets) == 1:
         seen = texture[above] * speed
         force[above] = linear_force_psd(lines, seen, speed, scene.first, track, stiffness)
         return force, texture
-    own = passed(textures.parts["wheel"]) if textures.parts else np.zeros_like(texture)
-    path = passed(textures.followed - textures.parts["wheel"]) if textures.parts else texture
+    turning = textures.parts.get("wheel", np.zeros_like(textures.line))
+    path, own = passed(textures.followed - turning), passed(turning)
     places = track.sleeper_spacing * (np.arange(PLACES) + 0.5) / PLACES
     force[above] = coupled_force_psd(lines, path[above], own[above], speed, scene, stiffness, places)
     return force, texture
 
 
-def _points(computed: Computed, segment: int) -> dict[Entry, Any]:
-    step, highest = computed.case.time_step, computed.case.numerics.highest_frequency
-    _, velocity = computed.points
-    frequency, density = psd(velocity, step, segment=segment)
-    shown = drawn(frequency, highest)
-    _, level = band_levels(frequency, density, schema.VELOCITY_REFERENCE, high=highest)
-    return {
-        schema.SPECTRA_POINT: computed.scene.points,
-        schema.POINT_VELOCITY_PSD: density[..., shown],
-        schema.POINT_VELOCITY_LEVEL: level,
-    }
+MOST_COUPLED = 8
+"""Contacts that the linear reference takes as coupled: the work grows with their square."""
+
+
+def coupled_force_psd(
+    frequency: Array,
+    path_psd: Array,
+    own_psd: Array,
+    speed: float,
+    scene: Scene,
+    stiffness: float,
+    places: ArrayLike,
+) -> Array:
+    """One-sided PSD of the force of several linear contacts, mean of them, (f,), N²/Hz.
+
+    The contacts pass the same path one after the other, and each has a texture of its own: of these are the
+    PSDs (f,), m²/Hz. With T_ij = F_i/z_j that of a contact i is |Σ T_ij exp(iω d_j/v)|² S_path
+    + Σ |T_ij|² S_own, sums over j, d_j ahead of the first, as a mean over the places (p,) of the run, m.
+    Frequencies (f,), Hz, above zero; speed, m/s. As `linear_force_psd` without motion; of the contacts those
+    `MOST_COUPLED` that are numbered first.
+    """
+    count = min(len(scene.offsets), MOST_COUPLED)
+    ahead = np.array(scene.offsets[:count]) - scene.offsets[0]
+    delay = np.exp(2j * np.pi * np.outer(ahead, frequency) / speed)
+    density, at = np.zeros(len(frequency)), np.atleast_1d(np.asarray(places, dtype=float))
+    for place in at:
+        transfer = scene.coupled_transfer(stiffness, float(place), frequency, count)
+        density += np.mean(np.abs(np.sum(transfer * delay, axis=1)) ** 2, axis=0) * path_psd
+        density += np.mean(np.sum(np.abs(transfer) ** 2, axis=1), axis=0) * own_psd
+    return np.asarray(density / at.size)
 
 
 def _roughness(computed: Computed) -> dict[Entry, Any]:
     """Band levels of rail and wheel over wavelength, without flat and joint."""
-    textures, spacing = computed.chain.textures, computed.case.contact.spacing
+    textures, spacing = computed.textures, computed.case.contact.spacing
     lines = {**textures.parts, "combined": textures.line}
-    found = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
-    wavelength = found["combined"][0]
+    bands = {name: band_levels_of(Profile(line, spacing)) for name, line in lines.items()}
+    wavelength = bands["combined"][0]
     averaged = averaging_time(len(textures.line), spacing)
     product = product_of_bands(schema.SURFACE_BAND_LENGTH_PRODUCT, 1.0 / wavelength, averaged)
     return {
-        schema.PART: list(found),
+        schema.PART: list(bands),
         schema.SURFACE_BAND: wavelength,
         schema.SURFACE_BAND_LENGTH_PRODUCT: product,
-        schema.ROUGHNESS_LEVEL: np.stack([level for _, level in found.values()]),
+        schema.ROUGHNESS_LEVEL: np.stack([level for _, level in bands.values()]),
     }
 
 
-def track_facts(computed: Computed) -> dict[Attribute, float]:
+def tones(computed: Computed) -> dict[Attribute, float]:
     """Frequencies that speed, track and wheel have of themselves."""
-    case, track = computed.case, computed.track
-    half = 0.5 * case.speed / track.sleeper_spacing
-    pinned = track.pinned_pinned_frequency
+    case, pinned = computed.case, computed.track.pinned_pinned_frequency
+    half = 0.5 * case.speed / computed.track.sleeper_spacing
     return {
         schema.SLEEPER_PASSING_FREQUENCY: 2.0 * half,
         schema.PINNED_PINNED_LOW: pinned - half,
@@ -130,70 +159,193 @@ def track_facts(computed: Computed) -> dict[Attribute, float]:
     }
 
 
-PLACES = 12
-"""Of several contacts in a bay, over which their linear forces are averaged."""
-LOWEST_FREQUENCY = 20.0
-FREQUENCIES = 600
+LOWEST_FREQUENCY, FREQUENCIES = 20.0, 600
+OF_TRACK = (
+    schema.NAME,
+    schema.SLEEPER_SPACING,
+    schema.PINNED_PINNED_FREQUENCY,
+    schema.CUT_ON_FREQUENCY,
+    schema.ANTIRESONANCE_FREQUENCY,
+    schema.CRITICAL_SPEED,
+)
+"""What a track says of itself under these names."""
 KERNEL_STARTS = 6
 KERNEL_LAG = 0.25
 """Longest lag of the moving kernel that is kept in a result, s."""
 
 
-def track_group(computed: Computed) -> xarray.Dataset:
+def track_group(computed: Computed, losses: LossFactorError) -> xarray.Dataset:
     """Lay out what the wheel rolls on: receptances, decay rates, moving kernel, loss factors and numbers.
 
     None of it depends on what has rolled.
     """
-    track, case = computed.track, computed.case
-    frequency = np.geomspace(LOWEST_FREQUENCY, case.numerics.highest_frequency, FREQUENCIES)
+    track, kernel, rail, load = computed.track, computed.kernel, computed.rail, computed.shape.load
+    frequency = np.geomspace(LOWEST_FREQUENCY, computed.highest, FREQUENCIES)
     half = 0.5 * track.sleeper_spacing
     midspan, support = track.receptance(frequency, [half, 0.0], [half, 0.0])
-    _, stiffness = working_point(case.contact, computed.chain.shape, computed.chain.reduction)
-
-    found = {
+    positions, taps = kernel.weights.shape
+    rows = np.arange(0, positions, max(1, positions // KERNEL_STARTS))
+    kept = slice(0, min(taps, round(KERNEL_LAG / kernel.time_step)))
+    laid_out: dict[Entry, Any] = {
         schema.TRACK_FREQUENCY: frequency,
         schema.RECEPTANCE_MIDSPAN: np.abs(midspan),
         schema.RECEPTANCE_MIDSPAN_PHASE: np.angle(midspan),
         schema.RECEPTANCE_SUPPORT: np.abs(support),
         schema.RECEPTANCE_SUPPORT_PHASE: np.angle(support),
         schema.WHEEL_RECEPTANCE: np.abs(computed.scene.first.receptance(frequency)),
-        schema.CONTACT_RECEPTANCE: np.full(FREQUENCIES, 1.0 / stiffness),
+        schema.CONTACT_RECEPTANCE: np.full(FREQUENCIES, 1.0 / computed.stiffness),
         schema.DECAY_RATE: decay_rate(track, frequency),
         schema.DECAY_RATE_EN15461: decay_rate_en15461(track, frequency),
         schema.DECAY_RATE_LIMIT: iso_3095_decay_rate(frequency),
-    }
-    found |= _kernel(computed) | relaxed(error_of_losses(computed))
-    return xarray.Dataset(variables(found), attrs=attributes(_track_facts(computed)))
-
-
-def _kernel(computed: Computed) -> dict[Entry, NDArray[np.float64]]:
-    kernel = computed.kernel
-    positions, taps = kernel.weights.shape
-    rows = np.arange(0, positions, max(1, positions // KERNEL_STARTS))
-    kept = slice(0, min(taps, round(KERNEL_LAG / kernel.time_step)))
-    responses = kernel.weights[rows, kept] / kernel.time_step
-    starts = rows * computed.track.sleeper_spacing / positions
-    return {
-        schema.START_POSITION: starts,
+        schema.START_POSITION: rows * track.sleeper_spacing / positions,
         schema.LAG: kernel.lag[kept],
-        schema.MOVING_KERNEL: responses,
+        schema.MOVING_KERNEL: kernel.weights[rows, kept] / kernel.time_step,
+        **relaxed(losses),
     }
-
-
-def _track_facts(computed: Computed) -> dict[Attribute, float | int | str]:
-    track, load, rail = computed.track, computed.chain.shape.load, computed.rail
-    half = 0.5 * track.sleeper_spacing
-    facts: dict[Attribute, float | int | str] = {
-        schema.NAME: track.name,
-        schema.SLEEPER_SPACING: track.sleeper_spacing,
-        schema.PINNED_PINNED_FREQUENCY: track.pinned_pinned_frequency,
-        schema.CUT_ON_FREQUENCY: track.cut_on_frequency,
-        schema.ANTIRESONANCE_FREQUENCY: track.antiresonance_frequency,
-        schema.CRITICAL_SPEED: track.critical_speed,
+    facts: dict[Attribute, Any] = {fact: getattr(track, fact.name) for fact in OF_TRACK} | {
         schema.STATIC_DEFLECTION: track.static_deflection(load, half),
-        schema.STATIC_DEFLECTION_IN_TIME: computed.kernel.track.static_deflection(load, half),
-        schema.KERNEL_METHOD: "poles" if isinstance(rail, RailPoles) else "scatter",
+        schema.STATIC_DEFLECTION_IN_TIME: kernel.track.static_deflection(load, half),
+        schema.KERNEL_METHOD: "scatter",
     }
     if isinstance(rail, RailPoles):
-        facts |= {schema.KERNEL_FIT_ERROR: rail.fit_error, schema.KERNEL_POLES: rail.count}
-    return facts
+        facts |= {schema.KERNEL_METHOD: "poles", schema.KERNEL_FIT_ERROR: rail.fit_error}
+        facts |= {schema.KERNEL_POLES: rail.count}
+    return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
+
+
+# --- what stands for the loss factors of a track in time, and how far the contact force is off for it
+
+LOWEST = 5.0
+"""Frequency in the first one-third octave, Hz."""
+LINES, POSITIONS = 64, 12
+"""Frequencies in a band, and places in half a bay."""
+DOUBTFUL = 0.75
+"""Error of a band, dB, from which on it is warned of."""
+LEAST_SHOWN = 0.05
+"""Errors below this, dB, are not listed."""
+PARTS = ("rail", "pad", "ballast")
+
+
+@dataclass(frozen=True, eq=False)
+class LossFactorError:
+    """What the causal track changes of a track with constant loss factors, for a linear contact at rest."""
+
+    track: Track  # with constant loss factors
+    bands: Array  # (b,), centres of one-third octaves, Hz
+    force: Array  # (b,), level of the contact force over that with constant loss factors, dB
+    rail: Array  # (b,), level of the rail's displacement under a given force over that, dB
+
+    @property
+    def worst(self) -> int:
+        """Index of the band whose force is farthest off."""
+        return int(np.argmax(np.abs(self.force)))
+
+
+def loss_factor_error(track: Track, wheel: AtContact, stiffness: float, highest: float) -> LossFactorError:
+    """Compare a track with the causal one that stands for it in time; the error of a causal one is zero.
+
+    Tangent stiffness of the contact at the static load, N/m; bands from 5 Hz to that of `highest`, Hz. In
+    each band of mean squares over a bay and over the band, for a texture that is white in it.
+    """
+    bands, low, high = third_octave_bands(LOWEST, highest)
+    steps = (np.arange(LINES) + 0.5) / LINES
+    frequency = (low[:, None] + (high - low)[:, None] * steps).ravel()
+    places = (np.arange(POSITIONS) + 0.5) * 0.5 * track.sleeper_spacing / POSITIONS
+
+    def levels(rail: Track) -> Array:
+        moved = rail.receptance(frequency, places, places)
+        force = 1.0 / (wheel.receptance(frequency) + 1.0 / stiffness + moved)  # as `force_transfer`
+        squares = np.mean(np.abs(np.stack([force, moved])) ** 2, axis=1)
+        return 10.0 * np.log10(squares.reshape(2, -1, LINES).mean(axis=-1))
+
+    force, rail = levels(causal_track(track)) - levels(track)
+    return LossFactorError(track, bands, force, rail)
+
+
+def error_of_losses(computed: Computed) -> LossFactorError:
+    """Error of the contact force in bands, for the contact stiffness at the load."""
+    return loss_factor_error(computed.track, computed.scene.first, computed.stiffness, computed.highest)
+
+
+def warn_of_loss_factors(error: LossFactorError) -> None:
+    """Say where loss factors change the contact force of a band by more than is tolerable, 0.75 dB."""
+    off = np.flatnonzero(np.abs(error.force) > DOUBTFUL)
+    if not off.size:
+        return
+    track, frequency = error.track, error.bands[error.worst]
+    layer = max(PARTS, key=lambda part: getattr(track, f"{part}_loss_factor") or 0.0)
+    factor, remedy = getattr(track, f"{layer}_loss_factor"), "give the rail a smaller one"
+    if layer != "rail":
+        damping = 1e-3 * getattr(track, f"{layer}_stiffness") * factor / (2.0 * np.pi * frequency)
+        exact = f"{damping:.3g} kN s/m dissipate as much at {frequency:.3g} Hz"
+        remedy = f"give {layer}_damping, which is exact: {exact}"
+    bands = ", ".join(nominal_frequency(error.bands[i]) for i in off)
+    warnings.warn(
+        f"the contact force in time is up to {signed_level(error.force[error.worst])} dB from that with "
+        f"constant loss factors, more than {DOUBTFUL:g} dB in the one-third octaves of {bands}: nothing "
+        f"that answers after a force only has the loss factor {factor:g} of the {layer} at all "
+        f"frequencies. Read these bands with their error, or {remedy}.",
+        LossFactorWarning,
+        stacklevel=2,
+    )
+
+
+def relaxed(error: LossFactorError) -> dict[Entry, Any]:
+    """Lay out the stiffnesses that relax, and the errors in bands; nothing without loss factors."""
+    relaxations = causal_track(error.track).relaxations
+    parts = {name: getattr(relaxations, name, None) for name in PARTS}
+    layers = {name: part.at(2.0 * np.pi * error.bands) for name, part in parts.items() if part is not None}
+    if not layers:
+        return {}
+    stiffness = np.array(list(layers.values()))
+    return {
+        schema.TRACK_BAND: error.bands,
+        schema.LAYER: list(layers),
+        schema.LOSS_FACTOR_FORCE_ERROR: error.force,
+        schema.LOSS_FACTOR_RAIL_ERROR: error.rail,
+        schema.LOSS_FACTOR: [getattr(error.track, f"{name}_loss_factor") for name in layers],
+        schema.RELAXED_STIFFNESS: stiffness.real,
+        schema.RELAXED_LOSS_FACTOR: stiffness.imag / stiffness.real,
+    }
+
+
+def findings_of_losses(error: LossFactorError) -> list[Finding]:
+    """Hold the error of the contact force to its limit; nothing where the track has no loss factors."""
+    if error.track.is_causal:
+        return []
+    level = error.force[error.worst]
+    return [
+        Finding(
+            "error of the contact force for constant loss factors, at most",
+            f"{signed_level(level)} dB ({nominal_frequency(error.bands[error.worst])})",
+            f"up to {DOUBTFUL:g} dB",
+            Grade.WARNING if abs(level) > DOUBTFUL else None,
+            "Nothing that answers after a force only has one loss factor at all frequencies.",
+            "Give the layers a damping instead, which is exact.",
+            warned=True,
+        )
+    ]
+
+
+def described_losses(error: LossFactorError, load: float) -> Iterator[tuple[str, str]]:
+    """Say how far the force is off in each band, and how much softer the track is at rest under a load, N.
+
+    Names and values; nothing where the track has no loss factors.
+    """
+    nominal, track = error.track, causal_track(error.track)
+    if nominal.is_causal or track.relaxations is None:
+        return
+    off = [
+        f"{nominal_frequency(band)} {signed_level(level)}"
+        for band, level in zip(error.bands, error.force, strict=True)
+        if abs(level) >= LEAST_SHOWN
+    ]
+    shown = [*off, f"{'else ' if off else ''}below {LEAST_SHOWN:g}"]
+    yield "loss factors in time", f"error of the contact force, dB: {', '.join(shown)}"
+    named = {"rail": "rail", "pads": "pad", "ballast": "ballast"}
+    parts = {name: getattr(track.relaxations, part) for name, part in named.items()}
+    shares = ", ".join(f"{name} {part.static:.2f}" for name, part in parts.items() if part is not None)
+    half = 0.5 * track.sleeper_spacing
+    rest, was = (1e3 * each.static_deflection(load, half) for each in (track, nominal))
+    down = f"the load at mid-span rests {rest:.3g} mm down, nominally {was:.3g} mm"
+    yield "stiffness at rest", f"of the nominal one: {shares}; {down}"

@@ -17,11 +17,11 @@ from asperity.kinds.bodies.case import Bodies
 from asperity.kinds.wheel_on_rail.defects import flat_along
 from asperity.kinds.wheel_on_rail.textures import FULL_TURN, JOIN, warn_of_defects
 from asperity.reference import cnossos
-from asperity.scenarios.chain import Further, warn_of_start
 from asperity.scenarios.geometry import Geometry, window_cells
+from asperity.scenarios.laws import OwnContact
 from asperity.scenarios.records import Grid, read_lines, spectrum_strip
 from asperity.scenarios.textures import Textures
-from asperity.scenes.textures import gather
+from asperity.scenes.textures import gather, warn_of_start
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.parallel_lines import lines_of
@@ -53,13 +53,13 @@ def warn_of(case: Bodies, shape: Geometry, textures: Textures) -> None:
         warn_of_defects(case, shape, case.body.flat)
 
 
-def contacts_of(case: Bodies, loads: NDArray[np.float64]) -> tuple[list[int], list[Further]]:
+def contacts_of(case: Bodies, loads: NDArray[np.float64]) -> tuple[list[int], list[OwnContact]]:
     """Which of the contacts differ from the first: for each, which one it equals; and those that differ.
 
     Loads (c,), N. Zero stands for the first contact, k for the k-th of the others.
     """
     which: list[int] = []
-    others: list[Further] = []
+    others: list[OwnContact] = []
     known: list[tuple[int, float]] = [(0, float(loads[0]))]
     for contact, load in enumerate(loads):
         texture = contact if _differs(case, contact) else 0
@@ -74,7 +74,7 @@ def contacts_of(case: Bodies, loads: NDArray[np.float64]) -> tuple[list[int], li
         if found is None:
             found = len(known)
             known.append((texture, float(load)))
-            others.append(Further(partial(_of_contact, case, texture), float(load)))
+            others.append(OwnContact(partial(_of_contact, case, texture), float(load)))
         which.append(found)
     return which, others
 

@@ -27,7 +27,6 @@ from asperity.kinds.wheel_on_rail.surface_keys import MeasuredLines, RailSurface
 from asperity.kinds.wheel_on_rail.wheel_keys import WheelCase
 from asperity.laws import spec_of
 from asperity.reference import cnossos
-from asperity.scenarios.chain import warn_of_start
 from asperity.scenarios.geometry import Geometry, cells_over, window_cells
 from asperity.scenarios.records import (
     Grid,
@@ -49,6 +48,7 @@ from asperity.scenarios.textures import (
     synthesised,
     synthesised_path,
 )
+from asperity.scenes.textures import warn_of_start
 from asperity.surfaces.bands import check_levels
 from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import HeightMap, Profile

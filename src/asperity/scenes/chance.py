@@ -8,11 +8,22 @@ places that are passed: its inverse transform over a band, g, is the force that 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.spectra import HALF_BAND
+from asperity.scenes.compute import Computed
+from asperity.schema import Entry, spectra
+from asperity.spectra import (
+    HALF_BAND,
+    LEAST_PRODUCT,
+    MOST_START,
+    averaging_time,
+    band_product,
+    level_deviation,
+)
 
 LINES = 4096
 """Frequencies in a band: they resolve loss factors down to 10⁻⁴."""
@@ -20,9 +31,6 @@ PLACES = 8
 """Places along the record at which the linear contact is looked at."""
 
 Array = NDArray[np.float64]
-ForceTransfer = Callable[[float, Array, Array], NDArray[np.complex128]]
-"""Force of the linear contact per height of the texture (p, f), N/m, e^{+iωt}, by the stiffness of the
-contact, N/m, places (p,), m, at which it rests, and frequencies (f,), Hz."""
 
 
 def values_seen(signal: Array, step: float, centres: Array) -> Array:
@@ -68,3 +76,24 @@ def chance_and_start(
         alike = np.mean(np.abs(np.fft.ifft(power)) ** 2, axis=0) @ np.maximum(1.0 - lag / record, 0.0)
         numbers[band] = max(np.mean(power) ** 2 * width * record / alike, 1.0)
     return numbers, shares
+
+
+def sureness(computed: Computed) -> dict[Entry, Any]:
+    """Lay out how sure the levels of bands are: B T, chance, and start.
+
+    By the first contact: others of one path hold much the same.
+    """
+    case, run, band, laid_out = computed.case, computed.first, computed.band, dict[Entry, Any]()
+    time = averaging_time(len(run.time), case.time_step, segment=computed.segment)
+    seen = values_seen(run.contact_force[0], case.time_step, band)
+    record, (begin, end) = float(run.time[-1]), run.positions[0, [0, -1]]
+    places = begin + (end - begin) * (np.arange(PLACES) + 0.5) / PLACES
+    transfer = partial(computed.scene.transfer, computed.stiffness, places)
+    product = band_product(band, time)
+    held, start = chance_and_start(transfer, band, case.settled_time, record)
+    values = np.minimum(product * seen, held * time / record)
+    return laid_out | {
+        spectra.START_SHARE: spectra.START_SHARE.variable(start, most=MOST_START),
+        spectra.BAND_TIME_PRODUCT: spectra.BAND_TIME_PRODUCT.variable(product, least=LEAST_PRODUCT),
+        spectra.LEVEL_DEVIATION: level_deviation(values),
+    }

@@ -1,0 +1,366 @@
+"""Noise over a track: by CNOSSOS-EU, from the vibration of rail, sleepers and wheel, and beside the track."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray
+from numpy.typing import ArrayLike, NDArray
+
+from asperity.errors import Finding, Grade, MissingSourceWarning
+from asperity.laws import Role, in_role
+from asperity.radiation import pass_by
+from asperity.radiation.track import STEEL_DENSITY, RailSection, SleeperTop
+from asperity.radiation.wheel import RadiatingWheel, modal_velocity_psd
+from asperity.reference import cnossos
+from asperity.scenarios.linear_force import force_transfer
+from asperity.scenes import schema
+from asperity.scenes.compute import Computed
+from asperity.scenes.tables import read_mode_shapes, read_ratios
+from asperity.schema import Entry, attributes, spectra, variables
+from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
+from asperity.structures.track import Track, decay_rate
+from asperity.surfaces.bands import band_levels_of
+from asperity.surfaces.heightmap import Profile
+
+Array = NDArray[np.float64]
+Table = tuple[ArrayLike, ArrayLike]
+"""Band centres and levels in dB, each (n,)."""
+
+# --- by CNOSSOS-EU
+
+SOURCES = ("track", "wheel", "total")
+EMPTY = -200.0
+"""Level of a band without texture, dB re 1 µm."""
+MONO_BLOCK = (110.0, 210.0)
+"""Mass of half a mono-block sleeper of concrete, kg: 140 to 177.5 kg are published for models of tracks; half
+of one of wood, or of two blocks, is lighter."""
+CLOSE_DIAMETER = 0.15
+"""By which part the wheel may be larger or smaller than the label says."""
+
+
+def track_label(case: Any) -> str:
+    """Class of rail pads: that which the case names, or that nearest to its pads."""
+    return case.noise.track_pad or cnossos.nearest_pad_class(case.track_model().pad_stiffness)
+
+
+def wheel_label(case: Any) -> str:
+    """Diameter of the wheel: that which the case names, or that nearest to its wheel."""
+    return case.noise.wheel_transfer or cnossos.nearest_wheel_transfer(2.0 * case.rolling_radius)
+
+
+def findings_of_labels(case: Any) -> list[Finding]:
+    """Hold track and wheel of a case to those of which CNOSSOS-EU knows the sound power."""
+    meaning = "CNOSSOS-EU's sound power is that of another track or wheel."
+    return [
+        Finding(f"{quantity}, for CNOSSOS-EU", value, limit, Grade.WARNING, meaning, remedy)
+        for quantity, value, limit, remedy in _strangers(case)
+    ]
+
+
+def _strangers(case: Any) -> Iterator[tuple[str, str, str, str]]:
+    """What of track and wheel CNOSSOS-EU does not mean: quantity, value, limit and remedy."""
+    label, track = track_label(case), case.track_model()
+    stiffness, mass = track.pad_stiffness, track.sleeper_mass
+    least, most = cnossos.PAD_CLASSES[label]
+    if not least <= stiffness <= most:
+        limit = f'{least / 1e6:g} to {most / 1e6:g} MN/m, those of the class "{label}"'
+        none = "It has no class for such pads; take the sound power from the vibration."
+        remedy = _relabelled("track_pad", label, cnossos.nearest_pad_class(stiffness), none)
+        yield "dynamic stiffness of the rail pads", f"{stiffness / 1e6:.4g} MN/m", limit, remedy
+    if not MONO_BLOCK[0] <= mass <= MONO_BLOCK[1]:
+        limit = f"{MONO_BLOCK[0]:g} to {MONO_BLOCK[1]:g} kg, those of one block of concrete"
+        remedy = "Its tables here are those of mono-block sleepers; take the sound power from the vibration."
+        yield "mass of half a sleeper", f"{mass:.4g} kg", limit, remedy
+    label, diameter = wheel_label(case), 2.0 * case.rolling_radius
+    if abs(math.log(diameter / (1e-3 * float(label.split()[0])))) > math.log1p(CLOSE_DIAMETER):
+        fitting, none = cnossos.nearest_wheel_transfer(diameter), "It has no class for such a wheel."
+        remedy = _relabelled("wheel_transfer", label, fitting, none)
+        yield "diameter of the wheel", f"{1e3 * diameter:.4g} mm", f"within 15 % of {label}", remedy
+
+
+def _relabelled(key: str, label: str, fitting: str, none: str) -> str:
+    return none if fitting == label else f'Set noise.{key} = "{fitting}", or leave it out.'
+
+
+def rolling_sound_power(
+    speed: float,
+    rail_roughness: Table | None,
+    wheel_roughness: Table | None,
+    track_transfer: Table,
+    wheel_transfer: Table,
+    *,
+    contact_filter: Table | None = None,
+    axles: int = 1,
+) -> tuple[Array, Array]:
+    """Sound power of rolling: L_W = (L_rail ⊕ L_wheel + A₃) + L_H + 10 lg N, for N axles at a speed, m/s.
+
+    Exact centres of the one-third octaves (b,), Hz, and levels of the `SOURCES` (3, b), dB re 1 pW.
+    Roughnesses are wavelengths, m, and levels, dB re 1 µm, None for a smooth one; transfers frequencies, Hz,
+    and L_H, dB, both for the same bands, in which the result is; the contact filter wavelengths, m, and A₃,
+    dB, for all bands of the roughness. Leave it out where a difference of force levels will be added that
+    holds the filtering of the contact already.
+
+    A band of frequency f holds the wavelengths around v/f: those of two wavelength bands, whose energies are
+    shared in proportion, that is interpolated in lg λ. Where one surface has no level, the other one's counts
+    alone; where both have none, the band is NaN.
+    """
+    numbers, track = _bands(track_transfer)
+    _, wheel = _bands(wheel_transfer)
+    rough = [_bands(table) for table in (rail_roughness, wheel_roughness) if table is not None]
+    first, last = min(n[0] for n, _ in rough), max(n[-1] for n, _ in rough)
+    energy = np.zeros(last - first + 1)
+    for at, level in rough:
+        energy[at - first] += 10.0 ** (level / 10.0)
+    effective = 10.0 * np.log10(np.where(energy > 0.0, energy, np.nan))
+    if contact_filter is not None:
+        at, gain = _bands(contact_filter)
+        effective += gain[first - at[0] : last - at[0] + 1]
+    place = np.round(10.0 * np.log10(speed) - numbers, 9)  # 10 lg λ
+    wavelength = np.arange(first, last + 1)
+    shared = np.interp(place, wavelength, 10.0 ** (effective / 10.0), left=np.nan, right=np.nan)
+    roughness = 10.0 * np.log10(shared) + 10.0 * np.log10(axles)
+    levels = np.stack([roughness + track, roughness + wheel])
+    return 10.0 ** (numbers / 10.0), np.vstack([levels, energy_sum(levels, axis=0)])
+
+
+def _bands(table: Table) -> tuple[NDArray[np.int64], Array]:
+    """Numbers n of the bands 10^(n/10), rising, nearest to nominal or exact centres, and their levels."""
+    numbers, levels = np.rint(10.0 * np.log10(table[0])).astype(np.int64), np.asarray(table[1], dtype=float)
+    order = np.argsort(numbers)
+    return numbers[order], levels[order]
+
+
+def noise(computed: Computed) -> dict[Entry, Any]:
+    """Sound power of each law: that of the linear contact, changed in each band by as much as the force.
+
+    Several contacts count by the energy mean of their changes, all with the roughness of the first. The
+    linear law follows the bare line, so its sound power is that of CNOSSOS-EU without the contact filter A3:
+    the difference of another law holds what its contact filters. Bands in which the force is not computed are
+    left out of all totals. Nothing without the linear law or without roughness.
+    """
+    laws, case = list(computed.runs), computed.case
+    bare = in_role(Role.BARE, laws)
+    if bare is None or not np.ptp(computed.textures.line):
+        return {}
+    contact_filter = cnossos.nearest_contact_filter(computed.shape.load, 2.0 * case.rolling_radius)
+    centres, linear = _linear(computed, None)
+    _, filtered = _linear(computed, cnossos.contact_filter(contact_filter))
+    changes = computed.force_levels - computed.force_levels[laws.index(bare)]
+    change = changes[:, 0]
+    if changes.shape[1] > 1:
+        change = 10.0 * np.log10(np.mean(10.0 ** (changes / 10.0), axis=1))
+    numbers, _ = _bands((computed.band, computed.band))
+    at = np.searchsorted(numbers, _bands((centres, centres))[0])
+    levels = linear + np.where(np.isfinite(change), change, 0.0)[:, None, at]
+    power, standard = schema.SOUND_POWER_LEVEL, schema.CNOSSOS_SOUND_POWER_LEVEL_A
+    of_standard = a_weighted_total(filtered, centres)
+    return {
+        schema.SOURCE: SOURCES,
+        schema.NOISE_BAND: centres,
+        power: power.variable(levels, reference=bare),
+        schema.SOUND_POWER_LEVEL_A: a_weighted_total(levels, centres),
+        standard: standard.variable(of_standard, contact_filter=contact_filter),
+    }
+
+
+def _linear(computed: Computed, contact_filter: Table | None) -> tuple[Array, Array]:
+    """Sound power of CNOSSOS-EU in the bands for which there are roughness and force."""
+    case, textures, band = computed.case, computed.textures, computed.band
+    parts = textures.parts or {"rail": textures.line, "wheel": np.zeros(len(textures.line))}
+    rail, wheel = (_roughness(parts[part], case.contact.spacing) for part in ("rail", "wheel"))
+    transfers = cnossos.track_transfer(track_label(case)), cnossos.wheel_transfer(wheel_label(case))
+    centres, levels = rolling_sound_power(
+        case.speed, rail, wheel, *transfers, contact_filter=contact_filter, axles=case.axles
+    )
+    shown = (centres > band[0] / 1.05) & (centres < band[-1] * 1.05) & ~np.isnan(levels).any(axis=0)
+    return centres[shown], levels[:, shown]
+
+
+def _roughness(line: Array, spacing: float) -> Table | None:
+    """Band levels of the line that is rolled over, at the wavelengths of CNOSSOS-EU, where it is rough."""
+    if not np.ptp(line):
+        return None
+    known = cnossos.wavelengths()
+    shortest, longest = max(known.min(), 2.0 * spacing * HALF_BAND), known.max()
+    wavelength, level = band_levels_of(Profile(line, spacing))
+    inside = (wavelength > shortest / 1.05) & (wavelength < longest * 1.05)
+    return wavelength[inside], np.where(np.isfinite(level), level, EMPTY)[inside]
+
+
+# --- from the vibration itself
+
+RADIATORS = ("rail", "sleepers", "wheel", "total")
+PICOWATT = 1e-12
+"""Of sound power levels, W."""
+
+
+def rail_section(case: Any, track: Track) -> RailSection:
+    """Section of the rail of a case: its widths, and the area that its mass makes of steel."""
+    keys = case.noise
+    table = None if keys.rail_radiation is None else read_ratios(keys.rail_radiation)
+    area = track.mass_per_length / STEEL_DENSITY
+    return RailSection(keys.rail_foot_width, keys.rail_head_width, area, table)
+
+
+def radiating_wheel(case: Any) -> RadiatingWheel | None:
+    """Wheel of a case as a radiator of its rigid motion, first, and of its modes; None if they are unknown.
+
+    A rigid wheel that moves up and down has one nodal diameter around its tread.
+    """
+    shapes = None if case.tread.modes is None else read_mode_shapes(case.tread.modes)
+    if shapes is None:
+        return None
+    diameters, axial, radial = np.vstack([[1.0, 0.0, math.sqrt(0.5)], shapes]).T
+    return RadiatingWheel(case.rolling_radius, case.noise.wheel_width, diameters.astype(int), axial, radial)
+
+
+def silent_wheel(case: Any) -> str:
+    """Say why the sound of a wheel is not computed; nothing where it is."""
+    if case.tread.modes is None:
+        if case.tread.receptance is None:
+            return "the wheel is rigid"
+        return "the wheel's receptance does not say how its disc and tread move"
+    if radiating_wheel(case) is None:
+        return f"the table {case.tread_name}.modes does not say how the modes move disc and tread"
+    return ""
+
+
+def warn_of_silence(case: Any) -> None:
+    """Note that the sound power from vibration lacks the wheel's part, where it does."""
+    if reason := silent_wheel(case):
+        warnings.warn(
+            MissingSourceWarning(
+                f"the sound power from vibration is that of rail and sleepers alone: {reason}. Above about "
+                f"2 kHz the wheel is the loudest. Give {case.tread_name}.modes, with how they move the "
+                "wheel.",
+                Grade.NOTE,
+            ),
+            stacklevel=2,
+        )
+
+
+def radiation(computed: Computed) -> dict[Entry, Any]:
+    """Lay out the sound power of all axles from the vibration of rail, sleepers and wheels.
+
+    That of what was rolled on one rail counts for all axles, each with two wheels, on two rails. The total
+    holds what is known: without a wheel that says how its modes move it, rail and sleepers.
+    """
+    case, band, silent = computed.case, computed.band, silent_wheel(computed.case) or "computed"
+    power = np.maximum(
+        band_energies(computed.frequency, _radiated(computed), band / HALF_BAND, band * HALF_BAND), 0.0
+    )
+    power = np.concatenate([power, power.sum(axis=1, keepdims=True)], axis=1)
+    if silent != "computed":
+        power[:, 2] = np.nan
+    wheels = 2.0 * case.axles / len(computed.scene.offsets)  # for each that was rolled
+    with np.errstate(divide="ignore"):
+        level = 10.0 * np.log10(wheels * power / PICOWATT)
+    total = a_weighted_total(level, band)
+    # the length 8.686/Δ of the decay is the mean of those over a band
+    within = 10.0 ** (0.1 * (np.arange(9) - 4.0) / 9.0)
+    lengths = 1.0 / decay_rate(computed.track.nominal, band[:, None] * within)
+    return {
+        schema.RADIATOR: RADIATORS,
+        schema.RADIATED_POWER_LEVEL: schema.RADIATED_POWER_LEVEL.variable(level, wheel=silent),
+        schema.RADIATED_POWER_LEVEL_A: schema.RADIATED_POWER_LEVEL_A.variable(total, wheel=silent),
+        schema.BAND_DECAY_RATE: 1.0 / np.mean(lengths, axis=1),
+    }
+
+
+def _radiated(computed: Computed) -> Array:
+    """Sound power (laws, 3, f), W/Hz, of rail, sleepers and wheels, of what was rolled on one rail.
+
+    The contacts feel each other in their forces; what several of them radiate adds up as that of incoherent
+    forces. Track with constant loss factors where it has them: their sound power is a matter of frequency, as
+    decay rates are. Over a bay the force is spread as that of the linear contact: near the pinned-pinned
+    frequency the wheel presses hardly at all at mid-span.
+    """
+    case, track, stiffness = computed.case, computed.track.nominal, computed.stiffness
+    used = (computed.frequency > 0.0) & (computed.frequency <= 1.13 * computed.band[-1])
+    lines, force = computed.frequency[used], computed.force_psd[..., used]
+    exciting = force.sum(axis=1)
+
+    def spread(x: Array) -> Array:
+        return np.abs(force_transfer(lines, computed.scene.first, track, stiffness, x)) ** 2
+
+    density = np.zeros((len(force), 3, len(used)))
+    rail, top = rail_section(case, track), SleeperTop(case.noise.sleeper_length, case.noise.sleeper_width)
+    density[:, 0, used] = rail.power_per_force(track, lines, spread) * exciting
+    density[:, 1, used] = top.power_per_force(track, lines, spread) * exciting
+    wheel, own = radiating_wheel(case), computed.scene.wheel
+    if wheel is not None and own is not None:
+        motion = computed.psd(computed.stacked("rolling_displacement"))[..., used]
+        middle = 0.5 * track.sleeper_spacing
+        compliance = np.abs(1.0 / stiffness + track.receptance(lines, middle, middle))
+        for law, (of_force, of_motion) in enumerate(zip(force, motion, strict=True)):
+            square = modal_velocity_psd(own, lines, of_force, of_motion, compliance)  # (modes, c, f)
+            density[law, 2, used] = wheel.power(lines, square.sum(axis=1))
+    return density
+
+
+# --- beside the track
+
+KEPT_STEP = 0.02
+"""Time between levels that are kept, s, where the record is finer: a sixth of the time constant F."""
+ONE_WAVE = 20.0 * math.log10(math.e)
+"""Decay rate, dB/m, times the length of a wave that radiates."""
+LONGEST = 1000.0
+"""Greatest of these lengths, m; the exposure depends on none of them."""
+
+
+def pass_by_group(case: Any, over_frequency: xarray.Dataset) -> xarray.Dataset:
+    """Lay out levels beside the track, from the sound power and the decay rates that the spectra hold.
+
+    All axles radiate alike: where several were rolled, as their mean.
+    """
+    passage, receiver, band = case.passage, pass_by.Receiver(), over_frequency[spectra.BAND.name].values
+    sources = _sources(case, over_frequency)
+    length = max(float(np.max(source.length)) for source in sources)
+    time, weights = passage.times(receiver, length), 10.0 ** (a_weighting(band) / 10.0)
+    squared, exposed = (
+        np.stack([*parts, np.sum(parts, axis=0)], axis=1)  # (laws, sources and their sum, …)
+        for parts in (
+            [weights @ pass_by.squared_pressure(each, passage, receiver, time) for each in sources],
+            [pass_by.exposure(each, passage, receiver) for each in sources],
+        )
+    )
+    levels = [pass_by.pass_by_levels(time, of_law, passage.passed) for of_law in squared]
+    step = float(time[1] - time[0])
+    kept = slice(None, None, max(1, math.floor(KEPT_STEP / step)))
+    laid_out: dict[Entry, Any] = {
+        schema.PASS_BY_LAW: over_frequency[spectra.LAW.name].values,
+        schema.PASS_BY_RADIATOR: over_frequency[schema.RADIATOR.name].values,
+        schema.PASS_BY_BAND: band,
+        schema.PASS_BY_TIME: time[kept],
+        schema.AXLE: 1 + np.arange(len(passage.axles)),
+        schema.AXLE_TIME: np.array(passage.axles) / passage.speed,
+        schema.PASS_BY_LEVEL: pass_by.pressure_level(pass_by.time_weighted(squared, step)[..., kept]),
+        schema.PASS_BY_MAXIMUM_LEVEL: np.stack([each.maximum for each in levels]),
+        schema.SOUND_EXPOSURE_LEVEL: pass_by.pressure_level(exposed),
+        schema.SOUND_EXPOSURE_LEVEL_A: pass_by.pressure_level(exposed @ weights),
+    }
+    facts = {schema.RECEIVER_DISTANCE: receiver.distance, schema.RECEIVER_HEIGHT: receiver.height}
+    if passage.passed is not None:
+        laid_out[schema.PASS_BY_EQUIVALENT_LEVEL] = np.stack([each.equivalent for each in levels])
+        laid_out[schema.TRANSIT_EXPOSURE_LEVEL] = np.stack([each.transit_exposure for each in levels])
+        facts |= dict(zip((schema.FRONT_TIME, schema.REAR_TIME), passage.passed, strict=True))
+    return xarray.Dataset(variables(laid_out), attrs=attributes(facts))
+
+
+def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSource]:
+    """What one axle makes radiate: a wheel from its axle, the others along the rail as its waves decay."""
+    level = over_frequency[schema.RADIATED_POWER_LEVEL.name].transpose("law", "radiator", "band")
+    power = PICOWATT * np.nan_to_num(10.0 ** (level.values / 10.0)) / case.axles
+    decay = over_frequency[schema.BAND_DECAY_RATE.name].values
+    length = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
+    places = {"wheel": (0.0, case.rolling_radius)}
+    return [
+        pass_by.AxleSource(power[:, number], *places.get(name, (length, 0.0)))
+        for number, name in enumerate(level["radiator"].values.tolist())
+        if name != "total"
+    ]
