@@ -18,9 +18,9 @@ from asperity import Track, Wheel
 from asperity.radiation.track import SPEED_OF_SOUND, RailSection, SleeperTop, effective_length
 from asperity.radiation.wheel import RadiatingWheel
 from asperity.reference import cnossos
-from asperity.reporting.axes import frequency_axis
 from asperity.reporting.chart import BLUE, GREEN, INK, VERMILLION, Axis, Chart, Line, Panel
-from asperity.reporting.part import write_chart
+from asperity.reporting.figure import write_chart
+from asperity.reporting.panels import frequency_axis
 from asperity.scenarios.linear_force import force_transfer
 from asperity.scenes.noise import rolling_sound_power
 from asperity.spectra import a_weighted_total, nominal

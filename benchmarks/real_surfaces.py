@@ -24,7 +24,7 @@ from asperity.kinds.cases import as_case
 from asperity.reduction.stiffness import patches
 from asperity.reduction.texture import punch_weights
 from asperity.reporting.chart import Axis, Chart, Field, Panel
-from asperity.reporting.part import write_chart
+from asperity.reporting.figure import write_chart
 from asperity.running import prepare_case
 from asperity.surfaces.spikes import spikes
 from asperity.surfaces.statistics import rms_slope

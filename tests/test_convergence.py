@@ -15,11 +15,11 @@ from asperity.convergence.group import halves
 from asperity.convergence.running import changed_case, on_the_surface_of, settings_for
 from asperity.errors import InputError
 from asperity.kinds.cases import as_case
-from asperity.reporting.chapter import UNCERTAINTY
 from asperity.reporting.page import page
 from asperity.reporting.uncertainty import changes_table, settings_table
 from asperity.running import prepare_case
 from asperity.scenarios.refining import Way, restricted
+from asperity.scenes.chapters import UNCERTAINTY
 from asperity.schema import contents_of, convergence
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.strip import LongStrip

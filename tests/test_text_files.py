@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from asperity.reporting import part
+from asperity.reporting.figure import columns_text
 from asperity.text_files import csv_text, write_csv
 
 
@@ -28,8 +28,8 @@ def test_numbers_are_exact_and_missing_ones_empty():
 
 def test_figures_and_studies_share_one_writer():
     columns = {"x [m]": np.array([0.5, np.nan]), "F [N]": np.array([-1.0, 2.0])}
-    assert part.columns_text(columns) == csv_text(list(columns), [(0.5, -1.0), (math.nan, 2.0)])
-    assert part.columns_text(columns) == "x [m],F [N]\n0.5,-1.0\n,2.0\n"
+    assert columns_text(columns) == csv_text(list(columns), [(0.5, -1.0), (math.nan, 2.0)])
+    assert columns_text(columns) == "x [m],F [N]\n0.5,-1.0\n,2.0\n"
 
 
 def test_a_word_stays_in_its_field(tmp_path):

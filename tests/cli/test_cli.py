@@ -798,7 +798,7 @@ def test_a_scan_that_the_disk_cannot_hold_is_refused(monkeypatch):
 def test_a_run_leaves_no_report_of_another(out):
     """Neither its page nor the CSVs of another kind of case; files of other names stay."""
     (out / "measured.csv").write_text("x")
-    rail = [part.name for chapter in WHEEL_ON_RAIL for part in chapter.parts]
+    rail = [part.name for chapter in WHEEL_ON_RAIL for part in chapter.figures]
     (out / f"{rail[0]}.csv").write_text("x")
     call("run", "small.toml", "-o", "out", "--no-report", "--again")
     assert sorted(path.name for path in out.iterdir() if path.is_file()) == ["measured.csv", "run.nc"]

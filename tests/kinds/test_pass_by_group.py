@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 from asperity import WheelOnRail
 from asperity.errors import CaseError
-from asperity.scenes.figures.pass_by import PASS_BY_PART, pass_by_caption, pass_by_table
+from asperity.scenes.figures.noise import PASS_BY, pass_by_table
 from asperity.scenes.noise import pass_by_group
 
 BAND = 1000.0 * 10.0 ** (np.arange(-6, 7) / 10.0)
@@ -137,9 +137,9 @@ def test_trains_that_cannot_be(noise, message):
 def test_figure_and_table_say_what_passes():
     group = pass_by_group(case(wheelbase=2.5), spectra())
     tree = xarray.DataTree.from_dict({"/pass_by": group})
-    assert "2 axles pass (ticks), two wheels on each, 7.5 m" in pass_by_caption(tree)
+    assert "2 axles pass (ticks), two wheels on each, 7.5 m" in PASS_BY.said(tree)
     table = pass_by_table(tree)
     assert [row[1].text for row in table.rows] == ["total", "rail", "sleepers"]
     assert table.head[2:] == ["L_pAFmax / dB(A)", "L_pAeq,Tp / dB(A)", "TEL / dB(A)", "SEL / dB(A)"]
-    assert len(PASS_BY_PART.columns(tree)) == 4  # time, rail, sleepers, total
+    assert len(PASS_BY.collect(tree).columns) == 4  # time, rail, sleepers, total
     assert pass_by_table(xarray.DataTree.from_dict({"/pass_by": xarray.Dataset()})) is None

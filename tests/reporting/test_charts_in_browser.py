@@ -9,7 +9,6 @@ import pytest
 from drawn import OVERLAPS, RECORDER, pixels, settled
 from report_reading import HOSTILE
 
-from asperity.reporting.axes import band_axis, doubtful_boxes, frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.chart import (
     BLUE,
     COLOURS,
@@ -31,7 +30,8 @@ from asperity.reporting.chart import (
     colour_variables,
 )
 from asperity.reporting.page import PageFigure, page_template
-from asperity.reporting.payload import chart_script, chart_style, charts_json, script_digest
+from asperity.reporting.panels import band_axis, doubtful_boxes, frequency_axis, wavenumber_axis, words_axis
+from asperity.reporting.payload import chart_script, chart_style, charts_json, digest_of
 from asperity.reporting.tables import Cell, ReportTable
 
 AREAL = {"label": "areal", "law": "areal", "colour": BLUE, "width": 2.2}
@@ -147,7 +147,7 @@ def text_of_page():
     look = page_template("look.css.jinja").render(
         light=colour_variables(dark=False, colours=COLOURS), dark=colour_variables(dark=True, colours=COLOURS)
     )
-    policy = f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{script_digest()}'"
+    policy = f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest_of(chart_script())}'"
     return (
         f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>Charts</title>'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">'

@@ -8,7 +8,6 @@ import pytest
 from xarray import DataTree
 
 from asperity.errors import InputError
-from asperity.reporting.axes import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.chart import (
     BLUE,
     COLOURS,
@@ -26,8 +25,9 @@ from asperity.reporting.chart import (
     Shape,
 )
 from asperity.reporting.drawing import svg_of
+from asperity.reporting.figure import Figure, chosen_figures, write_chart, write_figures
+from asperity.reporting.panels import frequency_axis, wavenumber_axis, words_axis
 from asperity.reporting.paper import draw, save_figure
-from asperity.reporting.part import Data, Part, chosen_parts, write_chart, write_figures
 from asperity.reporting.texture_figures import height_scale, lines_chart, surface_chart
 
 X = np.array([0.0, 1.0, 2.0])
@@ -212,7 +212,7 @@ def test_a_drawing_is_svg_in_the_colours_of_the_page():
 
 def part(name, title):
     panel = Panel(Axis("x"), Axis("y"), (Line(X, Y),))
-    return Part(name, title, (), lambda _: Data(None, {}), lambda _, __: Chart((panel,)), lambda _: "")
+    return Figure(name, title, None, (), lambda _, __: [panel], "")
 
 
 PARTS = [
@@ -232,7 +232,7 @@ PARTS = [
     ],
 )
 def test_figures_are_found_by_name_and_title(names, found):
-    assert [part.name for part in chosen_parts(PARTS, names)] == found
+    assert [part.name for part in chosen_figures(PARTS, names)] == found
 
 
 @pytest.mark.parametrize(
@@ -246,12 +246,12 @@ def test_figures_are_found_by_name_and_title(names, found):
 )
 def test_a_wrong_name_is_told_with_the_nearest(name, message):
     with pytest.raises(InputError, match=message):
-        chosen_parts(PARTS, [name])
+        chosen_figures(PARTS, [name])
 
 
 def test_a_result_without_figures_says_so():
     with pytest.raises(InputError, match="it has none"):
-        chosen_parts([], ["force"])
+        chosen_figures([], ["force"])
 
 
 def test_figures_are_files_under_their_names(tmp_path):

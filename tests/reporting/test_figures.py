@@ -12,12 +12,11 @@ from report_tree import LAWS, laws_in, report_tree, uncertain, with_force
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules
-from asperity.reporting.data import missing
-from asperity.reporting.force_figures import piece
-from asperity.reporting.law_entries import law_entries
+from asperity.reporting.data import law_entries, missing
+from asperity.scenes.figures.force import piece
 from asperity.schema import contact
 
-PARTS = {part.name: part for chapter in CHAPTERS for part in chapter.parts}
+PARTS = {part.name: part for chapter in CHAPTERS for part in chapter.figures}
 SPECTRA = ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws")
 
 
@@ -89,7 +88,7 @@ def test_a_wild_law_does_not_flatten_the_main_one(name):
     assert axis.high - axis.low < 2.2 * 20.0
     assert axis.low < 50.0 < 70.0 < axis.high
     assert [line.opacity for line in marks(name, tree)] == [0.5, 0.5, 1.0]  # the main law is drawn last
-    caption = PARTS[name].caption(tree)
+    caption = PARTS[name].said(tree)
     assert "beyond it: shifted (30.0 N to 90.0 N), linear (−340 N to 460 N)" in caption
 
 
@@ -119,11 +118,11 @@ def test_loss_of_contact_is_drawn_where_there_is_any():
     assert len(first) == 3
     assert first[1] < time[700] < last[1]
     told = "Bars below: no contact (F ≤ 0), shaded above where the main law has none; linear cannot lose it."
-    assert told in PARTS["force_envelope"].caption(tree)
+    assert told in PARTS["force_envelope"].said(tree)
     calm = with_force(60 + WAVE)
     assert len(panels("force_piece", calm)) == 1
     assert list(PARTS["force_envelope"].laid_out(calm).places) == ["largest force"]
-    assert "Bars below" not in PARTS["force_piece"].caption(calm)
+    assert "Bars below" not in PARTS["force_piece"].said(calm)
 
 
 def test_the_whole_run_is_there_step_by_step(tree):
@@ -151,7 +150,7 @@ def test_filters_are_drawn_as_estimated_as_fitted_and_as_applied(tree):
     assert len(beyond) == 5  # sin q/q in the lower panel alone goes on where the texture excites nothing
     assert all(line.dashes for line in beyond)
     assert len(marks("contact_filter", tree, Boxes)) == 2  # in both panels
-    assert "Grey: waves that the texture lacks" in PARTS["contact_filter"].caption(tree)
+    assert "Grey: waves that the texture lacks" in PARTS["contact_filter"].said(tree)
 
 
 def test_signed_estimate_is_faint_where_force_and_line_have_little_in_common(tree):
@@ -220,10 +219,10 @@ def test_bands_that_say_little_are_shaded():
             (shaded,) = (mark for mark in panel.marks if isinstance(mark, Boxes))
             assert shaded.right == pytest.approx([edge], rel=1e-6), name
         assert any(note.text == "says little" for note in marks(name, tree, Note))
-        assert "B T is below 10" in PARTS[name].caption(tree)
+        assert "B T is below 10" in PARTS[name].said(tree)
     enough, _ = uncertain(0.0)
     assert not marks("force_bands", enough, Boxes)
-    assert "B T" not in PARTS["force_bands"].caption(enough)
+    assert "B T" not in PARTS["force_bands"].said(enough)
 
 
 def test_bands_that_hold_the_start_are_shaded():
@@ -234,7 +233,7 @@ def test_bands_that_hold_the_start_are_shaded():
     for name in SPECTRA:
         shaded = marks(name, tree, Boxes)[0]
         assert shaded.right[0] < shaded.left[1] < centre < shaded.right[1]
-        assert "low by more than 1 dB" in PARTS[name].caption(tree)
+        assert "low by more than 1 dB" in PARTS[name].said(tree)
 
 
 # --- the linear laws that all others are compared with
@@ -245,11 +244,11 @@ def test_differences_are_drawn_over_the_filtered_linear_contact_first(tree):
     labels = [panel.y.label for panel in panels("force_bands", tree)]
     assert labels[1:] == ["level − linear-filtered / dB", "level − linear / dB"]
     assert len(marks("force_bands", tree, Rules)) == 2  # zero
-    columns = part.columns(tree)
+    columns = part.collect(tree).columns
     names = list(columns)
     assert names.index("areal minus linear-filtered [dB]") < names.index("areal minus linear [dB]")
     spectra = tree["spectra"].to_dataset()
     for law in ("linear-filtered", "linear"):
         expected = spectra["force_level"].sel(law="areal") - spectra["force_level"].sel(law=law)
         np.testing.assert_allclose(columns[f"areal minus {law} [dB]"], expected)
-    assert "minus that of linear-filtered and that of linear" in part.caption(tree)
+    assert "minus that of linear-filtered and that of linear" in part.said(tree)

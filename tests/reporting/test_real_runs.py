@@ -10,15 +10,16 @@ import pytest
 from report_reading import Reader, read_csv, without
 
 from asperity.kinds import KINDS
-from asperity.kinds.report import page_of, parts_of
-from asperity.reporting.part import columns_text
+from asperity.kinds.report import figures_of, page_of
+from asperity.reporting.figure import columns_text
 from asperity.results import read_result, save
 
+ORDER = ("wheel-on-rail", "ball-on-beam", "bodies")
 PARTS = {
-    (kind, part.name): part for kind in KINDS for chapter in KINDS[kind].chapters for part in chapter.parts
+    (kind, part.name): part for kind in ORDER for chapter in KINDS[kind].chapters for part in chapter.figures
 }
-OLDER = {id(part) for (kind, _), part in PARTS.items() if kind != "bodies"}
-DRAWN = [key for key, part in PARTS.items() if key[0] != "bodies" or id(part) not in OLDER]
+FIRST = {id(part): key for key, part in reversed(PARTS.items())}
+DRAWN = [key for key, part in PARTS.items() if FIRST[id(part)] == key]
 each_part = pytest.mark.parametrize(("kind", "name"), DRAWN, ids=lambda value: value)
 TABLES = {
     "ball-on-beam": {"statistics", "practice", "reference", "contact_loss", "energy_balance"},
@@ -67,10 +68,10 @@ def test_links_lead_somewhere(text, folder):
 
 def test_all_figures_tables_and_numbers_are_there(real_run, text, folder):
     kind, names = kind_of(real_run), set(Reader(text).all("id"))
-    drawn = {part.name for part in parts_of(real_run)}
+    drawn = {part.name for part in figures_of(real_run)}
     parts = {name for known, name in PARTS if known == kind and name in drawn}
     chapters = {
-        c.name for c in KINDS[kind].chapters if not c.parts or drawn & {part.name for part in c.parts}
+        c.name for c in KINDS[kind].chapters if not c.figures or drawn & {part.name for part in c.figures}
     }
     assert parts | chapters | TABLES[kind] | {"case", "literature", "remake", "provenance"} <= names
     assert {path.name for path in folder.iterdir()} == {"report.html", *(f"{name}.csv" for name in parts)}
@@ -113,9 +114,9 @@ def test_numbers_survive_the_csv_files_to_the_last_bit(real_run, folder):
 
 def test_result_read_back_from_its_file_has_the_same_numbers(real_run, tmp_path):
     read = read_result(save(real_run, tmp_path / "run.nc"))
-    assert parts_of(read) == parts_of(real_run)
-    for part in parts_of(read):
-        assert columns_text(part.columns(read)) == columns_text(part.columns(real_run))
+    assert figures_of(read) == figures_of(real_run)
+    for part in figures_of(read):
+        assert columns_text(part.collect(read).columns) == columns_text(part.collect(real_run).columns)
 
 
 def test_same_result_same_page(real_run, text):
@@ -137,8 +138,8 @@ def test_figure_goes_without_attributes(real_runs, kind, name):
     for group in tree.children:
         tree[group].attrs = {}
     assert part.laid_out(tree).panels
-    assert part.columns(tree)
-    assert part.caption(tree)
+    assert part.collect(tree).columns
+    assert part.said(tree)
 
 
 @each_part
@@ -151,8 +152,8 @@ def test_figure_goes_without_each_number_that_it_does_not_need(real_runs, kind, 
         tree = without(tree, group, *others)
     assert part.drawable(tree)
     assert part.laid_out(tree).panels
-    assert part.columns(tree)
-    assert part.caption(tree)
+    assert part.collect(tree).columns
+    assert part.said(tree)
 
 
 @pytest.mark.parametrize("group", ["scenario", "surface", "track", "contact", "rolling", "spectra"])

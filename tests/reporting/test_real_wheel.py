@@ -12,19 +12,19 @@ from report_tree import laws_in
 
 from asperity.cli.studying import _show
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
-from asperity.kinds.report import chapters_of, page_of, parts_of
+from asperity.kinds.report import chapters_of, figures_of, page_of
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
 from asperity.laws import spec_of
-from asperity.reporting.chapter import UNCERTAINTY
 from asperity.reporting.chart import Boxes, Line, Note, Rules
 from asperity.reporting.study_figures import key_chart
+from asperity.scenes.chapters import UNCERTAINTY
 from asperity.scenes.figures.force import AROUND_PEAK, around_peak
+from asperity.scenes.figures.motion import point_labels
 from asperity.scenes.figures.noise import sound_power_table
-from asperity.scenes.figures.rail_motion import point_labels
 from asperity.studies.member import kept, names_kept
 from asperity.studies.table import USUAL, USUAL_IN_FIGURES, chosen, columns_of
 
-PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.parts}
+PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.figures}
 
 
 @pytest.fixture
@@ -54,8 +54,8 @@ def rules_of(tree, name, *, short=False, panel=0):
 def test_kind_of_case_chooses_the_chapters(real_runs, tree):
     assert chapters_of(tree) == (*WHEEL_ON_RAIL, UNCERTAINTY)
     assert chapters_of(real_runs["ball-on-beam"]) == (*BALL_ON_BEAM, UNCERTAINTY)
-    ball = {part.name for chapter in BALL_ON_BEAM for part in chapter.parts}
-    assert not {"receptance", "roughness", "sound_power", "displacement"} & ball
+    ball = {part.name for chapter in BALL_ON_BEAM for part in chapter.figures}
+    assert not {"receptance", "sound_power", "displacement"} & ball
 
 
 def test_result_without_a_kind_is_known_by_its_track(tree):
@@ -93,7 +93,7 @@ def test_force_spectrum_carries_the_marks_of_the_track(tree):
     tones = rules_of(tree, "force_psd", short=True)
     assert tones == pytest.approx(speed / sleepers * np.arange(1, len(tones) + 1))
     assert panels_of(tree, "force_psd")[0].x.high - tones[-1] < speed / sleepers
-    caption = PARTS["force_psd"].caption(tree)
+    caption = PARTS["force_psd"].said(tree)
     assert f"every {speed / sleepers:.1f} Hz" in caption
     assert f"{split[0]:.0f} and {split[1]:.0f} Hz" in caption
 
@@ -158,7 +158,7 @@ def test_contact_of_wheel_and_rail_is_outlined_by_its_ellipse(tree):
         sides = np.ptp(outline.x), np.ptp(outline.y)
         assert sides == pytest.approx((2e3 * along, 2e3 * across), rel=1e-3)
     assert len(outlines) == 2  # dark on light: seen on every colour
-    assert "dashed ellipse" in PARTS["contact_pressure"].caption(tree)
+    assert "dashed ellipse" in PARTS["contact_pressure"].said(tree)
 
 
 def test_large_forces_are_shown_in_kilonewtons(tree):
@@ -199,7 +199,7 @@ def test_smooth_surface_has_no_map_and_no_spectrum(tree):
     tree = tree.copy(deep=True)
     for name in ("sample_heights", "psd_sample", "psd_path"):
         tree["surface"][name].values[:] = 0.0
-    drawn = {part.name for part in parts_of(tree)}
+    drawn = {part.name for part in figures_of(tree)}
     assert set(PARTS) - drawn == {"texture_sample", "texture_psd"}
 
 
@@ -211,7 +211,7 @@ def test_spectra_are_shaded_where_their_bands_say_little(tree):
     tree["spectra/band_time_product"].values[:6] = 9.9
     for name in ("force_psd", "rail_velocity_psd"):
         assert all(len(marks_of(tree, name, Boxes, n)) == 1 for n in range(len(panels_of(tree, name))))
-        assert "B T is below 10" in PARTS[name].caption(tree)
+        assert "B T is below 10" in PARTS[name].said(tree)
 
 
 def test_bands_without_roughness_are_not_drawn(tree):
@@ -223,7 +223,7 @@ def test_bands_without_roughness_are_not_drawn(tree):
     lines = {line.label: line.y for line in marks_of(tree, "roughness", Line)}
     assert np.array_equal(lines["rail"], level[0, 5:])
     assert np.isnan(lines["wheel"][7])
-    assert len(PARTS["roughness"].columns(tree)["wavelength [m]"]) == level.shape[1]
+    assert len(PARTS["roughness"].collect(tree).columns["wavelength [m]"]) == level.shape[1]
 
 
 def test_drawn_force_spectrum_keeps_the_power(tree):
@@ -245,7 +245,7 @@ def test_piece_around_the_peak_holds_it(tree):
     assert part.start <= peak < part.stop
     step = float(rolling["time"][1])
     assert (part.stop - part.start) * step == pytest.approx(AROUND_PEAK, abs=step)
-    assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].caption(tree)
+    assert f"{rolling['time'].values[peak]:.4f} s" in PARTS["force_peak"].said(tree)
 
 
 @pytest.mark.parametrize("flat", [True, False])
@@ -259,7 +259,7 @@ def test_bars_of_lost_contact_are_drawn_where_it_is_lost(tree, flat):
     rolling["contact_loss_share"][0] = 0.02 * flat
     tree["rolling"] = rolling
     assert len(part.laid_out(tree).panels) == 1 + flat
-    assert ("Bars below" in part.caption(tree)) == flat
+    assert ("Bars below" in part.said(tree)) == flat
 
 
 @pytest.mark.parametrize("end", [0, -1])
@@ -299,8 +299,8 @@ def test_bands_that_say_little_are_shaded_and_in_the_csv_file(tree, name, variab
     centres = part.collect(tree).at[:4]
     assert box.left < centres.min()
     assert box.right > centres.max()
-    assert "Shaded" in part.caption(tree)
-    columns = part.columns(tree)
+    assert "Shaded" in part.said(tree)
+    columns = part.collect(tree).columns
     assert columns["level says something [1]"].tolist() == [0.0] * 4 + [1.0] * (len(product) - 4)
 
 

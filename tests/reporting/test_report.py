@@ -17,20 +17,20 @@ from report_tree import DATUM, LAWS, LOAD, report_tree, uncertain, with_force
 from asperity.convergence.group import sentence
 from asperity.errors import ComputationError, InputError
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
-from asperity.kinds.report import page_of, parts_of, report
+from asperity.kinds.report import figures_of, page_of, report
 from asperity.laws import spec_of
 from asperity.reporting.chart import envelope, smooth_on_log_axis
 from asperity.reporting.data import engineering, nominal_band, power_of_ten
+from asperity.reporting.figure import write_columns
 from asperity.reporting.headline import deciding_bands, force_answers, lights
 from asperity.reporting.page import literature
-from asperity.reporting.part import write_columns
 from asperity.reporting.payload import chart_script
 from asperity.reporting.tables import practice_table, reference_table
 from asperity.reporting.uncertainty import uncertainty_table
 from asperity.scenes.acceleration_answers import acceleration_answers
 from asperity.spectra import a_weighting, nominal_frequency
 
-PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.parts]
+PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.figures]
 
 
 @pytest.fixture(scope="module")
@@ -178,7 +178,7 @@ def test_damaged_or_missing_attributes_are_survived(attrs):
 def test_numbers_that_are_all_missing_count_as_missing():
     tree = small()
     tree["contact"]["filter"] = tree["contact"]["filter"] * np.nan
-    assert "contact_filter" not in [part.name for part in parts_of(tree)]
+    assert "contact_filter" not in [part.name for part in figures_of(tree)]
 
 
 def test_nothing_is_drawn_or_written_for_what_is_left_out(tmp_path):
@@ -212,15 +212,13 @@ def test_caption_says_what_printed_owes_to_its_datum(tree):
     state = attrs["working_approach"] + DATUM
     tangent = np.interp(attrs["working_approach"], contact["approach"], contact["tangent_stiffness"])
     below, change = 20 * np.log10(tangent * state / LOAD), 20 * np.log10(state / (state + 0.25 * DATUM))
-    assert f"In printed k_c multiplies the texture: under the working load {below:.1f} dB" in part.caption(
-        tree
-    )
+    assert f"In printed k_c multiplies the texture: under the working load {below:.1f} dB" in part.said(tree)
     said = f"d₀ from samples and path, 1.88 µm, would change that by −{-change:.1f} dB."
-    assert said in part.caption(tree)
-    assert "In printed" not in part.caption(small())
+    assert said in part.said(tree)
+    assert "In printed" not in part.said(small())
     other = report_tree()
     other["contact"].attrs["datum"] = attrs["datum_path"]
-    assert "d₀ from the samples alone, 1.50 µm, would change that by +" in part.caption(other)
+    assert "d₀ from the samples alone, 1.50 µm, would change that by +" in part.said(other)
 
 
 def test_differences_to_the_reference_law_are_printed(tree, text):
@@ -238,7 +236,7 @@ def test_differences_to_the_reference_law_are_printed(tree, text):
 def test_figures_are_files_too_where_they_are_asked_for(tmp_path):
     tree = contact_only()
     report(tree, tmp_path, figures="svg")
-    files = {f"{part.name}.{ending}" for part in parts_of(tree) for ending in ("csv", "svg")}
+    files = {f"{part.name}.{ending}" for part in figures_of(tree) for ending in ("csv", "svg")}
     assert {file.name for file in tmp_path.iterdir()} == {"report.html", *files}
     with pytest.raises(InputError, match="figures: received 'jpg'; allowed: svg, pdf, png"):
         report(tree, tmp_path, figures="jpg")
@@ -363,7 +361,7 @@ def test_bands_that_say_little_are_marked_in_the_table_and_not_summed_up():
 def test_bands_that_say_little_are_marked_in_the_csv_file(tmp_path):
     tree, little = uncertain(0.4)
     part = next(part for part in PARTS if part.name == "force_bands")
-    table = read_csv(write_columns(part.columns(tree), tmp_path / "force_bands.csv"))
+    table = read_csv(write_columns(part.collect(tree).columns, tmp_path / "force_bands.csv"))
     assert np.array_equal(table["level says something [1]"] == 0.0, little)
     assert np.array_equal(table["B T [1]"], tree["spectra/band_time_product"].values)
 

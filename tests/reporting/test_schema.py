@@ -116,7 +116,7 @@ def test_no_drawing_and_no_writing_goes_by_a_string():
 
 def test_every_figure_of_a_real_run_is_drawn(real_run):
     for chapter in KINDS[real_run["scenario"].attrs["kind"]].chapters:
-        for part in chapter.parts:
+        for part in chapter.figures:
             elsewhere = "track" not in real_run.children and any(on_track(e) for e in part.needs)
             assert part.drawable(real_run) != elsewhere, part.name
 
@@ -125,7 +125,7 @@ def test_needs_of_figures_are_in_the_schema():
     for kind in KINDS.values():
         entries, _ = contents_of(*kind.schema)
         for chapter in kind.chapters:
-            for part in chapter.parts:
+            for part in chapter.figures:
                 assert set(part.needs) | set(part.any_of) <= set(entries), part.name
 
 

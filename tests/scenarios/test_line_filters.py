@@ -10,7 +10,7 @@ import pytest
 from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
 from asperity.kinds.cases import parse_case
-from asperity.kinds.report import parts_of
+from asperity.kinds.report import figures_of
 from asperity.laws import Printed, Shifted
 from asperity.laws.layout import force
 from asperity.reduction.filter import response
@@ -87,7 +87,7 @@ def warned_of_filters(tree):
 
 
 def caption(tree, name):
-    return next(part for part in parts_of(tree) if part.name == name).caption(tree)
+    return next(part for part in figures_of(tree) if part.name == name).caption(tree)
 
 
 @pytest.fixture(scope="module")

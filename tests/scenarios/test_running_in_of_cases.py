@@ -9,7 +9,8 @@ import asperity
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
 from asperity.kinds.cases import as_case
-from asperity.reporting.running_in import HEIGHTS, condition_table, passes_table
+from asperity.reporting.tables import condition_table, passes_table
+from asperity.reporting.texture_figures import RUNNING_IN
 from asperity.running import prepare_case
 from asperity.scenarios.running_in import run_in_case
 from asperity.schema import contact
@@ -109,16 +110,16 @@ class TestBallOnBeam:
         assert "of the area that carried pressure has yielded" in condition.note
         assert len(passes.rows) == run_in["contact"].sizes["running_in_pass"]
         assert "the next is elastic" in passes.note
-        assert HEIGHTS.drawable(run_in)
-        assert [line.label for line in HEIGHTS.laid_out(run_in).panels[0].marks] == [
+        assert RUNNING_IN.drawable(run_in)
+        assert [line.label for line in RUNNING_IN.laid_out(run_in).panels[0].marks] == [
             "before running-in",
             "after",
         ]
-        assert list(HEIGHTS.columns(run_in)) == [
+        assert list(RUNNING_IN.collect(run_in).columns) == [
             "distance [m]", "before running-in [m]", "after running-in [m]",
         ]  # fmt: skip
-        assert "Lowered by" in HEIGHTS.caption(run_in)
-        assert not HEIGHTS.drawable(untouched)
+        assert "Lowered by" in RUNNING_IN.said(run_in)
+        assert not RUNNING_IN.drawable(untouched)
         assert condition_table(untouched) is None
         assert passes_table(untouched) is None
 

@@ -14,7 +14,7 @@ from asperity.files import refuse_unwritable
 from asperity.kinds.comparing import compared_levels, named_runs, shown_levels, write_comparison
 from asperity.reporting.comparison import compared
 from asperity.reporting.comparison_page import listed_keys, summary
-from asperity.reporting.tables import signed
+from asperity.reporting.data import signed
 from asperity.terminal import say, say_table
 
 

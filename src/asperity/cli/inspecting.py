@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from asperity.arguments import shown
 from asperity.errors import InputError
 from asperity.files import atomic_write
-from asperity.reporting.part import write_columns
+from asperity.reporting.figure import write_columns
 from asperity.surfaces.en15610 import full_lines
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import nearly_complete
@@ -260,7 +260,7 @@ def _inspect_lines(
     import numpy as np
 
     from asperity.cli.inspecting import spectra_of_lines
-    from asperity.reporting.part import write_chart
+    from asperity.reporting.figure import write_chart
     from asperity.reporting.texture_figures import lines_chart
     from asperity.surfaces.statistics import line_statistics
 
@@ -422,7 +422,7 @@ def _draw(
     octaves: ThirdOctaves | None = None,
 ) -> Path:
     """Draw a levelled surface and its spectra to a PNG, PDF or SVG file."""
-    from asperity.reporting.part import write_chart
+    from asperity.reporting.figure import write_chart
     from asperity.reporting.texture_figures import surface_chart
     from asperity.surfaces.heightmap import HeightMap
 

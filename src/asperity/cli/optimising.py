@@ -19,7 +19,7 @@ from asperity.laws import spec_of
 from asperity.optimising.definition import Assignment, load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
-from asperity.reporting.law_entries import read_entries
+from asperity.reporting.data import read_entries
 from asperity.reporting.page import PageFigure, figures_page
 from asperity.reporting.payload import number_cell
 from asperity.reporting.study_figures import TextureBands, optimised_chart

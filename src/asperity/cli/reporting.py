@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from asperity.files import refuse_unwritable, together
-from asperity.kinds.report import PAGE, SUMMARY, parts_of, write_page, write_summary
-from asperity.reporting.part import chosen_parts, write_figures
+from asperity.kinds.report import PAGE, SUMMARY, figures_of, write_page, write_summary
+from asperity.reporting.figure import chosen_figures, write_figures
 from asperity.reporting.sound import TABLE, listen
 from asperity.results import read_result
 from asperity.terminal import say
@@ -32,16 +32,16 @@ def figures_into(run: Path, folder: Path | None, format: str, names: Sequence[st
     target = folder or (run if run.is_dir() else run.parent) / "figures"
     refuse_unwritable(target, "folder of the figures", "Choose another folder with -o.")
     tree = read_result(run)
-    parts = chosen_parts(parts_of(tree), names)
+    figures = chosen_figures(figures_of(tree), names)
     with together(target, last="") as new:
-        files = [target / path.name for path in write_figures(tree, parts, new, format)]
+        files = [target / path.name for path in write_figures(tree, figures, new, format)]
     say(f"Figures: {target.absolute()}, {', '.join(path.name for path in files) or 'none'}")
     return {
         "run": str(run.resolve()),
         "file_format": format,
-        "titles": {part.name: part.title for part in parts},
+        "titles": {figure.name: figure.title for figure in figures},
         "warnings": [],
-        "files": {part.name: str(path.resolve()) for part, path in zip(parts, files, strict=True)},
+        "files": {figure.name: str(path.resolve()) for figure, path in zip(figures, files, strict=True)},
     }
 
 

@@ -15,7 +15,7 @@ from asperity.errors import InputError
 from asperity.files import alone_in, discard, final_place, refuse_unwritable, together, write_bytes
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
-from asperity.reporting.law_entries import line_style, read_entries
+from asperity.reporting.data import read_entries
 from asperity.reporting.page import PageFigure, figures_page
 from asperity.reporting.payload import chart_tables
 from asperity.reporting.study_figures import ensemble_chart, key_caption, key_chart
@@ -74,7 +74,7 @@ def write_study_page(
 ) -> dict[str, Path]:
     """Write figures on a page: of quantities by name over each swept key, and of the band over seeds."""
     laws = read_entries(spec_of(str(law)).entry() for law in table["law"].values)
-    looks = {name: line_style(law, 1.6) | {"marker": law.marker} for name, law in laws.items()}
+    looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
     figures = _key_figures(table, means, names, looks)
     if bands is not None:
         chart = ensemble_chart(bands, looks)

@@ -56,15 +56,15 @@ class Result(DataTree):  # type: ignore[no-untyped-call]
         >>> result.plot("force_bands").axes[0].get_xlabel()
         'one-third octave band / Hz'
         """
-        from asperity.kinds.report import parts_of
+        from asperity.kinds.report import figures_of
+        from asperity.reporting.figure import chosen_figures
         from asperity.reporting.notebook_view import overview_chart
         from asperity.reporting.paper import draw
-        from asperity.reporting.part import chosen_parts
 
         if name is None and present(self, CONTACT_FORCE, TIME):
             return draw(overview_chart(self))
-        (part,) = chosen_parts(parts_of(self), [name])
-        return draw(part.laid_out(self))
+        (figure,) = chosen_figures(figures_of(self), [name])
+        return draw(figure.laid_out(self))
 
     def _repr_html_(self) -> str:
         tree: str = super()._repr_html_()  # type: ignore[no-untyped-call]

@@ -11,10 +11,9 @@ from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
 from asperity.kinds import KINDS
-from asperity.reporting.chapter import Chapter
 from asperity.reporting.data import stated
-from asperity.reporting.page import drawable_parts, page
-from asperity.reporting.part import Part, figure_format, write_columns, write_figures
+from asperity.reporting.figure import Chapter, Figure, figure_format, write_columns, write_figures
+from asperity.reporting.page import drawable_figures, page
 from asperity.schema.provenance import KIND
 
 PAGE, SUMMARY = "report.html", "summary.html"
@@ -27,14 +26,14 @@ def chapters_of(tree: DataTree) -> tuple[Chapter, ...]:
         return KINDS[kind].chapters
 
     def filled(chapters: tuple[Chapter, ...]) -> float:
-        return len(drawable_parts(tree, chapters)) / sum(len(chapter.parts) for chapter in chapters)
+        return len(drawable_figures(tree, chapters)) / sum(len(chapter.figures) for chapter in chapters)
 
     return max((kind.chapters for kind in KINDS.values()), key=filled)
 
 
-def parts_of(tree: DataTree) -> list[Part]:
+def figures_of(tree: DataTree) -> list[Figure]:
     """Figures that `tree` holds the data of, in the order of the page."""
-    return drawable_parts(tree, chapters_of(tree))
+    return drawable_figures(tree, chapters_of(tree))
 
 
 def page_of(tree: DataTree, *, summary: bool = False) -> str:
@@ -82,16 +81,16 @@ def report(result: DataTree, path: str | os.PathLike[str], figures: str | None =
     format = None if figures is None else figure_format("figures", figures)
     with together(target.parent, last=target.name) as new:
         if format is not None:
-            write_figures(result, parts_of(result), new, format)
+            write_figures(result, figures_of(result), new, format)
         write_page(result, new / target.name)
     return target
 
 
 def write_page(result: DataTree, target: Path) -> Path:
     """Write the page of a result and, beside it, the numbers of its figures."""
-    collected = {part.name: part.collect(result) for part in parts_of(result)}
-    for name, data in collected.items():
-        write_columns(data.columns, target.parent / f"{name}.csv")
+    collected = {figure.name: figure.collect(result) for figure in figures_of(result)}
+    for name, lines in collected.items():
+        write_columns(lines.columns, target.parent / f"{name}.csv")
     return write_bytes(target, page(result, chapters_of(result), collected).encode())
 
 
@@ -102,5 +101,6 @@ def write_summary(result: DataTree, target: Path) -> Path:
 
 def names_of_reports() -> list[str]:
     """Names of all files that a report of any kind may have, or that of an earlier version."""
-    parts = (part for kind in KINDS.values() for chapter in kind.chapters for part in chapter.parts)
-    return [PAGE, *(f"{part.name}.{ending}" for part in parts for ending in ("csv", "svg"))]
+    chapters = (chapter for kind in KINDS.values() for chapter in kind.chapters)
+    names = dict.fromkeys(figure.name for chapter in chapters for figure in chapter.figures)
+    return [PAGE, *(f"{name}.{ending}" for name in names for ending in ("csv", "svg"))]

@@ -11,6 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+Numbers = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Dashes = tuple[float, ...]
+"""Lengths that are drawn and left out, in turn, in points at a width of one; empty for a full line."""
+FREQUENCY, TIME = "frequency", "time"
+"""Quantities by which axes are linked: a cursor on one stands on all."""
 WIDE, NARROW = 9.6, 4.5
 """Inches: a figure as wide as the page, and as that of a phone."""
 INK, MUTED, GRID = "#1c2126", "#5b6670", "#dfe3e7"
@@ -66,15 +72,12 @@ def sequence_styles(count: int) -> list[dict[str, Any]]:
     return [{"colour": colour, "dashes": dashes} for colour, dashes in looks]
 
 
-def decibels(power: NDArray[np.float64], reference: float = 1.0) -> NDArray[np.float64]:
+def decibels(power: Numbers, reference: float = 1.0) -> Numbers:
     """10 lg(power/reference); NaN where there is no power."""
-    ratio = np.where(power > 0, power / reference, np.nan)
-    return 10 * np.log10(ratio)
+    return 10 * np.log10(np.where(power > 0, power / reference, np.nan))
 
 
-def envelope(
-    signal: NDArray[np.float64], columns: int
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+def envelope(signal: Numbers, columns: int) -> tuple[NDArray[np.int64], Numbers, Numbers]:
     """Smallest and largest value of a long series (n,) in each of at most `columns` stretches.
 
     Returns the index at which each stretch starts, and the extremes, all (m,).
@@ -85,9 +88,7 @@ def envelope(
     return starts, np.fmin.reduceat(signal, starts), np.fmax.reduceat(signal, starts)
 
 
-def smooth_on_log_axis(
-    frequency: NDArray[np.float64], psd: NDArray[np.float64], per_octave: int = 24
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def smooth_on_log_axis(frequency: Numbers, psd: Numbers, per_octave: int = 24) -> tuple[Numbers, Numbers]:
     """Mean power in stretches of 1/`per_octave` octave, where lines are denser than that; for drawing only.
 
     Positive, increasing frequencies or wavenumbers (n,) and PSD (..., n); returns the same, with fewer lines.
@@ -96,14 +97,6 @@ def smooth_on_log_axis(
     starts = np.flatnonzero(np.diff(index, prepend=-1))
     count = np.diff(np.append(starts, len(frequency)))
     return np.add.reduceat(frequency, starts) / count, np.add.reduceat(psd, starts, axis=-1) / count
-
-
-Numbers = NDArray[np.float64]
-Dashes = tuple[float, ...]
-"""Lengths that are drawn and left out, in turn, in points at a width of one; empty for a full line."""
-
-FREQUENCY, TIME = "frequency", "time"
-"""Quantities by which axes are linked: a cursor on one stands on all."""
 
 
 @dataclass(frozen=True)

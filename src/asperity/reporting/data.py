@@ -1,22 +1,23 @@
-"""Looking into a result tree: what is there, or nothing."""
+"""Looking into a result tree: what is there, or nothing; and its numbers in words."""
 
 from __future__ import annotations
 
+import colorsys
 import json
 import math
 import re
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataArray, DataTree
 
 from asperity.errors import InputError
-from asperity.schema import Attribute, Entry
-from asperity.schema.provenance import PARAMETERS
-from asperity.schema.rolling import CONTACT
-from asperity.schema.spectra import BAND_TIME_PRODUCT, START_SHARE
+from asperity.reporting import chart
+from asperity.reporting.chart import Flags, Numbers
+from asperity.schema import Attribute, Entry, provenance, rolling, spectra
 from asperity.spectra import nominal, say_little
 from asperity.units import quantity
 
@@ -30,22 +31,30 @@ def stored_variable(tree: DataTree, entry: Entry) -> DataArray | None:
     """Variable of an entry, or None if it is missing or holds no finite number."""
     if entry.group not in tree.children or entry.name not in tree[entry.group].variables:
         return None
-    values: DataArray = tree.children[entry.group].dataset[entry.name]
-    numbers = values.values.reshape(-1)
+    found: DataArray = tree.children[entry.group].dataset[entry.name]
+    numbers = found.values.reshape(-1)
     if numbers.dtype.kind in "fiu" and not (np.isfinite(numbers[:SOME]).any() or np.isfinite(numbers).any()):
         return None
-    return values
+    return found
 
 
-def values(tree: DataTree, entry: Entry, *dims: str) -> NDArray[np.float64]:
-    """Numbers of an entry, which must exist, with the dimensions in the order of `dims`.
-
-    A dimension of the variable that is not in `dims` is a fault of the caller.
-    """
+def variable_of(tree: DataTree, entry: Entry) -> DataArray:
+    """Variable of an entry, which must exist, its dimensions in the order of the schema."""
     found = stored_variable(tree, entry)
     if found is None:
         raise KeyError(entry.path)
-    return np.asarray((found.transpose(*dims) if dims else found).values, dtype=float)
+    return found.transpose(*entry.dims, missing_dims="ignore")
+
+
+def values(tree: DataTree, entry: Entry) -> Numbers:
+    """Numbers of an entry, which must exist."""
+    return np.asarray(variable_of(tree, entry).values, dtype=float)
+
+
+def words(tree: DataTree, entry: Entry) -> list[str]:
+    """Words of a variable; none where it is missing."""
+    found = stored_variable(tree, entry)
+    return [] if found is None else [str(word) for word in found.values]
 
 
 def present(tree: DataTree, *entries: Entry) -> bool:
@@ -55,19 +64,19 @@ def present(tree: DataTree, *entries: Entry) -> bool:
 
 def missing(tree: DataTree, *entries: Entry) -> str:
     """Say of which of these variables values are missing, and why; nothing where none is."""
-    found = [variable for entry in entries if (variable := stored_variable(tree, entry)) is not None]
+    found = [each for entry in entries if (each := stored_variable(tree, entry)) is not None]
     return " ".join(
-        f"Gaps in the {variable.attrs['long_name'].replace(': ', ', ')}: {variable.attrs['missing']}."
-        for variable in found
-        if "missing" in variable.attrs
+        f"Gaps in the {each.attrs['long_name'].replace(': ', ', ')}: {each.attrs['missing']}."
+        for each in found
+        if "missing" in each.attrs
     )
 
 
 def stated(tree: DataTree, attribute: Attribute) -> Any:
     """Value of an attribute, or None."""
-    known = not attribute.group or attribute.group in tree.children
-    node = tree[attribute.group] if known and attribute.group else tree
-    return node.attrs.get(attribute.name) if known else None
+    if attribute.group and attribute.group not in tree.children:
+        return None
+    return (tree[attribute.group] if attribute.group else tree).attrs.get(attribute.name)
 
 
 def number(tree: DataTree, attribute: Attribute) -> float | None:
@@ -79,20 +88,18 @@ def number(tree: DataTree, attribute: Attribute) -> float | None:
     return result if math.isfinite(result) else None
 
 
-def case_quantity(tree: DataTree, key: str, dimension: str) -> float | None:
-    """Finite value of a key of the case in SI units, ``"m"`` or another, or None."""
-    for item in json_list(tree, PARAMETERS):
-        if item.get("key") == key:
-            with suppress(InputError):
-                found = quantity(str(item.get("value", "")), dimension)
-                return found if math.isfinite(found) else None
-    return None
-
-
 def case_words(tree: DataTree, key: str) -> str:
     """Value of a key of the case in words; nothing where it is unknown."""
-    found = (item.get("value", "") for item in json_list(tree, PARAMETERS) if item.get("key") == key)
-    return str(next(found, ""))
+    parameters = json_list(tree, provenance.PARAMETERS)
+    return str(next((item.get("value", "") for item in parameters if item.get("key") == key), ""))
+
+
+def case_quantity(tree: DataTree, key: str, dimension: str) -> float | None:
+    """Finite value of a key of the case in SI units, ``"m"`` or another, or None."""
+    with suppress(InputError):
+        found = quantity(case_words(tree, key), dimension)
+        return found if math.isfinite(found) else None
+    return None
 
 
 def json_attribute(tree: DataTree, attribute: Attribute, empty: Any) -> Any:
@@ -109,28 +116,28 @@ def json_list(tree: DataTree, attribute: Attribute) -> list[dict[str, Any]]:
     return [entry for entry in json_attribute(tree, attribute, []) if isinstance(entry, dict)]
 
 
+def with_numbers(found: DataArray, dim: str) -> list[int]:
+    """Places along a dimension at which a variable has finite numbers."""
+    rest = [other for other in found.dims if other != dim]
+    return [int(place) for place in np.flatnonzero(found.notnull().any(rest).values)]
+
+
 def laws(tree: DataTree, entry: Entry) -> list[str]:
-    """Laws that a variable has finite numbers for, in the order of the case."""
+    """Laws that a variable has finite numbers for, in the order of the case, the main law first."""
     found = stored_variable(tree, entry)
-    if found is None:
-        return []
-    rest = [dim for dim in found.dims if dim != "law"]
-    kept = found.notnull().any(rest).values
-    return [str(law) for law, keep in zip(found["law"].values, kept, strict=True) if keep]
+    return [] if found is None else [str(found["law"].values[n]) for n in with_numbers(found, "law")]
 
 
-def of_law(tree: DataTree, entry: Entry, law: str, *dims: str) -> NDArray[np.float64]:
-    """Numbers of one law, with the remaining dimensions in the order of `dims`; by default of contact 1."""
-    found = stored_variable(tree, entry)
-    if found is None:
-        raise KeyError(entry.path)
+def of_law(tree: DataTree, entry: Entry, law: str) -> Numbers:
+    """Numbers of one law, at the first of several contacts, other dimensions in the order of the schema."""
+    found = variable_of(tree, entry)
     row = [str(name) for name in found["law"].values].index(law)
-    of_first = {} if CONTACT.name in dims else {CONTACT.name: 0}
-    one = found.isel({"law": row} | of_first, missing_dims="ignore")
-    return np.asarray(one.transpose(*dims).values, dtype=float)
+    return np.asarray(
+        found.isel({"law": row, rolling.CONTACT.name: 0}, missing_dims="ignore").values, dtype=float
+    )
 
 
-def doubtful(tree: DataTree, product: Entry) -> NDArray[np.bool_]:
+def doubtful(tree: DataTree, product: Entry) -> Flags:
     """Bands whose levels say little: the `product` of bandwidth and averaging time is small.
 
     Of force levels also those that still hold the start of the record.
@@ -138,9 +145,12 @@ def doubtful(tree: DataTree, product: Entry) -> NDArray[np.bool_]:
     (dim,) = product.dims
     if not present(tree, product):
         return np.zeros(tree[product.group].sizes[dim], dtype=bool)
-    known = product is BAND_TIME_PRODUCT and present(tree, START_SHARE)
-    start = values(tree, START_SHARE) if known else 0.0
-    return np.asarray(say_little(values(tree, product, dim), start))
+    known = product is spectra.BAND_TIME_PRODUCT and present(tree, spectra.START_SHARE)
+    start = values(tree, spectra.START_SHARE) if known else 0.0
+    return np.asarray(say_little(values(tree, product), start))
+
+
+# --- numbers in words
 
 
 def engineering(value: float, unit: str, digits: int = 3) -> str:
@@ -165,14 +175,40 @@ def plain(value: float, digits: int = 3) -> str:
     return f"{value:.{digits}g}".replace("-", "−")
 
 
+def signed(value: float, places: int = 1) -> str:
+    """Write a difference with its sign, but for one that is rounded to zero; a dash where there is none."""
+    if not math.isfinite(value):
+        return "–"
+    rounded = round(float(value), places)
+    return f"{rounded:+.{places}f}".replace("-", "−") if rounded else f"{0.0:.{places}f}"
+
+
+def in_percent(share: float) -> str:
+    """Write a share in per cent."""
+    return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
+
+
 def written_units(units: str) -> str:
     """Units of a variable as a reader writes them."""
     return units.replace("uPa", "µPa").replace("m/s2", "m/s²").replace("1e-6 m", "1 µm")
 
 
+def length_unit(extent: float) -> tuple[float, str]:
+    """Unit in which a length of `extent` m reads well: its size in m and its symbol."""
+    for size, symbol in ((1.0, "m"), (1e-3, "mm"), (1e-6, "µm")):
+        if extent >= 0.5 * size:
+            return size, symbol
+    return 1e-9, "nm"
+
+
 def force_unit(largest: float) -> tuple[float, str]:
     """Unit in which forces up to `largest` N read well: its size in N and its symbol."""
     return (1e3, "kN") if largest >= 5e3 else (1.0, "N")
+
+
+def time_unit(duration: float) -> tuple[float, str]:
+    """Unit in which a time of `duration` s reads well: its size in s and its symbol."""
+    return (1.0, "s") if duration >= 0.5 else (1e-3, "ms")
 
 
 def power_of_ten(value: float) -> str:
@@ -200,10 +236,8 @@ def typed_unit(key: DataArray) -> str:
 def typed_values(key: DataArray) -> list[Any]:
     """Values of a swept key in the unit in which they were typed."""
     size = float(key.attrs.get(TYPED_FACTOR, 1.0))
-    values = key.values.tolist()
-    if key.dtype.kind == "U" or size == 1.0:
-        return list(values)
-    return [float(f"{value / size:.12g}") for value in values]
+    found: list[Any] = key.values.tolist()
+    return found if key.dtype.kind == "U" or size == 1.0 else [float(f"{v / size:.12g}") for v in found]
 
 
 def typed_words(key: DataArray) -> list[str]:
@@ -214,6 +248,114 @@ def typed_words(key: DataArray) -> list[str]:
 
 def moment(instant: object) -> str:
     """A moment of ISO 8601 in universal time as people write it; other words as they are."""
-    words = str(instant or "")
-    found = re.fullmatch(r"(\d{4}-\d\d-\d\d)T(\d\d:\d\d):\d\d\+00:00", words)
-    return f"{found[1]}, {found[2]} UTC" if found else words
+    found = re.fullmatch(r"(\d{4}-\d\d-\d\d)T(\d\d:\d\d):\d\d\+00:00", str(instant or ""))
+    return f"{found[1]}, {found[2]} UTC" if found else str(instant or "")
+
+
+# --- laws: their look, whether they may pull, what they are to each other
+
+_MARKERS = "os^v<>DdPXpHh8*"
+_LIGHT = 0.68
+"""Least lightness of a law's colour on dark screens."""
+
+
+@dataclass(frozen=True)
+class LawEntry:
+    """A law as a result describes it; one that it does not describe looks like this."""
+
+    name: str
+    meaning: str = ""
+    colour: str = "#6f7a85"
+    dashes: chart.Dashes = (4, 1, 1, 1, 1, 1)
+    marker: str = "<"
+    may_pull: bool = False
+    needs: frozenset[str] = frozenset()
+    role: str = ""
+
+    def style(self, width: float) -> dict[str, Any]:
+        """Look of a line, as `chart.Line` takes it."""
+        return {"colour": self.colour, "dashes": self.dashes, "width": width, "law": self.name}
+
+
+def law_entries(tree: DataTree) -> dict[str, LawEntry]:
+    """Laws that the result describes, by name, in the order of the case."""
+    return read_entries(json_list(tree, provenance.LAWS))
+
+
+def read_entries(told: Iterable[Mapping[str, Any]]) -> dict[str, LawEntry]:
+    """Laws by name with what of them can be drawn; no two have the same colour."""
+    entries = list(map(_read, told))
+    taken: set[str] = set()
+    spare = iter([colour for colour in chart.LAW_COLOURS if colour not in {e.colour for e in entries}])
+    for n, entry in enumerate(entries):
+        if entry.colour in taken:
+            entries[n] = replace(entry, colour=next(spare, entry.colour))
+        taken.add(entry.colour)
+    return {entry.name: entry for entry in entries}
+
+
+def _read(told: Mapping[str, Any]) -> LawEntry:
+    """An entry with what of it can be drawn: a result may be anybody's."""
+    found: dict[str, Any] = {key: str(told.get(key, "")) for key in ("name", "meaning", "role")}
+    colour, marker, needs = (told.get(key) for key in ("colour", "marker", "needs"))
+    if isinstance(colour, str) and re.fullmatch("#[0-9a-f]{6}", colour):
+        found["colour"] = colour
+    if isinstance(marker, str) and len(marker) == 1 and marker in _MARKERS:
+        found["marker"] = marker
+    if isinstance(needs, list):
+        found["needs"] = frozenset(map(str, needs))
+    match told.get("dashes"):
+        case "-":
+            found["dashes"] = ()
+        case [int() | float(), [*lengths]] if lengths and all(map(_is_length, lengths)):
+            found["dashes"] = tuple(map(float, lengths))
+    return LawEntry(**found, may_pull=told.get("may_pull") is True)
+
+
+def _is_length(length: Any) -> bool:
+    return isinstance(length, int | float) and 0 < length < 1e3
+
+
+def law_entry(tree: DataTree, law: str) -> LawEntry:
+    """Look up a law, described or not."""
+    return law_entries(tree).get(law, LawEntry(law))
+
+
+def law_style(tree: DataTree, law: str, main: str) -> dict[str, Any]:
+    """Look of a line of a law, as `chart.Line` takes it; the main law is drawn thicker."""
+    return law_entry(tree, law).style(2.2 if law == main else 1.25)
+
+
+def law_colours(tree: DataTree) -> dict[str, str]:
+    """All colours of a page, light and dark: those of the style, and those of laws that bring their own."""
+    return page_colours(entry.colour for entry in law_entries(tree).values())
+
+
+def page_colours(colours: Iterable[str]) -> dict[str, str]:
+    """Colours of the style and others, light and dark."""
+    return chart.COLOURS | {colour: _on_dark(colour) for colour in colours if colour not in chart.COLOURS}
+
+
+def _on_dark(colour: str) -> str:
+    """The same hue, light enough for a dark screen."""
+    hue, light, saturation = colorsys.rgb_to_hls(*(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)))
+    rgb = colorsys.hls_to_rgb(hue, max(light, _LIGHT), saturation)
+    return "#" + "".join(f"{round(255 * part):02x}" for part in rgb)
+
+
+def pulling(tree: DataTree) -> list[str]:
+    """Laws whose contact pulls as well as it pushes, so that it cannot be lost."""
+    return [name for name, entry in law_entries(tree).items() if entry.may_pull]
+
+
+def baselines_among(tree: DataTree, names: Sequence[str]) -> list[str]:
+    """Those of the laws `names` that all others are compared with, the one of practice first."""
+    roles = {law_entry(tree, name).role: name for name in names}
+    return [roles[role] for role in spectra.FORCE_LEVEL_DIFFERENCES if role in roles]
+
+
+def differences(tree: DataTree) -> dict[Entry, str]:
+    """Variables of force level differences to the linear laws, with the law each compares with."""
+    of_role = {entry.role: entry.name for entry in law_entries(tree).values()}
+    held = {role: entry for role, entry in spectra.FORCE_LEVEL_DIFFERENCES.items() if present(tree, entry)}
+    return {entry: of_role[role] for role, entry in held.items() if role in of_role}

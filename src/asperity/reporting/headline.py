@@ -6,34 +6,25 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import engineering, json_attribute, json_list, laws, of_law, present
-from asperity.reporting.law_entries import law_entry
-from asperity.reporting.tables import ReportTable, in_percent
-from asperity.reporting.uncertainty import OFF, setting_names, setting_numbers
+from asperity.reporting import data
+from asperity.reporting.chart import Numbers
+from asperity.reporting.tables import ReportTable
+from asperity.reporting.uncertainty import OFF, error_on_map, setting_names, setting_numbers
 from asperity.schema import contact, convergence, provenance, rolling
-from asperity.schema.rolling import CONTACT_FORCE
 from asperity.spectra import nominal_frequency
 
 IN_RANGE, NOTE, WARNING, OUT, UNKNOWN = "in range", "note", "warning", "out of range", "not checked"
 _LOOKS = {
-    IN_RANGE: ("good", "●"),
-    NOTE: ("note", "●"),
-    WARNING: ("warn", "▲"),
-    OUT: ("out", "■"),
-    UNKNOWN: ("none", "○"),
+    OUT: ("out", "■", "Out of range"),
+    WARNING: ("warn", "▲", "To be read with care"),
+    NOTE: ("note", "●", "Valid"),
+    UNKNOWN: ("none", "○", "Not checked"),
+    IN_RANGE: ("good", "●", "Valid"),
 }
-_ORDER = (OUT, WARNING, NOTE, UNKNOWN, IN_RANGE)
+"""Class and sign of a check that ended so, and what is said of a run; the gravest first."""
 _TOLD = (OUT, WARNING, NOTE, IN_RANGE, UNKNOWN)
-_JUDGED = {
-    OUT: "Out of range",
-    WARNING: "To be read with care",
-    NOTE: "Valid",
-    IN_RANGE: "Valid",
-    UNKNOWN: "Not checked",
-}
 
 
 @dataclass(frozen=True)
@@ -60,19 +51,17 @@ class Light:
 def lights(tree: DataTree) -> list[Light]:
     """All checks and warnings of a run, those that failed first."""
     checks = [*_findings(tree), *_expected(tree), *_settings(tree)]
-    found = [*_warnings(tree, checks), *checks]
-    return sorted(found, key=lambda light: _ORDER.index(light.state))
+    return sorted([*_warnings(tree, checks), *checks], key=lambda light: list(_LOOKS).index(light.state))
 
 
 def validity(found: Sequence[Light]) -> Light:
     """All checks and warnings in one light, whose quantity is a sentence."""
     states = [light.state for light in found]
-    counts = {state: states.count(state) for state in _ORDER}
-    worst = next((state for state in _TOLD if counts[state]), UNKNOWN)
-    checked = len(states) - counts[UNKNOWN]
-    told = [_counted(state, counts[state], checked) for state in _TOLD if counts[state]]
+    checked = len(states) - states.count(UNKNOWN)
+    told = [_counted(state, states.count(state), checked) for state in _TOLD if state in states]
+    worst = next((state for state in _TOLD if state in states), UNKNOWN)
     words = ", ".join(told) or "nothing was stored with this run"
-    return Light(f"{_JUDGED[worst]}: {words}.", "", "", IN_RANGE if worst == NOTE else worst)
+    return Light(f"{_LOOKS[worst][2]}: {words}.", "", "", IN_RANGE if worst == NOTE else worst)
 
 
 def _counted(state: str, count: int, checked: int) -> str:
@@ -84,38 +73,37 @@ def _counted(state: str, count: int, checked: int) -> str:
 
 
 def _findings(tree: DataTree) -> Iterator[Light]:
-    for entry in json_list(tree, contact.VALIDITY):
+    for entry in data.json_list(tree, contact.VALIDITY):
         quantity, value, limit, grade, meaning, remedy = (
             str(entry.get(key, "")) for key in ("quantity", "value", "limit", "grade", "meaning", "remedy")
         )
         outside = grade in _LOOKS
-        state = grade if outside else IN_RANGE
-        yield Light(quantity, value, limit, state, f"{meaning} {remedy}".strip() if outside else "")
+        told = f"{meaning} {remedy}".strip() if outside else ""
+        yield Light(quantity, value, limit, grade if outside else IN_RANGE, told)
 
 
 def _warnings(tree: DataTree, checks: Sequence[Light]) -> Iterator[Light]:
     """Warnings on the physics, but for those that a check says as well."""
-    for warning in json_list(tree, provenance.WARNINGS):
+    for warning in data.json_list(tree, provenance.WARNINGS):
         message, grade = str(warning.get("message", "")), str(warning.get("grade", WARNING))
-        if any(check.value and message.startswith(f"{check.quantity}: {check.value}") for check in checks):
-            continue
-        times = f"{count} times" if (count := warning.get("count", 1)) != 1 else ""
-        yield Light(message[:1].upper() + message[1:], times, "", grade if grade in _LOOKS else WARNING)
+        if not any(
+            check.value and message.startswith(f"{check.quantity}: {check.value}") for check in checks
+        ):
+            times = f"{count} times" if (count := warning.get("count", 1)) != 1 else ""
+            yield Light(message[:1].upper() + message[1:], times, "", grade if grade in _LOOKS else WARNING)
 
 
 def _expected(tree: DataTree) -> Iterator[Light]:
     """The error that is expected of the main law."""
-    main = next(iter(laws(tree, CONTACT_FORCE)), None)
-    found = json_attribute(tree, provenance.EXPECTED_ERRORS, {})
-    error = next((e for e in found.get("errors", []) if e["law"] == main), None)
-    if error is None:
-        return
-    wanted, far = float(found["wanted"]), bool(found["off_map"])
-    value = f"{error['error']:.1f} dB ({error['low']:.1f} to {error['high']:.1f})"
-    state = IN_RANGE if error["high"] <= wanted else WARNING if error["error"] > wanted else NOTE
-    quantity = f"expected distance of {main} from direct, rms over the one-third octaves"
-    guess = ": a guess, off the map of law errors" if far else ""
-    yield Light(quantity, value + guess, f"up to {wanted:g} dB", NOTE if far and state == IN_RANGE else state)
+    main = next(iter(data.laws(tree, rolling.CONTACT_FORCE)), None)
+    if expected := error_on_map(tree, main):
+        error, value, found = expected
+        wanted, far = float(found["wanted"]), bool(found["off_map"])
+        state = IN_RANGE if error["high"] <= wanted else WARNING if error["error"] > wanted else NOTE
+        quantity = f"expected distance of {main} from direct, rms over the one-third octaves"
+        guess = ": a guess, off the map of law errors" if far else ""
+        state = NOTE if far and state == IN_RANGE else state
+        yield Light(quantity, value + guess, f"up to {wanted:g} dB", state)
 
 
 def _settings(tree: DataTree) -> Iterator[Light]:
@@ -123,18 +111,14 @@ def _settings(tree: DataTree) -> Iterator[Light]:
     names, limit = setting_names(tree), f"up to {OFF:g} dB"
     if not names:
         yield Light("change of levels by finer settings", "not known: run with --converge", limit, UNKNOWN)
-        return
     sizes = dict(zip(names, setting_numbers(tree, convergence.LARGEST_CHANGE).tolist(), strict=True))
-    chance = sizes.get(convergence.PATH_LENGTH, np.nan)
+    chance = sizes.pop(convergence.PATH_LENGTH, np.nan)  # no setting
     for name, size in sizes.items():
-        if name == convergence.PATH_LENGTH:
-            continue  # chance, not a setting
-        quantity = f"change of levels by a finer setting: {name}"
-        if not np.isfinite(size):
-            yield Light(quantity, "not changed", limit, UNKNOWN)
-        else:
+        value, state = "not changed", UNKNOWN
+        if np.isfinite(size):
             far = OUT if convergence.meaningless(size, chance) else WARNING
-            yield Light(quantity, f"{size:.2f} dB", limit, IN_RANGE if size <= OFF else far)
+            value, state = f"{size:.2f} dB", IN_RANGE if size <= OFF else far
+        yield Light(f"change of levels by a finer setting: {name}", value, limit, state)
 
 
 MOST = 0.5
@@ -162,51 +146,47 @@ class Answers:
 
 def force_answers(tree: DataTree) -> Answers | None:
     """Force of the main law, and its losses of contact."""
-    if not present(tree, rolling.CONTACT_FORCE):
+    if not data.present(tree, rolling.CONTACT_FORCE):
         return None
-    main = laws(tree, rolling.CONTACT_FORCE)[0]
-    force = of_law(tree, rolling.CONTACT_FORCE, main, "time")
-    lost = _loss(tree, main)
-    return Answers(numbers=(_dynamic(force), *([lost] if lost else [])))
-
-
-def _dynamic(force: NDArray[np.float64]) -> HeadlineNumber:
+    main = data.laws(tree, rolling.CONTACT_FORCE)[0]
+    force = data.of_law(tree, rolling.CONTACT_FORCE, main)
     mean, rms = float(np.nanmean(force)), float(np.nanstd(force))
-    share = f"{in_percent(rms / mean)} of its mean of {engineering(mean, 'N')}; " if mean > 0 else ""
-    top = engineering(float(np.nanmax(force)), "N")
-    return HeadlineNumber("contact force varies by, rms", engineering(rms, "N"), f"{share}at most {top}")
+    top = data.engineering(float(np.nanmax(force)), "N")
+    share = (
+        f"{data.in_percent(rms / mean)} of its mean of {data.engineering(mean, 'N')}; " if mean > 0 else ""
+    )
+    varies = data.engineering(rms, "N")
+    dynamic = HeadlineNumber("contact force varies by, rms", varies, f"{share}at most {top}")
+    return Answers(numbers=(dynamic, *_loss(tree, main)))
 
 
-def _loss(tree: DataTree, main: str) -> HeadlineNumber | None:
-    if main not in laws(tree, rolling.CONTACT_LOSS_SHARE):
-        return None
-    if law_entry(tree, main).may_pull:
-        return HeadlineNumber("time without contact", "–", f"{main} cannot lose it: its force may pull")
-    share = float(of_law(tree, rolling.CONTACT_LOSS_SHARE, main))
-    if not share:
-        return HeadlineNumber("time without contact", "0 %", "contact is never lost")
+def _loss(tree: DataTree, main: str) -> Iterator[HeadlineNumber]:
+    if main not in data.laws(tree, rolling.CONTACT_LOSS_SHARE):
+        return
+    share = float(data.of_law(tree, rolling.CONTACT_LOSS_SHARE, main))
     told = []
-    if present(tree, rolling.CONTACT_LOSS_EVENTS):
-        count = int(of_law(tree, rolling.CONTACT_LOSS_EVENTS, main))
-        told.append(f"lost {'once' if count == 1 else f'{count} times'}")
-    if present(tree, rolling.LONGEST_LOSS):
-        told.append(f"longest {engineering(float(of_law(tree, rolling.LONGEST_LOSS, main)), 's')}")
-    return HeadlineNumber("time without contact", in_percent(share), ", ".join(told))
+    if data.law_entry(tree, main).may_pull:
+        value, told = "–", [f"{main} cannot lose it: its force may pull"]
+    elif not share:
+        value, told = "0 %", ["contact is never lost"]
+    else:
+        value = data.in_percent(share)
+        if data.present(tree, rolling.CONTACT_LOSS_EVENTS):
+            count = int(data.of_law(tree, rolling.CONTACT_LOSS_EVENTS, main))
+            told.append(f"lost {'once' if count == 1 else f'{count} times'}")
+        if data.present(tree, rolling.LONGEST_LOSS):
+            longest = float(data.of_law(tree, rolling.LONGEST_LOSS, main))
+            told.append(f"longest {data.engineering(longest, 's')}")
+    yield HeadlineNumber("time without contact", value, ", ".join(told))
 
 
-def deciding_bands(bands: NDArray[np.float64], level: NDArray[np.float64]) -> str:
+def deciding_bands(bands: Numbers, level: Numbers) -> str:
     """The fewest one-third octaves (b,), Hz, that hold half the energy of levels (b,), dB, in words."""
     energy = np.nan_to_num(10.0 ** (level / 10.0))
     loudest = np.argsort(-energy, kind="stable")
     held = np.cumsum(energy[loudest])
     kept = np.sort(loudest[: 1 + int(np.searchsorted(held, MOST * held[-1]))])
     runs = np.split(kept, np.flatnonzero(np.diff(kept) > 1) + 1)
-    ends = [
-        list(dict.fromkeys(nominal_frequency(float(bands[i])) for i in (run[0], run[-1]))) for run in runs
-    ]
-    return _listed([" to ".join(each) for each in ends])
-
-
-def _listed(words: list[str]) -> str:
-    """Words as a sentence lists them."""
+    ends = [dict.fromkeys(nominal_frequency(float(bands[i])) for i in (run[0], run[-1])) for run in runs]
+    words = [" to ".join(each) for each in ends]
     return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))

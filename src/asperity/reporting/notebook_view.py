@@ -8,11 +8,8 @@ from html import escape
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting.axes import band_axis, levels_axis
+from asperity.reporting import data, panels
 from asperity.reporting.chart import Area, Axis, Chart, Line, Mark, Panel, envelope
-from asperity.reporting.data import engineering, force_unit, json_list, laws, of_law, present, stated, values
-from asperity.reporting.force_figures import main_limits, time_unit
-from asperity.reporting.law_entries import law_entry, law_style
 from asperity.schema import provenance
 from asperity.schema.rolling import CONTACT_FORCE, CONTACT_LOSS_SHARE, LONGEST_LOSS, TIME
 from asperity.schema.spectra import BAND, FORCE_LEVEL
@@ -21,16 +18,16 @@ COLUMNS = 350
 """Stretches in which a long force is drawn by its extremes."""
 
 
-def notebook_view(tree: DataTree, data: str) -> str:
-    """Show a result with verdict and force; what shows its data is folded below."""
-    title = escape(str(stated(tree, provenance.TITLE)))
+def notebook_view(tree: DataTree, contents: str) -> str:
+    """Show a result with verdict and force; what shows its contents is folded below."""
+    title, verdict = (escape(str(data.stated(tree, each))) for each in (provenance.TITLE, provenance.VERDICT))
     return "\n".join(
         [
-            f"<div><p><strong>{title}.</strong> {escape(str(stated(tree, provenance.VERDICT)))}</p>",
+            f"<div><p><strong>{title}.</strong> {verdict}</p>",
             _warnings(tree),
             _picture(tree),
             _numbers(tree),
-            f"<details><summary>All data</summary>{data}</details></div>",
+            f"<details><summary>All data</summary>{contents}</details></div>",
         ]
     )
 
@@ -39,62 +36,59 @@ def _warnings(tree: DataTree) -> str:
     """Every warning on the physics, in a list that opens."""
     told = [
         f"<li>{escape(str(item.get('grade', 'warning')).capitalize() + ': ' + str(item.get('message')))}</li>"
-        for item in json_list(tree, provenance.WARNINGS)
+        for item in data.json_list(tree, provenance.WARNINGS)
     ]
-    if not told:
-        return ""
     count = f"{len(told)} warning{'s' if len(told) > 1 else ''}"
-    return f"<details><summary>{count}</summary><ul>{''.join(told)}</ul></details>"
+    return f"<details><summary>{count}</summary><ul>{''.join(told)}</ul></details>" if told else ""
 
 
 def _numbers(tree: DataTree) -> str:
     """Mean and rms of the force, and its losses, by law."""
     heads = ["law", "mean force", "rms about it", "largest", "time without contact", "longest loss"]
-    rows = []
-    for law in laws(tree, CONTACT_FORCE):
-        force = of_law(tree, CONTACT_FORCE, law, "time")
-        cells = [engineering(float(f(force)), "N") for f in (np.nanmean, np.nanstd, np.nanmax)]
-        for entry, write in ((CONTACT_LOSS_SHARE, lambda x: f"{x:.2%}"), (LONGEST_LOSS, _time)):
-            known = law in laws(tree, entry) and not law_entry(tree, law).may_pull
-            cells.append(write(float(of_law(tree, entry, law))) if known else "–")
-        rows.append("".join(f"<td>{escape(cell)}</td>" for cell in (law, *cells)))
-    head = "".join(f"<th>{name}</th>" for name in heads)
-    return f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>"
-
-
-def _time(seconds: float) -> str:
-    return engineering(seconds, "s") if seconds > 0 else "–"
+    rows = [f"<tr>{''.join(f'<th>{name}</th>' for name in heads)}</tr>"]
+    losses = (
+        (CONTACT_LOSS_SHARE, "{:.2%}".format),
+        (LONGEST_LOSS, lambda s: data.engineering(s, "s") if s > 0 else "–"),
+    )
+    for law in data.laws(tree, CONTACT_FORCE):
+        force = data.of_law(tree, CONTACT_FORCE, law)
+        cells = [law, *(data.engineering(float(f(force)), "N") for f in (np.nanmean, np.nanstd, np.nanmax))]
+        for entry, write in losses:
+            known = law in data.laws(tree, entry) and not data.law_entry(tree, law).may_pull
+            cells.append(write(float(data.of_law(tree, entry, law))) if known else "–")
+        rows.append(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>")
+    return f"<table>{''.join(rows)}</table>"
 
 
 def _picture(tree: DataTree) -> str:
     from asperity.reporting.paper import draw
 
-    data = base64.b64encode(draw(overview_chart(tree))._repr_png_()).decode()
-    main = escape(laws(tree, CONTACT_FORCE)[0])
-    return f'<img alt="contact force of {main}" width="840" src="data:image/png;base64,{data}">'
+    image = base64.b64encode(draw(overview_chart(tree))._repr_png_()).decode()
+    main = escape(data.laws(tree, CONTACT_FORCE)[0])
+    return f'<img alt="contact force of {main}" width="840" src="data:image/png;base64,{image}">'
 
 
 def overview_chart(tree: DataTree) -> Chart:
     """Force of the main law in time, and the force levels of all laws."""
-    main = laws(tree, CONTACT_FORCE)[0]
-    time, force = values(tree, TIME, "time"), of_law(tree, CONTACT_FORCE, main, "time")
-    size, unit = force_unit(float(np.nanmax(np.abs(force))))
-    second, symbol = time_unit(float(time[-1] - time[0]))
+    main = data.laws(tree, CONTACT_FORCE)[0]
+    time, force = data.values(tree, TIME), data.of_law(tree, CONTACT_FORCE, main)
+    (size, unit), (second, symbol) = (
+        data.force_unit(float(np.nanmax(np.abs(force)))),
+        data.time_unit(float(time[-1] - time[0])),
+    )
     starts, low, high = envelope(force / size, COLUMNS)
-    colour = law_entry(tree, main).colour
+    colour = data.law_entry(tree, main).colour
     shown: Mark = Line(time / second, force / size, colour=colour, width=1.0)
     if len(starts) < len(force):
         shown = Area(time[starts] / second, low, high, colour=colour, opacity=1.0)
-    ends = main_limits({main: force / size}, ())
-    history = Panel(
-        Axis(f"time / {symbol}"), Axis(f"contact force / {unit}", *ends), (shown,), main, height=3.0
-    )
-    return Chart((history, *([_levels_panel(tree, main)] if present(tree, FORCE_LEVEL) else [])))
-
-
-def _levels_panel(tree: DataTree, main: str) -> Panel:
-    band = values(tree, BAND, "band")
-    levels = {law: of_law(tree, FORCE_LEVEL, law, "band") for law in laws(tree, FORCE_LEVEL)}
-    lines = [Line(band, level, law, **law_style(tree, law, main)) for law, level in levels.items()]
-    axis = levels_axis("force level / dB re 1 N", list(levels.values()))
-    return Panel(band_axis(band), axis, tuple(lines), height=3.0, beside=True)
+    ends = Axis(f"contact force / {unit}", *panels.main_limits(panels.by_name({main: force / size}), ()))
+    history = Panel(Axis(f"time / {symbol}"), ends, (shown,), main, height=3.0)
+    if not data.present(tree, FORCE_LEVEL):
+        return Chart((history,))
+    band = data.values(tree, BAND)
+    levels = [
+        Line(band, data.of_law(tree, FORCE_LEVEL, law), law, **data.law_style(tree, law, main))
+        for law in data.laws(tree, FORCE_LEVEL)
+    ]
+    axis = panels.levels_axis("force level / dB re 1 N", [line.y for line in levels])
+    return Chart((history, Panel(panels.band_axis(band), axis, tuple(levels), height=3.0, beside=True)))

@@ -1,9 +1,9 @@
-"""Templates of pages, and a figure as they take it."""
+"""Pages: templates, figures as they take them, and the page of a result."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
@@ -15,21 +15,10 @@ from xarray import DataTree
 
 from asperity import __version__
 from asperity.printable import printable
-from asperity.reporting.chapter import Chapter
+from asperity.reporting import data, headline, payload
 from asperity.reporting.chart import Chart, Line, colour_variables
-from asperity.reporting.data import json_attribute, json_list, missing, moment, stated
 from asperity.reporting.drawing import svg_of
-from asperity.reporting.headline import Answers, lights, validity
-from asperity.reporting.law_entries import law_colours, law_entries, page_colours
-from asperity.reporting.part import Data, Part
-from asperity.reporting.payload import (
-    chart_script,
-    chart_style,
-    charts_json,
-    digest_of,
-    numbers_table,
-    script_digest,
-)
+from asperity.reporting.figure import Chapter, Figure, Lines
 from asperity.reporting.tables import ReportTable
 from asperity.reporting.uncertainty import setting_names
 from asperity.schema import provenance
@@ -50,19 +39,31 @@ class PageFigure:
     drawing: Markup | None = None  # elements of the page
 
 
-def whole_page(name: str, charts: Mapping[str, Chart], colours: Mapping[str, str], **told: object) -> str:
-    """Fill a template with what is `told`, as one self-contained HTML text.
+@dataclass(frozen=True)
+class PageSection:
+    """A chapter of the page with its figures and tables, in the order they are shown."""
+
+    name: str
+    title: str
+    blocks: Sequence[PageFigure | ReportTable]
+    # before them: who or what a paragraph is about, its text, and a class for its look
+    paragraphs: Sequence[tuple[str, str, str]] = ()
+
+
+def whole_page(name: str, blocks: Sequence[object], colours: Mapping[str, str], /, **words: object) -> str:
+    """Fill a template with words, and with the figures among blocks, as one self-contained HTML text.
 
     Styles, charts and the script are inside; nothing is loaded from elsewhere, and no other script may run.
     """
+    charts = {each.name: each.chart for each in blocks if isinstance(each, PageFigure)}
     text = page_template(name).render(
-        charts=Markup(charts_json(charts, colours)),
-        script=Markup(chart_script()),
-        script_style=Markup(chart_style()),
-        digest=script_digest(),
+        charts=Markup(payload.charts_json(charts, colours)),
+        script=Markup(payload.chart_script()),
+        script_style=Markup(payload.chart_style()),
+        digest=payload.digest_of(payload.chart_script()),
         light=Markup(colour_variables(dark=False, colours=colours)),
         dark=Markup(colour_variables(dark=True, colours=colours)),
-        **told,
+        **words,
     )
     return printable(text, lines=True)
 
@@ -77,27 +78,41 @@ def page_template(name: str) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["unbroken"] = _unbroken
+    # numbers and their units stay on one line
+    environment.filters["unbroken"] = lambda text: re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
     return environment.get_template(name)
 
 
-def _unbroken(text: str) -> str:
-    """Keep numbers and their units on one line."""
-    return re.sub(rf"(?<=\d) (?=(?:{_UNITS})(?!\w))", "\u00a0", text)
+def figures_page(title: str, summary: str, figures: Sequence[PageFigure], files: Mapping[str, str]) -> str:
+    """A page of figures as one self-contained HTML text, with links to files beside it, by what they are."""
+    marks = (mark for figure in figures for panel in figure.chart.panels for mark in panel.marks)
+    colours = data.page_colours(mark.colour for mark in marks if isinstance(mark, Line) and mark.law)
+    told = {"title": title, "summary": summary, "version": __version__, "files": files, "figures": figures}
+    return whole_page("figures.html.jinja", figures, colours, **told)
 
 
+# --- the page of a result
+
+SUMMARY_FIGURES = 3
+"""That a summary shows."""
+CHANGES = 8
+"""Parameters that the top of the page tells of."""
 _OF_A_KEY = re.compile(r"([a-z_]+): (.+)", re.DOTALL)
 """Where the value of a key comes from: ``"pad_damping: published together with …"``."""
 
 
+def _sources(tree: DataTree) -> list[str]:
+    return [str(text) for text in data.json_attribute(tree, provenance.CITATIONS, [])]
+
+
 def literature(tree: DataTree) -> list[str]:
     """The program in the version of a run, then the sources of what it computed, one text each."""
-    version = stated(tree, provenance.ASPERITY_VERSION) or "of unknown version"
+    version = data.stated(tree, provenance.ASPERITY_VERSION) or "of unknown version"
     own = f"asperity {version}: rough contact reduced to a moving point force. The asperity developers."
     return [own, *(source for source in _sources(tree) if not _OF_A_KEY.fullmatch(source))]
 
 
-def origins(tree: DataTree) -> dict[str, list[str]]:
+def _origins(tree: DataTree) -> dict[str, list[str]]:
     """Keys of the case whose values a named set gave, by where these come from."""
     found: dict[str, list[str]] = {}
     for told in filter(None, map(_OF_A_KEY.fullmatch, _sources(tree))):
@@ -105,114 +120,44 @@ def origins(tree: DataTree) -> dict[str, list[str]]:
     return found
 
 
-def _sources(tree: DataTree) -> list[str]:
-    return [str(text) for text in json_attribute(tree, provenance.CITATIONS, [])]
-
-
-def figures_page(title: str, summary: str, figures: Sequence[PageFigure], files: Mapping[str, str]) -> str:
-    """The page as one self-contained HTML text, with links to files beside it, by what they are."""
-    charts = {figure.name: figure.chart for figure in figures}
-    marks = (mark for chart in charts.values() for panel in chart.panels for mark in panel.marks)
-    colours = page_colours(mark.colour for mark in marks if isinstance(mark, Line) and mark.law)
-    return whole_page(
-        "figures.html.jinja",
-        charts,
-        colours,
-        title=title,
-        summary=summary,
-        version=__version__,
-        files=files,
-        figures=figures,
-    )
-
-
-SUMMARY_FIGURES = 3
-"""That a summary shows."""
-CHANGES = 8
-"""Parameters that the top of the page tells of."""
-
-
-@dataclass(frozen=True)
-class PageSection:
-    """A chapter of the page with its figures and tables, in the order they are shown."""
-
-    name: str
-    title: str
-    blocks: list[PageFigure | ReportTable]
-
-
-def drawable_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
+def drawable_figures(tree: DataTree, chapters: Sequence[Chapter]) -> list[Figure]:
     """Figures that `tree` holds the data of, in the order of the page."""
-    return [part for chapter in chapters for part in chapter.parts if part.drawable(tree)]
+    return [figure for chapter in chapters for figure in chapter.figures if figure.drawable(tree)]
 
 
-def summary_parts(tree: DataTree, chapters: Sequence[Chapter]) -> list[Part]:
-    """Figures of a summary: one of each of the first chapters that name any."""
-    firsts = (next((part for part in chapter.summary if part.drawable(tree)), None) for chapter in chapters)
-    return [part for part in firsts if part is not None][:SUMMARY_FIGURES]
-
-
-def page_figure(tree: DataTree, part: Part, data: Data, colours: Mapping[str, str]) -> PageFigure:
+def page_figure(tree: DataTree, figure: Figure, lines: Lines, colours: Mapping[str, str]) -> PageFigure:
     """A figure of the page, from numbers that were collected."""
-    chart = part.chart(tree, data)
-    lost = missing(tree, *part.needs, *part.any_of)
-    return PageFigure(
-        part.name,
-        part.title,
-        f"{part.caption(tree)} {lost}".strip(),
-        chart,
-        [] if chart.drawing else [numbers_table(data)],
-        f"{part.name}.csv",
-        Markup(svg_of(chart, part.title, colours)) if chart.drawing else None,
-    )
+    chart = figure.chart(tree, lines)
+    drawing = Markup(svg_of(chart, figure.title, colours)) if chart.drawing else None
+    numbers = [] if chart.drawing else [payload.numbers_table(lines.columns)]
+    told = figure.name, figure.title, figure.said(tree)
+    return PageFigure(*told, chart, numbers, f"{figure.name}.csv", drawing)
 
 
-def sections(tree: DataTree, chapters: Sequence[Chapter], collected: Mapping[str, Data]) -> list[PageSection]:
+def _sections(
+    tree: DataTree, chapters: Sequence[Chapter], collected: Mapping[str, Lines], colours: Mapping[str, str]
+) -> list[PageSection]:
     """Chapters of the page, with numbers that were collected; one without any data is left out."""
-    found, colours = [], law_colours(tree)
+    found = []
     for chapter in chapters:
-        parts = [part for part in chapter.parts if part.drawable(tree)]
-        figures = [page_figure(tree, part, collected[part.name], colours) for part in parts]
-        tables = (table for make in chapter.tables if (table := make(tree)))
-        blocks: list[PageFigure | ReportTable] = [*figures, *tables]
+        figures = drawable_figures(tree, [chapter])
+        drawn = [page_figure(tree, figure, collected[figure.name], colours) for figure in figures]
+        blocks: list[PageFigure | ReportTable] = [*drawn]
+        blocks += [table for make in chapter.tables if (table := make(tree))]
         if blocks:
             found.append(PageSection(chapter.name, chapter.title, blocks))
     return found
 
 
-def charts_of(drawn: Iterable[PageSection]) -> dict[str, Chart]:
-    """What the script of a page draws, by the names of its figures."""
-    blocks = (block for section in drawn for block in section.blocks)
-    return {block.name: block.chart for block in blocks if isinstance(block, PageFigure)}
-
-
-def answers_of(tree: DataTree, chapters: Sequence[Chapter]) -> Answers:
+def _answers(tree: DataTree, chapters: Sequence[Chapter], verdict: str) -> headline.Answers:
     """What the chapters say first, together; what no chapter says is the verdict of the run."""
     found = [told for chapter in chapters if chapter.answers and (told := chapter.answers(tree))]
-    lead = next((each.lead for each in found if each.lead), "")
-    return Answers(
-        lead or _verdict(tree).partition(". ")[0],
+    return headline.Answers(
+        next((each.lead for each in found if each.lead), "") or verdict.partition(". ")[0],
         " ".join(each.more for each in found if each.more),
         tuple(number for each in found for number in each.numbers),
         tuple(table for each in found for table in each.tables),
     )
-
-
-def _verdict(tree: DataTree) -> str:
-    return str(stated(tree, provenance.VERDICT) or "")
-
-
-def _law_key(tree: DataTree) -> list[dict[str, str]]:
-    numbers = {colour: number for number, colour in enumerate(law_colours(tree))}
-    return [
-        {
-            "name": law.name,
-            "meaning": law.meaning,
-            "colour": f"var(--c{numbers[law.colour]})",
-            "dashes": " ".join(f"{2 * length:g}" for length in law.dashes),
-        }
-        for law in law_entries(tree).values()
-    ]
 
 
 def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[str, Any]]]]:
@@ -224,23 +169,10 @@ def _case_groups(parameters: list[dict[str, Any]]) -> list[tuple[str, list[dict[
     return list(groups.items())
 
 
-def _differing(changed: list[dict[str, Any]]) -> str:
-    """The first parameters that are not the defaults, in a line, and how many more there are."""
-    told = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]
-    more = len(changed) - len(told)
-    return ", ".join([*told, *([f"and {more} more"] if more else [])])
-
-
-@cache
-def _button() -> str:
-    """Script that prints the summary."""
-    return (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
-
-
 def page(
     tree: DataTree,
     chapters: Sequence[Chapter],
-    collected: Mapping[str, Data] | None = None,
+    collected: Mapping[str, Lines] | None = None,
     *,
     summary: bool = False,
 ) -> str:
@@ -248,39 +180,48 @@ def page(
 
     Numbers of the figures, by name, are `collected` unless they were before.
     """
-    on_sheet = summary_parts(tree, chapters)
+    firsts = (next((f for f in chapter.summary if f.drawable(tree)), None) for chapter in chapters)
+    on_sheet = [figure for figure in firsts if figure][:SUMMARY_FIGURES]
     shown = [Chapter("summary", "", tuple(on_sheet))] if summary else chapters
     if collected is None:
-        collected = {part.name: part.collect(tree) for part in drawable_parts(tree, shown)}
-    drawn, checks, colours = sections(tree, shown, collected), lights(tree), law_colours(tree)
-    kind, parameters = stated(tree, provenance.KIND), json_list(tree, provenance.PARAMETERS)
+        collected = {figure.name: figure.collect(tree) for figure in drawable_figures(tree, shown)}
+    checks, colours = headline.lights(tree), data.law_colours(tree)
+    drawn = _sections(tree, shown, collected, colours)
+    kind, parameters = data.stated(tree, provenance.KIND), data.json_list(tree, provenance.PARAMETERS)
     changed = [parameter for parameter in parameters if not parameter.get("is_default", True)]
+    differing = [f"{each.get('key', '')} = {each.get('value', '')}" for each in changed[:CHANGES]]
+    differing += [f"and {len(changed) - CHANGES} more"] if len(changed) > CHANGES else []
+    verdict = str(data.stated(tree, provenance.VERDICT) or "")
+    seed = data.stated(tree, provenance.SEED)
+    button = (files("asperity.reporting") / "summary.js").read_text(encoding="utf-8")
+    blocks = [block for section in drawn for block in section.blocks]
     return whole_page(
         "report.html.jinja",
-        charts_of(drawn),
+        blocks,
         colours,
-        title=stated(tree, provenance.TITLE) or kind or "Rolling contact",
+        title=data.stated(tree, provenance.TITLE) or kind or "Rolling contact",
         summary=summary,
-        on_sheet={part.name for part in on_sheet},
-        answers=answers_of(tree, chapters),
-        verdict=_verdict(tree),
-        validity=validity(checks),
+        on_sheet={figure.name for figure in on_sheet},
+        answers=_answers(tree, chapters, verdict),
+        verdict=verdict,
+        validity=headline.validity(checks),
         lights=checks,
-        version=stated(tree, provenance.ASPERITY_VERSION) or "unknown",
-        created=moment(stated(tree, provenance.CREATED)),
-        seed="" if (seed := stated(tree, provenance.SEED)) is None else seed,
-        case=stated(tree, provenance.CASE) or "",
+        version=data.stated(tree, provenance.ASPERITY_VERSION) or "unknown",
+        created=data.moment(data.stated(tree, provenance.CREATED)),
+        seed="" if seed is None else seed,
+        case=data.stated(tree, provenance.CASE) or "",
         converged=bool(setting_names(tree)),
         kind=kind or "",
         literature=literature(tree),
-        origins=origins(tree),
+        origins=_origins(tree),
         case_groups=_case_groups(parameters),
         changed=_case_groups(changed),
-        differing=_differing(changed),
+        differing=", ".join(differing),
         count=len(parameters),
-        numerics=json_list(tree, provenance.NUMERICS),
-        laws=_law_key(tree),
+        numerics=data.json_list(tree, provenance.NUMERICS),
+        laws=data.law_entries(tree).values(),
+        variable={colour: f"--c{number}" for number, colour in enumerate(colours)},
         sections=drawn,
-        button=Markup(_button()),
-        button_digest=digest_of(_button()),
+        button=Markup(button),
+        button_digest=payload.digest_of(button),
     )

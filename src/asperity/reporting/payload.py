@@ -16,7 +16,6 @@ import numpy as np
 
 from asperity.reporting.chart import Axis, Chart, Field, Line, Mark, Note, Numbers, Panel, Rules, envelope
 from asperity.reporting.data import plain
-from asperity.reporting.part import Data
 from asperity.reporting.tables import Cell, ReportTable
 
 LONG = 1000
@@ -82,7 +81,7 @@ def _levels(heights: Numbers) -> bytes:
 
 def _planes(numbers: np.ndarray) -> bytes:
     """First bytes of all numbers, then their second ones, and so on: alike ones pack better."""
-    return numbers.view(np.uint8).reshape(numbers.size, -1).T.tobytes()
+    return numbers.view(np.uint8).reshape(-1, numbers.itemsize).T.tobytes()
 
 
 def chart_tables(chart: Chart) -> list[ReportTable]:
@@ -224,19 +223,13 @@ def chart_style() -> str:
     return f"{library}\n{(package / 'charts' / 'charts.css').read_text(encoding='utf-8')}"
 
 
-def script_digest() -> str:
-    """Digest of the script, by which a page allows it and nothing else to run."""
-    return digest_of(chart_script())
-
-
 def digest_of(script: str) -> str:
     """SHA-256 of a script, as policies of pages name it."""
     return base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
 
 
-def numbers_table(data: Data, most: int = 24) -> ReportTable:
+def numbers_table(columns: Mapping[str, Numbers], most: int = 24) -> ReportTable:
     """Numbers of a figure, at most so many rows of them, for where they are not drawn."""
-    columns = data.columns
     rows = max(map(len, columns.values()), default=0)
     shown, named = _spread(rows, most), [list(columns)[n] for n in _spread(len(columns), COLUMNS)]
     cells = [[Cell(_written(columns[name], row), "number") for name in named] for row in shown]

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 import xarray
-from numpy.typing import NDArray
 
-from asperity.reporting.axes import EDGE, band_axis, doubtful_boxes, levels_axis, words_axis
+from asperity.reporting import data, panels
 from asperity.reporting.chart import (
     INK,
     MUTED,
@@ -20,117 +19,129 @@ from asperity.reporting.chart import (
     Axis,
     Boxes,
     Chart,
-    Dashes,
     Line,
     Mark,
     Numbers,
     Panel,
-    Second,
     sequence_styles,
 )
-from asperity.reporting.data import typed_unit, typed_values, typed_words, written_units
-from asperity.reporting.force_figures import main_last
 from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT, FORCE_LEVEL, LAW, START_SHARE
 from asperity.spectra import nominal_length, say_little
 
 MOST_PANELS = 6
-"""Members of other keys that are drawn; the CSV file has all of them."""
-_ENDS = ("", "_low", "_high")
+"""Members of other keys, or quantities, that are drawn; the CSV file has all of them."""
+MOST_LINES = 6
+"""Values of other keys, or bands of one, that are told apart; the CSV file has all."""
+Looks = Mapping[str, Mapping[str, Any]]
+"""Looks of lines by law."""
 
 
-def ensemble_chart(bands: xarray.Dataset, looks: Mapping[str, Mapping[str, Any]]) -> Chart:
+def _laws(table: xarray.Dataset) -> list[str]:
+    """Laws in the order in which they are drawn: the main law, the first, on top."""
+    main, *others = map(str, table[LAW.name].values)
+    return [*others, main]
+
+
+def _shades(table: xarray.Dataset) -> list[Mark]:
+    """Shades of bands that say little anywhere."""
+    if BAND_TIME_PRODUCT.name not in table:
+        return []
+    little = say_little(table[BAND_TIME_PRODUCT.name], table.get(START_SHARE.name, 0.0))
+    others = [dim for dim in little.dims if dim != BAND.name]
+    return panels.doubtful_boxes(table[BAND.name].values, little.any(others).values)
+
+
+def _others_of(found: xarray.DataArray, *known: str) -> tuple[list[str], list[tuple[int, ...]]]:
+    """Dimensions of a quantity beside those known, and its places along them."""
+    others = [str(dim) for dim in found.dims if dim not in known]
+    return others, list(product(*(range(found.sizes[dim]) for dim in others)))
+
+
+def ensemble_chart(bands: xarray.Dataset, looks: Looks) -> Chart:
     """Force level of each law, mean and band, a panel for each value of the other keys.
 
     The dataset is from `asperity.prediction_band`, whose ``meaning`` is the caption; looks of lines by law.
     """
-    others = [str(dim) for dim in bands[FORCE_LEVEL.name].dims if dim not in (LAW.name, BAND.name)]
-    places = list(product(*(range(bands.sizes[dim]) for dim in others)))[:MOST_PANELS]
-    return Chart(
-        tuple(_band_panel(bands.isel(dict(zip(others, at, strict=True))), others, looks) for at in places)
-    )
-
-
-def _band_panel(here: xarray.Dataset, keys: list[str], looks: Mapping[str, Mapping[str, Any]]) -> Panel:
-    """Levels of one value of each of the other keys."""
-    centre = here[BAND.name].values
-    marks: list[Mark] = []
-    if BAND_TIME_PRODUCT.name in here:
-        little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
-        marks += doubtful_boxes(centre, little.values)
+    others, places = _others_of(bands[FORCE_LEVEL.name], LAW.name, BAND.name)
     drawn = []
-    for law in main_last(map(str, here[LAW.name].values)):
-        mean, low, high = (here[f"{FORCE_LEVEL.name}{end}"].sel({LAW.name: law}).values for end in _ENDS)
-        look = dict(looks.get(law, {}))
-        shade = {key: look[key] for key in ("colour", "law") if key in look}
-        marks += [
-            Area(centre, low, high, opacity=0.2, **shade),
-            Line(centre, mean, law, **{"marker": "o"} | look),
-        ]
-        drawn += [low, high]
-    axis = levels_axis("contact force level / dB re 1 N", drawn, span=100.0)
-    title = ", ".join(f"{here[key].name} = {typed_words(here[key].expand_dims('place'))[0]}" for key in keys)
-    return Panel(band_axis(centre), axis, tuple(marks), title=title, height=3.2)
+    for place in places[:MOST_PANELS]:
+        here = bands.isel(dict(zip(others, place, strict=True)))
+        band, marks, ends = here[BAND.name].values, _shades(here), []
+        for law in _laws(here):
+            of_law = here.sel({LAW.name: law})
+            mean, low, high = (of_law[f"{FORCE_LEVEL.name}{end}"].values for end in ("", "_low", "_high"))
+            look = dict(looks.get(law, {}))
+            shade = {key: look[key] for key in ("colour", "law") if key in look}
+            marks += [
+                Area(band, low, high, opacity=0.2, **shade),
+                Line(band, mean, law, **{"marker": "o"} | look),
+            ]
+            ends += [low, high]
+        axis = panels.levels_axis("contact force level / dB re 1 N", ends, span=100.0)
+        title = ", ".join(f"{key} = {data.typed_words(here[key].expand_dims('place'))[0]}" for key in others)
+        drawn.append(Panel(panels.band_axis(band), axis, tuple(marks), title, height=3.2))
+    return Chart(tuple(drawn))
 
 
-BEFORE, AFTER = "before", "after"
-_DASHES: dict[str, Dashes] = {BEFORE: (1.5, 1.5), AFTER: ()}
+# --- an optimised texture
+
+_DASHES = {"before": (1.5, 1.5), "after": ()}
 
 
 @dataclass(frozen=True, eq=False)
 class TextureBands:
     """Numbers of the figure, by one-third octave of wavelength (b,)."""
 
-    wavelength: NDArray[np.float64]  # centres, m
-    levels: Mapping[str, NDArray[np.float64]]  # before and after, dB re 1 µm
-    lowest: NDArray[np.float64]  # bounds of the levels; NaN where a band was not to be changed
-    highest: NDArray[np.float64]
-    frequency: NDArray[np.float64]  # at which they are passed, Hz
+    wavelength: Numbers  # centres, m
+    levels: Mapping[str, Numbers]  # before and after, dB re 1 µm
+    lowest: Numbers  # bounds of the levels; NaN where a band was not to be changed
+    highest: Numbers
+    frequency: Numbers  # at which they are passed, Hz
     # level of the response while they are passed, dB, by law, before and after
-    heard: Mapping[str, Mapping[str, NDArray[np.float64]]]
+    heard: Mapping[str, Mapping[str, Numbers]]
 
 
 def optimised_chart(bands: TextureBands, heard: str, units: str, colours: Mapping[str, str]) -> Chart:
     """The texture above, and below what is heard of it in each band; colours by law."""
-    edges = bands.wavelength / EDGE, bands.wavelength * EDGE
+    edges = bands.wavelength / panels.EDGE, bands.wavelength * panels.EDGE
     bounds = np.stack([*edges, bands.lowest, bands.highest])
     left, right, low, high = bounds[:, np.isfinite(bounds).all(axis=0)]
-    texture: list[Boxes | Line] = [Boxes(left, right, low, high, "allowed", MUTED, 0.15)]
-    response = []
-    for name, dashes in _DASHES.items():
-        texture.append(Line(*_steps(*edges, bands.levels[name]), name, INK, dashes))
-        for law, levels in bands.heard.items():
-            look = colours.get(law, INK), dashes
-            response.append(
-                Line(bands.wavelength, levels[name], f"{law}, {name}", *look, marker="o", law=law)
-            )
-    along = _wavelengths(bands)
+    allowed = Boxes(left, right, low, high, "allowed", MUTED, 0.15)
+    order = np.argsort(edges[0])
+    steps = np.stack(edges, axis=1)[order].ravel()  # a level keeps its height within each band
+    texture = [
+        Line(steps, np.repeat(bands.levels[name][order], 2), name, INK, dashes)
+        for name, dashes in _DASHES.items()
+    ]
+    response = [
+        Line(
+            bands.wavelength,
+            levels[name],
+            f"{law}, {name}",
+            colours.get(law, INK),
+            dashes,
+            marker="o",
+            law=law,
+        )
+        for name, dashes in _DASHES.items()
+        for law, levels in bands.heard.items()
+    ]
+    along = panels.band_axis(np.sort(bands.wavelength), "one-third octave of wavelength", nominal_length)
+    speed = float(np.median(bands.wavelength * bands.frequency))
+    along = panels.long_waves_left(along, "frequency at which it is passed", speed, "wavelength")
     found = [*bands.levels.values(), bands.lowest, bands.highest]
-    above = levels_axis("roughness level / dB re 1 µm", found)
+    above = panels.levels_axis("roughness level / dB re 1 µm", found)
+    below = Axis(f"in the band / {data.written_units(units)}")
     return Chart(
         (
-            Panel(along, above, tuple(texture), height=3.2),
-            Panel(along, Axis(f"in the band / {written_units(units)}"), tuple(response), heard, height=3.2),
+            Panel(along, above, (allowed, *texture), height=3.2),
+            Panel(along, below, tuple(response), heard, height=3.2),
         )
     )
 
 
-def _wavelengths(bands: TextureBands) -> Axis:
-    """Bands by wavelength, long waves on the left, and opposite the frequency at which they are passed."""
-    axis = band_axis(np.sort(bands.wavelength), "one-third octave of wavelength", nominal_length)
-    speed = float(np.median(bands.wavelength * bands.frequency))
-    second = Second("frequency at which it is passed", speed, inverse=True, unit="Hz")
-    return replace(axis, low=axis.high, high=axis.low, second=second, linked="wavelength")
+# --- what a swept key does
 
-
-def _steps(left: Numbers, right: Numbers, level: Numbers) -> tuple[Numbers, Numbers]:
-    """A line that keeps its height within each band."""
-    order = np.argsort(left)
-    return np.stack([left, right], axis=1)[order].ravel(), np.repeat(level[order], 2)
-
-
-MOST_LINES = 6
-"""Values of other keys, or bands of one, that are told apart; the CSV file has all."""
-"""Quantities in a figure; the table has all."""
 PLACES = ("sensor", "point")
 """Dimensions over which levels are averaged; other words, as what radiates, are told apart."""
 SPREAD = 20.0
@@ -140,11 +151,7 @@ _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
 def key_chart(
-    mean: xarray.Dataset,
-    scatter: xarray.Dataset | None,
-    key: str,
-    looks: Mapping[str, Mapping[str, Any]],
-    names: Sequence[str],
+    mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str, looks: Looks, names: Sequence[str]
 ) -> Chart:
     """What a swept key does: quantities over it, and the force level in bands for each value.
 
@@ -154,55 +161,14 @@ def key_chart(
     the first law for their values.
     """
     drawn = [name for name in names if name in mean and _says_something(mean[name])][:MOST_PANELS]
-    panels = [_panel(mean, scatter, name, key, looks) for name in drawn]
-    rows = (replace(panel, beside=n % 2 == 1) for n, panel in enumerate(panels))
-    bands = [_bands(mean, key)] if FORCE_LEVEL.name in mean else []
-    return Chart((*rows, *bands))
-
-
-def _panel(
-    mean: xarray.Dataset,
-    scatter: xarray.Dataset | None,
-    name: str,
-    key: str,
-    looks: Mapping[str, Mapping[str, Any]],
-) -> Panel:
-    """One quantity over a key."""
-    size, what, unit = _scale(mean[name])
-    marks: list[Mark] = []
-    labels = []
-    for place, look in _lines(mean, name, key, looks):
-        values = _over_places(_along(mean, name, key, place)) / size
-        reach = None if scatter is None else _along(scatter, name, key, place).mean("place") / size
-        marks += _over_key(mean[key], values, reach, look)
-        labels.append(look["label"])
-    law_unsaid = (
-        LAW.name in mean[name].dims and labels[0] not in mean[LAW.name].values and not _others(mean, key)
-    )
-    title = f"{what}, {_main(mean)}" if law_unsaid else what
-    return Panel(_key_axis(mean[key]), Axis(unit), tuple(marks), title, height=2.55)
-
-
-def _says_something(values: xarray.DataArray) -> bool:
-    """Whether a quantity without bands is anywhere neither missing nor zero."""
-    flat = not any(str(dim).endswith(BAND.name) for dim in values.dims)
-    return flat and bool((np.nan_to_num(np.asarray(values.values, dtype=float)) != 0.0).any())
-
-
-def _swept(table: xarray.Dataset) -> list[str]:
-    held = table[WEIGHTED if WEIGHTED in table else "mean_force"].dims
-    return [str(dim) for dim in held if dim != LAW.name]
-
-
-def _others(table: xarray.Dataset, key: str) -> list[str]:
-    """Keys that are swept beside one."""
-    return [name for name in _swept(table) if name != key]
+    shown = [_panel(mean, scatter, name, key, looks) for name in drawn]
+    rows = [replace(panel, beside=n % 2 == 1) for n, panel in enumerate(shown)]
+    return Chart((*rows, *([_bands(mean, key)] if FORCE_LEVEL.name in mean else [])))
 
 
 def key_caption(mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str) -> str:
     """Say what the figure of a key shows."""
-    others = _others(mean, key)
-    told = [str(mean[key].attrs["long_name"])]
+    told, others = [str(mean[key].attrs["long_name"])], _others(mean, key)
     if scatter is not None:
         told.append("mean ± standard deviation over the seeds")
     if others:
@@ -210,32 +176,64 @@ def key_caption(mean: xarray.Dataset, scatter: xarray.Dataset | None, key: str) 
     return f"{key}: {', '.join(told)}."
 
 
+def _says_something(found: xarray.DataArray) -> bool:
+    """Whether a quantity without bands is anywhere neither missing nor zero."""
+    flat = not any(str(dim).endswith(BAND.name) for dim in found.dims)
+    return flat and bool((np.nan_to_num(np.asarray(found.values, dtype=float)) != 0.0).any())
+
+
+def _others(table: xarray.Dataset, key: str) -> list[str]:
+    """Keys that are swept beside one."""
+    return _others_of(table[WEIGHTED if WEIGHTED in table else "mean_force"], LAW.name, key)[0]
+
+
 def _main(table: xarray.Dataset) -> str:
     return str(table[LAW.name].values[0])
 
 
-def _scale(values: xarray.DataArray) -> tuple[float, str, str]:
+def _scale(found: xarray.DataArray) -> tuple[float, str, str]:
     """Unit in which a quantity reads well, in SI, the name of the quantity and that of the unit."""
-    what = str(values.attrs["long_name"]).removeprefix("A-weighted ").partition(",")[0].partition(":")[0]
-    units = str(values.attrs["units"])
+    what = str(found.attrs["long_name"]).removeprefix("A-weighted ").partition(",")[0].partition(":")[0]
+    units = str(found.attrs["units"])
     if units == "1":
-        size, unit = 0.01, "%"
-    elif units.startswith("dB"):
-        size, unit = 1.0, written_units(units)
-    else:
-        largest = np.nanmax(np.abs(values.values))
-        power = 3 * math.floor(math.log10(largest) / 3) if largest > 0 else 0
-        power = min(max(power, -9), 9)
-        size, unit = 10.0**power, f"{_PREFIXES[power]}{units}"
-    return size, what, unit
+        return 0.01, what, "%"
+    if units.startswith("dB"):
+        return 1.0, what, data.written_units(units)
+    largest = np.nanmax(np.abs(found.values))
+    power = 3 * math.floor(math.log10(largest) / 3) if largest > 0 else 0
+    power = min(max(power, -9), 9)
+    return 10.0**power, what, f"{_PREFIXES[power]}{units}"
+
+
+def _panel(mean: xarray.Dataset, scatter: xarray.Dataset | None, name: str, key: str, looks: Looks) -> Panel:
+    """One quantity over a key, and how far its points scatter."""
+    size, what, unit = _scale(mean[name])
+    is_words = mean[key].dtype.kind == "U"
+    places = _places(mean[key])
+    order = np.argsort(places)
+    marks: list[Mark] = []
+    lines = list(_lines(mean, name, key, looks))
+    for place, look in lines:
+        found = _over_places(_along(mean[name], key, place)) / size
+        apart = {"width": 0.0} if is_words else {}  # nothing lies between words
+        line = Line(places[order], found[order], **{"marker": "o", **look, **apart})
+        if scatter is not None:
+            by = np.nanmean(_along(scatter[name], key, place), axis=1)[order] / size
+            if np.isfinite(by).any():
+                marks.append(Boxes(line.x, line.x, line.y - by, line.y + by, edge=line.colour, law=line.law))
+        marks.append(line)
+    law_unsaid = (
+        LAW.name in mean[name].dims
+        and lines[0][1]["label"] not in mean[LAW.name].values
+        and not _others(mean, key)
+    )
+    title = f"{what}, {_main(mean)}" if law_unsaid else what
+    return Panel(_key_axis(mean[key]), Axis(unit), tuple(marks), title, height=2.55)
 
 
 def _lines(
-    table: xarray.Dataset,
-    name: str,
-    key: str,
-    looks: Mapping[str, Mapping[str, Any]],
-) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    table: xarray.Dataset, name: str, key: str, looks: Looks
+) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
     """Places that a line of a quantity goes through, and how it looks: laws, or values of other keys.
 
     Of what is told apart by other words, as what radiates, a line for each of them, or where other keys are
@@ -244,73 +242,47 @@ def _lines(
     held, others = table[name], _others(table, key)
     law = {LAW.name: _main(table)} if LAW.name in held.dims else {}
     own = [str(dim) for dim in held.dims if dim not in (key, *others, LAW.name, *PLACES)]
-    if not others and own:
-        found = [word for word in table[own[0]].values if held.sel({**law, own[0]: word}).notnull().any()]
-        return [
-            ({**law, own[0]: word}, {**look, "label": str(word)})
-            for word, look in zip(found, sequence_styles(len(found)), strict=True)
-        ]
-    if not others:
-        laws = main_last(map(str, table[LAW.name].values)) if law else []
-        lines = [({LAW.name: each}, {**looks.get(each, {}), "label": each}) for each in laws]
-        return lines or [({}, {"colour": INK, "label": ""})]
-    here = law | {dim: table[dim].values[-1] for dim in own}
-    places = list(product(*(range(table.sizes[name]) for name in others)))[:MOST_LINES]
-    lines = []
-    for place, look in zip(places, sequence_styles(len(places)), strict=True):
-        at = {name: table[name].values[n] for name, n in zip(others, place, strict=True)}
-        words = [f"{name} {typed_words(table[name])[n]}" for name, n in zip(others, place, strict=True)]
-        lines.append(({**here, **at}, {**look, "label": ", ".join(words)}))
-    return lines
+    if others:
+        here = law | {dim: table[dim].values[-1] for dim in own}
+        found = list(product(*(range(table.sizes[dim]) for dim in others)))[:MOST_LINES]
+        for place, look in zip(found, sequence_styles(len(found)), strict=True):
+            at = {dim: table[dim].values[n] for dim, n in zip(others, place, strict=True)}
+            words = [f"{dim} {data.typed_words(table[dim])[n]}" for dim, n in zip(others, place, strict=True)]
+            yield here | at, {**look, "label": ", ".join(words)}
+    elif own:
+        words = [word for word in table[own[0]].values if held.sel({**law, own[0]: word}).notnull().any()]
+        for word, look in zip(words, sequence_styles(len(words)), strict=True):
+            yield {**law, own[0]: word}, {**look, "label": str(word)}
+    elif law:
+        for each in _laws(table):
+            yield {LAW.name: each}, {**looks.get(each, {}), "label": each}
+    else:
+        yield {}, {"colour": INK, "label": ""}
 
 
-def _along(table: xarray.Dataset, name: str, key: str, place: Mapping[str, Any]) -> xarray.DataArray:
-    """A quantity over a key and over the places on a body."""
-    held = table[name].sel({dim: at for dim, at in place.items() if dim in table[name].dims})
-    rest = [dim for dim in held.dims if dim != key]
-    return held.stack(place=rest, create_index=False) if rest else held.expand_dims("place", -1)
+def _along(found: xarray.DataArray, key: str, place: Mapping[str, Any]) -> Numbers:
+    """A quantity over a key and over the places on a body (key, place)."""
+    held = found.sel({dim: at for dim, at in place.items() if dim in found.dims}).transpose(key, ...)
+    return np.asarray(held.values, dtype=float).reshape(held.sizes[key], -1)
 
 
-def _over_places(level: xarray.DataArray) -> xarray.DataArray:
+def _over_places(level: Numbers) -> Numbers:
     """Energy mean of levels at several places."""
-    if level.sizes["place"] == 1:
-        return level.isel(place=0)
-    power: xarray.DataArray = 10.0 ** (level / 10.0)
-    mean = power.mean("place")
-    return mean.copy(data=10.0 * np.log10(mean.values))
-
-
-def _over_key(
-    key: xarray.DataArray,
-    found: xarray.DataArray,
-    reach: xarray.DataArray | None,
-    look: Mapping[str, Any],
-) -> list[Boxes | Line]:
-    """A line over a key, and how far its points scatter."""
-    place = _places(key)
-    order = np.argsort(place)
-    x, y = place[order], np.asarray(found.values, dtype=float)[order]
-    apart = {"width": 0.0} if _is_words(key) else {}  # nothing lies between words
-    line = Line(x, y, **{"marker": "o", **look, **apart})
-    if reach is None or not np.isfinite(reach.values).any():
-        return [line]
-    by = reach.values[order]
-    return [Boxes(x, x, y - by, y + by, edge=line.colour, law=line.law), line]
-
-
-def _is_words(key: xarray.DataArray) -> bool:
-    return bool(key.dtype.kind == "U")
+    if level.shape[1] == 1:
+        return level[:, 0]
+    return np.asarray(10.0 * np.log10(np.nanmean(10.0 ** (level / 10.0), axis=1)))
 
 
 def _places(key: xarray.DataArray) -> Numbers:
     """Places of the values of a key on its axis: themselves, or their numbers where they are words."""
-    return np.array(range(key.size) if _is_words(key) else typed_values(key), dtype=float)
+    is_words = key.dtype.kind == "U"
+    return np.array(range(key.size) if is_words else data.typed_values(key), dtype=float)
 
 
 def _key_axis(key: xarray.DataArray) -> Axis:
-    if _is_words(key):
-        return words_axis(typed_values(key), str(key.name))
-    x, unit = _places(key), typed_unit(key)
+    if key.dtype.kind == "U":
+        return panels.words_axis(data.typed_values(key), str(key.name))
+    x, unit = _places(key), data.typed_unit(key)
     label = f"{key.name} / {unit}" if unit not in ("", "1") else str(key.name)
     low, high = float(x.min()), float(x.max())
     if low > 0 and high / low > SPREAD:
@@ -325,14 +297,11 @@ def _bands(table: xarray.Dataset, key: str) -> Panel:
     count, others = table.sizes[key], _others(table, key)
     shown = np.unique(np.linspace(0, count - 1, min(count, MOST_LINES)).round().astype(int))
     here = table.isel(dict.fromkeys(others, 0)).sel({LAW.name: _main(table)})
-    band, words = table[BAND.name].values, typed_words(table[key])
-    marks: list[Mark] = []
-    if BAND_TIME_PRODUCT.name in here:
-        little = say_little(here[BAND_TIME_PRODUCT.name], here.get(START_SHARE.name, 0.0))
-        marks += doubtful_boxes(band, little.any([dim for dim in little.dims if dim != BAND.name]).values)
+    band, words = table[BAND.name].values, data.typed_words(table[key])
+    marks = _shades(here)
     for at, look in zip(shown, sequence_styles(len(shown)), strict=True):
         level = here[FORCE_LEVEL.name].isel({key: at}).values
         marks.append(Line(band, level, words[at], marker="o", **look))
-    first = "".join(f", {name} {typed_words(table[name])[0]}" for name in others)
+    first = "".join(f", {name} {data.typed_words(table[name])[0]}" for name in others)
     axis = Axis("force level / dB re 1 N")
-    return Panel(band_axis(band), axis, tuple(marks), f"{_main(table)}{first}", height=3.2)
+    return Panel(panels.band_axis(band), axis, tuple(marks), f"{_main(table)}{first}", height=3.2)

@@ -1,32 +1,19 @@
-"""Tables of the report that all kinds of case share: statistics, differences of laws, loss of contact."""
+"""Tables of a page, declared by their columns; and those that all kinds of case share."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import repeat
+from typing import Any
 
 import numpy as np
 from xarray import DataTree
 
-from asperity.reporting.data import (
-    doubtful,
-    engineering,
-    json_list,
-    laws,
-    nominal_band,
-    of_law,
-    present,
-    stored_variable,
-    values,
-)
-from asperity.reporting.law_entries import differences, law_entry
-from asperity.schema import Entry, contact, rolling, surface
-from asperity.schema.spectra import (
-    BAND,
-    BAND_TIME_PRODUCT,
-    FORCE_LEVEL_DIFFERENCE_TO_REFERENCE,
-    FORCE_LEVEL_DIFFERENCES,
-    PRACTICE,
-)
+from asperity.reporting import data
+from asperity.reporting.chart import Flags, Numbers
+from asperity.schema import Attribute, Entry, contact, rolling, spectra, surface
 from asperity.spectra import LEAST_PRODUCT
 
 
@@ -49,173 +36,243 @@ class ReportTable:
     note: str = ""
 
 
-def text_cell(found: object) -> Cell:
-    """Field of words."""
-    return Cell(str(found))
+def table(name: str, title: str, columns: Mapping[str, Sequence[Cell]], note: str = "") -> ReportTable:
+    """Lay out columns by their heads, all of one length."""
+    rows = [list(row) for row in zip(*columns.values(), strict=True)]
+    return ReportTable(name, title, list(columns), rows, note)
+
+
+def text_cells(found: Iterable[object], look: str = "") -> list[Cell]:
+    """Column of words."""
+    return [Cell(str(word), look) for word in found]
+
+
+Writer = Callable[[float], str]
+
+
+def number_cells(
+    found: Iterable[float], write: str | Writer, look: str | Iterable[str] = "number"
+) -> list[Cell]:
+    """Column of numbers in a unit, ``"m/s²"``, in a format, ``"{:.1f}"``, or as a function writes them.
+
+    A dash stands where there is none. All have one look, or each its own.
+    """
+    how = partial(data.engineering, unit=write) if isinstance(write, str) and "{" not in write else write
+    told = how.format if isinstance(how, str) else how
+    looks = repeat(look) if isinstance(look, str) else look
+    cells = zip(found, looks, strict=False)
+    return [Cell(told(float(each)) if np.isfinite(each) else "–", own) for each, own in cells]
+
+
+def band_cells(bands: Iterable[float], doubtful: Flags) -> list[Cell]:
+    """Column of one-third octaves, in grey where they say little."""
+    return number_cells(
+        bands, data.nominal_band, ["number faint" if doubt else "number" for doubt in doubtful]
+    )
+
+
+def change_cells(
+    changes: Numbers, doubtful: Flags, off: float = 1.0, far: float = 3.0, places: int = 1
+) -> list[Cell]:
+    """Column of level differences, shaded above two sizes; in grey and in brackets where they say little."""
+
+    def cell(change: float, doubt: bool) -> Cell:
+        if not np.isfinite(change):
+            return Cell("–", "number")
+        if doubt:
+            return Cell(f"({data.signed(change)})", "number faint")
+        return Cell(data.signed(change, places), "number" + size_look(change, off, far))
+
+    return [cell(float(change), bool(doubt)) for change, doubt in zip(changes, doubtful, strict=True)]
+
+
+def size_look(change: float, off: float, far: float) -> str:
+    """Look of a change by its size; a blank comes first."""
+    return " far" if abs(change) > far else " off" if abs(change) > off else ""
+
+
+def listed_table(
+    tree: DataTree,
+    attribute: Attribute,
+    titles: tuple[str, str],
+    columns: Mapping[str, Any],
+    note: str,
+) -> ReportTable | None:
+    """Lay out a list in an attribute of a result: of each column the key, or how its cell is made."""
+    found = data.json_list(tree, attribute)
+    cells = {
+        head: [Cell(str(each.get(how, ""))) if isinstance(how, str) else how(each) for each in found]
+        for head, how in columns.items()
+    }
+    return table(*titles, cells, note) if found else None
+
+
+# --- the texture
 
 
 def statistics_table(tree: DataTree) -> ReportTable | None:
     """Statistics of the texture, each with the bandwidth it holds for."""
-    found = json_list(tree, surface.STATISTICS)
-    if not found:
-        return None
-    rows = []
-    for entry in found:
-        value, unit = entry.get("value"), str(entry.get("unit", ""))
-        shown = engineering(float(value), unit) if isinstance(value, int | float) else "–"
-        names = [str(entry.get(name, "")) for name in ("symbol", "meaning", "surface")]
-        rows.append(
-            [
-                text_cell(names[0]),
-                text_cell(names[1]),
-                text_cell(names[2]),
-                Cell(shown, "number"),
-                text_cell(entry.get("bandwidth", "")),
-            ]
-        )
+
+    def value(entry: dict[str, Any]) -> Cell:
+        found = entry.get("value")
+        number = float(found) if isinstance(found, int | float) else np.nan
+        return Cell(data.engineering(number, str(entry.get("unit", ""))), "number")
+
+    columns = {
+        "symbol": "symbol",
+        "meaning": "meaning",
+        "of": "surface",
+        "value": value,
+        "bandwidth": "bandwidth",
+    }
     note = "A statistic of a texture holds for its bandwidth of wavelengths only."
-    return ReportTable(
-        "statistics",
-        "Statistics of the texture",
-        ["symbol", "meaning", "of", "value", "bandwidth"],
-        rows,
-        note,
-    )
+    return listed_table(tree, surface.STATISTICS, ("statistics", "Statistics of the texture"), columns, note)
 
 
 def homogeneity_table(tree: DataTree) -> ReportTable | None:
     """Whether the measured maps are the same everywhere."""
-    tested = stored_variable(tree, surface.HOMOGENEITY_P)
-    if tested is None or not present(tree, surface.TILE_VARIATION, surface.TILE_VARIATION_EXPECTED):
-        return None
-    significance = float(tested.attrs["significance"])
     shown = (surface.TILE_VARIATION, surface.TILE_VARIATION_EXPECTED, surface.HOMOGENEITY_P)
-    columns = [values(tree, entry, "sample") for entry in shown]
-    rows = []
-    for number, (variation, expected, p) in enumerate(zip(*columns, strict=True), start=1):
-        same = bool(p > significance)
-        cells = [in_percent(variation), in_percent(expected), f"{p:.2g}"]
-        look = "number" if same else "number off"
-        told = "as far as chance tells" if same else "no"
-        rows.append([Cell(str(number), "number"), *(Cell(text, look) for text in cells), text_cell(told)])
+    if not data.present(tree, *shown):
+        return None
+    significance = float(data.variable_of(tree, surface.HOMOGENEITY_P).attrs["significance"])
+    variation, expected, p = (data.values(tree, entry) for entry in shown)
+    looks = ["number" if same else "number off" for same in p > significance]
+    columns = {
+        "map": text_cells(range(1, len(p) + 1), "number"),
+        "tiles vary by": number_cells(variation, data.in_percent, looks),
+        "by chance": number_cells(expected, data.in_percent, looks),
+        "p": number_cells(p, "{:.2g}", looks),
+        "same everywhere?": text_cells(
+            "as far as chance tells" if same else "no" for same in p > significance
+        ),
+    }
     note = (
         "Coefficient of variation of the mean squares of tiles; p: share of stationary textures with the "
         "same spectrum and heights that vary as much. At p ≤ "
         f"{significance:g} a map is not the same everywhere; one in twenty is so by chance."
     )
-    head = ["map", "tiles vary by", "by chance", "p", "same everywhere?"]
-    return ReportTable("homogeneity", "Homogeneity of the measured maps", head, rows, note)
+    return table("homogeneity", "Homogeneity of the measured maps", columns, note)
 
 
 def population_table(tree: DataTree) -> ReportTable | None:
     """Whether samples and path are one population and one stiffness is enough, and what follows in dB."""
-    found = json_list(tree, contact.POPULATION)
-    if not found:
-        return None
-    rows = [
-        [
-            text_cell(entry.get("question", "")),
-            Cell(str(entry.get("value", "")), _GRADED.get(str(entry.get("grade", "")), "")),
-            text_cell(entry.get("answer", "")),
-        ]
-        for entry in found
-    ]
+    looks = {"out of range": "far", "warning": "off"}
+
+    def here(entry: dict[str, Any]) -> Cell:
+        return Cell(str(entry.get("value", "")), looks.get(str(entry.get("grade", "")), ""))
+
     note = (
         "Stiffness: dF/dr of each sample under the load. Maps and parts of the path are told apart by "
         "analysis of variance of their levels, at p ≤ 0.01. Direction: spectra of lines along the path over "
         "those of lines across, for wavelengths from half the length of the contact up. Shaded: more than "
         "1 dB, 3 dB."
     )
-    return ReportTable("population", "One population?", ["question", "here", "answer"], rows, note)
+    columns = {"question": "question", "here": here, "answer": "answer"}
+    return listed_table(tree, contact.POPULATION, ("population", "One population?"), columns, note)
 
 
-_GRADED = {"out of range": "far", "warning": "off"}
+_CONDITIONS = (contact.TRACK_RMS, contact.TRACK_SLOPE, contact.TRACK_AREA_RATIO, contact.TRACK_STIFFNESS)
+
+
+def condition_table(tree: DataTree) -> ReportTable | None:
+    """The track before and after running-in."""
+    if not data.present(tree, *_CONDITIONS):
+        return None
+    found = [data.variable_of(tree, entry) for entry in _CONDITIONS]
+    before, after = ([float(each.sel(condition=name)) for each in found] for name in ("before", "after"))
+    units = [entry.units for entry in _CONDITIONS]
+    change = [100 * (new / old - 1) if old else np.nan for old, new in zip(before, after, strict=True)]
+    columns = {
+        "quantity": text_cells(entry.long_name for entry in _CONDITIONS),
+        "before": text_cells(map(data.engineering, before, units), "number"),
+        "after": text_cells(map(data.engineering, after, units), "number"),
+        "change": number_cells(change, lambda each: f"{each:+.1f} %".replace("-", "−")),
+    }
+    share = data.number(tree, contact.YIELDED_SHARE) or 0.0
+    note = (
+        f"{data.in_percent(share)} of the area that carried pressure has yielded. Before: the first "
+        "contact, with the pressure capped at the hardness. All else in this report is of the surface after "
+        "running-in."
+    )
+    return table("running_in_statistics", "Running-in", columns, note)
+
+
+def passes_table(tree: DataTree) -> ReportTable | None:
+    """What each pass lowered."""
+    if not data.present(tree, contact.RUNNING_IN_PASS, contact.RUNNING_IN_LOWERING):
+        return None
+    columns = {
+        "pass": number_cells(data.values(tree, contact.RUNNING_IN_PASS), "{:.0f}"),
+        "largest lowering": number_cells(data.values(tree, contact.RUNNING_IN_LOWERING), "m"),
+        "share of the touched area that yields": number_cells(
+            data.values(tree, contact.RUNNING_IN_YIELDING), data.in_percent
+        ),
+    }
+    done = "The last pass changed nothing beyond 1/1000 of the smooth bodies' approach: the next is elastic."
+    more = "The last pass still lowered places by more than 1/1000 of the smooth bodies' approach."
+    note = done if data.number(tree, contact.SHAKEN_DOWN) else more
+    return table("running_in_passes", "Passes of running-in", columns, note)
+
+
+# --- the laws
 
 
 def practice_table(tree: DataTree) -> ReportTable | None:
-    """Level differences to the filtered linear contact, that of practice, per one-third octave."""
-    entry = FORCE_LEVEL_DIFFERENCES[PRACTICE]
-    return _differences_table(tree, "practice", entry, differences(tree).get(entry))
+    """Level differences to the linear law of practice per one-third octave."""
+    entry = spectra.FORCE_LEVEL_DIFFERENCES[spectra.PRACTICE]
+    return _differences_table(tree, "practice", entry, data.differences(tree).get(entry))
 
 
 def reference_table(tree: DataTree) -> ReportTable | None:
     """Level differences to the reference law per one-third octave."""
-    compared = stored_variable(tree, FORCE_LEVEL_DIFFERENCE_TO_REFERENCE)
+    entry = spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE
+    compared = data.stored_variable(tree, entry)
     solved = None if compared is None else str(compared.attrs["reference"])
-    return _differences_table(tree, "reference", FORCE_LEVEL_DIFFERENCE_TO_REFERENCE, solved)
+    return _differences_table(tree, "reference", entry, solved)
 
 
 def _differences_table(tree: DataTree, name: str, entry: Entry, to: str | None) -> ReportTable | None:
-    names = [law for law in laws(tree, entry) if law != to]
-    if to is None or not names or not present(tree, BAND):
+    laws = [law for law in data.laws(tree, entry) if law != to]
+    if to is None or not laws or not data.present(tree, spectra.BAND):
         return None
-    found = np.array([of_law(tree, entry, law, "band") for law in names])
-    bands, faint = values(tree, BAND), doubtful(tree, BAND_TIME_PRODUCT)
-    rows = [
-        [
-            Cell(nominal_band(f), "number faint" if doubt else "number"),
-            *(_difference(d, doubt) for d in column),
-        ]
-        for f, column, doubt in zip(bands, found.T, faint, strict=True)
-    ]
-    told = [row[np.isfinite(row) & ~faint] for row in found]
-    mean = [signed(row.mean()) if row.size else "–" for row in told]
-    largest = [f"{np.abs(row).max():.1f}" if row.size else "–" for row in told]
-    rows.append([Cell("mean", "total"), *(Cell(text, "number total") for text in mean)])
-    rows.append([Cell("largest size", "total"), *(Cell(text, "number total") for text in largest)])
+    faint = data.doubtful(tree, spectra.BAND_TIME_PRODUCT)
+    ends = text_cells(("mean", "largest size"), "total")
+    columns = {"band / Hz": [*band_cells(data.values(tree, spectra.BAND), faint), *ends]}
+    for law in laws:
+        found = data.of_law(tree, entry, law)
+        told = found[np.isfinite(found) & ~faint]
+        ends = text_cells(
+            [data.signed(told.mean()), f"{np.abs(told).max():.1f}"] if told.size else "––", "number total"
+        )
+        columns[law] = [*change_cells(found, faint), *ends]
     note = "Shaded: more than 1 dB, more than 3 dB away."
     if faint.any():
         note += (
             " In grey and in brackets: bands whose bandwidth times averaging time is below "
             f"{LEAST_PRODUCT:g}, or that hold the start; they say little, and are not in the last two rows."
         )
-    title = f"Contact force level minus that of {to}, in dB"
-    return ReportTable(name, title, ["band / Hz", *names], rows, note)
+    return table(name, f"Contact force level minus that of {to}, in dB", columns, note)
 
 
-def signed(difference: float) -> str:
-    """Write a difference in dB with its sign."""
-    rounded = round(float(difference), 1)
-    return "–" if not np.isfinite(difference) else f"{rounded:+.1f}".replace("-", "−") if rounded else "0.0"
-
-
-def _difference(value: float, doubt: bool) -> Cell:
-    size = abs(value)
-    if doubt:
-        return Cell(f"({signed(value)})", "number faint")
-    look = " far" if size > 3 else " off" if size > 1 else ""
-    return Cell(signed(value), "number" + look)
-
-
-def in_percent(share: float) -> str:
-    """Write a share in per cent."""
-    return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
-
-
-def _pulling_words(names: list[str]) -> str:
-    if not names:
-        return ""
-    verb = "pulls" if len(names) == 1 else "pull"
-    return f"{' and '.join(names)} cannot lose contact, but {verb} where others let go."
+LOSSES: dict[Entry, tuple[str, str | Writer]] = {
+    rolling.CONTACT_LOSS_SHARE: ("time without contact", data.in_percent),
+    rolling.CONTACT_LOSS_EVENTS: ("events", "{:.0f}"),
+    rolling.LONGEST_LOSS: ("longest", lambda time: data.engineering(time, "s") if time > 0 else "–"),
+}
 
 
 def loss_table(tree: DataTree) -> ReportTable | None:
     """Share of time without contact, number of events and the longest, per law."""
-    names = laws(tree, rolling.CONTACT_LOSS_SHARE)
-    if not names:
+    laws = data.laws(tree, rolling.CONTACT_LOSS_SHARE)
+    if not laws:
         return None
-    shown = {
-        rolling.CONTACT_LOSS_SHARE: ("time without contact", in_percent),
-        rolling.CONTACT_LOSS_EVENTS: ("events", lambda events: f"{events:.0f}"),
-        rolling.LONGEST_LOSS: ("longest", lambda time: engineering(time, "s") if time > 0 else "–"),
+    columns = {
+        head: number_cells([float(data.of_law(tree, entry, law)) for law in laws], write)
+        for entry, (head, write) in LOSSES.items()
+        if data.present(tree, entry)
     }
-    held = {entry: told for entry, told in shown.items() if present(tree, entry)}
-    rows = [
-        [text_cell(law)]
-        + [Cell(write(float(of_law(tree, entry, law))), "number") for entry, (_, write) in held.items()]
-        for law in names
-    ]
-    note = _pulling_words([law for law in names if law_entry(tree, law).may_pull])
-    return ReportTable(
-        "contact_loss", "Loss of contact", ["law", *(name for name, _ in held.values())], rows, note
-    )
+    pulling = [law for law in laws if law in data.pulling(tree)]
+    verb, note = "pulls" if len(pulling) == 1 else "pull", ""
+    if pulling:
+        note = f"{' and '.join(pulling)} cannot lose contact, but {verb} where others let go."
+    return table("contact_loss", "Loss of contact", {"law": text_cells(laws), **columns}, note)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from asperity.config.case import Case
     from asperity.progress import Progress
-    from asperity.reporting.chapter import Chapter
+    from asperity.reporting.figure import Chapter
     from asperity.scenarios.geometry import Geometry
     from asperity.scenarios.laws import OwnContact
     from asperity.scenarios.measure import Measure
@@ -150,10 +150,7 @@ class Kind:
     @property
     def chapters(self) -> tuple[Chapter, ...]:
         """Chapters of its report, and the last one of all kinds."""
-        from asperity.reporting.chapter import UNCERTAINTY
-
-        found: tuple[Chapter, ...] = self.offers("chapters", "CHAPTERS")
-        return (*found, UNCERTAINTY)
+        return (*self.offers("chapters", "CHAPTERS"), self.offers("chapters", "UNCERTAINTY"))
 
     def settings_of(self, case: Case) -> list[Setting]:
         """How finely its bodies are resolved, beside what all kinds have."""

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.data import engineering, laws, of_law, present, stored_variable, values
+from asperity.reporting import data
 from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
-from asperity.reporting.tables import Cell, ReportTable, text_cell
+from asperity.reporting.tables import number_cells, table, text_cells
 from asperity.scenes.schema import ACCELERATION, ACCELERATION_LEVEL
 from asperity.schema.spectra import BAND
 from asperity.spectra import a_weighting, energy_sum
@@ -19,50 +18,32 @@ MOST_SENSORS = 6
 
 def acceleration_answers(tree: DataTree) -> Answers | None:
     """Acceleration at the sensors by the main law: rms, A-weighted level, and the bands that hold it."""
-    if not present(tree, ACCELERATION, ACCELERATION_LEVEL, BAND):
+    main = next(iter(data.laws(tree, ACCELERATION)), None)
+    if main is None or main not in data.laws(tree, ACCELERATION_LEVEL) or not data.present(tree, BAND):
         return None
-    main = laws(tree, ACCELERATION)[0]
-    if main not in laws(tree, ACCELERATION_LEVEL):
-        return None
-    rms = np.sqrt(np.nanmean(of_law(tree, ACCELERATION, main, "sensor", "time") ** 2, axis=1))
-    levels, bands = of_law(tree, ACCELERATION_LEVEL, main, "sensor", "band"), values(tree, BAND)
-    weighted = np.array([_weighted(bands, level) for level in levels])
-    places = [f"x = {place:g} m" for place in _places(tree)]
+    rms = np.sqrt(np.nanmean(data.of_law(tree, ACCELERATION, main) ** 2, axis=1))
+    levels, bands = data.of_law(tree, ACCELERATION_LEVEL, main), data.values(tree, BAND)
+    known = np.isfinite(levels)
+    loud = [
+        float(energy_sum(level[some] + a_weighting(bands[some]))) if some.any() else np.nan
+        for level, some in zip(levels, known, strict=True)
+    ]
+    weighted = np.array(loud)
+    sensors = data.variable_of(tree, ACCELERATION)["sensor"].values.tolist()
+    places = [f"x = {sensor:g} m" for sensor in sensors]
     most = int(np.nanargmax(rms))
+    strongest = data.engineering(rms[most], "m/s²")
     lead = (
-        f"The structure vibrates most at {places[most]}: {engineering(rms[most], 'm/s²')} rms, half of "
+        f"The structure vibrates most at {places[most]}: {strongest} rms, half of "
         f"its energy in the bands of {deciding_bands(bands, levels[most])}."
     )
     note = f"{weighted[most]:.1f} dB(A) re 1 µm/s², at {places[most]}, the most of {len(places)} sensors"
-    largest = HeadlineNumber("vibration, rms", engineering(rms[most], "m/s²"), note)
-    return Answers(lead, numbers=(largest,), tables=(_table(places, rms, weighted),))
-
-
-def _places(tree: DataTree) -> list[float]:
-    found = stored_variable(tree, ACCELERATION)
-    assert found is not None
-    return [float(place) for place in found["sensor"].values]
-
-
-def _weighted(bands: NDArray[np.float64], level: NDArray[np.float64]) -> float:
-    known = np.isfinite(level)
-    return float(energy_sum(level[known] + a_weighting(bands[known]))) if known.any() else np.nan
-
-
-def _table(places: list[str], rms: NDArray[np.float64], weighted: NDArray[np.float64]) -> ReportTable:
     shown = np.sort(np.argsort(-np.nan_to_num(rms), kind="stable")[:MOST_SENSORS])
-    rows = [
-        [
-            text_cell(places[i]),
-            Cell(engineering(rms[i], "m/s²"), "number"),
-            Cell(_level(weighted[i]), "number"),
-        ]
-        for i in shown
-    ]
-    head = ["sensor at", "rms", "A-weighted / dB(A) re 1 µm/s²"]
-    note = f"The {len(shown)} of {len(places)} sensors that vibrate most." if len(shown) < len(places) else ""
-    return ReportTable("vibration_sensors", "Vibration at the sensors", head, rows, note)
-
-
-def _level(value: float) -> str:
-    return f"{value:.1f}" if np.isfinite(value) else "–"
+    columns = {
+        "sensor at": text_cells(places[n] for n in shown),
+        "rms": number_cells(rms[shown], "m/s²"),
+        "A-weighted / dB(A) re 1 µm/s²": number_cells(weighted[shown], "{:.1f}"),
+    }
+    few = f"The {len(shown)} of {len(places)} sensors that vibrate most." if len(shown) < len(places) else ""
+    listed = table("vibration_sensors", "Vibration at the sensors", columns, few)
+    return Answers(lead, numbers=(HeadlineNumber("vibration, rms", strongest, note),), tables=(listed,))

@@ -10,20 +10,11 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from xarray import DataTree
 
+from asperity.reporting import data
 from asperity.reporting.chart import COLOURS
-from asperity.reporting.data import (
-    json_list,
-    laws,
-    number,
-    of_law,
-    present,
-    stated,
-    values,
-)
-from asperity.reporting.force_figures import FORCE_BANDS, FORCE_ENVELOPE
-from asperity.reporting.law_entries import law_colours, law_entries
 from asperity.reporting.page import page_figure
 from asperity.results import read_result
+from asperity.scenes.figures.force import FORCE_BANDS, FORCE_ENVELOPE
 from asperity.schema import contact, provenance, surface
 from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
 from asperity.serving.blocks import told_blocks
@@ -40,24 +31,24 @@ STRETCH = 4
 def viewed_run(path: str) -> dict[str, Any]:
     """Everything that the page draws of a run, by the path of its ``run.nc``."""
     tree = read_result(path)
-    colours = law_colours(tree)
+    colours = data.law_colours(tree)
     return {
-        "title": stated(tree, provenance.TITLE) or "",
-        "verdict": stated(tree, provenance.VERDICT) or "",
+        "title": data.stated(tree, provenance.TITLE) or "",
+        "verdict": data.stated(tree, provenance.VERDICT) or "",
         "warnings": [
             {"grade": str(each.get("grade", "warning")), "message": str(each.get("message", ""))}
-            for each in json_list(tree, provenance.WARNINGS)
+            for each in data.json_list(tree, provenance.WARNINGS)
         ],
         "laws": [
             {"name": law.name, "colour": law.colour, "dark": colours[law.colour]}
-            for law in law_entries(tree).values()
+            for law in data.law_entries(tree).values()
         ],
         "force": _force(tree),
         "texture": _texture(tree),
         "patch": {
-            "along": number(tree, contact.HERTZ_RADIUS),
-            "across": number(tree, contact.HERTZ_RADIUS_ACROSS),
-            "load": number(tree, contact.WORKING_LOAD),
+            "along": data.number(tree, contact.HERTZ_RADIUS),
+            "across": data.number(tree, contact.HERTZ_RADIUS_ACROSS),
+            "load": data.number(tree, contact.WORKING_LOAD),
         },
         "sounds": sorted(file.name for file in (Path(path).parent / SOUNDS).glob("*.wav")),
         **_figures(tree),
@@ -66,11 +57,11 @@ def viewed_run(path: str) -> dict[str, Any]:
 
 def _force(tree: DataTree) -> dict[str, Any] | None:
     """Force of each law, sample by sample over the texture that is kept."""
-    if not present(tree, CONTACT_FORCE, TIME, POSITION):
+    if not data.present(tree, CONTACT_FORCE, TIME, POSITION):
         return None
-    time, position = values(tree, TIME, "time"), values(tree, POSITION, "time")
+    time, position = data.values(tree, TIME), data.values(tree, POSITION)
     count = min(int(np.searchsorted(position - position[0], _watched(tree), side="right")), PIECE, len(time))
-    pieces = {law: of_law(tree, CONTACT_FORCE, law, "time")[:count] for law in laws(tree, CONTACT_FORCE)}
+    pieces = {law: data.of_law(tree, CONTACT_FORCE, law)[:count] for law in data.laws(tree, CONTACT_FORCE)}
     return {
         "watched": float(time[count - 1] - time[0]),
         "distance": position[:count] - position[0],
@@ -81,20 +72,20 @@ def _force(tree: DataTree) -> dict[str, Any] | None:
 
 def _watched(tree: DataTree) -> float:
     """Length of the texture that is kept, m; of a line, of its first points."""
-    along = surface.PATH_X if present(tree, surface.PATH_HEIGHTS) else surface.DISTANCE
-    if not present(tree, along):
+    along = surface.PATH_X if data.present(tree, surface.PATH_HEIGHTS) else surface.DISTANCE
+    if not data.present(tree, along):
         return np.inf
-    return float(values(tree, along)[:LINE_POINTS][-1])
+    return float(data.values(tree, along)[:LINE_POINTS][-1])
 
 
 def _texture(tree: DataTree) -> dict[str, Any] | None:
     """Heights that are rolled over, seen from above; where there is only a line, that."""
-    if present(tree, surface.PATH_HEIGHTS):
-        heights = _about_long_waves(values(tree, surface.PATH_HEIGHTS, "path_x", "path_y"))
-        dx, dy = (_spacing(values(tree, entry)) for entry in (surface.PATH_X, surface.PATH_Y))
-    elif present(tree, surface.LINE):
-        heights = values(tree, surface.LINE, "distance")[:LINE_POINTS, None]
-        dx, dy = _spacing(values(tree, surface.DISTANCE)), 0.0
+    if data.present(tree, surface.PATH_HEIGHTS):
+        heights = _about_long_waves(data.values(tree, surface.PATH_HEIGHTS))
+        dx, dy = (_spacing(data.values(tree, entry)) for entry in (surface.PATH_X, surface.PATH_Y))
+    elif data.present(tree, surface.LINE):
+        heights = data.values(tree, surface.LINE)[:LINE_POINTS, None]
+        dx, dy = _spacing(data.values(tree, surface.DISTANCE)), 0.0
     else:
         return None
     return {"shape": list(heights.shape), "dx": dx, "dy": dy, "heights": heights - heights.mean()}
@@ -112,5 +103,5 @@ def _spacing(coordinate: NDArray[np.float64]) -> float:
 
 def _figures(tree: DataTree) -> dict[str, str]:
     """Figures of the report that tell most of the force."""
-    found = [part for part in FIGURES if part.drawable(tree)]
-    return told_blocks([page_figure(tree, part, part.collect(tree), COLOURS) for part in found])
+    found = [figure for figure in FIGURES if figure.drawable(tree)]
+    return told_blocks([page_figure(tree, figure, figure.collect(tree), COLOURS) for figure in found])

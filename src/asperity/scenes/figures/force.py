@@ -1,149 +1,323 @@
-"""Figures of the wheel's contact force: around its largest value, and its spectrum with the track's marks."""
+"""Figures of the contact force: in time, in lines and in one-third octaves."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.axes import levels_axis, linear_frequency_axis
-from asperity.reporting.chart import Chart, Line, Panel, decibels
-from asperity.reporting.data import engineering, laws, number, of_law, present, values
-from asperity.reporting.force_figures import (
-    IN_FREQUENCY,
-    REFERENCE_STYLE,
-    Spectrum,
-    bars_words,
-    cut_off,
-    force_bands,
-    forces_chart,
-    forces_data,
-    main_last,
-    shaded_bands,
-    shaded_words,
-)
-from asperity.reporting.law_entries import law_style
-from asperity.reporting.part import Data, Part, Series, by_law, series
+from asperity.reporting import data, panels
+from asperity.reporting.chart import INK, Axis, Boxes, Chart, Flags, Line, Numbers, Panel, decibels, envelope
+from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.scenes import schema
-from asperity.scenes.figures.marks import pinned_pinned_split, sleeper_tones, split_rules
-from asperity.schema.rolling import CONTACT_FORCE, POSITION, TIME
-from asperity.schema.spectra import BAND, FORCE_PSD, FREQUENCY
+from asperity.scenes.figures import track
+from asperity.schema import rolling, spectra
+from asperity.schema.rolling import CONTACT_FORCE, TIME
 
-AROUND_PEAK = 0.024
-"""Length of the piece around the largest force, s."""
-REFERENCE = schema.LINEAR_REFERENCE_PSD
+FORCES = Of(CONTACT_FORCE, "{law}")
+IN_FREQUENCY = "linear, frequency domain"
+"""Name of the linear contact that is solved there."""
+REFERENCE_STYLE: dict[str, Any] = {"colour": INK, "dashes": (3.0, 3.0), "width": 1.0, "label": IN_FREQUENCY}
+REFERENCE_PSD, REFERENCE_LEVEL = (
+    Of(entry, IN_FREQUENCY, optional=True)
+    for entry in (schema.LINEAR_REFERENCE_PSD, schema.LINEAR_REFERENCE_LEVEL)
+)
+
+
+# --- over frequency
+
+
+def _differences(tree: DataTree) -> Iterator[Series]:
+    """Differences to the linear laws and to the reference law."""
+    compared = data.differences(tree) | {spectra.FORCE_LEVEL_DIFFERENCE_TO_REFERENCE: "reference"}
+    for entry, law in compared.items():
+        for series in Of(entry, "{law}")(tree):
+            yield replace(series, name=f"{series.name} minus {law}")
+
+
+def _bands(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Levels in one-third octaves, and below them the differences to the linear laws."""
+    found = lines.of(spectra.FORCE_LEVEL)
+    levels = panels.styled(tree, lines.at, found, markers=True)
+    reference = [Line(lines.at, s.values, **REFERENCE_STYLE) for s in lines.of(REFERENCE_LEVEL.entry)]
+    label, every = "contact force level / dB re 1 N", [*levels, *reference]
+    yield panels.band_panel(tree, lines, label, every, of=levels, span=100.0, height=3.6)
+    under = (*panels.shaded_bands(tree, labelled=False), panels.zero())
+    for entry, law in data.differences(tree).items():
+        less = panels.styled(tree, lines.at, lines.of(entry), markers=True, main=found[0].law)
+        axis = panels.levels_axis(f"level − {law} / dB", [line.y for line in less], span=np.inf, step=5.0)
+        yield Panel(panels.band_axis(lines.at), axis, (*under, *less), height=2.4)
+
+
+def _bands_caption(tree: DataTree) -> str:
+    text = ["Levels per one-third octave (IEC 61260-1, base 10)."]
+    if data.present(tree, REFERENCE_LEVEL.entry):
+        text.append("Dashed: the linear contact solved in the frequency domain.")
+    if compared := " and that of ".join(data.differences(tree).values()):
+        text.append(f"Below: level minus that of {compared}; positive where linear contact underestimates.")
+    return " ".join(text) + panels.shaded_words(tree)
+
+
+FORCE_BANDS = Figure(
+    "force_bands",
+    "Contact force levels in one-third octaves",
+    Of(spectra.BAND, "band centre"),
+    (
+        panels.products(spectra.BAND_TIME_PRODUCT),
+        Of(spectra.FORCE_LEVEL, "{law}"),
+        _differences,
+        REFERENCE_LEVEL,
+    ),
+    _bands,
+    _bands_caption,
+)
+FORCE_SPECTRUM = Figure(
+    "force_psd",
+    "Contact force against frequency",
+    Of(spectra.FREQUENCY),
+    (Of(spectra.FORCE_PSD, "{law}"),),
+    panels.draw_spectrum("contact force PSD / dB re 1 N²/Hz"),
+    lambda tree: (
+        f"Contact force of all laws, one-sided PSD, {panels.DRAWN}; thick: the main law, "
+        f"{data.laws(tree, spectra.FORCE_PSD)[0]}. Ticks stand at the one-third octaves."
+        + panels.shaded_words(tree)
+    ),
+)
+
 WIDEST = 20.0
 """Widest stretch, Hz, over which lines are averaged for drawing: narrower than what the track imprints."""
 
 
-def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
-    """Time steps within `length` s around the largest force of the main law."""
-    force = of_law(tree, CONTACT_FORCE, laws(tree, CONTACT_FORCE)[0], "time")
-    time = values(tree, TIME)
-    peak = int(np.nanargmax(force))
-    count = len(time)
-    steps = min(count, max(2, round(length * (count - 1) / (time[-1] - time[0]))))
-    start = min(max(peak - steps // 2, 0), count - steps)
-    return slice(start, start + steps)
-
-
-def peak_data(tree: DataTree) -> Data:
-    """Contact force of each law around the largest force of the main law."""
-    return forces_data(tree, around_peak(tree))
-
-
-def _peak_caption(tree: DataTree) -> str:
-    main = laws(tree, CONTACT_FORCE)[0]
-    force = of_law(tree, CONTACT_FORCE, main, "time")
-    peak = int(np.nanargmax(force))
-    where = f"{engineering(force[peak], 'N')} at {values(tree, TIME)[peak]:.4f} s"
-    if present(tree, POSITION):
-        where += f", {values(tree, POSITION)[peak]:.3f} m along the rail"
-    data = peak_data(tree)
-    words = f"{bars_words(tree, data)}{cut_off(tree, data)}"
-    return f"Around the largest force of the main law, {main}: {where}. Every time step.{words}"
-
-
-def force_psd_data(tree: DataTree) -> Data:
-    """Power spectral density of the contact force by each law and by the frequency domain, all lines."""
-    lines: dict[Any, Series] = {**by_law(tree, FORCE_PSD)}
-    if present(tree, REFERENCE):
-        lines[REFERENCE] = series(tree, REFERENCE, IN_FREQUENCY)
-    return Data(series(tree, FREQUENCY), lines)
-
-
-def force_psd_chart(tree: DataTree, data: Data) -> Chart:
-    """Power spectral densities of the contact force on a linear frequency axis, with the track's marks."""
-    high = float(values(tree, BAND if present(tree, BAND) else FREQUENCY)[-1])
-    drawn = {key: _thinned(data.at, psd.values, high) for key, psd in data.lines.items()}
-    reference, main = drawn.pop(REFERENCE, None), next(iter(drawn))
-    lines = [
-        Line(*drawn[law], label=law, **law_style(tree, law, main) | _thin(law, main))
-        for law in main_last(drawn)
-    ]
-    lines += [] if reference is None else [Line(*reference, **REFERENCE_STYLE)]
-    axis = levels_axis("contact force PSD / dB re 1 N²/Hz", [level for _, level in drawn.values()])
-    behind = (*shaded_bands(tree), *sleeper_tones(tree, 0.0, high), *split_rules(tree, 0.0, high))
-    return Chart((Panel(linear_frequency_axis(high), axis, (*behind, *lines), height=4.6),))
-
-
-def _lines_per_point(frequency: NDArray[np.float64]) -> int:
+def _lines_per_point(frequency: Numbers) -> int:
     return max(1, int(WIDEST / (frequency[1] - frequency[0]) + 1e-9)) if len(frequency) > 1 else 1
 
 
-def _thinned(frequency: NDArray[np.float64], psd: NDArray[np.float64], high: float) -> Spectrum:
-    """Level up to `high` Hz in dB, as the mean power of neighbouring lines."""
-    kept = np.flatnonzero((frequency > 0) & (frequency <= high))
-    count = _lines_per_point(frequency)
-    kept = kept[: len(kept) // count * count] if len(kept) >= count else kept[:0]
-    means = [field[kept].reshape(-1, count).mean(axis=1) for field in (frequency, psd)]
-    return means[0], decibels(means[1])
+def _linear_spectrum(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Power spectral densities on a linear frequency axis, with the track's marks."""
+    high = float(
+        data.values(tree, spectra.BAND if data.present(tree, spectra.BAND) else spectra.FREQUENCY)[-1]
+    )
+    count = _lines_per_point(lines.at)
+    kept = np.flatnonzero((lines.at > 0) & (lines.at <= high))
+    kept = kept[: len(kept) // count * count]
+
+    def thinned(numbers: Numbers) -> Numbers:
+        return np.asarray(numbers[kept].reshape(-1, count).mean(axis=1))
+
+    at, levels = thinned(lines.at), [replace(s, values=decibels(thinned(s.values))) for s in lines.lines]
+    laws = [s for s in levels if s.law]
+    axis = panels.levels_axis("contact force PSD / dB re 1 N²/Hz", [s.values for s in laws])
+    behind = (
+        *panels.shaded_bands(tree),
+        *track.sleeper_tones(tree, high),
+        *track.split_rules(tree, high),
+    )
+    drawn = [  # hundreds of lines side by side
+        replace(line, width=1.5 if line.law == laws[0].law else 0.9) for line in panels.styled(tree, at, laws)
+    ]
+    drawn += [Line(at, s.values, **REFERENCE_STYLE) for s in levels if not s.law]
+    frequency = Axis("frequency / Hz", 0.0, high, linked="frequency")
+    yield Panel(frequency, axis, (*behind, *drawn), height=4.6)
 
 
-def _thin(law: str, main: str) -> dict[str, float]:
-    return {"width": 1.5 if law == main else 0.9}  # hundreds of lines side by side
-
-
-def _psd_caption(tree: DataTree) -> str:
-    count = _lines_per_point(values(tree, FREQUENCY))
+def _linear_spectrum_caption(tree: DataTree) -> str:
+    count = _lines_per_point(data.values(tree, spectra.FREQUENCY))
     drawn = f"drawn as mean power of {count} lines" if count > 1 else "every line"
-    text = [f"One-sided PSD, {drawn}; thick: the main law, {laws(tree, FORCE_PSD)[0]}."]
-    if present(tree, REFERENCE):
+    text = [f"One-sided PSD, {drawn}; thick: the main law, {data.laws(tree, spectra.FORCE_PSD)[0]}."]
+    if data.present(tree, REFERENCE_PSD.entry):
         text.append(
             "Dashed: the linear contact in the frequency domain, F = −h/(α_W + α_C + α_R), at rest, with "
             "constant loss factors."
         )
-    tone = number(tree, schema.SLEEPER_PASSING_FREQUENCY)
-    if tone:
+    if tone := data.number(tree, schema.SLEEPER_PASSING_FREQUENCY):
         text.append(f"Ticks along the bottom: sleeper passing, n v/L, every {tone:.1f} Hz.")
-    split = pinned_pinned_split(tree)
-    if split:
+    if split := track.pinned_pinned_split(tree):
         text.append(
             f"Dotted: the pinned–pinned frequency as the moving wheel meets it, {split[0]:.0f} and "
             f"{split[1]:.0f} Hz."
         )
-    turns = number(tree, schema.WHEEL_REVOLUTION_FREQUENCY)
-    if turns:
+    if turns := data.number(tree, schema.WHEEL_REVOLUTION_FREQUENCY):
         text.append(f"The wheel turns at {turns:.1f} Hz.")
-    return " ".join(text) + shaded_words(tree)
+    return " ".join(text) + panels.shaded_words(tree)
 
 
-FORCE_PEAK = Part(
-    "force_peak",
-    "Contact force around its largest value",
-    (CONTACT_FORCE, TIME),
-    peak_data,
-    forces_chart,
-    _peak_caption,
+LINEAR_SPECTRUM = replace(
+    FORCE_SPECTRUM,
+    columns=(*FORCE_SPECTRUM.columns, REFERENCE_PSD),
+    draw=_linear_spectrum,
+    caption=_linear_spectrum_caption,
 )
-FORCE_SPECTRUM = Part(
-    "force_psd",
-    "Contact force against frequency",
-    (FORCE_PSD, FREQUENCY),
-    force_psd_data,
-    force_psd_chart,
-    _psd_caption,
+
+
+# --- in time
+
+COLUMNS = 700  # stretches of an envelope
+PIECE = 2000  # time steps of the short piece, at most
+AROUND = 400  # time steps that are shown around the largest force
+AROUND_PEAK = 0.024
+"""Length of the piece around the largest force, s."""
+
+
+def _main_force(tree: DataTree) -> Numbers:
+    return data.of_law(tree, CONTACT_FORCE, data.laws(tree, CONTACT_FORCE)[0])
+
+
+def lost(tree: DataTree, law: str, force: Numbers) -> Flags:
+    """Where contact is lost, as `force` of `law` shows; nowhere if the contact pulls as well."""
+    share = rolling.CONTACT_LOSS_SHARE
+    never = law in data.laws(tree, share) and data.of_law(tree, share, law) == 0
+    return np.zeros(len(force), dtype=bool) if never or data.law_entry(tree, law).may_pull else force <= 0
+
+
+def _main_flight(tree: DataTree) -> Flags:
+    """Time steps at which the main law has lost contact."""
+    return lost(tree, data.laws(tree, CONTACT_FORCE)[0], _main_force(tree))
+
+
+def piece(tree: DataTree) -> slice:
+    """Short piece of the run: around the main law's longest loss of contact, else in the middle."""
+    flight = _main_flight(tree)
+    count = len(flight)
+    middle = count // 2
+    if flight.any():
+        first, last = max(panels.stretches(flight).tolist(), key=lambda stretch: stretch[1] - stretch[0])
+        middle = (first + last + 1) // 2
+    return _around(middle, min(PIECE, max(count // 5, min(count, 200))), count)
+
+
+def _around(middle: int, length: int, count: int) -> slice:
+    start = min(max(middle - length // 2, 0), count - length)
+    return slice(start, start + length)
+
+
+def around_peak(tree: DataTree, length: float = AROUND_PEAK) -> slice:
+    """Time steps within `length` s around the largest force of the main law."""
+    time = data.values(tree, TIME)
+    steps = min(len(time), max(2, round(length * (len(time) - 1) / (time[-1] - time[0]))))
+    return _around(int(np.nanargmax(_main_force(tree))), steps, len(time))
+
+
+def _forces(tree: DataTree, lines: Lines, **look: Any) -> list[Panel]:
+    """Contact force of all laws over a piece of the run, and below it, where there is any, the loss of it."""
+    axis, unit = panels.time_axis(tree, lines.at)
+    size, symbol = data.force_unit(float(np.nanmax(np.abs(data.values(tree, CONTACT_FORCE)))))
+    low, high = (end / size for end in panels.main_limits(lines.lines, data.pulling(tree)))
+    drawn = [
+        replace(line, opacity=0.5, width=0.8) if np.nanmin(line.y) < low or np.nanmax(line.y) > high else line
+        for line in panels.styled(tree, lines.at / unit, lines.lines, size=size, **look)
+    ]
+    bars = [_bars(tree, s, lines.at / unit, row) for row, s in enumerate(lines.lines)]
+    shades = [panels.shade(bars[0].left, bars[0].right, law=bars[0].law)] if bars[0].left.size else []
+    force = Axis(f"contact force / {symbol}", low, high)
+    above = Panel(axis, force, (*shades, panels.zero(), *drawn), height=3.3)
+    shown = tuple(bar for bar in bars if bar.left.size)
+    if not shown:
+        return [above]
+    rows = panels.words_axis([s.law for s in lines.lines], "no contact", margin=0.6, down=True)
+    return [above, Panel(axis, rows, shown, height=0.6 + 0.16 * len(bars))]
+
+
+def _bars(tree: DataTree, series: Series, time: Numbers, row: int) -> Boxes:
+    """Stretches without contact in a row, half a time step longer at either end than from first to last."""
+    first, last = panels.stretches(lost(tree, series.law, series.values)).T
+    half, middle = 0.5 * (time[1] - time[0]), np.full(first.shape, float(row))
+    ends = (time[first] - half, time[last] + half, middle - 0.35, middle + 0.35)
+    return Boxes(*ends, colour=data.law_entry(tree, series.law).colour, law=series.law)
+
+
+def _forces_words(tree: DataTree, lines: Lines) -> str:
+    """Say what the bars below the forces are, where there are any, and which laws leave the force axis."""
+    pulling, bars = data.pulling(tree), ""
+    if flown := [s.law for s in lines.lines if lost(tree, s.law, s.values).any()]:
+        shaded = ", shaded above where the main law has none" if lines.lines[0].law in flown else ""
+        held = " and ".join(s.law for s in lines.lines if s.law in pulling)
+        bars = f" Bars below: no contact (F ≤ 0){shaded}" + (f"; {held} cannot lose it." if held else ".")
+    return bars + panels.beyond_limits(lines.lines, panels.main_limits(lines.lines, pulling), "N")
+
+
+def _whole(tree: DataTree) -> Lines:
+    return Lines(next(Of(TIME)(tree)), list(FORCES(tree)))
+
+
+def _extremes(tree: DataTree) -> Iterable[Series]:
+    """Lowest and highest contact force of each law in each stretch of the run."""
+    for series in FORCES(tree):
+        for name, numbers in zip(("lowest", "highest"), envelope(series.values, COLUMNS)[1:], strict=True):
+            yield Series(f"{series.name} {name}", series.units, numbers)
+
+
+def _starts(tree: DataTree) -> Iterable[Series]:
+    time = data.values(tree, TIME)
+    yield Series("time", TIME.units, time[envelope(time, COLUMNS)[0]])
+
+
+def _whole_run(tree: DataTree, _: Lines) -> Chart:
+    """Contact force of all laws over the whole run, every time step."""
+    whole, unit = _whole(tree), panels.time_axis(tree, data.values(tree, TIME))[1]
+    peak = int(np.nanargmax(whole.lines[0].values))
+    losses = [
+        (sum(ends) // 2, 6 * (ends[1] - ends[0] + 1) + 40)
+        for ends in panels.stretches(_main_flight(tree)).tolist()
+    ]
+    found = {"largest force": [(peak, AROUND)], "next loss of contact": losses}
+    places = {
+        name: whole.at[np.clip([(at - n // 2, at + n // 2) for at, n in steps], 0, len(whole.at) - 1)] / unit
+        for name, steps in found.items()
+        if steps
+    }
+    return Chart(tuple(_forces(tree, whole, width=0.9)), places)
+
+
+def _whole_caption(tree: DataTree) -> str:
+    whole = _whole(tree)
+    return (
+        "Every time step; compression positive. Where steps lie too close to draw, a line spans lowest and "
+        f"highest force.{_forces_words(tree, whole)} The CSV file holds lowest and "
+        f"highest force in each of {min(COLUMNS, len(whole.at))} stretches, run.nc every time step."
+    )
+
+
+def _piece_caption(tree: DataTree) -> str:
+    around = "around the main law's longest loss of contact"
+    where = around if _main_flight(tree).any() else "in the middle of the run"
+    return f"A short piece {where}, every time step.{_forces_words(tree, FORCE_PIECE.collect(tree))}"
+
+
+def _peak_caption(tree: DataTree) -> str:
+    force, law = _main_force(tree), data.laws(tree, CONTACT_FORCE)[0]
+    peak = int(np.nanargmax(force))
+    where = f"{data.engineering(force[peak], 'N')} at {data.values(tree, TIME)[peak]:.4f} s"
+    if data.present(tree, rolling.POSITION):
+        where += f", {data.values(tree, rolling.POSITION)[peak]:.3f} m along the rail"
+    words = _forces_words(tree, FORCE_PEAK.collect(tree))
+    return f"Around the largest force of the main law, {law}: {where}. Every time step.{words}"
+
+
+FORCE_PIECE = Figure(
+    "force_piece",
+    "Contact force, a short piece",
+    Of(TIME),
+    (FORCES,),
+    _forces,
+    _piece_caption,
+    rows=piece,
 )
-FORCE_BANDS = force_bands(schema.LINEAR_REFERENCE_LEVEL)
+FORCE_PEAK = replace(
+    FORCE_PIECE,
+    name="force_peak",
+    title="Contact force around its largest value",
+    caption=_peak_caption,
+    rows=around_peak,
+)
+FORCE_ENVELOPE = Figure(
+    "force_envelope",
+    "Contact force, the whole run",
+    _starts,
+    (_extremes,),
+    _whole_run,
+    _whole_caption,
+    further=(CONTACT_FORCE, TIME),
+)

@@ -1,174 +1,452 @@
-"""Figures of rolling noise: sound power per one-third octave and A-weighted, per law."""
+"""Rolling noise: sound power from the vibration itself and by CNOSSOS-EU, and the pass-by."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from itertools import cycle
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.axes import band_axis, doubtful_boxes, levels_axis, words_axis
-from asperity.reporting.chart import HATCHES, INK, MUTED, Axis, Boxes, Chart, Dashes, Line, Note, Panel
-from asperity.reporting.data import doubtful, laws, of_law, stored_variable
-from asperity.reporting.force_figures import doubtful_words, main_last, product_series
-from asperity.reporting.law_entries import baselines_among, law_entry, law_style
-from asperity.reporting.part import Data, Part, Series, series
-from asperity.reporting.tables import Cell, ReportTable, signed, text_cell
+from asperity.reporting import chart, data, panels
+from asperity.reporting.chart import INK, MUTED, Axis, Boxes, Line, Mark, Note, Panel, Rules
+from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.headline import Answers, HeadlineNumber, deciding_bands
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
 from asperity.scenes import schema
 from asperity.schema import Entry
-from asperity.spectra import a_weighting
+from asperity.schema.spectra import BAND, BAND_TIME_PRODUCT
+from asperity.spectra import a_weighting, energy_sum
 
-POWER, POWER_A, BAND = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A, schema.NOISE_BAND
-PRODUCT = schema.NOISE_BAND_TIME_PRODUCT
-_SHARES: dict[str, Dashes] = {"track": (1.5, 1.5), "wheel": (6, 1.5, 1.5, 1.5)}
-
-
-def sources(tree: DataTree, entry: Entry) -> list[str]:
-    """Sources of the levels of an entry, as ``["track", "wheel", "total"]``."""
-    found = stored_variable(tree, entry)
-    return [] if found is None else [str(name) for name in found["source"].values]
-
-
-def _share_law(tree: DataTree) -> str:
-    """Law of which the shares of track and wheel are drawn: that of the bare roughness."""
-    found = stored_variable(tree, POWER)
-    assert found is not None
-    return str(found.attrs.get("reference") or laws(tree, POWER)[0])
+OWN, OWN_A = schema.RADIATED_POWER_LEVEL, schema.RADIATED_POWER_LEVEL_A
+"""Sound power from the vibration that was computed, by radiator."""
+STANDARD, STANDARD_A = schema.SOUND_POWER_LEVEL, schema.SOUND_POWER_LEVEL_A
+"""The same by CNOSSOS-EU, from tables by label, by source."""
+PASSING = schema.PASS_BY_LEVEL
+WHOLE, TRACK, BOTH = "total", "rail and sleepers", ("rail", "sleepers")
+_POWER = "sound power level / dB(A) re 1 pW"
+_OF_STANDARD = {"track": (1.5, 1.5), "wheel": (6, 1.5, 1.5, 1.5)}
+"""Dashes of its sources, in grey."""
 
 
-def sound_power_data(tree: DataTree) -> Data:
-    """Sound power per band, law and source, unweighted, beside the A-weighting."""
-    band = series(tree, BAND, "band centre")
-    lines: dict[Any, Series] = {"A": Series("A-weighting", "dB", a_weighting(band.values))}
-    lines |= product_series(tree, PRODUCT)
-    for law in laws(tree, POWER):
-        rows = of_law(tree, POWER, law, "source", "noise_band")
-        for source, row in zip(sources(tree, POWER), rows, strict=True):
-            lines[law, source] = Series(f"{source}, {law}", POWER.units, row)
-    return Data(band, lines)
+def parts_of(tree: DataTree, entry: Entry) -> list[str]:
+    """What radiates, as ``["track", "wheel", "total"]``; nothing without the levels."""
+    found = data.stored_variable(tree, entry)
+    return [] if found is None else [str(name) for name in found[entry.dims[1]].values]
 
 
-def sound_power_chart(tree: DataTree, data: Data) -> Chart:
-    """A-weighted sound power per one-third octave: the total by each law, track and wheel of linear."""
-    names, found, bands = laws(tree, POWER), sources(tree, POWER), data.at
-    whole, weighting = "total" if "total" in found else found[-1], data.lines["A"].values
-    lines = [
-        Line(
-            bands, data.lines[law, whole].values + weighting, f"{whole}, {law}",
-            marker=law_entry(tree, law).marker, **law_style(tree, law, names[0]),
-        )
-        for law in main_last(names)
-    ]  # fmt: skip
-    axis = levels_axis("sound power level / dB(A) re 1 pW", [line.y for line in lines], span=60.0)
-    share = _share_law(tree)
-    for source, dashes in _SHARES.items():
-        if (share, source) in data.lines:
-            level = data.lines[share, source].values + weighting
-            lines.append(Line(bands, level, f"{source}, {share}", MUTED, dashes, 1.2))
-    marks = (*doubtful_boxes(bands, doubtful(tree, PRODUCT)), *lines)
-    return Chart((Panel(band_axis(bands), axis, marks, height=4.4),))
+def by_part(tree: DataTree, entry: Entry, law: str = "") -> dict[str, float]:
+    """Single numbers of a law, by default the main one, by what radiates; what is not known is missing."""
+    if not data.laws(tree, entry):
+        return {}
+    levels = data.of_law(tree, entry, law or data.laws(tree, entry)[0])
+    found = zip(parts_of(tree, entry), levels.tolist(), strict=True)
+    return {name: level for name, level in found if np.isfinite(level)}
 
 
-def _band_caption(tree: DataTree) -> str:
-    share = _share_law(tree)
-    return (
-        "A-weighted one-third octaves. The linear law: the roughness that was rolled and the transfer "
-        "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare texture. "
-        "The other laws add their difference of the contact force level to linear, band by band, which holds "
-        "what the contact filters. "
-        f"Grey: the shares of track and wheel by {share}.{doubtful_words(tree, PRODUCT)}"
-    )
+def _weighting(band: Entry) -> Any:
+    """Column of the A-weighting over bands."""
+
+    def columns(tree: DataTree) -> Iterator[Series]:
+        yield Series("A-weighting", "dB", a_weighting(data.values(tree, band)), band)
+
+    return columns
 
 
-def total_data(tree: DataTree) -> Data:
+def _of_parts(
+    lines: Lines, entry: Entry, law: str, dashes: Mapping[str, Any], weighting: Any = 0.0
+) -> list[Line]:
+    """Lines of some parts of a law, in grey."""
+    return [
+        Line(lines.at, series.values + weighting, series.label, MUTED, dashes[part], 1.2)
+        for part in dashes
+        for series in lines.of(entry, law=law, **{entry.dims[1]: part})
+    ]
+
+
+# --- by CNOSSOS-EU
+
+
+def _totals(tree: DataTree) -> Iterator[Series]:
     """A-weighted sound power: one row, one column per source and law."""
-    lines: dict[Any, Series] = {}
-    for law in laws(tree, POWER_A):
-        levels = of_law(tree, POWER_A, law, "source")
-        for source, level in zip(sources(tree, POWER_A), levels, strict=True):
-            lines[law, source] = Series(f"{source}, {law}", POWER_A.units, np.array([level]))
-    return Data(None, lines)
+    for law in data.laws(tree, STANDARD_A):
+        for source, level in zip(parts_of(tree, STANDARD_A), data.of_law(tree, STANDARD_A, law), strict=True):
+            yield Series(f"{source}, {law}", STANDARD_A.units, np.array([level]), places={"law": law})
 
 
-def total_chart(tree: DataTree, data: Data) -> Chart:
+def _bars(tree: DataTree, lines: Lines) -> list[Panel]:
     """A-weighted sound power as bars, by source and law."""
-    names, found = laws(tree, POWER_A), sources(tree, POWER_A)
-    levels = np.array([[data.lines[law, source].values[0] for source in found] for law in names])
+    laws, found = data.laws(tree, STANDARD_A), parts_of(tree, STANDARD_A)
+    levels = np.array([[series.values[0] for series in lines.lines if series.law == law] for law in laws])
     lowest, top = float(np.nanmin(levels)), float(np.nanmax(levels))
-    base = 5 * np.floor((lowest - 5) / 5)
-    thickness = 0.82 / len(names)
-    marks: list[Boxes | Note] = []
-    for row, (law, level, hatch) in enumerate(zip(names, levels, cycle(HATCHES), strict=False)):
+    base, thickness = 5 * np.floor((lowest - 5) / 5), 0.82 / len(laws)
+    marks: list[Mark] = []
+    for row, (law, level, hatch) in enumerate(zip(laws, levels, cycle(chart.HATCHES), strict=False)):
         known = np.isfinite(level)
-        at = (np.arange(len(found)) + (row - (len(names) - 1) / 2) * thickness)[known]
+        at = (np.arange(len(found)) + (row - (len(laws) - 1) / 2) * thickness)[known]
         edges = np.full(len(at), base), level[known], at - 0.43 * thickness, at + 0.43 * thickness
-        marks.append(Boxes(*edges, law, law_entry(tree, law).colour, hatch=hatch, law=law))
-        marks += [
-            Note(f"{y:.1f}", y, x, colour=INK, law=law)
-            for x, y in zip(at.tolist(), level[known].tolist(), strict=True)
-        ]
-    across = words_axis(found)
-    downwards = replace(across, low=across.high, high=across.low)
+        marks.append(Boxes(*edges, law, data.law_entry(tree, law).colour, hatch=hatch, law=law))
+        places = zip(at.tolist(), level[known].tolist(), strict=True)
+        marks += [Note(f"{x:.1f}", x, y, colour=INK, law=law) for y, x in places]
     along = Axis("A-weighted sound power level / dB(A) re 1 pW", base, top + 0.07 * (top - base))
-    height = 0.7 + len(found) * (0.3 + 0.2 * len(names))
-    return Chart((Panel(along, downwards, tuple(marks), height=height),))
+    height = 0.7 + len(found) * (0.3 + 0.2 * len(laws))
+    return [Panel(along, panels.words_axis(found, down=True), tuple(marks), height=height)]
+
+
+def _bare_law(tree: DataTree) -> str:
+    """Law of which the shares of track and wheel are drawn: that of the bare roughness."""
+    bare = data.variable_of(tree, STANDARD).attrs.get("reference")
+    return str(bare or data.laws(tree, STANDARD)[0])
+
+
+def _standard_bands(tree: DataTree, lines: Lines) -> list[Panel]:
+    """A-weighted sound power per one-third octave: the total by each law, track and wheel of linear."""
+    found, (weighting,) = parts_of(tree, STANDARD), (s.values for s in lines.of(schema.NOISE_BAND))
+    weighted = [
+        Series("", "", series.values + weighting, label=series.label, places=series.places)
+        for series in lines.of(STANDARD, source=WHOLE if WHOLE in found else found[-1])
+    ]
+    totals = panels.styled(tree, lines.at, weighted, markers=True)
+    shares = _of_parts(lines, STANDARD, _bare_law(tree), _OF_STANDARD, weighting)
+    product = schema.NOISE_BAND_TIME_PRODUCT
+    return [panels.band_panel(tree, lines, _POWER, [*totals, *shares], product, of=totals)]
+
+
+NOISE = (
+    Figure(
+        "sound_power",
+        "A-weighted sound power by CNOSSOS-EU",
+        None,
+        (_totals,),
+        _bars,
+        "Sum of the A-weighted bands below. The axis does not start at zero: compare the ends of the "
+        "bars, not their lengths.",
+        (STANDARD_A,),
+    ),
+    Figure(
+        "sound_power_bands",
+        "Sound power by CNOSSOS-EU in one-third octaves",
+        Of(schema.NOISE_BAND, "band centre"),
+        (
+            _weighting(schema.NOISE_BAND),
+            panels.products(schema.NOISE_BAND_TIME_PRODUCT),
+            Of(STANDARD, "{source}, {law}"),
+        ),
+        _standard_bands,
+        lambda tree: (
+            "A-weighted one-third octaves. The linear law: the roughness that was rolled and the transfer "
+            "functions of CNOSSOS-EU, without its contact filter, for a linear contact follows the bare "
+            "texture. The other laws add their difference of the contact force level to linear, band by "
+            "band, which holds what the contact filters. Grey: the shares of track and wheel by "
+            f"{_bare_law(tree)}.{panels.shaded_words(tree, schema.NOISE_BAND_TIME_PRODUCT)}"
+        ),
+    ),
+)
 
 
 def sound_power_table(tree: DataTree) -> ReportTable | None:
     """A-weighted sound power per law and source, and of all together its differences to the linear laws."""
-    names, radiating = laws(tree, POWER_A), sources(tree, POWER_A)
-    if not names:
+    laws, radiating = data.laws(tree, STANDARD_A), parts_of(tree, STANDARD_A)
+    if not laws:
         return None
-    levels = {law: of_law(tree, POWER_A, law, "source") for law in names}
-    compared = baselines_among(tree, names)
-    whole = radiating.index("total") if "total" in radiating else -1
-
-    def row(label: str, level: NDArray[np.float64]) -> list[Cell]:
-        cells = [text_cell(label), *(Cell(told_level(value), "number") for value in level)]
-        changes = (level[whole] - levels[name][whole] for name in compared)
-        told = ("–" if label == name else signed(d) for name, d in zip(compared, changes, strict=True))
-        return [*cells, *(Cell(text, "number") for text in told)]
-
-    rows = [row(law, level) for law, level in levels.items()]
+    levels = np.array([data.of_law(tree, STANDARD_A, law) for law in laws])
+    rows, note = list(laws), ""
+    whole = radiating.index(WHOLE) if WHOLE in radiating else -1
+    standard = data.stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
+    if standard is not None:
+        rows.append("CNOSSOS-EU")
+        levels = np.vstack([levels, standard.sel(source=radiating).values])
+        name = standard.attrs.get("contact_filter", "")
+        note = f" Last row: the same roughness with the contact filter of CNOSSOS-EU itself ({name})."
+    columns = {"law": text_cells(rows)}
+    columns |= {
+        source: number_cells(level, "{:.1f}") for source, level in zip(radiating, levels.T, strict=True)
+    }
+    for law in data.baselines_among(tree, laws):
+        over = levels[:, whole] - levels[laws.index(law), whole]
+        over[laws.index(law)] = np.nan
+        columns[f"over {law}"] = number_cells(over, data.signed)
     note = (
         f"dB(A) re 1 pW, over the bands that were computed; differences of the {radiating[whole]}. Positive: "
-        "linear contact underestimates."
+        f"linear contact underestimates.{note}"
     )
-    standard = stored_variable(tree, schema.CNOSSOS_SOUND_POWER_LEVEL_A)
-    if standard is not None:
-        rows.append(row("CNOSSOS-EU", standard.sel(source=radiating).values))
-        name = standard.attrs.get("contact_filter", "")
-        note += f" Last row: the same roughness with the contact filter of CNOSSOS-EU itself ({name})."
-    head = ["law", *radiating, *(f"over {name}" for name in compared)]
-    return ReportTable("sound_power_table", "Sound power by CNOSSOS-EU, A-weighted", head, rows, note)
+    return table("sound_power_table", "Sound power by CNOSSOS-EU, A-weighted", columns, note)
 
 
-def told_level(value: float) -> str:
-    """Write a level for a table."""
-    return f"{value:.1f}" if np.isfinite(value) else "–"
+# --- from the vibration itself
+
+_LOOKS: dict[str, tuple[Any, ...]] = {
+    "rail": (chart.VERMILLION, (), 1.3, "o"),
+    "sleepers": (chart.GREEN, (), 1.3, "s"),
+    "wheel": (chart.BLUE, (), 1.3, "^"),
+    WHOLE: (INK, (), 1.8),
+}
 
 
-NOISE = (
-    Part(
-        "sound_power",
-        "A-weighted sound power by CNOSSOS-EU",
-        (POWER_A,),
-        total_data,
-        total_chart,
-        lambda _: (
-            "Sum of the A-weighted bands below. The axis does not start at zero: compare the ends of the "
-            "bars, not their lengths."
-        ),
+def silence(tree: DataTree) -> str:
+    """Say why the wheel's part is missing; nothing where it is there."""
+    found = data.stored_variable(tree, OWN)
+    reason = "computed" if found is None else str(found.attrs.get("wheel", "computed"))
+    if reason == "computed":
+        return ""
+    return f"The wheel's part is missing, and the total is that of rail and sleepers: {reason}."
+
+
+def _standard_there(tree: DataTree) -> Iterator[Series]:
+    """What CNOSSOS-EU has in the bands of the vibration."""
+    for series in Of(STANDARD, "{source} by CNOSSOS-EU, {law}", "{source}, CNOSSOS-EU")(tree):
+        at = np.abs(data.values(tree, BAND)[:, None] / data.values(tree, schema.NOISE_BAND) - 1.0) < 0.01
+        found = np.where(at.any(axis=1), series.values[at.argmax(axis=1)], np.nan)
+        if np.isfinite(found).any():
+            yield Series(series.name, series.units, found, STANDARD, series.label, series.places)
+
+
+def _own_bands(tree: DataTree, lines: Lines) -> list[Panel]:
+    """A-weighted sound power of the main law per one-third octave, by what radiates, beside CNOSSOS-EU."""
+    main, (weighting,) = data.laws(tree, OWN)[0], (series.values for series in lines.of(BAND))
+    own = [
+        Line(lines.at, series.values + weighting, series.label, *_LOOKS.get(series.label, ()))
+        for series in lines.of(OWN, law=main)
+    ]
+    standard = _of_parts(lines, STANDARD, main, _OF_STANDARD | {WHOLE: (5, 2)}, weighting)
+    for line in standard:
+        width = 1.6 if line.label.startswith(WHOLE) else 1.3
+        own.append(Line(line.x, line.y, line.label, MUTED, line.dashes, width))
+    return [panels.band_panel(tree, lines, _POWER, own)]
+
+
+def _own_caption(tree: DataTree) -> str:
+    told = [
+        f"A-weighted one-third octaves of {data.laws(tree, OWN)[0]}, vertical motion: the contact force on "
+        "two rails moves them and their sleepers along the whole track, and each part radiates by its "
+        "radiation ratio.",
+        silence(tree),
+    ]
+    if data.laws(tree, STANDARD):
+        told.append(
+            "Grey: the same force by CNOSSOS-EU, of a track and a wheel that it knows by a label; its "
+            "transfer functions hold lateral motion of the rail, and wheels that resonate."
+        )
+    return " ".join(filter(None, told)) + panels.shaded_words(tree)
+
+
+RADIATED = Figure(
+    "radiated_power_bands",
+    "Sound power from vibration in one-third octaves",
+    Of(BAND, "band centre"),
+    (
+        _weighting(BAND),
+        panels.products(BAND_TIME_PRODUCT),
+        Of(OWN, "{radiator}, {law}", "{radiator}"),
+        _standard_there,
     ),
-    Part(
-        "sound_power_bands",
-        "Sound power by CNOSSOS-EU in one-third octaves",
-        (POWER, BAND),
-        sound_power_data,
-        sound_power_chart,
-        _band_caption,
-    ),
+    _own_bands,
+    _own_caption,
 )
+
+
+def radiated_table(tree: DataTree) -> ReportTable | None:
+    """A-weighted sound power per law and radiator."""
+    laws = data.laws(tree, OWN_A)
+    if not laws:
+        return None
+    levels = np.transpose([data.of_law(tree, OWN_A, law) for law in laws])
+    parts = zip(parts_of(tree, OWN_A), levels, strict=True)
+    columns = {"law": text_cells(laws), **{part: number_cells(level, "{:.1f}") for part, level in parts}}
+    over, own, standard = "", by_part(tree, OWN_A, laws[0]), {}
+    if laws[0] in data.laws(tree, STANDARD_A):
+        standard = by_part(tree, STANDARD_A, laws[0])
+    if set(BOTH) <= set(own) and "track" in standard:
+        both = data.signed(float(energy_sum([own[part] for part in BOTH])) - standard["track"])
+        over = f"Rail and sleepers together are {both} dB over the track of CNOSSOS-EU ({laws[0]}). "
+    note = f"dB(A) re 1 pW, over the bands that were computed. {over}{silence(tree)}"
+    return table("radiated_power_table", "Sound power from vibration, A-weighted", columns, note)
+
+
+# --- the pass-by: level over time beside the track, and its single numbers
+
+SPAN = 30.0
+"""dB below the maximum that are drawn."""
+_DASHES = {"rail": (1.5, 1.5), "sleepers": (4.0, 1.5), "wheel": (6.0, 1.5, 1.5, 1.5)}
+SINGLE_NUMBERS = {
+    "L_pAFmax / dB(A)": schema.PASS_BY_MAXIMUM_LEVEL,
+    "L_pAeq,Tp / dB(A)": schema.PASS_BY_EQUIVALENT_LEVEL,
+    "TEL / dB(A)": schema.TRANSIT_EXPOSURE_LEVEL,
+    "SEL / dB(A)": schema.SOUND_EXPOSURE_LEVEL_A,
+}
+
+
+def _passing_parts(tree: DataTree) -> list[str]:
+    """What radiates and is known, and all of it together as the last."""
+    found = data.stored_variable(tree, PASSING)
+    if found is None:
+        return []
+    return [str(found["radiator"].values[n]) for n in data.with_numbers(found, "radiator")]
+
+
+def _pass_by(tree: DataTree, lines: Lines) -> list[Panel]:
+    """Level over time: the total by each law, the parts of the main law, and when axles pass."""
+    *parts, whole = _passing_parts(tree)
+    totals = panels.styled(tree, lines.at, lines.of(PASSING, radiator=whole))
+    dashes = {part: _DASHES[part] for part in parts}
+    of_parts = _of_parts(lines, PASSING, data.laws(tree, PASSING)[0], dashes)
+    label = "sound pressure level, F / dB(A) re 20 µPa"
+    axis = panels.levels_axis(label, [line.y for line in totals], span=SPAN, step=5.0)
+    time = Axis("time since the first axle was opposite / s", lines.at[0], lines.at[-1])
+    return [Panel(time, axis, (*_train(tree), *totals, *of_parts), height=4.2)]
+
+
+def _train(tree: DataTree) -> list[Mark]:
+    """Short rules where axles are opposite, and the pass-by time behind the lines."""
+    axles = data.values(tree, schema.AXLE_TIME)
+    passing = Rules(axles, colour=INK, dashes=(), width=1.4, short=True)
+    front, rear = (data.number(tree, end) for end in (schema.FRONT_TIME, schema.REAR_TIME))
+    if front is None or rear is None:
+        return [passing]
+    named = Note(f"Tp = {rear - front:.2f} s", 0.5 * (front + rear), 0.06, y_share=True, align="center")
+    return [panels.shade(np.array([front]), np.array([rear]), opacity=0.6), named, passing]
+
+
+def _pass_by_caption(tree: DataTree) -> str:
+    count = len(data.values(tree, schema.AXLE_TIME))
+    passing = "One axle passes" if count == 1 else f"{count} axles pass"
+    away, above = (data.number(tree, fact) for fact in (schema.RECEIVER_DISTANCE, schema.RECEIVER_HEIGHT))
+    where = ""
+    if away is not None and above is not None:
+        where = f", {away:g} m from the middle of the track and {above:g} m above the rail head"
+    return (
+        f"{passing} (ticks), two wheels on each{where}, over reflecting ground. Rail and sleepers radiate "
+        "along the track as its vibration decays, a wheel from its axle, evenly in all directions; nothing "
+        "screens them."
+    )
+
+
+def pass_by_table(tree: DataTree) -> ReportTable | None:
+    """Single numbers of the pass-by, per law, and of each part by the main law."""
+    laws = data.laws(tree, PASSING)
+    if not laws:
+        return None
+    *parts, whole = _passing_parts(tree)
+    shown = [(law, whole) for law in laws] + [(laws[0], part) for part in parts]
+    columns = {
+        "law": text_cells(law for law, _ in shown),
+        "what radiates": text_cells(part for _, part in shown),
+    }
+    for head, entry in SINGLE_NUMBERS.items():
+        if data.present(tree, entry):
+            found = data.variable_of(tree, entry)
+            columns[head] = number_cells(
+                [float(found.sel(law=law, radiator=part)) for law, part in shown], "{:.1f}"
+            )
+    note = (
+        "Re 20 µPa, SEL in 1 s. L_pAFmax: the largest level, time weighting F. SEL: all of the passage. "
+        "L_pAeq,Tp: from when the front of the train is opposite to when its rear is; TEL: all between the "
+        "points 10 dB down, over the same time (ISO 3095)."
+    )
+    return table("pass_by_table", "Single numbers", columns, note)
+
+
+PASS_BY = Figure(
+    "pass_by_level",
+    "Level beside the track",
+    Of(schema.PASS_BY_TIME, "time"),
+    (Of(PASSING, "{radiator}, {law}"),),
+    _pass_by,
+    _pass_by_caption,
+    (schema.AXLE_TIME,),
+)
+
+
+# --- what the report says first
+
+
+def noise_answers(tree: DataTree) -> Answers | None:
+    """Sound power of the main law by both models, and what decides it."""
+    own, standard = by_part(tree, OWN_A), by_part(tree, STANDARD_A)
+    if not own and not standard:
+        return None
+    lead, *more = [*_by_vibration(tree, own), *_by_label(tree, standard)]
+    told = []
+    if WHOLE in own:
+        held = "rail, sleepers and wheel" if "wheel" in own else f"{TRACK}, without the wheel"
+        told.append(("own radiation model", own, f"re 1 pW; {held}, from their computed vibration"))
+    if WHOLE in standard:
+        told.append(
+            (
+                "CNOSSOS-EU",
+                standard,
+                "re 1 pW; track and wheel by its tables, from the computed contact force",
+            )
+        )
+    cards = (HeadlineNumber(f"sound power, {how}", f"{of[WHOLE]:.1f} dB(A)", note) for how, of, note in told)
+    return Answers(lead, " ".join(more), tuple(cards), (_sources_table(own, standard),))
+
+
+def _by_vibration(tree: DataTree, own: Mapping[str, float]) -> list[str]:
+    """Say what radiates most by its own vibration, and in which bands."""
+    parts = {name: level for name, level in own.items() if name != WHOLE}
+    if not parts:
+        return []
+    most = max(parts, key=lambda name: parts[name])
+    verb = "decide" if most == "sleepers" else "decides"
+    return [
+        f"By vibration the {most} {verb}: {parts[most]:.1f} of {own.get(WHOLE, parts[most]):.1f} dB(A) of "
+        f"sound power, half of it in the bands of {_bands(tree, OWN, most)}.",
+        *filter(None, [silence(tree)]),
+    ]
+
+
+def _by_label(tree: DataTree, standard: Mapping[str, float]) -> list[str]:
+    """Say which of track and wheel radiates more by CNOSSOS-EU."""
+    if not {"track", "wheel"} <= set(standard):
+        return []
+    less, most = sorted(("track", "wheel"), key=lambda name: standard[name])
+    return [
+        f"By CNOSSOS-EU the {most} decides: {standard[most]:.1f} dB(A), beside {standard[less]:.1f} dB(A) of "
+        f"the {less}, half of it in the bands of {_bands(tree, STANDARD, most)}."
+    ]
+
+
+def _bands(tree: DataTree, entry: Entry, part: str) -> str:
+    """Bands that hold half the A-weighted sound power of what radiates, by the main law."""
+    band = data.values(tree, BAND if entry is OWN else schema.NOISE_BAND)
+    level = data.of_law(tree, entry, data.laws(tree, entry)[0])[parts_of(tree, entry).index(part)]
+    return deciding_bands(band, level + a_weighting(band))
+
+
+def _sources_table(own: Mapping[str, float], standard: Mapping[str, float]) -> ReportTable:
+    """Sound power by source and model."""
+    both = [own[name] for name in BOTH if name in own]
+    track = {TRACK: float(energy_sum(both))} if len(both) == 2 else {}
+    by_label = {TRACK: standard["track"]} if "track" in standard else {}
+    models = {"by vibration, own model": {**own, **track}, "by CNOSSOS-EU": {**standard, **by_label}}
+    shown = {name: levels for name, levels in models.items() if levels}
+    columns = {"dB(A) re 1 pW": text_cells(shown)}
+    for part, head in (*((name, name) for name in (*BOTH, TRACK, "wheel")), (WHOLE, "sum")):
+        look = "number total" if part == WHOLE else "number"
+        columns[head] = number_cells((levels.get(part, np.nan) for levels in shown.values()), "{:.1f}", look)
+    note = "" if "wheel" in own or not own else "–: not known. The first sum is without the wheel."
+    return table("sound_power_sources", "Sound power by source", columns, note)
+
+
+_HEADLINES = {"TEL": schema.TRANSIT_EXPOSURE_LEVEL, "L_pAFmax": schema.PASS_BY_MAXIMUM_LEVEL}
+"""Single numbers; the first only of a vehicle, whose length is known."""
+
+
+def pass_by_answers(tree: DataTree) -> Answers | None:
+    """Level beside the track by the main law."""
+    levels = {
+        name: float(data.of_law(tree, entry, data.laws(tree, entry)[0])[-1])
+        for name, entry in _HEADLINES.items()
+        if data.present(tree, entry)
+    }
+    if not levels:
+        return None
+    (first, level), *others = levels.items()
+    away = data.number(tree, schema.RECEIVER_DISTANCE)
+    where = "" if away is None else f", {away:g} m from the track"
+    told = "".join(f"; {name} {other:.1f} dB(A)" for name, other in others)
+    held = "" if "wheel" in _passing_parts(tree) else ", without the wheel"
+    note = f"re 20 µPa{where}{told}; own radiation model{held}"
+    return Answers(numbers=(HeadlineNumber(f"pass-by, {first}", f"{level:.1f} dB(A)", note),))

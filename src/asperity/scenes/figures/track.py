@@ -1,98 +1,117 @@
-"""Figures of the track: receptances of rail, wheel and contact, decay rate, moving kernel."""
+"""Figures of the track: receptances, decay rate, moving kernel, loss factors; and what it marks in others."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.reporting.axes import frequency_axis, log_axis
-from asperity.reporting.chart import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    VERMILLION,
-    Axis,
-    Chart,
-    Dashes,
-    Line,
-    Panel,
-    Rules,
-    sequence_styles,
-)
-from asperity.reporting.data import engineering, number, plain, present, stated, values
-from asperity.reporting.part import Data, Part, Series, present_series, series
+from asperity.reporting import chart, data, panels
+from asperity.reporting.chart import INK, Axis, Line, Mark, Note, Numbers, Panel, Rules
+from asperity.reporting.figure import Figure, Lines, Of, Series
 from asperity.scenes import schema
-from asperity.scenes.figures.marks import natural_rules
-from asperity.schema import Entry
+from asperity.schema import rolling
 
-FREQUENCY = schema.TRACK_FREQUENCY
-_RECEPTANCES: dict[Entry, tuple[str, str, Dashes]] = {
-    schema.RECEPTANCE_MIDSPAN: ("rail, mid-span", BLUE, ()),
-    schema.RECEPTANCE_SUPPORT: ("rail, over a sleeper", VERMILLION, (6, 1.5)),
-    schema.WHEEL_RECEPTANCE: ("wheel", GREEN, (6, 1.5, 1.5, 1.5)),
-    schema.CONTACT_RECEPTANCE: ("contact spring", MUTED, (1.5, 1.5)),
+# --- marks of the track: its natural frequencies, the passing of sleepers
+
+_NAMES = {
+    "anti-resonance": schema.ANTIRESONANCE_FREQUENCY,
+    "cut-on": schema.CUT_ON_FREQUENCY,
+    "pinned–pinned": schema.PINNED_PINNED_FREQUENCY,
 }
-_PHASES = {
-    schema.RECEPTANCE_MIDSPAN: schema.RECEPTANCE_MIDSPAN_PHASE,
-    schema.RECEPTANCE_SUPPORT: schema.RECEPTANCE_SUPPORT_PHASE,
-}
-_RATES: dict[Entry, tuple[str, str, Dashes, float]] = {
-    schema.DECAY_RATE: ("eigenvalue", BLUE, (), 1.6),
-    schema.DECAY_RATE_EN15461: ("EN 15461, sum over distances", VERMILLION, (6, 1.5), 1.2),
-    schema.DECAY_RATE_LIMIT: ("lower limit, ISO 3095", INK, (4, 2), 1.4),
-}
-KERNELS = 6
-"""Start positions of the moving kernel that are drawn, at most."""
 
 
-def receptance_data(tree: DataTree) -> Data:
-    """Magnitude and phase of the receptances."""
-    named = {}
-    for entry in _RECEPTANCES:
-        named[entry] = entry.name
-        if entry in _PHASES:
-            named[_PHASES[entry]] = f"{entry.name} phase"
-    return Data(series(tree, FREQUENCY), present_series(tree, named))
+def natural_frequencies(tree: DataTree) -> dict[str, float]:
+    """Frequencies of the resting track that the results state, in Hz, low to high, by name."""
+    found = {name: frequency for name, a in _NAMES.items() if (frequency := data.number(tree, a))}
+    return dict(sorted(found.items(), key=lambda item: item[1]))
 
 
-def receptance_chart(tree: DataTree, data: Data) -> Chart:
-    """Magnitude of the receptances, and below it their phase."""
-    magnitudes, phases = [], []
-    for entry, look in _RECEPTANCES.items():
-        if entry in data.lines:
-            magnitudes.append(Line(data.at, data.lines[entry].values, *look))
-        if _PHASES.get(entry) in data.lines:
-            degrees = np.degrees(data.lines[_PHASES[entry]].values)
-            phases.append(Line(data.at, (degrees + 180) % 360 - 180, *look))
-    along, ends = _along(data)
-    size = Axis("|receptance| / (m/N)", log=True)
-    panels = [Panel(along, size, (*natural_rules(tree, *ends), *magnitudes), height=4.0)]
-    if phases:
-        turns = tuple((degrees, f"{degrees:g}") for degrees in (-180.0, -90.0, 0.0, 90.0, 180.0))
-        phase = Axis("phase / °", -190.0, 190.0, ticks=turns)
-        panels.append(Panel(along, phase, (*natural_rules(tree, *ends, named=False), *phases), height=2.2))
-    return Chart(tuple(panels))
+def natural_rules(tree: DataTree, low: float, high: float, named: bool = True) -> list[Mark]:
+    """Natural frequencies between two others, their names written along them."""
+    inside = {name: f for name, f in natural_frequencies(tree).items() if low < f < high}
+    notes = [Note(f"{name}, {f:.0f} Hz", f, 0.03, y_share=True, upright=True) for name, f in inside.items()]
+    return [Rules(np.array(list(inside.values()))), *(notes if named else [])]
 
 
-def _along(data: Data) -> tuple[Axis, tuple[float, float]]:
+def pinned_pinned_split(tree: DataTree) -> tuple[float, float] | None:
+    """The two frequencies f_pp ∓ v/2L that a moving load feels instead of f_pp, in Hz."""
+    low, high = (data.number(tree, end) for end in (schema.PINNED_PINNED_LOW, schema.PINNED_PINNED_HIGH))
+    return (low, high) if low and high else None
+
+
+def split_rules(tree: DataTree, high: float) -> list[Mark]:
+    """Frequencies f_pp ∓ v/2L below another, with their name at the top."""
+    split = pinned_pinned_split(tree)
+    if split is None or not 0.0 < split[0] < split[1] < high:
+        return []
+    return [Rules(np.array(split)), Note("f_pp ∓ v/2L", split[1], 0.97, y_share=True)]
+
+
+def sleeper_tones(tree: DataTree, high: float) -> list[Mark]:
+    """Short rules at n v/L up to a frequency."""
+    tone = data.number(tree, schema.SLEEPER_PASSING_FREQUENCY)
+    return [_short(tone * np.arange(1, np.floor(high / tone) + 1))] if tone else []
+
+
+def sleeper_times(tree: DataTree, start: float, end: float, unit: float) -> list[Mark]:
+    """Short rules where the wheel passes sleepers between two times, on an axis in `unit` s."""
+    spacing, speed = data.number(tree, schema.SLEEPER_SPACING), data.number(tree, rolling.SPEED)
+    if not spacing or not speed or not data.present(tree, rolling.POSITION):
+        return []
+    time, position = data.values(tree, rolling.TIME), data.values(tree, rolling.POSITION)
+    first, last = np.interp([start, end], time, position)
+    sleepers = spacing * np.arange(np.ceil(first / spacing), np.floor(last / spacing) + 1)
+    return [_short((time[0] + (sleepers - position[0]) / speed) / unit)]
+
+
+def _short(at: Numbers) -> Rules:
+    return Rules(at, colour=INK, dashes=(), width=0.8, short=True)
+
+
+# --- receptances and decay rates
+
+
+_MIDSPAN = "rail, mid-span", (chart.BLUE,)
+_SUPPORT = "rail, over a sleeper", (chart.VERMILLION, (6, 1.5))
+RECEPTANCES = (
+    Of(schema.RECEPTANCE_MIDSPAN, "", *_MIDSPAN),
+    Of(schema.RECEPTANCE_MIDSPAN_PHASE, "receptance_midspan phase", *_MIDSPAN),
+    Of(schema.RECEPTANCE_SUPPORT, "", *_SUPPORT),
+    Of(schema.RECEPTANCE_SUPPORT_PHASE, "receptance_support phase", *_SUPPORT),
+    Of(schema.WHEEL_RECEPTANCE, "", "wheel", (chart.GREEN, (6, 1.5, 1.5, 1.5))),
+    Of(schema.CONTACT_RECEPTANCE, "", "contact spring", (chart.MUTED, (1.5, 1.5))),
+)
+
+
+def _along(lines: Lines) -> tuple[Axis, tuple[float, float]]:
     """Axis of all positive frequencies, and its ends."""
-    ends = float(data.at[data.at > 0][0]), float(data.at[-1])
-    return frequency_axis(*ends), ends
+    ends = float(lines.at[lines.at > 0][0]), float(lines.at[-1])
+    return panels.frequency_axis(*ends), ends
+
+
+def _receptance(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Magnitude of the receptances, and below it their phase."""
+    along, ends = _along(lines)
+    magnitudes = panels.styled(tree, lines.at, [s for s in lines.lines if s.units != "rad"])
+    size = Axis("|receptance| / (m/N)", log=True)
+    yield Panel(along, size, (*natural_rules(tree, *ends), *magnitudes), height=4.0)
+    if phases := [s for s in lines.lines if s.units == "rad"]:
+        turned = [replace(s, values=(np.degrees(s.values) + 180) % 360 - 180) for s in phases]
+        turns = tuple((degrees, f"{degrees:g}") for degrees in (-180.0, -90.0, 0.0, 90.0, 180.0))
+        phase, rules = Axis("phase / °", -190.0, 190.0, ticks=turns), natural_rules(tree, *ends, named=False)
+        yield Panel(along, phase, (*rules, *panels.styled(tree, lines.at, turned)), height=2.2)
 
 
 def _receptance_caption(tree: DataTree) -> str:
     facts = []
-    speed = number(tree, schema.CRITICAL_SPEED)
-    if speed:
-        facts.append(f"critical speed {plain(speed)} m/s")
-    deflection = number(tree, schema.STATIC_DEFLECTION)
-    if deflection:
-        facts.append(f"static deflection of the rail under the wheel {engineering(deflection, 'm')}")
+    if speed := data.number(tree, schema.CRITICAL_SPEED):
+        facts.append(f"critical speed {data.plain(speed)} m/s")
+    if deflection := data.number(tree, schema.STATIC_DEFLECTION):
+        facts.append(f"static deflection of the rail under the wheel {data.engineering(deflection, 'm')}")
     stated = f" Of this track: {'; '.join(facts)}." if facts else ""
     return (
         "Displacement per force at the point of the force, both positive downwards, time factor e^{+iωt}: "
@@ -101,24 +120,19 @@ def _receptance_caption(tree: DataTree) -> str:
     )
 
 
-def decay_data(tree: DataTree) -> Data:
-    """Decay rates against frequency."""
-    return Data(series(tree, FREQUENCY), present_series(tree, {entry: entry.name for entry in _RATES}))
-
-
-def decay_chart(tree: DataTree, data: Data) -> Chart:
+def _decay(tree: DataTree, lines: Lines) -> Iterator[Panel]:
     """Decay rate along the rail against frequency, with the limit that tests of vehicles ask for."""
-    rates = {entry: data.lines[entry].values for entry in _RATES if entry in data.lines}
-    lines = [Line(data.at, np.where(rate > 0, rate, np.nan), *_RATES[entry]) for entry, rate in rates.items()]
-    along, ends = _along(data)
-    axis = log_axis("decay rate / (dB/m)", [line.y for line in lines], lowest=0.01)
-    return Chart((Panel(along, axis, (*natural_rules(tree, *ends), *lines), height=3.9),))
+    positive = [replace(s, values=np.where(s.values > 0, s.values, np.nan)) for s in lines.lines]
+    rates = panels.styled(tree, lines.at, positive)
+    along, ends = _along(lines)
+    axis = panels.log_axis("decay rate / (dB/m)", [line.y for line in rates], lowest=0.01)
+    yield Panel(along, axis, (*natural_rules(tree, *ends), *rates), height=3.9)
 
 
 def _decay_caption(tree: DataTree) -> str:
     limit = (
         " Dashed: the lowest decay that ISO 3095 allows the track of a vehicle's noise test, vertical."
-        if present(tree, schema.DECAY_RATE_LIMIT)
+        if data.present(tree, schema.DECAY_RATE_LIMIT)
         else ""
     )
     return (
@@ -127,58 +141,43 @@ def _decay_caption(tree: DataTree) -> str:
     )
 
 
-def _starts(tree: DataTree) -> list[int]:
-    """Start positions that are drawn, spread over the bay."""
-    count = len(values(tree, schema.START_POSITION))
-    return np.unique(np.linspace(0, count, min(KERNELS, count), endpoint=False).astype(int)).tolist()
+# --- the rail under the moving wheel
+
+KERNELS = 6
+"""Start positions of the moving kernel that are drawn, at most."""
 
 
-def _until_quiet(lag: NDArray[np.float64], kernel: NDArray[np.float64]) -> float:
-    """Lag in s from which the kernel stays below a hundredth of its largest value."""
-    size = np.abs(kernel).max(axis=0)
-    return float(lag[min(np.flatnonzero(size > size.max() / 100)[-1] + 1, len(lag) - 1)])
+def _kernels(tree: DataTree) -> list[Series]:
+    """Moving kernels of start positions that are spread over the bay."""
+    name, label = "kernel(start={start_position:.9g} m)", "start {start_position:.2f} m"
+    every = list(Of(schema.MOVING_KERNEL, name, label)(tree))
+    shown = np.unique(np.linspace(0, len(every), min(KERNELS, len(every)), endpoint=False).astype(int))
+    return [every[n] for n in shown]
 
 
-def kernel_data(tree: DataTree) -> Data:
-    """Moving kernel against lag, one line per drawn start position."""
-    entry, position = schema.MOVING_KERNEL, values(tree, schema.START_POSITION)
-    kernel = values(tree, entry, *entry.dims)
-    lines: dict[Any, Series] = {
-        position[start]: Series(f"kernel(start={position[start]:.9g} m)", entry.units, kernel[start])
-        for start in _starts(tree)
-    }
-    return Data(series(tree, schema.LAG), lines)
-
-
-def kernel_chart(tree: DataTree, data: Data) -> Chart:
+def _kernel(tree: DataTree, lines: Lines) -> list[Panel]:
     """Response under the load to an impulse at some start positions: at first, and until it is quiet."""
-    quiet = _until_quiet(data.at, data.field.T)
-    return Chart(
-        (
-            _kernel_panel(data, min(6e-3, quiet), "the first milliseconds"),
-            replace(
-                _kernel_panel(data, quiet, "until it stays below 1 % of its largest value"),
-                beside=True,
-                share=1.25,
-            ),
-        )
-    )
-
-
-def _kernel_panel(data: Data, end: float, title: str) -> Panel:
-    shown = data.at <= end
-    lines = [
-        Line(data.at[shown] * 1e3, line.values[shown] * 1e6, f"start {start:.2f} m", width=1.2, **look)
-        for (start, line), look in zip(data.lines.items(), sequence_styles(len(data.lines)), strict=True)
+    size = np.abs([s.values for s in lines.lines]).max(axis=0)
+    quiet = float(lines.at[min(np.flatnonzero(size > size.max() / 100)[-1] + 1, len(lines.at) - 1)])
+    later = _kernel_panel(tree, lines, quiet, "until it stays below 1 % of its largest value")
+    return [
+        _kernel_panel(tree, lines, min(6e-3, quiet), "the first milliseconds"),
+        replace(later, beside=True, share=1.25),
     ]
+
+
+def _kernel_panel(tree: DataTree, lines: Lines, end: float, title: str) -> Panel:
+    shown = lines.at <= end
+    of_panel = [replace(s, values=s.values[shown] * 1e6) for s in lines.lines]
+    drawn = panels.styled(tree, lines.at[shown] * 1e3, of_panel, width=1.2)
     time = Axis("time since the impulse / ms", 0.0, 1e3 * end)
-    zero = Rules(np.zeros(1), "y", dashes=(), width=0.8)
-    return Panel(time, Axis("moving kernel / (µm/(N s))"), (zero, *lines), title, height=3.9)
+    zero = panels.zero(width=0.8)
+    return Panel(time, Axis("moving kernel / (µm/(N s))"), (zero, *drawn), title, height=3.9)
 
 
 def _kernel_caption(tree: DataTree) -> str:
-    method = stated(tree, schema.KERNEL_METHOD)
-    poles, error = number(tree, schema.KERNEL_POLES), number(tree, schema.KERNEL_FIT_ERROR)
+    method = data.stated(tree, schema.KERNEL_METHOD)
+    poles, error = (data.number(tree, a) for a in (schema.KERNEL_POLES, schema.KERNEL_FIT_ERROR))
     used = " The run used the kernel itself." if method else ""
     if method == "poles" and poles:
         fitted = "" if error is None else f", fitted with a relative error of {error:.1e}"
@@ -191,30 +190,132 @@ def _kernel_caption(tree: DataTree) -> str:
 
 
 TRACK = (
-    Part(
+    Figure(
         "receptance",
         "Receptance of rail, wheel and contact",
-        (FREQUENCY,),
-        receptance_data,
-        receptance_chart,
+        Of(schema.TRACK_FREQUENCY),
+        RECEPTANCES,
+        _receptance,
         _receptance_caption,
-        tuple(_RECEPTANCES),
+        any_of=tuple(each.entry for each in RECEPTANCES if each.entry.units != "rad"),
     ),
-    Part(
+    Figure(
         "decay_rate",
         "Decay rate of the track",
-        (FREQUENCY,),
-        decay_data,
-        decay_chart,
+        Of(schema.TRACK_FREQUENCY),
+        (
+            Of(schema.DECAY_RATE, "", "eigenvalue", (chart.BLUE, (), 1.6)),
+            Of(
+                schema.DECAY_RATE_EN15461,
+                "",
+                "EN 15461, sum over distances",
+                (chart.VERMILLION, (6, 1.5), 1.2),
+            ),
+            Of(schema.DECAY_RATE_LIMIT, "", "lower limit, ISO 3095", (INK, (4, 2), 1.4)),
+        ),
+        _decay,
         _decay_caption,
-        (schema.DECAY_RATE, schema.DECAY_RATE_EN15461),
+        any_of=(schema.DECAY_RATE, schema.DECAY_RATE_EN15461),
     ),
-    Part(
+    Figure(
         "moving_kernel",
         "Response of the rail under the moving wheel",
-        (schema.MOVING_KERNEL, schema.START_POSITION, schema.LAG),
-        kernel_data,
-        kernel_chart,
+        Of(schema.LAG),
+        (_kernels,),
+        _kernel,
         _kernel_caption,
+        further=(schema.MOVING_KERNEL, schema.START_POSITION),
     ),
+)
+
+
+# --- loss factors: what stands for them in time, and what that does to the contact force
+
+_FORCE, _RAIL = schema.LOSS_FACTOR_FORCE_ERROR, schema.LOSS_FACTOR_RAIL_ERROR
+_LAYERS = (chart.BLUE, ()), (chart.VERMILLION, (6, 1.5)), (chart.GREEN, (3, 1.5))
+"""Looks of parts of the track."""
+_DOTTED: dict[str, Any] = {"dashes": (1.5, 1.5), "width": 1.0}
+
+
+def _of_layers(tree: DataTree) -> list[Series]:
+    """Stiffness and loss factor of each part of the track, layer by layer."""
+    layers, entry = data.words(tree, schema.LAYER), schema.LOSS_FACTOR
+    constants = [
+        Series(
+            f"{layer}, constant loss factor",
+            entry.units,
+            np.full(len(bands), factor),
+            entry,
+            layer,
+            {"layer": layer},
+        )
+        for bands in [data.values(tree, schema.TRACK_BAND)]
+        for layer, factor in zip(layers, data.values(tree, entry), strict=True)
+    ]
+    stiffness = Of(schema.RELAXED_STIFFNESS, "{layer}, stiffness over nominal", "{layer}")(tree)
+    losses = Of(schema.RELAXED_LOSS_FACTOR, "{layer}, loss factor", "{layer}")(tree)
+    found = sorted([*stiffness, *losses, *constants], key=lambda s: layers.index(s.label))
+    return [replace(series, look=_LAYERS[layers.index(series.label)]) for series in found]
+
+
+def _loss(tree: DataTree, lines: Lines) -> list[Panel]:
+    """Errors of force and receptance per one-third octave; stiffness and loss factor of each part."""
+    bands = panels.band_axis(lines.at)
+    nominal = Rules(np.ones(1), "y", **_DOTTED)
+    constants = [Rules(s.values[:1], "y", colour=s.look[0], **_DOTTED) for s in lines.of(schema.LOSS_FACTOR)]
+    stiffness, loss = (
+        panels.styled(tree, lines.at, lines.of(entry))
+        for entry in (schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR)
+    )
+    times = panels.log_axis("stiffness / nominal", [nominal.at, *(line.y for line in stiffness)])
+    factor = panels.log_axis("loss factor", [mark.at for mark in constants] + [line.y for line in loss])
+    (error,) = (s.values for s in lines.of(_FORCE))
+    low, high = np.fmin(error, 0.0), np.fmax(error, 0.0)
+    bars = chart.Boxes(
+        lines.at / panels.EDGE, lines.at * panels.EDGE, low, high, "contact force", chart.BLUE, hatch="/"
+    )
+    rail = [
+        Line(lines.at, s.values, "receptance of the rail", chart.MUTED, (6, 1.5), 1.2)
+        for s in lines.of(_RAIL)
+    ]
+    errors: tuple[Mark, ...] = (bars, *rail, panels.zero(colour=INK, width=0.8))
+    return [
+        Panel(bands, Axis("error / dB"), errors, height=2.4),
+        Panel(bands, times, (nominal, *stiffness), height=1.9),
+        Panel(bands, factor, (*constants, *loss), height=1.9),
+    ]
+
+
+def _loss_caption(tree: DataTree) -> str:
+    rest, nominal = (
+        data.number(tree, a) for a in (schema.STATIC_DEFLECTION_IN_TIME, schema.STATIC_DEFLECTION)
+    )
+    softer = ""
+    if rest and nominal:
+        softer = (
+            " At rest the track is softer: the wheel's load lowers the rail by "
+            f"{data.engineering(rest, 'm')}, by {data.engineering(nominal, 'm')} on the nominal stiffnesses."
+        )
+    return (
+        "Nothing that answers after a force only has one stiffness and one loss factor (dotted) at all "
+        "frequencies: the stiffness grows where it dissipates. In time, springs and Maxwell elements stand "
+        "for the loss factors, chosen for the contact force. Above: level of the linear contact force over "
+        "that with constant loss factors, for a wheel at rest, mean over a bay; dashed: of the rail's "
+        "displacement under a given force. Receptances, decay rates and the linear contact in the frequency "
+        f"domain have constant loss factors.{softer}"
+    )
+
+
+LOSS_FACTORS = Figure(
+    "loss_factors",
+    "Loss factors in time",
+    Of(schema.TRACK_BAND, "band centre"),
+    (
+        Of(_FORCE, "contact force, error"),
+        Of(_RAIL, "receptance of the rail, error", optional=True),
+        _of_layers,
+    ),
+    _loss,
+    _loss_caption,
+    further=(schema.LOSS_FACTOR, schema.RELAXED_STIFFNESS, schema.RELAXED_LOSS_FACTOR),
 )

@@ -1,0 +1,282 @@
+"""Figures of motion: of a structure, of bodies, of wheel and rail at the contact, of the rail passed by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from xarray import DataTree
+
+from asperity.reporting import data, panels
+from asperity.reporting.chart import INK, Axis, Panel, Rules
+from asperity.reporting.figure import Figure, Lines, Of, Series
+from asperity.reporting.tables import ReportTable, number_cells, table, text_cells
+from asperity.scenes import schema
+from asperity.scenes.figures import track
+from asperity.scenes.figures.contacts import tone_rules, tones_words
+from asperity.scenes.figures.force import around_peak
+from asperity.schema import rolling
+from asperity.schema.spectra import FREQUENCY
+
+_SPECTRUM = "acceleration PSD / dB re (1 µm/s²)²/Hz", schema.ACCELERATION_REFERENCE**2
+_AT = "x = {sensor:g} m"
+_SENSORS = Of(schema.ACCELERATION_PSD, "{law}, " + _AT, _AT, one={"law": min})
+
+
+def _sensors_caption(tree: DataTree) -> str:
+    main = data.laws(tree, schema.ACCELERATION_PSD)[0]
+    text = f"Acceleration at all sensors by the main law, {main}, positive downwards; {panels.DRAWN}."
+    return f"{text}{panels.shaded_words(tree)} {data.missing(tree, schema.ACCELERATION_LEVEL)}".strip()
+
+
+def _laws_caption(tree: DataTree) -> str:
+    sensors = [series.label for series in _SENSORS(tree)]
+    place = sensors[len(sensors) // 2]
+    return f"Acceleration at {place} by all laws; {panels.DRAWN}.{panels.shaded_words(tree)}"
+
+
+ACCELERATION = (
+    Figure(
+        "acceleration_sensors",
+        "Acceleration at the sensors",
+        Of(FREQUENCY),
+        (_SENSORS,),
+        panels.draw_spectrum(*_SPECTRUM),
+        _sensors_caption,
+    ),
+    Figure(
+        "acceleration_laws",
+        "Acceleration by law",
+        Of(FREQUENCY),
+        (replace(_SENSORS, label="{law}", one={"sensor": lambda sensors: sensors[len(sensors) // 2]}),),
+        panels.draw_spectrum(*_SPECTRUM),
+        _laws_caption,
+    ),
+)
+
+MOST_LINES = 6
+"""Degrees of freedom that are drawn: the last, which are those of what rests on the others."""
+
+
+def _bodies_caption(tree: DataTree) -> str:
+    count, some = len(data.words(tree, schema.SPECTRA_DEGREE)), ""
+    if count > MOST_LINES:
+        some = f" The last {MOST_LINES} of {count} are drawn; the file has all."
+    main = data.laws(tree, schema.BODY_ACCELERATION_PSD)[0]
+    return (
+        f"Acceleration of the bodies by the main law, {main}; {panels.DRAWN}.{some}"
+        f"{tones_words(tree)}{panels.shaded_words(tree)}"
+    )
+
+
+BODIES = Figure(
+    "body_acceleration",
+    "Acceleration of the bodies",
+    Of(FREQUENCY),
+    (Of(schema.BODY_ACCELERATION_PSD, "{degree}"),),
+    panels.draw_spectrum(*_SPECTRUM, tone_rules, slice(-MOST_LINES, None)),
+    _bodies_caption,
+)
+
+
+def energy_table(tree: DataTree) -> ReportTable | None:
+    """Energy balance per law, and what is left of it."""
+    laws = data.laws(tree, schema.ENERGY)
+    if not laws:
+        return None
+    energies = np.transpose([data.of_law(tree, schema.ENERGY, law) for law in laws])
+    terms = zip(data.words(tree, schema.ENERGY_TERM), energies, strict=True)
+    columns = {"law": text_cells(laws), **{term: number_cells(energy, "J") for term, energy in terms}}
+    note, entry = "Energies from the start of the run-in to the end of the run.", schema.ENERGY_RESIDUAL
+    if data.present(tree, entry):
+        left = [float(data.of_law(tree, entry, law)) for law in laws]
+        columns["relative residual"] = number_cells(left, "{:.1e}")
+        note += f" Residual: {entry.long_name}."
+    return table("energy_balance", "Energy balance of the run", columns, note)
+
+
+# --- wheel and rail at the contact
+
+_MOTIONS = {
+    schema.RAIL_DISPLACEMENT: ("rail", 1e-3, "mm"),
+    schema.WHEEL_DISPLACEMENT: ("wheel", 1e-3, "mm"),
+    rolling.RELATIVE_DISPLACEMENT: ("approach", 1e-6, "µm"),
+}
+"""What moves at the contact, and the unit it is drawn in."""
+PIECE = 0.1
+"""Length of the piece around the largest force, s."""
+
+
+def _displacement(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Displacement of rail and wheel at the contact and their approach, all laws, over a piece of the run."""
+    time, unit = panels.time_axis(tree, lines.at)
+    sleepers = track.sleeper_times(tree, lines.at[0], lines.at[-1], unit)
+    for entry, (name, size, length) in _MOTIONS.items():
+        if motions := lines.of(entry):
+            drawn = panels.styled(tree, lines.at / unit, motions, size=size)
+            low, high = panels.main_limits(motions, data.pulling(tree))
+            downwards = Axis(f"{name} / {length}", high / size, low / size)
+            yield Panel(time, downwards, (*sleepers, *drawn), height=1.75)
+
+
+def _displacement_caption(tree: DataTree) -> str:
+    sleepers = " Ticks: the wheel passes a sleeper." if data.number(tree, schema.SLEEPER_SPACING) else ""
+    lines, beyond = DISPLACEMENT.collect(tree), ""
+    for entry, (name, _, _) in _MOTIONS.items():
+        if motions := lines.of(entry):
+            limits = panels.main_limits(motions, data.pulling(tree))
+            beyond += panels.beyond_limits(motions, limits, "m", f"{name.capitalize()}: the axis")
+    return (
+        "Motion at the contact around the largest force, positive downwards and drawn downwards; from the "
+        "unloaded track, so that the static deflection is in. The approach of wheel and rail is positive "
+        f"closing.{sleepers}{beyond}"
+    )
+
+
+def _piece(tree: DataTree) -> slice:
+    return around_peak(tree, PIECE) if data.present(tree, rolling.CONTACT_FORCE) else slice(None)
+
+
+DISPLACEMENT = Figure(
+    "displacement",
+    "Wheel and rail at the contact",
+    Of(rolling.TIME),
+    (
+        Of(rolling.POSITION, "position on the rail", optional=True),
+        *(
+            Of(entry, f"{name}, {{law}}", "{law}", optional=entry is not schema.RAIL_DISPLACEMENT)
+            for entry, (name, _, _) in _MOTIONS.items()
+        ),
+    ),
+    _displacement,
+    _displacement_caption,
+    rows=_piece,
+)
+
+
+# --- the rail at points that the wheel passes
+
+POINTS = 3
+"""Passed points that are drawn, at most; the CSV files hold all."""
+AROUND_PASSING = 0.15
+"""Longest time before and after a passing that is drawn, s."""
+
+
+def point_labels(tree: DataTree) -> list[str]:
+    """Positions of the passed points, with their place in the bay where it has a name."""
+    bay = data.number(tree, schema.SLEEPER_SPACING)
+    found = []
+    for point in data.values(tree, schema.ROLLING_POINT).tolist():
+        place = (point / bay) % 1 if bay else np.nan
+        name = ", over a sleeper" if min(place, 1 - place) < 0.02 else ""
+        found.append(f"x = {point:.4g} m{', mid-span' if abs(place - 0.5) < 0.02 else name}")
+    return found
+
+
+_VELOCITY, _VELOCITY_PSD = (
+    Of(entry, "{law}, {point}", "{law}", called={"point": point_labels})
+    for entry in (schema.POINT_VELOCITY, schema.POINT_VELOCITY_PSD)
+)
+
+
+def _by_point(lines: Lines) -> dict[str, list[Series]]:
+    """Lines of the passed points that are drawn, by the names of these."""
+    found: dict[str, list[Series]] = {}
+    for series in lines.lines:
+        found.setdefault(series.name.removeprefix(f"{series.law}, "), []).append(series)
+    return dict(list(found.items())[:POINTS])
+
+
+def _around_passing(tree: DataTree, point: float) -> tuple[slice, float | None]:
+    """Time steps around the wheel's passing of a point, and the time of it if the positions are known."""
+    time, speed = data.values(tree, rolling.TIME), data.number(tree, rolling.SPEED)
+    if not speed or not data.present(tree, rolling.POSITION):
+        return slice(0, len(time)), None
+    passing = time[0] + (point - data.values(tree, rolling.POSITION)[0]) / speed
+    low, high = np.searchsorted(time, [passing - AROUND_PASSING, passing + AROUND_PASSING])
+    return (slice(int(low), int(high)), float(passing)) if high - low > 1 else (slice(0, len(time)), None)
+
+
+def _passings(tree: DataTree) -> slice:
+    """Time steps of all the passings, and of what lies between them."""
+    points = {series.places["point"] for series in _VELOCITY(tree)}
+    around = [_around_passing(tree, point)[0] for point in points]
+    return slice(min(each.start for each in around), max(each.stop for each in around))
+
+
+def _main_and_linear(tree: DataTree) -> list[str]:
+    main, *others = data.laws(tree, schema.POINT_VELOCITY)
+    return [*(law for law in data.baselines_among(tree, [main, *others])[:1] if law != main), main]
+
+
+def _velocity(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Velocity of the rail at the passed points, around the passing, by the main law and by a linear one."""
+    label = "time since the wheel passed / ms" if data.number(tree, rolling.SPEED) else "time / ms"
+    laws = _main_and_linear(tree)
+    for title, found in _by_point(lines).items():
+        part, passing = _around_passing(tree, found[0].places["point"])
+        shown = np.isin(lines.at, data.values(tree, rolling.TIME)[part])
+        time = (lines.at[shown] - (passing or 0.0)) * 1e3
+        of_laws = [replace(s, values=s.values[shown] * 1e3) for s in found if s.law in laws]
+        # they swing fast: dashes would not be seen
+        drawn = panels.styled(tree, time, of_laws, main=laws[-1], width=1.0, dashes=())
+        passed = [] if passing is None else [Rules(np.zeros(1), colour=INK)]
+        axes = Axis(label, time[0], time[-1], linked="passing"), Axis("velocity / (mm/s)")
+        yield Panel(*axes, (*passed, *drawn), title, height=1.9)
+
+
+def _velocity_caption(tree: DataTree) -> str:
+    names, speed = " and ".join(reversed(_main_and_linear(tree))), data.number(tree, rolling.SPEED)
+    around = "around the time at which the wheel passes it (dotted)" if speed else "over the whole run"
+    return (
+        f"Velocity of the rail at a fixed point, positive downwards, {around}, by {names}. "
+        "The CSV file holds all laws and points."
+    )
+
+
+def _velocity_spectra(tree: DataTree, lines: Lines) -> Iterator[Panel]:
+    """Power spectral densities of the rail's velocity at the passed points, all laws, a panel per point."""
+    points = {
+        title: panels.narrow_levels(tree, lines, found, schema.VELOCITY_REFERENCE**2)
+        for title, found in _by_point(lines).items()
+    }
+    label = "velocity PSD / dB re (1 nm/s)²/Hz"
+    axis = panels.levels_axis(label, [s.values for _, levels in points.values() for s in levels])
+    behind = track.natural_rules(tree, *panels.frequency_range(tree), named=False)
+    for title, (frequency, levels) in points.items():
+        panel = panels.spectrum_panel(tree, label, panels.styled(tree, frequency, levels), behind)
+        yield replace(panel, y=axis, title=title, height=2.8)
+
+
+def _velocity_spectra_caption(tree: DataTree) -> str:
+    named = ", ".join(f"{label} {f:.0f} Hz" for label, f in track.natural_frequencies(tree).items())
+    dotted = f" Dotted: {named}." if named else ""
+    return (
+        f"Velocity of the rail at fixed points over the whole run, {panels.DRAWN}.{dotted}"
+        f"{panels.shaded_words(tree)}"
+    )
+
+
+RAIL = (
+    DISPLACEMENT,
+    Figure(
+        "rail_velocity",
+        "Rail velocity where the wheel passes",
+        Of(rolling.TIME),
+        (_VELOCITY,),
+        _velocity,
+        _velocity_caption,
+        (schema.ROLLING_POINT,),
+        rows=_passings,
+    ),
+    Figure(
+        "rail_velocity_psd",
+        "Rail velocity against frequency",
+        Of(FREQUENCY),
+        (_VELOCITY_PSD,),
+        _velocity_spectra,
+        _velocity_spectra_caption,
+        (schema.ROLLING_POINT,),
+    ),
+)
