@@ -78,10 +78,9 @@ class Of:
         if not data.present(tree, self.entry):
             return
         found, name = data.variable_of(tree, self.entry), self.name or self.entry.name
-        apart = {
-            dim for dim in self.entry.dims[:-1] if f"{{{dim}" in name + self.label and dim not in self.one
-        }
-        places = {dim: data.with_numbers(found, dim) for dim in self.entry.dims[:-1]}
+        dims = [str(dim) for dim in found.dims[:-1]]
+        apart = {dim for dim in dims if f"{{{dim}" in name + self.label and dim not in self.one}
+        places = {dim: data.with_numbers(found, dim) for dim in dims}
         places |= {dim: [self.one.get(dim, min)(places[dim])] for dim in places if dim not in apart}
         called = {dim: words(tree) for dim, words in self.called.items()}
         for index in product(*places.values()):

@@ -81,6 +81,7 @@ def contacts_table(tree: DataTree) -> ReportTable | None:
     """Where the contacts are, what they carry, and how long they are lost."""
     if not data.present(tree, rolling.OFFSET, rolling.STATIC_LOAD, rolling.CONTACT_LOSS_SHARE):
         return None
+    main = data.laws(tree, rolling.CONTACT_LOSS_SHARE)[0]
     lost = next(Of(rolling.CONTACT_LOSS_SHARE)(tree)).values
     columns = {
         "contact": text_cells(range(1, len(lost) + 1)),
@@ -88,9 +89,7 @@ def contacts_table(tree: DataTree) -> ReportTable | None:
             data.values(tree, rolling.OFFSET), lambda offset: data.engineering(offset, "m", 4)
         ),
         "static force": number_cells(data.values(tree, rolling.STATIC_LOAD), "N"),
-        f"out of contact, {data.laws(tree, rolling.CONTACT_LOSS_SHARE)[0]}": number_cells(
-            100.0 * lost, "{:.3g} %"
-        ),
+        f"out of contact, {main}": number_cells(100.0 * lost, "{:.3g} %"),
     }
     return table("where_contacts_are", "Contacts", columns, "Static forces as on a rigid plane.")
 
