@@ -26,7 +26,7 @@ from asperity.reduction.texture import punch_weights
 from asperity.reporting.chart import Axis, Chart, Field, Panel
 from asperity.reporting.figure import write_chart
 from asperity.running import prepare_case
-from asperity.surfaces.spikes import spikes
+from asperity.surfaces.cleaning import spikes
 from asperity.surfaces.statistics import rms_slope
 
 BALL: dict[str, Any] = {

@@ -25,9 +25,9 @@ from asperity.schema import VERSION
 from asperity.store import Store
 from asperity.studies.definition import load_study, study_of
 from asperity.surfaces.heightmap import HeightMap
+from asperity.surfaces.likeness import likeness
 from asperity.surfaces.readers import read_surface
-from asperity.surfaces.readers.headers import parsed_header
-from asperity.surfaces.synthesis import likeness
+from asperity.surfaces.readers.text import parsed_header
 from asperity.text_files import number_in
 from asperity.units import quantity
 

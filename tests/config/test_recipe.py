@@ -13,8 +13,7 @@ from asperity.kinds.cases import parse_case
 from asperity.scenarios.records import read_maps
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import GAUSSIAN_CONSTANT, band_limit, level
-from asperity.surfaces.rotation import rotated
-from asperity.surfaces.steps import stepped
+from asperity.surfaces.steps import rotated, stepped
 
 BEGUN = """height_unit = "um"
 pixel = "2 um"

@@ -11,9 +11,9 @@ import numpy as np
 from ledger import Check
 
 from asperity.surfaces.defects import flat_length, flat_trajectory
-from asperity.surfaces.en15610 import remove_spikes, roll_over
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level
+from asperity.surfaces.measured_lines import remove_spikes, roll_over
 from asperity.surfaces.readers import read_surface
 from asperity.surfaces.spectra import psd_1d
 from asperity.surfaces.statistics import areal_statistics

@@ -19,7 +19,7 @@ from asperity.results import read_result, save, variable
 from asperity.sandbox import MEMORY
 from asperity.schema import VERSION
 from asperity.surfaces.readers import netcdf, read_surface
-from asperity.surfaces.readers.guards import checked_hints
+from asperity.surfaces.readers.hints import checked_hints
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "surfaces"))
 from surface_files import sdf_ascii, sdf_binary, x3p

@@ -11,8 +11,8 @@ from asperity.surfaces.defects import (
     flat_length,
     flat_trajectory,
 )
-from asperity.surfaces.en15610 import roll_over
 from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.measured_lines import roll_over
 
 MM, UM = 1e-3, 1e-6
 RADIUS, DEPTH = 0.46, 0.4 * MM

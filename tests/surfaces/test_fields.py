@@ -71,7 +71,7 @@ class _Full:
 @pytest.mark.parametrize("file", [_no_file, lambda **_: _Full()])
 def test_without_a_file_few_fields_are_held_in_memory(monkeypatch, file):
     monkeypatch.setattr("tempfile.TemporaryFile", file)
-    monkeypatch.setattr(module, "BYTES_HELD", 4 * 100 * 3 * 8)
+    monkeypatch.setattr(module, "BYTES_IN_MEMORY", 4 * 100 * 3 * 8)
     fields, made = Fields(), Made()
     for _ in range(2):
         for number in (0, 1, 2, 3):

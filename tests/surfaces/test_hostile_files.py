@@ -130,7 +130,7 @@ def test_zip_bomb(tmp_path):
 
 
 def test_xml_of_an_archive_is_bounded(tmp_path, monkeypatch):
-    monkeypatch.setattr("asperity.surfaces.readers.x3p.MAX_XML_BYTES", 100)
+    monkeypatch.setattr("asperity.surfaces.readers.guards.MAX_XML_BYTES", 100)
     with pytest.raises(InputError, match=r"more than 100 bytes in main\.xml"):
         read_surface(x3p(tmp_path / "a.x3p", [HEIGHTS]))
 

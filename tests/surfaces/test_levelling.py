@@ -6,8 +6,9 @@ from numpy.testing import assert_allclose
 
 from asperity import BallOnBeam
 from asperity.errors import CaseError, InputError, MissingPointsWarning, ShortRecordWarning
+from asperity.surfaces.cleaning import fill
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import band_limit, fill, fit_form, level, remove_form, resample
+from asperity.surfaces.levelling import band_limit, fit_form, level, remove_form, resample
 
 UM = 1e-6
 

@@ -29,33 +29,33 @@ def test_three_straight_pieces_have_the_core_of_the_middle_one():
     """From 3 to 1 over 10 %, to 0 over 70 %, to −4 over 20 %: the core is the middle line, drawn out."""
     heights = np.interp(RATIO, [0.0, 0.1, 0.8, 1.0], [3.0, 1.0, 0.0, -4.0])
     found = stratified(np.random.default_rng(0).permutation(heights).reshape(400, 500))
-    assert found.core == pytest.approx(10 / 7, rel=1e-4)
-    assert found.peaks == pytest.approx(13 / 7, rel=1e-3)
-    assert found.valleys == pytest.approx(26 / 7, rel=1e-3)
-    assert found.peak_ratio == pytest.approx(13 / 140, abs=1e-4)
-    assert found.valley_ratio == pytest.approx(0.8 + 1 / 70, abs=1e-4)
+    assert found["k"] == pytest.approx(10 / 7, rel=1e-4)
+    assert found["pk"] == pytest.approx(13 / 7, rel=1e-3)
+    assert found["vk"] == pytest.approx(26 / 7, rel=1e-3)
+    assert found["mr1"] == pytest.approx(13 / 140, abs=1e-4)
+    assert found["mr2"] == pytest.approx(0.8 + 1 / 70, abs=1e-4)
 
 
 def test_the_first_of_the_flattest_secants_counts():
     """A sine is flattest at its crests and, as much, in its valleys: the line lies over the first 40 %."""
     found = stratified(np.sin(2.0 * np.pi * RATIO))
     top, bottom = line_over(lambda m: np.cos(np.pi * m), 0.0, 0.4)
-    assert found.core == pytest.approx(top - bottom, rel=1e-4)
-    assert found.peak_ratio == pytest.approx(np.arccos(min(top, 1.0)) / np.pi, abs=1e-4)
-    assert found.valley_ratio == pytest.approx(np.arccos(bottom) / np.pi, abs=1e-3)
-    below = quad(lambda m: bottom - np.cos(np.pi * m), found.valley_ratio, 1.0)[0]
-    assert found.valleys == pytest.approx(2.0 * below / (1.0 - found.valley_ratio), rel=1e-3)
+    assert found["k"] == pytest.approx(top - bottom, rel=1e-4)
+    assert found["mr1"] == pytest.approx(np.arccos(min(top, 1.0)) / np.pi, abs=1e-4)
+    assert found["mr2"] == pytest.approx(np.arccos(bottom) / np.pi, abs=1e-3)
+    below = quad(lambda m: bottom - np.cos(np.pi * m), found["mr2"], 1.0)[0]
+    assert found["vk"] == pytest.approx(2.0 * below / (1.0 - found["mr2"]), rel=1e-3)
 
 
 def test_normal_heights_have_a_symmetric_core():
     """The line over the middle 40 % of Φ⁻¹: 2.58 standard deviations high, a tenth of the points above it."""
     found = stratified(ndtri(RATIO))
     top, bottom = line_over(lambda m: norm.isf(m), 0.3, 0.7)
-    assert found.core == pytest.approx(top - bottom, rel=1e-4)
-    assert found.peaks == pytest.approx(found.valleys, rel=1e-3)
-    assert found.peak_ratio == pytest.approx(norm.sf(top), abs=1e-4)
+    assert found["k"] == pytest.approx(top - bottom, rel=1e-4)
+    assert found["pk"] == pytest.approx(found["vk"], rel=1e-3)
+    assert found["mr1"] == pytest.approx(norm.sf(top), abs=1e-4)
     above = norm.pdf(top) - top * norm.sf(top)
-    assert found.peaks == pytest.approx(2.0 * above / norm.sf(top), rel=1e-3)
+    assert found["pk"] == pytest.approx(2.0 * above / norm.sf(top), rel=1e-3)
 
 
 def test_a_plateau_with_valleys_is_told_from_them():

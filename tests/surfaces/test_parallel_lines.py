@@ -4,9 +4,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import InputError, ShortRecordWarning
 from asperity.reference import cnossos
-from asperity.surfaces.en15610 import process, trim
 from asperity.surfaces.heightmap import Profile
-from asperity.surfaces.parallel_lines import bring_into_register, common_length, strip_from_lines
+from asperity.surfaces.measured_lines import (
+    bring_into_register,
+    common_length,
+    process,
+    strip_from_lines,
+    trim,
+)
 from asperity.surfaces.synthesis import strip_from_bands
 from like_measured import either, wheel_lines
 

@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from asperity.errors import InputError
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.rotation import inscribed, rotated
-from asperity.surfaces.statistics import texture_direction
+from asperity.surfaces.spectra import texture_direction
+from asperity.surfaces.steps import inscribed, rotated
 
 UM = 1e-6
 

@@ -5,7 +5,7 @@ import pytest
 
 from asperity import HeightMap, read_surface
 from asperity.errors import InputError, MissingPointsWarning
-from asperity.surfaces.spikes import spikes, without_spikes
+from asperity.surfaces.cleaning import spikes, without_spikes
 from asperity.surfaces.synthesis import self_affine
 
 SPACING = 2e-6

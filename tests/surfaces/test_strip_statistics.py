@@ -7,10 +7,9 @@ import pytest
 
 from asperity.errors import InputError
 from asperity.spectra import psd
-from asperity.surfaces import strip_statistics
+from asperity.surfaces import statistics
 from asperity.surfaces.heightmap import HeightMap
-from asperity.surfaces.statistics import areal_statistics
-from asperity.surfaces.strip_statistics import survey_strip
+from asperity.surfaces.statistics import areal_statistics, survey_strip
 from asperity.surfaces.synthesis import long_self_affine, self_affine
 
 SPACING = (2e-6, 3e-6)
@@ -24,8 +23,8 @@ def surface():
 
 @pytest.fixture
 def small_pieces(monkeypatch):
-    monkeypatch.setattr(strip_statistics, "PIECE", 41 * 500)
-    monkeypatch.setattr(strip_statistics, "FEWEST_ROWS", 100)
+    monkeypatch.setattr(statistics, "PIECE", 41 * 500)
+    monkeypatch.setattr(statistics, "FEWEST_ROWS", 100)
 
 
 def values(statistics):

@@ -16,10 +16,10 @@ from asperity.arguments import shown
 from asperity.errors import InputError
 from asperity.files import atomic_write
 from asperity.reporting.figure import write_columns
-from asperity.surfaces.en15610 import full_lines
+from asperity.surfaces.cleaning import nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import nearly_complete
-from asperity.surfaces.readers.headers import on_command_line, spelled
+from asperity.surfaces.measured_lines import full_lines
+from asperity.surfaces.readers.hints import on_command_line, spelled
 from asperity.surfaces.spectra import psd_1d, psd_radial
 from asperity.terminal import say
 from asperity.units import quantity
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from asperity.config.recipe import Recipe
-    from asperity.surfaces.en15610 import ThirdOctaves
     from asperity.surfaces.heightmap import HeightMap, Profile
+    from asperity.surfaces.measured_lines import ThirdOctaves
     from asperity.surfaces.statistics import Statistic
 
 Spectra = dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
@@ -245,12 +245,12 @@ def _material_ratio(heights: NDArray[np.float64]) -> dict[str, Any]:
 def _as_lines(surfaces: list[HeightMap | Profile], told: bool | None) -> tuple[Profile, ...]:
     """Lines side by side, where the user or the shape of an array says so; else none."""
     from asperity.surfaces.heightmap import HeightMap
-    from asperity.surfaces.parallel_lines import are_lines, lines_of
+    from asperity.surfaces.measured_lines import lines_of
 
     first = surfaces[0]
     if len(surfaces) > 1 or not isinstance(first, HeightMap):
         return ()
-    return lines_of(first) if (are_lines(first) if told is None else told) else ()
+    return lines_of(first) if (first.holds_lines if told is None else told) else ()
 
 
 def _inspect_lines(
@@ -289,7 +289,7 @@ def _inspect_lines(
 def _against_limit(lines: list[Profile]) -> tuple[ThirdOctaves | None, dict[str, Any]]:
     """One-third-octave levels of a rail's or wheel's lines and the limit, printed band by band."""
     from asperity.spectra import nominal
-    from asperity.surfaces.en15610 import third_octaves
+    from asperity.surfaces.measured_lines import third_octaves
 
     found = third_octaves(lines) if lines else None
     if found is None:
@@ -381,10 +381,11 @@ def homogeneity_of(surface: HeightMap | Profile) -> tuple[dict[str, Any] | None,
     """Whether the texture of a map is the same everywhere, as numbers and in words; nothing of a line."""
     import numpy as np
 
+    from asperity.surfaces.cleaning import FILLED_SHARE_WARNED
     from asperity.surfaces.heightmap import HeightMap
     from asperity.surfaces.homogeneity import TILES, homogeneity
-    from asperity.surfaces.levelling import FILLED_SHARE_WARNED, level, nearly_complete
-    from asperity.surfaces.synthesis import FLAT
+    from asperity.surfaces.levelling import level
+    from asperity.surfaces.likeness import FLAT
 
     if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(TILES):
         return None, ""

@@ -225,7 +225,7 @@ def _measured(case: Case) -> list[tuple[str, str]]:
     from asperity.cli.inspecting import described, described_lines
     from asperity.scenarios.records import read_lines, read_maps
     from asperity.surfaces.heightmap import HeightMap
-    from asperity.surfaces.parallel_lines import lines_of
+    from asperity.surfaces.measured_lines import lines_of
 
     found = []
     with warnings.catch_warnings():

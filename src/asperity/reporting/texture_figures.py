@@ -31,7 +31,7 @@ from asperity.spectra import nominal
 from asperity.surfaces.statistics import material_ratio_curve
 
 if TYPE_CHECKING:
-    from asperity.surfaces.en15610 import ThirdOctaves
+    from asperity.surfaces.measured_lines import ThirdOctaves
 
 SLENDER = 2.5
 """Times longer than wide: such a map gets the whole width."""

@@ -20,7 +20,7 @@ from asperity.spectra import HALF_BAND, nominal_length
 from asperity.surfaces.bands import strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import read_surface, read_surfaces
-from asperity.surfaces.readers.headers import in_case, spelled
+from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.surfaces.strip import Strip
 from asperity.surfaces.synthesis import long_strip_from_bands
 

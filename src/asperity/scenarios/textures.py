@@ -16,8 +16,8 @@ from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.records import read_maps
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import band_limit, level, resample
-from asperity.surfaces.rotation import QUARTER, rotated
 from asperity.surfaces.statistics import rms_slope
+from asperity.surfaces.steps import QUARTER, rotated
 from asperity.surfaces.strip import LongStrip, Strip, raised
 from asperity.surfaces.synthesis import (
     Continuation,

@@ -22,14 +22,16 @@ from asperity.schema import Attribute, Entry, attributes, contact, surface, vari
 from asperity.spectra import psd
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.homogeneity import SIGNIFICANCE, TILES, homogeneity, more_than_chance
+from asperity.surfaces.spectra import psd_1d
 from asperity.surfaces.statistics import (
+    BINS,
     Statistic,
+    StripSurvey,
     areal_statistics,
     line_statistics,
     profile_statistics,
-    psd_1d,
+    survey_strip,
 )
-from asperity.surfaces.strip_statistics import BINS, StripSurvey, survey_strip
 
 Array = NDArray[np.float64]
 PATH_ROWS = 2000

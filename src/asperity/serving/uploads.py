@@ -16,7 +16,7 @@ from asperity.files import amount, require_space
 from asperity.serving.kept_runs import folder_of, kept_in, new_identifier, remove_kept
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.readers import read_surface
-from asperity.surfaces.readers.headers import in_case, spelled
+from asperity.surfaces.readers.hints import in_case, spelled
 from asperity.units import written
 
 LARGEST_UPLOAD = 256 * 2**20

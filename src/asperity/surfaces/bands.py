@@ -1,4 +1,4 @@
-"""One-third-octave levels in wavelength of lines and surfaces, dB re 1 µm."""
+"""One-third-octave levels in wavelength, dB re 1 µm: those of surfaces, and surfaces that have given ones."""
 
 from __future__ import annotations
 
@@ -11,23 +11,22 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import fft, linalg
 from scipy.special import k1
 
-from asperity.arguments import Array
-from asperity.errors import InputError
+from asperity.arguments import Array, require
 from asperity.spectra import HALF_BAND, band_energies, band_levels, psd, third_octave_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.strip import check_shape
 from asperity.threads import thread_count
 
 MICROMETRE = 1e-6
 """Reference of roughness levels, m (ISO 3095:2013, EN 15610:2009)."""
-
 LIKELY_LEVELS = (-60.0, 60.0)
 """Levels outside of these, dB re 1 µm, ask whether the unit of the heights is right."""
-
 EMPTY = 120.0
 """A band this far below the highest holds rounding errors, dB."""
-
 LIKELY_WAVELENGTHS = (3.15e-3, 0.4)
 """Wavelengths whose levels are checked, m: the bands of ISO 3095:2013."""
+SAME_COHERENCE = 1.05
+"""Wavenumbers within this ratio share one lateral coherence."""
 
 
 def band_levels_of(
@@ -44,15 +43,20 @@ def band_levels_of(
     bands that the segment resolves and the spacing holds. The exact band centres fall; an empty band has a
     level of minus infinity.
     """
-    spacing = surface.spacing[0] if isinstance(surface, HeightMap) else surface.spacing
+    spacing = float(np.atleast_1d(surface.spacing)[0])
     points = None if segment is None else round(segment / spacing)
     wavenumber, density = psd(surface.heights.T, spacing, segment=points)
     if density.ndim == 2:
         density = density.mean(axis=0)
-    low = None if longest is None else 1.0 / longest
-    high = None if shortest is None else 1.0 / shortest
+    low, high = (None if limit is None else 1.0 / limit for limit in (longest, shortest))
     centres, levels = band_levels(wavenumber, density, MICROMETRE, low=low, high=high)
     return 1.0 / centres, levels
+
+
+def likely_band(wavelength: Array) -> NDArray[np.bool_]:
+    """Which bands of a wavelength, m, lie between those of 3.15 mm and 0.4 m."""
+    shortest, longest = LIKELY_WAVELENGTHS
+    return (wavelength > shortest / HALF_BAND) & (wavelength < longest * HALF_BAND)
 
 
 def check_levels(surfaces: Sequence[Profile | HeightMap], what: str = "heights") -> None:
@@ -61,26 +65,19 @@ def check_levels(surfaces: Sequence[Profile | HeightMap], what: str = "heights")
     That is beyond ±60 dB re 1 µm in a band between 3.15 mm and 0.4 m that the record resolves. Empty bands,
     120 dB below the highest, do not count. The heights are complete and without form, m.
     """
+    lowest, highest = LIKELY_LEVELS
     for surface in surfaces:
         wavelength, level = band_levels_of(surface)
-        step = surface.spacing[0] if isinstance(surface, HeightMap) else surface.spacing
-        inside = (wavelength > LIKELY_WAVELENGTHS[0] / HALF_BAND) & (
-            wavelength < LIKELY_WAVELENGTHS[1] * HALF_BAND
-        )
-        inside &= np.isfinite(level) & (wavelength >= 4.0 * step) & (level > level.max() - EMPTY)
-        if not inside.any():
-            continue
-        for extreme in (level[inside].max(), level[inside].min()):
-            if not LIKELY_LEVELS[0] <= extreme <= LIKELY_LEVELS[1]:
-                at = wavelength[inside][np.argmin(np.abs(level[inside] - extreme))]
-                received = f"{extreme:.0f} dB re 1 µm at a wavelength of {1e3 * at:.3g} mm"
-                allowed = f"levels between {LIKELY_LEVELS[0]:g} and {LIKELY_LEVELS[1]:+g} dB"
-                remedy = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
-                raise InputError(f"levels of the {what}", received, allowed, remedy)
-
-
-SAME_COHERENCE = 1.05
-"""Wavenumbers within this ratio share one lateral coherence."""
+        step = float(np.atleast_1d(surface.spacing)[0])
+        inside = likely_band(wavelength) & np.isfinite(level) & (wavelength >= 4.0 * step)
+        inside &= level > level.max() - EMPTY
+        for index in (np.argmax, np.argmin) if inside.any() else ():
+            k = index(level[inside])
+            extreme, at = level[inside][k], wavelength[inside][k]
+            received = f"{extreme:.0f} dB re 1 µm at a wavelength of {1e3 * at:.3g} mm"
+            allowed = f"levels between {lowest:g} and {highest:+g} dB"
+            remedy = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
+            require(lowest <= extreme <= highest, f"levels of the {what}", received, allowed, remedy)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +139,11 @@ def strip_from_bands(
     (1 dB from band to shorter band) and nearly so beside it: the limit of ISO 3095:2013 falls as ν^(-3) above
     100 mm and as ν^(-1.6) below 30 mm.
     """
-    nx, ny = _checked_strip(shape, spacing, lateral)
+    check_shape(shape)
+    positive = len(spacing) == 2 and min(spacing) > 0.0
+    require(positive, "spacing", spacing, "two positive lengths (dx, dy), m")
+    require(lateral > 0.0, "lateral", lateral, "above zero, or inf for equal lines")
+    nx, ny = shape
     lines = _fourier_lines(nx, spacing[0], wavelengths, levels_db)
     rng = np.random.default_rng(seed)
     amplitudes = np.zeros((ny, lines.energies.size), dtype=np.complex128)
@@ -155,20 +156,10 @@ def strip_from_bands(
     if nx % 2 == 0:
         amplitudes[:, -1] = np.sqrt(2.0) * amplitudes[:, -1].real
         share[-1] = 1.0
-    found = np.mean(np.square(amplitudes.real) + np.square(amplitudes.imag), axis=0)
-    amplitudes *= nx * share * np.sqrt(lines.energies * _correction(lines, lines.energies * found))
+    power = np.mean(np.square(amplitudes.real) + np.square(amplitudes.imag), axis=0)
+    amplitudes *= nx * share * np.sqrt(lines.energies * _correction(lines, lines.energies * power))
     heights = fft.irfft(amplitudes, nx, axis=1, overwrite_x=True, workers=thread_count()).T
     return HeightMap(heights, spacing, f"{lines.description}, lateral {lateral:g}, seed {seed}")
-
-
-def _checked_strip(shape: tuple[int, int], spacing: tuple[float, float], lateral: float) -> tuple[int, int]:
-    if len(shape) != 2 or min(shape) < 2:
-        raise InputError("shape", shape, "(nx, ny), at least 2 points each")
-    if len(spacing) != 2 or not min(spacing) > 0.0:
-        raise InputError("spacing", spacing, "two positive lengths (dx, dy), m")
-    if not lateral > 0.0:
-        raise InputError("lateral", lateral, "above zero, or inf for equal lines")
-    return shape
 
 
 def _blocks(lines: _Lines) -> list[slice]:
@@ -194,13 +185,12 @@ def _correction(lines: _Lines, energies: Array) -> Array:
 
     Lines on an edge are shared by two bands, so the factors of the bands depend on each other.
     """
-    step = lines.wavenumbers[1]
-    wanted = lines.targets > 0.0
+    step, wanted = lines.wavenumbers[1], lines.targets > 0.0
     factors = np.ones(wanted.size)
     for _ in range(50):
         density = energies * factors[lines.band_of] / step
-        found = band_energies(lines.wavenumbers, density, lines.low, lines.high)
-        ratio = lines.targets[wanted] / found[wanted]
+        squares = band_energies(lines.wavenumbers, density, lines.low, lines.high)
+        ratio = lines.targets[wanted] / squares[wanted]
         factors[wanted] *= ratio
         if np.allclose(ratio, 1.0, rtol=0.0, atol=1e-5):
             break
@@ -209,23 +199,19 @@ def _correction(lines: _Lines, energies: Array) -> Array:
 
 def _fourier_lines(n: int, spacing: float, wavelengths: ArrayLike, levels_db: ArrayLike) -> _Lines:
     centres, low, high, levels = _wavenumber_bands(wavelengths, levels_db)
-    if not (n >= 2 and spacing > 0.0):
-        raise InputError("line", f"{n} points at {spacing} m", "2 points or more at a positive spacing")
+    long_enough, received = n >= 2 and spacing > 0.0, f"{n} points at {spacing} m"
+    require(long_enough, "line", received, "2 points or more at a positive spacing")
     length = n * spacing
-    if low.min() * length < 1.0:
-        allowed = f"at least the longest band's edge, {1.0 / low.min():.4g} m"
-        raise InputError("length of the line", f"{length:.4g} m", allowed, "Leave out the longest bands.")
-    if high.max() > 0.5 / spacing * (1.0 + 1e-9):
-        allowed = f"at most half the shortest band's edge, {0.5 / high.max():.4g} m"
-        raise InputError("spacing", f"{spacing:.4g} m", allowed, "Leave out the shortest bands.")
-    wavenumbers = np.arange(n // 2 + 1) / length
-    half = 0.5 / length
+    allowed, received = f"at least the longest band's edge, {1.0 / low.min():.4g} m", f"{length:.4g} m"
+    remedy = "Leave out the longest bands."
+    require(low.min() * length >= 1.0, "length of the line", received, allowed, remedy)
+    allowed = f"at most half the shortest band's edge, {0.5 / high.max():.4g} m"
+    fine = high.max() <= 0.5 / spacing * (1.0 + 1e-9)
+    require(fine, "spacing", f"{spacing:.4g} m", allowed, "Leave out the shortest bands.")
+    wavenumbers, half = np.arange(n // 2 + 1) / length, 0.5 / length
     cell_low, cell_high = np.clip(wavenumbers - half, 0.0, None), wavenumbers + half
-    energies, largest, band_of = (
-        np.zeros(wavenumbers.size),
-        np.zeros(wavenumbers.size),
-        np.zeros(wavenumbers.size, np.intp),
-    )
+    energies, largest = np.zeros((2, wavenumbers.size))
+    band_of = np.zeros(wavenumbers.size, np.intp)
     targets = MICROMETRE**2 * 10.0 ** (levels / 10.0)
     for band, target in enumerate(targets):
         overlap = np.clip(np.minimum(cell_high, high[band]) - np.maximum(cell_low, low[band]), 0.0, None)
@@ -237,21 +223,16 @@ def _fourier_lines(n: int, spacing: float, wavelengths: ArrayLike, levels_db: Ar
 
 
 def _wavenumber_bands(wavelengths: ArrayLike, levels_db: ArrayLike) -> tuple[Array, Array, Array, Array]:
-    given = np.atleast_1d(np.asarray(wavelengths, dtype=np.float64))
-    levels = np.atleast_1d(np.asarray(levels_db, dtype=np.float64))
-    if (
-        given.ndim != 1
-        or given.shape != levels.shape
-        or not (np.isfinite(levels) | np.isneginf(levels)).all()
-    ):
-        received = f"shapes {given.shape} and {levels.shape}"
-        raise InputError("wavelengths and levels", received, "two lists of equal length, levels not NaN")
-    if not ((given > 0.0) & np.isfinite(given)).all():
-        raise InputError("wavelengths", given, "positive and finite, m")
+    given, levels = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in (wavelengths, levels_db))
+    pairs = given.ndim == 1 and given.shape == levels.shape
+    pairs = pairs and bool((np.isfinite(levels) | np.isneginf(levels)).all())
+    received = f"shapes {given.shape} and {levels.shape}"
+    require(pairs, "wavelengths and levels", received, "two lists of equal length, levels not NaN")
+    require((given > 0.0).all() and np.isfinite(given).all(), "wavelengths", given, "positive and finite, m")
     bands = [third_octave_bands(1.0 / w, 1.0 / w) for w in given]
     centres, low, high = (np.array([b[k][0] for b in bands]) for k in range(3))
-    nominal = np.abs(given * centres - 1.0) < 0.03  # nominal values lie within 2.4 % of the exact ones
-    if not nominal.all() or np.unique(centres).size != centres.size:
-        remedy = "Give each band once by its centre, as 0.1, 0.125, 0.16 m."
-        raise InputError("wavelengths", given, "distinct centres of base-10 one-third octaves", remedy)
+    right = (np.abs(given * centres - 1.0) < 0.03).all()  # nominal ones lie within 2.4 % of the exact ones
+    right = right and np.unique(centres).size == centres.size
+    remedy = "Give each band once by its centre, as 0.1, 0.125, 0.16 m."
+    require(right, "wavelengths", given, "distinct centres of base-10 one-third octaves", remedy)
     return centres, low, high, levels

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import fft
 
-from asperity.arguments import Array
-from asperity.errors import InputError
+from asperity.arguments import Array, require
 from asperity.surfaces.heightmap import Profile
 
 FlatShape = Literal["fresh", "worn"]
@@ -37,29 +36,24 @@ def corrugation(
     corrugation; an amplitude of 25 µm at the wavelength v/f_pp of the pinned-pinned frequency is used in the
     literature.
     """
-    if (amplitude is None) == (rms is None):
-        received = "both" if rms is not None else "neither"
-        raise InputError("size of the corrugation", received, "exactly one of amplitude and rms")
+    what, received = "size of the corrugation", "both" if rms is not None else "neither"
+    require((amplitude is None) != (rms is None), what, received, "exactly one of amplitude and rms")
     size = rms if rms is not None else amplitude / math.sqrt(2.0) if amplitude is not None else 0.0
-    if not 0.0 <= size < math.inf:
-        raise InputError("size of the corrugation", size, "zero or more, m")
+    require(0.0 <= size < math.inf, what, size, "zero or more, m")
     half = 2.0 ** (0.0 if bandwidth is None else bandwidth / 2.0)
-    if not 1.0 <= half < math.inf:
-        raise InputError("bandwidth of the corrugation", bandwidth, "zero or more octaves, finite")
-    if not 2.0 * spacing <= wavelength / half < math.inf:
-        received = f"{wavelength / half:.4g} m as the shortest wavelength"
-        raise InputError("corrugation", received, f"at least two samples, {2.0 * spacing:.4g} m")
+    what, allowed = "bandwidth of the corrugation", "zero or more octaves, finite"
+    require(1.0 <= half < math.inf, what, bandwidth, allowed)
+    received = f"{wavelength / half:.4g} m as the shortest wavelength"
+    allowed = f"at least two samples, {2.0 * spacing:.4g} m"
+    require(2.0 * spacing <= wavelength / half < math.inf, "corrugation", received, allowed)
     if bandwidth is None:
         x = np.arange(n) * spacing
         heights = math.sqrt(2.0) * size * np.sin(2.0 * np.pi * x / wavelength)
         return Profile(heights, spacing, f"corrugation of {wavelength:.4g} m")
     wavenumber = fft.rfftfreq(n, spacing)
     inside = (wavenumber >= 1.0 / (wavelength * half)) & (wavenumber <= half / wavelength)
-    if not inside.any():
-        remedy = "Lengthen the line or widen the band."
-        raise InputError(
-            "corrugation", f"a line of {n * spacing:.4g} m", "a line that resolves the band", remedy
-        )
+    received, remedy = f"a line of {n * spacing:.4g} m", "Lengthen the line or widen the band."
+    require(inside.any(), "corrugation", received, "a line that resolves the band", remedy)
     phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, wavenumber.size)
     heights = fft.irfft(inside * np.exp(1j * phases), n)
     heights *= size / math.sqrt(np.mean(heights**2))
@@ -68,10 +62,8 @@ def corrugation(
 
 def flat_length(depth: float, radius: float) -> float:
     """Chord l = √(8 R d) of a fresh wheel flat, m, for depths d up to a twentieth of the radius R, m."""
-    if not 0.0 < depth <= radius / 20.0:
-        raise InputError(
-            "depth of the wheel flat", f"{depth} m", f"above zero, up to {radius / 20.0:.4g} m (R/20)"
-        )
+    allowed = f"above zero, up to {radius / 20.0:.4g} m (R/20)"
+    require(0.0 < depth <= radius / 20.0, "depth of the wheel flat", f"{depth} m", allowed)
     return math.sqrt(8.0 * radius * depth)
 
 
@@ -84,28 +76,22 @@ def flat_geometry(
     (1 + cos 2πx/l), its length l, m, at least that of the chord √(8 R d), which all others have. S. G. Newton
     and R. A. Clark, J. Mech. Eng. Sci. 21 (1979) 287 (not seen; chord and rounded flat).
     """
-    length = _length(depth, radius, shape, length)
-    distance = np.asarray(x, dtype=np.float64)
-    inside = np.abs(distance) <= length / 2.0
-    return np.where(inside, _flat_shape(distance, depth, radius, length, shape), 0.0)
+    length, at = _length(depth, radius, shape, length), np.asarray(x, dtype=np.float64)
+    if shape == "fresh":
+        height = -(depth - at**2 / (2.0 * radius))
+    else:
+        height = -0.5 * depth * (1.0 + np.cos(2.0 * np.pi * at / length))
+    return np.where(np.abs(at) <= length / 2.0, height, 0.0)
 
 
 def _length(depth: float, radius: float, shape: str, length: float | None) -> float:
     chord = flat_length(depth, radius)
-    if length is None:
-        return chord
-    if shape != "worn" or not chord * (1.0 - 1e-9) <= length < math.inf:
+    if length is not None:
+        long_enough = shape == "worn" and chord * (1.0 - 1e-9) <= length < math.inf
         allowed = f"that of a worn flat, at least its chord of {chord:.4g} m; none of a fresh one"
-        raise InputError("length of the wheel flat", f"{length} m", allowed)
-    return length
-
-
-def _flat_shape(x: Array, depth: float, radius: float, length: float, shape: str) -> Array:
-    if shape == "fresh":
-        return -(depth - x**2 / (2.0 * radius))
-    if shape == "worn":
-        return np.asarray(-0.5 * depth * (1.0 + np.cos(2.0 * np.pi * x / length)))
-    raise InputError("shape of the wheel flat", repr(shape), "'fresh' or 'worn'")
+        require(long_enough, "length of the wheel flat", f"{length} m", allowed)
+    require(shape in ("fresh", "worn"), "shape of the wheel flat", repr(shape), "'fresh' or 'worn'")
+    return chord if length is None else length
 
 
 def flat_trajectory(
@@ -123,7 +109,7 @@ def flat_trajectory(
     if shape == "fresh":
         return np.where(distance <= length / 2.0, -((length / 2.0 - distance) ** 2) / (2.0 * radius), 0.0)
     touching = np.linspace(-length / 2.0, length / 2.0, 2 * TABLE_POINTS - 1)
-    height = flat_geometry(touching, depth, radius, shape, length if shape == "worn" else None)
+    height = flat_geometry(touching, depth, radius, shape, length)
     at = touching[TABLE_POINTS - 1 :]
     envelope = np.max(height - (touching - at[:, None]) ** 2 / (2.0 * radius), axis=1)
     return np.interp(distance, at, envelope, right=0.0)
@@ -136,10 +122,9 @@ def dipped_joint(x: ArrayLike, depth: float, length: float) -> Array:
     depth/length at the joint and joins the straight rail without a kink. T. X. Wu and D. J. Thompson, J.
     Sound Vib. 267 (2003) 485-496 (rail joints with quadratic dips).
     """
-    if not 0.0 < length < math.inf:
-        raise InputError("length of the dipped joint", length, "a finite positive length, m")
-    if not 0.0 < depth <= length / 20.0:
-        allowed = f"above zero, up to {length / 20.0:.4g} m (a twentieth of its length)"
-        raise InputError("depth of the dipped joint", f"{depth} m", allowed)
+    what, allowed = "length of the dipped joint", "a finite positive length, m"
+    require(0.0 < length < math.inf, what, length, allowed)
+    allowed = f"above zero, up to {length / 20.0:.4g} m (a twentieth of its length)"
+    require(0.0 < depth <= length / 20.0, "depth of the dipped joint", f"{depth} m", allowed)
     remaining = np.clip(1.0 - 2.0 * np.abs(np.asarray(x, dtype=np.float64)) / length, 0.0, None)
     return np.asarray(-depth * remaining**2)

@@ -2,18 +2,147 @@
 
 from __future__ import annotations
 
+import base64
+import io
 from dataclasses import dataclass, replace
+from html import escape
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from asperity.arguments import Array, real, two, two_lengths, whole
+from asperity.arguments import Array, real, require, two, two_lengths, whole
 from asperity.errors import InputError
+from asperity.printable import printable
+from asperity.surfaces import cleaning, levelling
+from asperity.units import written
+
+PICTURE_POINTS = 600
+"""Points along each side of the picture that a notebook shows, at most."""
+MOST_LINES = 32
+"""Lines side by side, at most, that a bare array is taken for without being told."""
+SLENDER = 20.0
+"""Times longer than wide, in points, that such an array is at least."""
 
 
 @dataclass(frozen=True, eq=False)
-class HeightMap:
+class Heights:
+    """What maps and lines have in common."""
+
+    heights: Array
+    spacing: Any
+    source: str = ""
+
+    @property
+    def x(self) -> Array:
+        """Coordinates (nx,) along the rolling direction in m, from zero."""
+        return np.arange(len(self.heights), dtype=np.float64) * float(np.atleast_1d(self.spacing)[0])
+
+    @property
+    def missing_share(self) -> float:
+        """Share of the points without a height, 0 to 1."""
+        return float(np.isnan(self.heights).mean())
+
+    @property
+    def holds_lines(self) -> bool:
+        """Whether the shape is that of an array of lines measured side by side rather than of a map.
+
+        At most 32 lines, each with at least 20 times as many points; such a file knows no distance across of
+        lines.
+        """
+        few, many = min(self.heights.shape), max(self.heights.shape)
+        return self.heights.ndim == 2 and few <= MOST_LINES and many >= SLENDER * few
+
+    def levelled(self, degree: int | str = "plane") -> Self:
+        """Return the heights less their least-squares polynomial form.
+
+        Parameters
+        ----------
+        degree : str or int
+            ``"plane"`` (of a line: its mean line) or ``"quadratic"``, as in a case, or the total degree of
+            the polynomial in x and y: 1, 2, or 0, which removes the mean.
+
+        Returns
+        -------
+        HeightMap or Profile
+            See `asperity.surfaces.levelling.level`.
+        """
+        return levelling.level(self, degree)
+
+    def filled(self, lines: bool | None = None) -> Self:
+        """Return the heights with their missing points interpolated from their neighbours.
+
+        Parameters
+        ----------
+        lines : bool, optional
+            Whether a map holds lines measured side by side, which are filled along themselves; by default its
+            shape tells.
+
+        Returns
+        -------
+        HeightMap or Profile
+            See `asperity.surfaces.cleaning.fill`.
+        """
+        return cleaning.fill(self, lines)
+
+    def band_limited(self, longest: float | None = None, shortest: float | None = None) -> Self:
+        """Return the heights with only the wavelengths between two limits.
+
+        Parameters
+        ----------
+        longest, shortest : float, optional
+            Limits in m; a limit left out does not act.
+
+        Returns
+        -------
+        HeightMap or Profile
+            See `asperity.surfaces.levelling.band_limit`.
+        """
+        return levelling.band_limit(self, longest=longest, shortest=shortest)
+
+    def _repr_html_(self) -> str:
+        """Describe and draw the heights, in µm over lengths in mm, as HTML without anything active."""
+        spacings = np.atleast_1d(self.spacing)
+        sizes = spacings * self.heights.shape
+        points, size, step = (
+            " × ".join(each) for each in (
+                map(str, self.heights.shape),
+                (written(float(f"{length:.4g}"), "m", "mm") for length in sizes),
+                (written(float(f"{spacing:.4g}"), "m", "um") for spacing in spacings),
+            )
+        )  # fmt: skip
+        rms = written(float(f"{np.nanstd(self.heights):.4g}"), "m", "um")
+        missing = f", {self.missing_share:.2%} without a height" if self.missing_share else ""
+        what = "Height map" if self.heights.ndim == 2 else "Profile"
+        text = f"{points} points, {size}, {step} apart, rms height {rms}{missing}.".replace(" um", " µm")
+        source = f"<br>{escape(printable(self.source))}" if self.source else ""
+        picture = f'<img alt="{what.lower()}" src="data:image/png;base64,{self._picture(sizes)}">'
+        return f"<div><p><strong>{what}.</strong> {escape(text)}{source}</p>{picture}</div>"
+
+    def _picture(self, sizes: Array) -> str:
+        """Picture of heights with sides of these lengths, m, as PNG in base 64."""
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(6.0, 2.8 if len(sizes) == 2 else 1.8), layout="constrained")
+        axes = figure.subplots()
+        axes.set_xlabel("x / mm")
+        if len(sizes) == 2:
+            thin = tuple(slice(None, None, max(1, -(-n // PICTURE_POINTS))) for n in self.heights.shape)
+            extent = (0.0, 1e3 * sizes[0], 0.0, 1e3 * sizes[1])
+            image = axes.imshow(1e6 * self.heights[thin].T, origin="lower", extent=extent, cmap="cividis")
+            axes.set_aspect("auto" if sizes.max() > 4.0 * sizes.min() else "equal")
+            figure.colorbar(image, ax=axes, label="height / µm")
+            axes.set_ylabel("y / mm")
+        else:
+            axes.plot(1e3 * self.x, 1e6 * self.heights, linewidth=0.6)
+            axes.set_ylabel("height / µm")
+        png = io.BytesIO()
+        figure.savefig(png, format="png", dpi=110)
+        return base64.b64encode(png.getvalue()).decode()
+
+
+@dataclass(frozen=True, eq=False)
+class HeightMap(Heights):
     """Heights of a surface on a uniform rectangular grid.
 
     Parameters
@@ -43,9 +172,7 @@ class HeightMap:
     [1.0, 2.0]
     """
 
-    heights: Array
     spacing: tuple[float, float]
-    source: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _checked_heights(self.heights, 2, self.source))
@@ -63,19 +190,9 @@ class HeightMap:
         return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
 
     @property
-    def x(self) -> Array:
-        """Coordinates (nx,) along the rolling direction in m, from zero."""
-        return np.arange(self.shape[0], dtype=np.float64) * self.spacing[0]
-
-    @property
     def y(self) -> Array:
         """Coordinates (ny,) across the rolling direction in m, from zero."""
         return np.arange(self.shape[1], dtype=np.float64) * self.spacing[1]
-
-    @property
-    def missing_share(self) -> float:
-        """Share of the points without a height, 0 to 1."""
-        return float(np.isnan(self.heights).mean())
 
     def rows(self, first: int, stop: int) -> Array:
         """Return the heights of some rows across the rolling direction.
@@ -92,75 +209,15 @@ class HeightMap:
         """
         return self.heights[first:stop]
 
-    def _repr_html_(self) -> str:
-        from asperity.surfaces.surface_view import surface_view
-
-        return surface_view(self)
-
-    def levelled(self, degree: int | str = "plane") -> HeightMap:
-        """Return the map less its least-squares polynomial form.
-
-        Parameters
-        ----------
-        degree : str or int
-            ``"plane"`` or ``"quadratic"``, as in a case, or the total degree of the polynomial in x and y: 1,
-            2, or 0, which removes the mean.
-
-        Returns
-        -------
-        HeightMap
-            See `asperity.surfaces.levelling.level`.
-        """
-        from asperity.surfaces.levelling import level
-
-        return level(self, degree)
-
-    def filled(self, lines: bool | None = None) -> HeightMap:
-        """Return the map with its missing points interpolated from their neighbours.
-
-        Parameters
-        ----------
-        lines : bool, optional
-            Whether the array holds lines measured side by side, which are filled along themselves; by default
-            its shape tells.
-
-        Returns
-        -------
-        HeightMap
-            See `asperity.surfaces.levelling.fill`.
-        """
-        from asperity.surfaces.levelling import fill
-
-        return fill(self, lines)
-
     def without_spikes(self) -> HeightMap:
         """Return the map with its spikes as points without a height.
 
         Returns
         -------
         HeightMap
-            See `asperity.surfaces.spikes.spikes`; `filled` interpolates the points.
+            See `asperity.surfaces.cleaning.spikes`; `filled` interpolates the points.
         """
-        from asperity.surfaces.spikes import without_spikes
-
-        return without_spikes(self)
-
-    def band_limited(self, longest: float | None = None, shortest: float | None = None) -> HeightMap:
-        """Return the map with only the wavelengths between two limits.
-
-        Parameters
-        ----------
-        longest, shortest : float, optional
-            Limits in m; a limit left out does not act.
-
-        Returns
-        -------
-        HeightMap
-            See `asperity.surfaces.levelling.band_limit`.
-        """
-        from asperity.surfaces.levelling import band_limit
-
-        return band_limit(self, longest=longest, shortest=shortest)
+        return cleaning.without_spikes(self)
 
     def line(self, index: int | None = None) -> Profile:
         """Return one line of the map along the rolling direction.
@@ -180,10 +237,10 @@ class HeightMap:
         InputError
             If there is no such line.
         """
-        ny = self.shape[1]
-        allowed = f"0 to {ny - 1}, or None for the central line"
-        what = "index of a line of the map"
-        chosen = ny // 2 if index is None else whole(what, index, allowed, at_least=0, at_most=ny - 1)
+        last = self.shape[1] - 1
+        allowed = f"0 to {last}, or None for the central line"
+        index = self.shape[1] // 2 if index is None else index
+        chosen = whole("index of a line of the map", index, allowed, at_least=0, at_most=last)
         return Profile(self.heights[:, chosen], self.spacing[0], self.source)
 
     def crop(self, start: tuple[float, float], size: tuple[float, float]) -> HeightMap:
@@ -206,13 +263,13 @@ class HeightMap:
         InputError
             If the piece is not inside the map or holds fewer than two points along an axis.
         """
-        first = two("start of a piece of the map", start, "two lengths (x, y) in m")
-        lengths = two("size of a piece of the map", size, "two lengths (lx, ly) in m")
-        kept = tuple(
-            _window(f"piece of the map along {axis}", s, length, step, n)
-            for axis, s, length, step, n in zip("xy", first, lengths, self.spacing, self.shape, strict=True)
+        corner = two("start of a piece of the map", start, "two lengths (x, y) in m")
+        sides = two("size of a piece of the map", size, "two lengths (lx, ly) in m")
+        piece = tuple(
+            _window(f"piece of the map along {'xy'[axis]}", corner[axis], sides[axis], self.spacing[axis], n)
+            for axis, n in enumerate(self.shape)
         )
-        return replace(self, heights=self.heights[kept])
+        return replace(self, heights=self.heights[piece])
 
     def transposed(self) -> HeightMap:
         """Return the map with x and y exchanged, so that the other direction is rolled along."""
@@ -220,7 +277,7 @@ class HeightMap:
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
+class Profile(Heights):
     """Heights along one line at uniform spacing.
 
     Parameters
@@ -246,9 +303,7 @@ class Profile:
     (0.004, 4)
     """
 
-    heights: Array
     spacing: float
-    source: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "heights", _checked_heights(self.heights, 1, self.source))
@@ -265,69 +320,7 @@ class Profile:
         """Length n dx that the points stand for, in m."""
         return len(self.heights) * self.spacing
 
-    @property
-    def x(self) -> Array:
-        """Coordinates (n,) in m, from zero."""
-        return np.arange(len(self.heights), dtype=np.float64) * self.spacing
-
-    @property
-    def missing_share(self) -> float:
-        """Share of the points without a height, 0 to 1."""
-        return float(np.isnan(self.heights).mean())
-
-    def _repr_html_(self) -> str:
-        from asperity.surfaces.surface_view import surface_view
-
-        return surface_view(self)
-
-    def levelled(self, degree: int | str = "plane") -> Profile:
-        """Return the line less its least-squares polynomial of the given degree.
-
-        Parameters
-        ----------
-        degree : str or int
-            ``"plane"`` for the mean line or ``"quadratic"``, as in a case, or the degree: 1, 2, or 0, which
-            removes the mean.
-
-        Returns
-        -------
-        Profile
-            See `asperity.surfaces.levelling.level`.
-        """
-        from asperity.surfaces.levelling import level
-
-        return level(self, degree)
-
-    def filled(self) -> Profile:
-        """Return the line with its missing points interpolated from their neighbours.
-
-        Returns
-        -------
-        Profile
-            See `asperity.surfaces.levelling.fill`.
-        """
-        from asperity.surfaces.levelling import fill
-
-        return fill(self)
-
-    def band_limited(self, longest: float | None = None, shortest: float | None = None) -> Profile:
-        """Return the line with only the wavelengths between two limits.
-
-        Parameters
-        ----------
-        longest, shortest : float, optional
-            Limits in m; a limit left out does not act.
-
-        Returns
-        -------
-        Profile
-            See `asperity.surfaces.levelling.band_limit`.
-        """
-        from asperity.surfaces.levelling import band_limit
-
-        return band_limit(self, longest=longest, shortest=shortest)
-
-    def crop(self, start: float, size: float) -> Self:
+    def crop(self, start: float, size: float) -> Profile:
         """Return a piece of the line.
 
         Parameters
@@ -345,8 +338,8 @@ class Profile:
         InputError
             If the piece is not inside the line or holds fewer than two points.
         """
-        kept = _window("piece of the line", start, size, self.spacing, len(self.heights))
-        return replace(self, heights=self.heights[kept])
+        piece = _window("piece of the line", start, size, self.spacing, len(self.heights))
+        return replace(self, heights=self.heights[piece])
 
 
 def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> Array:
@@ -357,19 +350,19 @@ def _checked_heights(heights: ArrayLike, dimensions: int, source: str) -> Array:
         array = np.asanyarray(heights)
     except ValueError:  # ragged lists
         raise InputError(what, "rows of unequal length", allowed, "Mark missing points with NaN.") from None
-    if array.dtype.kind not in "fiu":
-        raise InputError(what, f"data of type {array.dtype}", allowed, "Convert them to numbers.")
-    if array.ndim != dimensions or min(array.shape, default=0) < 2:
-        raise InputError(what, f"an array of shape {array.shape}", allowed, "Select one map or one line.")
+    kind = f"data of type {array.dtype}"
+    require(array.dtype.kind in "fiu", what, kind, allowed, "Convert them to numbers.")
+    fits = array.ndim == dimensions and min(array.shape, default=0) >= 2
+    require(fits, what, f"an array of shape {array.shape}", allowed, "Select one map or one line.")
     array = _frozen_copy(array)
-    if np.isinf(array).any():
-        raise InputError(what, "infinite values", "finite heights, NaN where missing", "Mark them as NaN.")
-    if np.isnan(array).all():
-        raise InputError(what, "no valid height: every point is missing", allowed, "Check the measurement.")
+    finite = "finite heights, NaN where missing"
+    require(not np.isinf(array).any(), what, "infinite values", finite, "Mark them as NaN.")
+    nothing = "no valid height: every point is missing"
+    require(not np.isnan(array).all(), what, nothing, allowed, "Check the measurement.")
     return array
 
 
-def _frozen_copy(array: NDArray[Any]) -> Array:
+def _frozen_copy(array: np.ndarray[Any, Any]) -> Array:
     if isinstance(array, np.ma.MaskedArray):
         array = np.ma.filled(array.astype(np.float64), np.nan)
     immutable = array.dtype == np.float64 and array.flags.owndata and not array.flags.writeable
@@ -382,8 +375,7 @@ def _frozen_copy(array: NDArray[Any]) -> Array:
 def _window(what: str, start: float, size: float, step: float, points: int) -> slice:
     allowed = f"from 0 to {points * step:.6g} m, at least {2 * step:.6g} m long"
     start, size = (real(what, each, f"lengths in m, {allowed}") for each in (start, size))
-    received = f"{size} m from {start} m"
     first, count = round(start / step), round(size / step)
-    if first < 0 or count < 2 or first + count > points:
-        raise InputError(what, received, allowed, "Choose a smaller piece inside it.")
+    inside = first >= 0 and count >= 2 and first + count <= points
+    require(inside, what, f"{size} m from {start} m", allowed, "Choose a smaller piece inside it.")
     return slice(first, first + count)

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import bdtrc
 
-from asperity.arguments import Array
-from asperity.errors import InputError
+from asperity.arguments import Array, require
 from asperity.surfaces.heightmap import HeightMap
 from asperity.surfaces.levelling import level, resample
 from asperity.surfaces.synthesis import from_map
@@ -52,13 +51,10 @@ def homogeneity(
     58 (1992) 77: surrogate data). Finds patches and trends of roughness larger than a tile; a change of the
     spectrum at equal mean square goes unseen.
     """
-    nx, ny = surface.shape
-    if not (
-        len(tiles) == 2 and min(tiles) >= 1 and max(tiles) > 1 and nx >= 2 * tiles[0] and ny >= 2 * tiles[1]
-    ):
-        raise InputError("tiles", tiles, f"two or more tiles of 2 points or more in {surface.shape}")
-    if surrogates < 19:
-        raise InputError("surrogates", surrogates, "at least 19, for 5 % significance")
+    several = len(tiles) == 2 and min(tiles) >= 1 and max(tiles) > 1
+    fit = several and all(n >= 2 * count for n, count in zip(surface.shape, tiles, strict=True))
+    require(fit, "tiles", tiles, f"two or more tiles of 2 points or more in {surface.shape}")
+    require(surrogates >= 19, "surrogates", surrogates, "at least 19, for 5 % significance")
     coarse = _coarse(level(surface), tiles)
     measured, (nx, ny) = _tile_mean_squares(level(coarse), tiles), coarse.shape
     variation = float(measured.std() / measured.mean())

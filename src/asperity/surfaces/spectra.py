@@ -9,8 +9,8 @@ import scipy
 from numpy.typing import NDArray
 from scipy import fft
 
-from asperity.arguments import Array
-from asperity.errors import InputError, ShortRecordWarning
+from asperity.arguments import Array, require
+from asperity.errors import ShortRecordWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.threads import thread_count
 
@@ -21,12 +21,11 @@ def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     The heights are complete and levelled, m; the mean of the surface is removed, not that of each line. The
     integral of the PSD is Sq², weighted by the squared Hann window.
     """
-    if axis not in range(surface.heights.ndim):
-        raise InputError("axis", axis, f"0 to {surface.heights.ndim - 1}")
+    last = surface.heights.ndim - 1
+    require(axis in range(last + 1), "axis", axis, f"0 to {last}")
     lines = np.moveaxis(_complete(surface), axis, -1)
-    length = lines.shape[-1]
-    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
-    spacing = float(np.atleast_1d(surface.spacing)[axis])
+    length, spacing = lines.shape[-1], float(np.atleast_1d(surface.spacing)[axis])
+    window = _hann(length)
     density = np.abs(fft.rfft(lines * window, axis=-1)) ** 2 * (2.0 * spacing / np.sum(window**2))
     density[..., 0] /= 2.0
     if length % 2 == 0:
@@ -34,10 +33,13 @@ def psd_1d(surface: HeightMap | Profile, axis: int = 0) -> tuple[Array, Array]:
     return fft.rfftfreq(length, spacing), density.reshape(-1, density.shape[-1]).mean(axis=0)
 
 
+def _hann(points: int) -> Array:
+    return 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(points) / points)
+
+
 def _complete(surface: HeightMap | Profile) -> Array:
-    if np.isnan(surface.heights).any():
-        received = f"{surface.missing_share:.2%} missing points"
-        raise InputError("surface", received, "complete heights for a spectrum", "Use fill first.")
+    received, allowed = f"{surface.missing_share:.2%} missing points", "complete heights for a spectrum"
+    require(not np.isnan(surface.heights).any(), "surface", received, allowed, "Use fill first.")
     return surface.heights - surface.heights.mean()
 
 
@@ -47,14 +49,10 @@ def psd_2d(surface: HeightMap, window: bool = True) -> tuple[Array, Array, Array
     The heights are complete and levelled, m; the mean is removed. The double integral is Sq², weighted by the
     squared Hann window, without which only a periodic surface is free of leakage.
     """
-    z = _complete(surface)
+    z, energy, (dx, dy) = _complete(surface), float(surface.heights.size), surface.spacing
     if window:
-        hann = [0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(n) / n) for n in z.shape]
-        weights = np.outer(hann[0], hann[1])
+        weights = np.outer(*map(_hann, z.shape))
         z, energy = z * weights, float(np.sum(weights**2))
-    else:
-        energy = float(z.size)
-    dx, dy = surface.spacing
     density = fft.fftshift(np.abs(fft.fft2(z)) ** 2) * (dx * dy / (4.0 * np.pi**2 * energy))
     qx, qy = (2.0 * np.pi * fft.fftshift(fft.fftfreq(n, d)) for n, d in zip(z.shape, (dx, dy), strict=True))
     return qx, qy, density
@@ -68,8 +66,7 @@ def psd_radial(surface: HeightMap, window: bool = True) -> tuple[Array, Array]:
     Sq².
     """
     qx, qy, density = psd_2d(surface, window)
-    q = np.hypot(qx[:, None], qy[None, :])
-    step = max(qx[1] - qx[0], qy[1] - qy[0])
+    q, step = np.hypot(qx[:, None], qy[None, :]), max(qx[1] - qx[0], qy[1] - qy[0])
     rings = int(min(-qx[0], -qy[0]) / step)
     index = np.rint(q / step).astype(np.intp)
     inside = (index >= 1) & (index <= rings)
@@ -94,11 +91,11 @@ def texture_direction(surface: HeightMap) -> float:
     q, angle = np.hypot(qx[:, None], qy[None, :]), np.arctan2(qy[None, :], qx[:, None]) % np.pi
     inside = (q >= 3.0 * max(qx[1] - qx[0], qy[1] - qy[0])) & (q <= min(-qx[0], -qy[0]))
     degrees = np.rint(np.degrees(angle[inside])).astype(np.intp) % 180
-    found = smooth = np.bincount(degrees, (q**2 * density)[inside], minlength=180)
+    power = smooth = np.bincount(degrees, (q**2 * density)[inside], minlength=180)
     for _ in range(2):
         smooth = scipy.ndimage.uniform_filter1d(smooth, 31, mode="wrap")
     off = (np.arange(180) - smooth.argmax() + 90) % 180 - 90
-    near = np.where(np.abs(off) <= 30, found, 0.0)
+    near = np.where(np.abs(off) <= 30, power, 0.0)
     turned = 0.5 * np.angle(np.sum(near * np.exp(2j * np.radians(off))))
     return float((np.radians(smooth.argmax()) + turned) % np.pi)
 
@@ -119,28 +116,18 @@ def autocorrelation(surface: HeightMap) -> Array:
     """
     valid = np.isfinite(surface.heights)
     z = np.where(valid, surface.heights - np.nanmean(surface.heights), 0.0)
-    if not z.any():
-        raise InputError("surface", "equal heights everywhere", "a surface with roughness")
-    products, pairs = lag_sums(z, valid, z.shape[0] // 2)
-    middle = tuple(n // 2 for n in products.shape)
-    mean = products / np.maximum(pairs, 1.0)
-    return np.asarray(mean / mean[middle])
-
-
-def lag_sums(heights: Array, valid: NDArray[np.bool_], reach: int) -> tuple[Array, Array]:
-    """Sums of products of heights, m², at all lags up to half their width, and the numbers of pairs.
-
-    Heights (nx, ny) are about their mean, m, and zero where they are not valid; `reach` is the largest lag
-    along x, points. Both results are (2 reach + 1, 2 (ny//2) + 1), zero lag in the middle.
-    """
-    rows, columns = heights.shape
-    products = LagSums(rows, columns, reach)
-    products.add(heights)
+    require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
+    rows, columns = z.shape
+    products = LagSums(rows, columns, rows // 2)
+    products.add(z)
     if valid.all():
-        return products.sums(), products.pairs()
-    counts = LagSums(rows, columns, reach)
-    counts.add(valid.astype(np.float64))
-    return products.sums(), np.rint(counts.sums())
+        pairs = np.outer(*products.pairs()).astype(np.float64)
+    else:
+        counts = LagSums(rows, columns, rows // 2)
+        counts.add(valid.astype(np.float64))
+        pairs = np.rint(counts.sums())
+    mean = products.sums() / np.maximum(pairs, 1.0)
+    return np.asarray(mean / mean[rows // 2, columns // 2])
 
 
 class LagSums:
@@ -152,11 +139,10 @@ class LagSums:
     """
 
     def __init__(self, rows: int, columns: int, reach: int) -> None:
-        self.reach, self.side = reach, columns // 2
+        self.columns, self.reach, self.side = columns, reach, columns // 2
         self.length = fft.next_fast_len(rows + reach, real=True)  # what wraps is beyond the lags wanted
         self.width = fft.next_fast_len(columns + self.side)
         self.power = np.zeros((self.length // 2 + 1, self.width))
-        self.columns = columns
         self.rows: list[int] = []
 
     def add(self, heights: Array) -> None:
@@ -175,23 +161,19 @@ class LagSums:
         """Sums of products, m², (2 reach + 1, 2 (columns//2) + 1), zero lag in the middle."""
         across = np.conj(fft.rfft(self.power, axis=1, workers=thread_count())[:, : self.side + 1])
         across /= self.width
-        found = fft.irfft(across, self.length, axis=0, overwrite_x=True, workers=thread_count())
-        half = np.concatenate([found[self.length - self.reach :], found[: self.reach + 1]])
+        half = fft.irfft(across, self.length, axis=0, overwrite_x=True, workers=thread_count())
+        half = np.concatenate([half[self.length - self.reach :], half[: self.reach + 1]])
         return np.hstack([half[::-1, :0:-1], half])  # the same at a lag and its opposite
 
     def means(self) -> Array:
         """Mean products, m², of pieces in which no height is missing, as `sums`."""
-        found, (along, across) = self.sums(), self._pairs()
-        for first in range(0, len(found), TOGETHER):
-            found[first : first + TOGETHER] /= np.outer(along[first : first + TOGETHER], across)
-        return found
+        means, (along, across) = self.sums(), self.pairs()
+        for first in range(0, len(means), TOGETHER):
+            means[first : first + TOGETHER] /= np.outer(along[first : first + TOGETHER], across)
+        return means
 
-    def pairs(self) -> Array:
-        """Numbers of pairs at these lags, of pieces in which no height is missing."""
-        return np.outer(*self._pairs()).astype(np.float64)
-
-    def _pairs(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Numbers of pairs at lags along, times those at lags across."""
+    def pairs(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Numbers of pairs of pieces without a missing height: at lags along, times those at lags across."""
         lags = np.abs(np.arange(-self.reach, self.reach + 1))
         across = self.columns - np.abs(np.arange(-self.side, self.side + 1))
         return sum(self.rows) - len(self.rows) * lags, across
@@ -206,8 +188,7 @@ def autocorrelation_lengths(
     reaches half the map in some direction, a `ShortRecordWarning` says so: the longest lag is then at least
     the one returned.
     """
-    if not 0.0 < threshold < 1.0:
-        raise InputError("threshold", threshold, "between 0 and 1")
+    require(0.0 < threshold < 1.0, "threshold", threshold, "between 0 and 1")
     return lengths_of(autocorrelation(surface), surface.spacing, threshold)
 
 
@@ -219,16 +200,15 @@ def lengths_of(
     The correlation (odd, odd) holds mean products of heights, zero lag in the middle; lags and warning are as
     those of `autocorrelation_lengths`.
     """
-    lobe = correlation / correlation[tuple(n // 2 for n in correlation.shape)]
-    step = np.asarray(spacing)
-    reach = np.array([n // 2 for n in lobe.shape]) * step
+    middle, step = np.array(correlation.shape) // 2, np.asarray(spacing)
+    lobe = correlation / correlation[tuple(middle)]
     coefficients = scipy.ndimage.spline_filter(lobe, order=3, mode="mirror")
     lengths, open_ended = [], False
     for angle in np.radians(np.arange(0.0, 180.0)):
         direction = np.array([np.cos(angle), np.sin(angle)])
-        limit = float(np.min(reach / np.maximum(np.abs(direction), 1e-12)))
+        limit = float(np.min(middle * step / np.maximum(np.abs(direction), 1e-12)))
         lags = np.append(np.arange(0.0, limit, step.min() / 4.0), limit)
-        points = direction[:, None] * lags / step[:, None] + np.array(lobe.shape)[:, None] // 2
+        points = direction[:, None] * lags / step[:, None] + middle[:, None]
         values = scipy.ndimage.map_coordinates(coefficients, points, order=3, mode="mirror", prefilter=False)
         below = np.flatnonzero(values <= threshold)
         if below.size:

@@ -1,89 +1,48 @@
-"""Material ratio (Abbott) curve, and what it says of peaks, core and valleys."""
+"""Roughness parameters of maps, lines and strips of any length, and the material ratio curve."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import scipy
 
-from asperity.arguments import Array
-from asperity.errors import InputError
+from asperity.arguments import Array, require
+from asperity.spectra import psd
+from asperity.surfaces.cleaning import nearly_complete
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import nearly_complete
-from asperity.surfaces.spectra import (
-    autocorrelation,
-    autocorrelation_lengths,
-    psd_1d,
-    psd_2d,
-    psd_radial,
-    texture_direction,
-)
+from asperity.surfaces.spectra import LagSums, autocorrelation_lengths, lengths_of, psd_2d, texture_direction
+from asperity.surfaces.strip import Strip
 
 CORE = 0.4
 """Share of the curve over which its secant is least steep, and which the straight line is fitted to."""
 
-
-@dataclass(frozen=True)
-class Stratified:
-    """Parameters of a surface of peaks, core and valleys, m and shares of all points."""
-
-    core: float  # height of the core, Sk or Rk
-    peaks: float  # reduced height of the peaks above it, Spk or Rpk
-    valleys: float  # reduced depth of the valleys below it, Svk or Rvk
-    peak_ratio: float  # material ratio where peaks end, Smr1 or Rmr1
-    valley_ratio: float  # where valleys begin, Smr2 or Rmr2
-
-
-def material_ratio_curve(heights: Array, points: int = 201) -> tuple[Array, Array]:
-    """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed."""
-    ratio = np.linspace(0.0, 1.0, points)
-    return ratio, np.quantile(heights[np.isfinite(heights)], 1.0 - ratio)
-
-
-def stratified(heights: Array) -> Stratified:
-    """Core, peaks and valleys by the straight line through the flattest 40 % of the material ratio curve.
-
-    ISO 25178-2:2021 and ISO 21920-2:2021, as ISO 13565-2:1996 has it: of all secants over 40 % the first of
-    least slope, the line of least squares of the heights there, from 0 to 100 % the core; peaks and valleys
-    are as high as triangles of the same area over the share that they have. Heights of any shape, m; missing
-    ones are left out.
-    """
-    falling = np.sort(heights[np.isfinite(heights)])[::-1]
-    count = falling.size
-    ratio = (np.arange(count) + 0.5) / count
-    width = min(max(2, round(CORE * count)), count - 1)
-    drop = falling[:-width] - falling[width:]
-    first = int(np.argmax(drop <= drop.min() + 1e-9 * (falling[0] - falling[-1])))
-    part = slice(first, first + width + 1)
-    slope, at_zero = np.polyfit(ratio[part], falling[part], 1)
-    top, bottom = at_zero, at_zero + slope
-    above, below = np.maximum(falling - top, 0.0), np.maximum(bottom - falling, 0.0)
-    peak_ratio, valley_ratio = np.mean(above > 0.0), 1.0 - np.mean(below > 0.0)
-    return Stratified(
-        float(top - bottom),
-        float(2.0 * above.mean() / peak_ratio) if peak_ratio else 0.0,
-        float(2.0 * below.mean() / (1.0 - valley_ratio)) if valley_ratio < 1.0 else 0.0,
-        float(peak_ratio),
-        float(valley_ratio),
-    )
-
-
-__all__ = [
-    "Statistic",
-    "areal_statistics",
-    "autocorrelation",
-    "autocorrelation_lengths",
-    "line_statistics",
-    "profile_statistics",
-    "psd_1d",
-    "psd_2d",
-    "psd_radial",
-    "rms_slope",
-    "shortest_wave_for",
-    "texture_direction",
-]
+PARAMETERS = {
+    "q": ("m", "rms height"),
+    "a": ("m", "mean absolute height"),
+    "sk": ("1", "skewness; negative for valleys in a plateau"),
+    "ku": ("1", "kurtosis; 3 for normally distributed heights"),
+    "z": ("m", "highest peak to lowest valley"),
+    "t": ("m", "highest peak to lowest valley"),
+    "p": ("m", "highest peak above the mean line"),
+    "v": ("m", "lowest valley below the mean line"),
+    "dq": ("1", "rms slope"),
+    "dr": ("1", "developed area beyond the plane's"),
+    "al": ("m", "shortest lag at which the autocorrelation falls to 0.2"),
+    "tr": ("1", "shortest over longest such lag; 1 is isotropic"),
+    "td": (
+        "rad",
+        "direction from x in which it varies most, across the lay; means little where Str is above 0.5",
+    ),
+    "k": ("m", "height of the core, by the flattest 40 % of the material ratio curve"),
+    "pk": ("m", "reduced height of the peaks above the core"),
+    "vk": ("m", "reduced depth of the valleys below the core"),
+    "mr1": ("1", "material ratio of the peaks ({}mrk1 of 2021)"),
+    "mr2": ("1", "material ratio above the valleys ({}mrk2 of 2021)"),
+}
+"""Unit and meaning of the parameters of the standards, by their symbols without the letter S or R."""
 
 
 @dataclass(frozen=True)
@@ -97,53 +56,89 @@ class Statistic:
     meaning: str  # what it is, in words
 
 
+def _statistics(
+    letter: str, values: dict[str, float], band: tuple[float, float], mean: str = ""
+) -> list[Statistic]:
+    """Name values by their symbols; `mean` says of a line what its section heights are means of."""
+    named = []
+    for symbol, value in values.items():
+        unit, meaning = PARAMETERS[symbol]
+        meaning = meaning.format(letter) + mean * (letter == "R" and symbol in ("z", "p", "v"))
+        named.append(Statistic(letter + symbol, float(value), unit, band, meaning))
+    return named
+
+
 def areal_statistics(surface: HeightMap, bandwidth: tuple[float, float] | None = None) -> list[Statistic]:
     """Areal roughness parameters, ISO 25178-2:2021, from Sq to Std, and Sk, Spk, Svk, Smr1, Smr2.
 
     Levelled heights, m; the mean is removed here, missing points are left out; for Std up to 5 % are filled.
-    `bandwidth` is that of
-    filtered data, m; by default from two samples to the longest side. Slopes are by the seven-point formula
-    of ISO 4287:1997. If the autocorrelation does not fall to 0.2 inside the map, there is a warning, see
-    `autocorrelation_lengths`.
+    `bandwidth` is that of filtered data, m; by default from two samples to the longest side. Slopes are by
+    the seven-point formula of ISO 4287:1997. If the autocorrelation does not fall to 0.2 inside the map,
+    there is a warning, see `autocorrelation_lengths`.
     """
-    band = bandwidth or (2.0 * min(surface.spacing), max(surface.size))
     square = _square_slope(surface)
-    slopes = (float(np.nanmean(square)), float(np.nanmean(np.sqrt(1.0 + square)) - 1.0))
-    lengths = autocorrelation_lengths(surface)
-    whole = nearly_complete(surface)
-    direction = Statistic(
-        "Std",
-        np.nan if whole is None else texture_direction(whole),
-        "rad",
-        band,
-        "direction from x in which it varies most, across the lay; means little where Str is above 0.5",
-    )
-    named = areal_parameters(*_amplitudes(surface.heights), slopes, lengths, band)
-    return [*named, direction, *_stratified("S", surface.heights, band)]
+    slopes = {"dq": np.sqrt(np.nanmean(square)), "dr": np.nanmean(np.sqrt(1.0 + square)) - 1.0}
+    lags, whole = _lags(*autocorrelation_lengths(surface)), nearly_complete(surface)
+    direction = {"td": np.nan if whole is None else texture_direction(whole)}
+    values = _amplitudes(*_powers(surface.heights)) | slopes | lags | direction | stratified(surface.heights)
+    return _statistics("S", values, bandwidth or (2.0 * min(surface.spacing), max(surface.size)))
 
 
-def areal_parameters(
-    powers: Array,
-    total: float,
-    slopes: tuple[float, float],
-    lengths: tuple[float, float],
-    band: tuple[float, float],
+def profile_statistics(
+    profile: Profile, bandwidth: tuple[float, float] | None = None, section: float | None = None
 ) -> list[Statistic]:
-    """Name areal roughness parameters, in the order of `areal_statistics`, up to Str.
+    """Profile roughness parameters, ISO 21920-2:2021: Rq to Rku, Rt, Rz, Rp, Rv, Rdq, and Rk to Rmr2.
 
-    `powers` are the means of |z|, z², z³ and z⁴ about the mean, m to m⁴; `total` is from the highest peak to
-    the lowest valley, m; `slopes` are the mean square slope, and the developed area beyond the plane's over
-    it; `lengths` those at which the autocorrelation falls to 0.2 and `band` the wavelengths, shortest and
-    longest, m.
+    Levelled heights, m; the mean is removed here, missing points are left out. `bandwidth` is that of
+    filtered data, m; by default from two samples to the length. The whole line is the evaluation length; Rz,
+    Rp and Rv are means over its whole sections of a length, m: a fifth of it by default; of a line that was
+    filtered, the nesting index of the L-filter. Slopes are by the seven-point formula of ISO 4287:1997.
     """
-    shortest, longest = lengths
-    return [
-        *_named("S", powers, total, band),
-        Statistic("Sdq", float(np.sqrt(slopes[0])), "1", band, "rms slope"),
-        Statistic("Sdr", slopes[1], "1", band, "developed area beyond the plane's"),
-        Statistic("Sal", shortest, "m", band, "shortest lag at which the autocorrelation falls to 0.2"),
-        Statistic("Str", shortest / longest, "1", band, "shortest over longest such lag; 1 is isotropic"),
-    ]
+    rms_slope = np.sqrt(np.nanmean(_slope(profile.heights, profile.spacing, 0) ** 2))
+    values = _amplitudes(*_powers(profile.heights))
+    heights = profile.heights - np.nanmean(profile.heights)
+    points = max(1, min(round(section / profile.spacing) if section else heights.size // 5, heights.size))
+    pieces = heights[: heights.size // points * points].reshape(-1, points)
+    pieces = pieces[np.isfinite(pieces).any(axis=1)]
+    peak, valley = float(np.nanmax(pieces, axis=1).mean()), float(-np.nanmin(pieces, axis=1).mean())
+    values |= {"t": values.pop("z"), "z": peak + valley, "p": peak, "v": valley, "dq": rms_slope}
+    mean = f", mean of {len(pieces)} sections of {1e3 * points * profile.spacing:.4g} mm"
+    band = bandwidth or (2.0 * profile.spacing, profile.size)
+    return _statistics("R", values | stratified(heights), band, mean)
+
+
+def line_statistics(
+    lines: Sequence[Profile], bandwidth: tuple[float, float] | None = None, section: float | None = None
+) -> list[tuple[Statistic, float, float]]:
+    """Roughness parameters of lines side by side, with the lowest and highest value of a single line.
+
+    Bandwidth and section as of `profile_statistics`: their means over the lines, as ISO 21920-2:2021 takes
+    over evaluation lengths.
+    """
+    rough = [line for line in lines if np.nanmax(line.heights) > np.nanmin(line.heights)] or list(lines[:1])
+    means = []
+    for same in zip(*(profile_statistics(line, bandwidth, section) for line in rough), strict=True):
+        values = [item.value for item in same]
+        means.append((replace(same[0], value=float(np.mean(values))), min(values), max(values)))
+    return means
+
+
+def _powers(heights: Array) -> tuple[Array, float]:
+    """Means of |z|, z², z³ and z⁴ about the mean, and the total height."""
+    z = heights[np.isfinite(heights)]
+    z = z - z.mean()
+    require(z.any(), "surface", "equal heights everywhere", "a surface with roughness")
+    return np.array([np.abs(z).mean(), *(np.mean(z**n) for n in (2, 3, 4))]), float(np.ptp(z))
+
+
+def _amplitudes(powers: Array, total: float) -> dict[str, float]:
+    """Parameters of the heights, from the means of their powers, m to m⁴, and the total height, m."""
+    rms = float(np.sqrt(powers[1]))
+    return {"q": rms, "a": powers[0], "sk": powers[2] / rms**3, "ku": powers[3] / rms**4, "z": total}
+
+
+def _lags(shortest: float, longest: float) -> dict[str, float]:
+    return {"al": shortest, "tr": shortest / longest}
 
 
 def rms_slope(surface: HeightMap) -> float:
@@ -152,8 +147,31 @@ def rms_slope(surface: HeightMap) -> float:
 
 
 def _square_slope(surface: HeightMap) -> Array:
-    along, across = (slope(surface.heights, d, axis) for axis, d in enumerate(surface.spacing))
+    along, across = (_slope(surface.heights, d, axis) for axis, d in enumerate(surface.spacing))
     return along**2 + across**2
+
+
+def _slope(heights: Array, spacing: float, axis: int) -> Array:
+    """Seven-point derivative along an axis at points with three neighbours on either side, others NaN."""
+    inner = _inner_slope(heights, spacing, axis)
+    received = f"no seven valid points in a row along axis {axis}"
+    usable = not np.isnan(inner).all()
+    require(usable, "surface", received, "enough valid points for slopes", "Use fill first.")
+    slope = np.full(heights.shape, np.nan)
+    np.moveaxis(slope, axis, 0)[3:-3] = np.moveaxis(inner, axis, 0)
+    return slope
+
+
+def _inner_slope(heights: Array, spacing: float, axis: int) -> Array:
+    """Seven-point derivative along an axis, without the three points at either end; heights, spacing in m."""
+    z = np.moveaxis(heights, axis, 0)
+    n = z.shape[0] - 6
+    require(n >= 1, "surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
+    slope = z[6:] - z[:n]
+    slope -= 9.0 * (z[5 : n + 5] - z[1 : n + 1])
+    slope += 45.0 * (z[4 : n + 4] - z[2 : n + 2])
+    slope /= 60.0 * spacing
+    return np.moveaxis(slope, 0, axis)
 
 
 def shortest_wave_for(surface: HeightMap, slope: float) -> float:
@@ -176,111 +194,144 @@ def shortest_wave_for(surface: HeightMap, slope: float) -> float:
     return float(2.0 ** (scipy.optimize.brentq(left, *ends, xtol=1e-3) if left(ends[1]) < 0.0 else ends[1]))
 
 
-def profile_statistics(
-    profile: Profile, bandwidth: tuple[float, float] | None = None, section: float | None = None
-) -> list[Statistic]:
-    """Profile roughness parameters, ISO 21920-2:2021: Rq to Rku, Rt, Rz, Rp, Rv, Rdq, and Rk to Rmr2.
+def material_ratio_curve(heights: Array, points: int = 201) -> tuple[Array, Array]:
+    """Material ratio (points,), 0 to 1, and the heights, m, that this share of the points reach or exceed."""
+    ratio = np.linspace(0.0, 1.0, points)
+    return ratio, np.quantile(heights[np.isfinite(heights)], 1.0 - ratio)
 
-    Levelled heights, m; the mean is removed here, missing points are left out. `bandwidth` is that of
-    filtered data, m; by default from two samples to the length. The whole line is the evaluation length; Rz,
-    Rp and Rv are means over its whole sections of a length, m: a fifth of it by default; of a line that was
-    filtered, the nesting index of the L-filter. Slopes are by the seven-point formula of ISO 4287:1997.
+
+def stratified(heights: Array) -> dict[str, float]:
+    """Core, peaks and valleys by the straight line through the flattest 40 % of the material ratio curve.
+
+    ISO 25178-2:2021 and ISO 21920-2:2021, as ISO 13565-2:1996 has it: of all secants over 40 % the first of
+    least slope, the line of least squares of the heights there, from 0 to 100 % the core; peaks and valleys
+    are as high as triangles of the same area over the share that they have. Heights of any shape, m; missing
+    ones are left out. By the symbols of `PARAMETERS`: k, pk and vk, m, and the material ratios mr1, where
+    peaks end, and mr2, where valleys begin.
     """
-    band = bandwidth or (2.0 * profile.spacing, profile.size)
-    rms_slope = float(np.sqrt(np.nanmean(slope(profile.heights, profile.spacing, 0) ** 2)))
-    powers, total = _amplitudes(profile.heights)
-    heights = profile.heights - np.nanmean(profile.heights)
-    points = max(1, min(round(section / profile.spacing) if section else heights.size // 5, heights.size))
-    pieces = heights[: heights.size // points * points].reshape(-1, points)
-    pieces = pieces[np.isfinite(pieces).any(axis=1)]
-    peak, valley = float(np.nanmax(pieces, axis=1).mean()), float(-np.nanmin(pieces, axis=1).mean())
-    mean = f"mean of {len(pieces)} sections of {1e3 * points * profile.spacing:.4g} mm"
-    return [
-        *_named("R", powers, total, band)[:-1],
-        Statistic("Rt", total, "m", band, "highest peak to lowest valley"),
-        Statistic("Rz", peak + valley, "m", band, f"highest peak to lowest valley, {mean}"),
-        Statistic("Rp", peak, "m", band, f"highest peak above the mean line, {mean}"),
-        Statistic("Rv", valley, "m", band, f"lowest valley below the mean line, {mean}"),
-        Statistic("Rdq", rms_slope, "1", band, "rms slope"),
-        *_stratified("R", heights, band),
-    ]
+    falling = np.sort(heights[np.isfinite(heights)])[::-1]
+    count = falling.size
+    ratio = (np.arange(count) + 0.5) / count
+    width = min(max(2, round(CORE * count)), count - 1)
+    drop = falling[:-width] - falling[width:]
+    first = int(np.argmax(drop <= drop.min() + 1e-9 * (falling[0] - falling[-1])))
+    part = slice(first, first + width + 1)
+    slope, top = np.polyfit(ratio[part], falling[part], 1)
+    bottom = top + slope
+    above, below = np.maximum(falling - top, 0.0), np.maximum(bottom - falling, 0.0)
+    peak_ratio, valley_ratio = np.mean(above > 0.0), 1.0 - np.mean(below > 0.0)
+    peaks = 2.0 * above.mean() / peak_ratio if peak_ratio else 0.0
+    valleys = 2.0 * below.mean() / (1.0 - valley_ratio) if valley_ratio < 1.0 else 0.0
+    return {"k": top - bottom, "pk": peaks, "vk": valleys, "mr1": peak_ratio, "mr2": valley_ratio}
 
 
-def _stratified(letter: str, heights: Array, band: tuple[float, float]) -> list[Statistic]:
-    found = stratified(heights)
-    values = [
-        ("k", found.core, "m", "height of the core, by the flattest 40 % of the material ratio curve"),
-        ("pk", found.peaks, "m", "reduced height of the peaks above the core"),
-        ("vk", found.valleys, "m", "reduced depth of the valleys below the core"),
-        ("mr1", found.peak_ratio, "1", "material ratio of the peaks (Smrk1 of 2021)"),
-        ("mr2", found.valley_ratio, "1", "material ratio above the valleys (Smrk2 of 2021)"),
-    ]
-    return [
-        Statistic(letter + name, value, unit, band, meaning.replace("Smrk", f"{letter}mrk"))
-        for name, value, unit, meaning in values
-    ]
+PIECE = 2**20
+"""Points of a strip that are looked at in one go."""
+FEWEST_ROWS = 1024
+"""Rows of such a piece, at least: correlations are known up to half of them."""
+STRETCH = 256
+"""Rows of a piece that are looked at together: few enough to stay in the processor's cache."""
+LINES = 8
+"""Lines of a piece whose spectra are made together."""
+BINS = 80
+MARGIN = 3
+"""Neighbours on either side that the slope at a point needs."""
 
 
-def line_statistics(
-    lines: Sequence[Profile], bandwidth: tuple[float, float] | None = None, section: float | None = None
-) -> list[tuple[Statistic, float, float]]:
-    """Roughness parameters of lines side by side, with the lowest and highest value of a single line.
+@dataclass(frozen=True, eq=False)
+class StripSurvey:
+    """What a whole strip is like."""
 
-    Bandwidth and section as of `profile_statistics`: their means over the lines, as ISO 21920-2:2021 takes
-    over evaluation lengths.
+    # areal roughness parameters up to Str, as of `areal_statistics`; none of a flat strip
+    statistics: list[Statistic]
+    edges: Array  # (81,), heights about the mean, m
+    density: Array  # (80,), probability density between them, 1/m
+    wavenumber: Array  # (f,), cycles per metre
+    spectrum: Array  # (f,), one-sided PSD along the strip, mean over its lines, m³
+
+
+def survey_strip(strip: Strip, segment: int, first: int = 0, stop: int | None = None) -> StripSurvey:
+    """Survey all rows of a strip, reading it twice and never holding more than a piece.
+
+    Complete heights, m; their mean is removed here. Segments of the spectrum have `segment` rows. Pairs of
+    points in different pieces do not count towards the autocorrelation, and segments of the spectrum end with
+    their piece; all else is as if the strip were one map. Warns as `autocorrelation_lengths` does.
     """
-    rough = [line for line in lines if np.nanmax(line.heights) > np.nanmin(line.heights)] or list(lines[:1])
-    each = [profile_statistics(line, bandwidth, section) for line in rough]
-    found = []
-    for same in zip(*each, strict=True):
-        values = [item.value for item in same]
-        found.append((replace(same[0], value=float(np.mean(values))), min(values), max(values)))
-    return found
+    stop = strip.shape[0] if stop is None else stop
+    bounds = _bounds(strip, first, stop, segment)
+    total, low, high = 0.0, np.inf, -np.inf
+    for start, end in bounds:
+        heights = strip.rows(start, end)
+        total += float(heights.sum())
+        low, high = min(low, float(heights.min())), max(high, float(heights.max()))
+    del heights
+    points = (stop - first) * strip.shape[1]
+    mean = total / points
+    edges = np.linspace(low - mean, (high if high > low else low + 1e-12) - mean, BINS + 1)
+    lengths = [end - start for start, end in bounds]
+    lags = LagSums(max(lengths), strip.shape[1], min(lengths) // 2)
+    sums = _Sums(strip.spacing, edges, segment, lags)
+    for start, end in bounds:
+        before, beyond = max(first, start - MARGIN), min(stop, end + MARGIN)
+        sums.add(strip.rows(before, beyond) - mean, slice(start - before, end - before))
+    statistics = []
+    if high > low:
+        band = (2.0 * min(strip.spacing), max((stop - first) * strip.spacing[0], strip.size[1]))
+        values = _amplitudes(sums.powers / points, high - low)
+        values |= {"dq": np.sqrt(sums.square / sums.sloped), "dr": sums.stretch / sums.sloped}
+        values |= _lags(*lengths_of(lags.means(), strip.spacing))
+        statistics = _statistics("S", values, band)
+    density = np.asarray(sums.counts / (points * np.diff(edges)))
+    wavenumber = np.asarray(np.fft.rfftfreq(segment, strip.spacing[0]), dtype=np.float64)
+    return StripSurvey(statistics, edges, density, wavenumber, np.asarray(sums.spectrum / sums.segments))
 
 
-def _amplitudes(heights: Array) -> tuple[Array, float]:
-    """Means of |z|, z², z³ and z⁴, and the total height."""
-    z = heights[np.isfinite(heights)]
-    z = z - z.mean()
-    if not z.any():
-        raise InputError("surface", "equal heights everywhere", "a surface with roughness")
-    return np.array([np.abs(z).mean(), *(np.mean(z**n) for n in (2, 3, 4))]), float(np.ptp(z))
+def _bounds(strip: Strip, first: int, stop: int, segment: int) -> list[tuple[int, int]]:
+    """First and last rows of pieces of nearly one length."""
+    rows, least = stop - first, max(segment, 2 * MARGIN + 1)
+    require(rows >= least, "strip to survey", f"{rows} rows", f"at least {least} rows")
+    longest = max(PIECE // strip.shape[1], FEWEST_ROWS, 2 * segment)
+    edges = np.linspace(first, stop, -(-rows // longest) + 1).astype(int)
+    return list(pairwise(edges.tolist()))
 
 
-def _named(letter: str, powers: Array, total: float, band: tuple[float, float]) -> list[Statistic]:
-    rms = float(np.sqrt(powers[1]))
-    values = [
-        ("q", rms, "m", "rms height"),
-        ("a", float(powers[0]), "m", "mean absolute height"),
-        ("sk", float(powers[2] / rms**3), "1", "skewness; negative for valleys in a plateau"),
-        ("ku", float(powers[3] / rms**4), "1", "kurtosis; 3 for normally distributed heights"),
-        ("z", total, "m", "highest peak to lowest valley"),
-    ]
-    return [Statistic(letter + name, value, unit, band, meaning) for name, value, unit, meaning in values]
+class _Sums:
+    """What is added up over the pieces of a strip."""
 
+    def __init__(self, spacing: tuple[float, float], edges: Array, segment: int, lags: LagSums) -> None:
+        self.spacing, self.edges, self.segment, self.lags = spacing, edges, segment, lags
+        self.powers = np.zeros(4)  # |z|, z², z³, z⁴
+        self.square = self.stretch = 0.0
+        self.sloped = self.segments = 0
+        self.counts = np.zeros(len(edges) - 1)
+        self.spectrum = np.zeros(segment // 2 + 1)
 
-def slope(heights: Array, spacing: float, axis: int) -> Array:
-    """Seven-point derivative along an axis at points with three neighbours on either side, others NaN.
+    def add(self, heights: Array, inner: slice) -> None:
+        """Add a piece about the mean, m; slopes need the rows beside it."""
+        for first in range(MARGIN, len(heights) - MARGIN, STRETCH):
+            stop = min(first + STRETCH, len(heights) - MARGIN)
+            self._add_slopes(heights[first - MARGIN : stop + MARGIN])
+        z = heights[inner]
+        for first in range(0, len(z), STRETCH):
+            self._add_heights(z[first : first + STRETCH])
+        self.lags.add(z)
+        overlap = self.segment // 2
+        count = (len(z) - overlap) // (self.segment - overlap)
+        for first in range(0, z.shape[1], LINES):
+            lines = np.ascontiguousarray(z[:, first : first + LINES].T)
+            _, density = psd(lines, self.spacing[0], segment=self.segment)
+            self.spectrum += count / z.shape[1] * density.sum(axis=0)
+        self.segments += count
 
-    Heights and spacing in m.
-    """
-    known = inner_slope(heights, spacing, axis)
-    if np.isnan(known).all():
-        received = f"no seven valid points in a row along axis {axis}"
-        raise InputError("surface", received, "enough valid points for slopes", "Use fill first.")
-    found = np.full(heights.shape, np.nan)
-    np.moveaxis(found, axis, 0)[3:-3] = np.moveaxis(known, axis, 0)
-    return found
+    def _add_slopes(self, rows: Array) -> None:
+        """Add what slopes are at all points but those within the margin."""
+        square = _inner_slope(rows[:, MARGIN:-MARGIN], self.spacing[0], 0) ** 2
+        square += _inner_slope(rows[MARGIN:-MARGIN], self.spacing[1], 1) ** 2
+        self.square += float(square.sum())
+        self.stretch += float((np.sqrt(1.0 + square) - 1.0).sum())
+        self.sloped += square.size
 
-
-def inner_slope(heights: Array, spacing: float, axis: int) -> Array:
-    """Seven-point derivative along an axis, without the three points at either end; heights, spacing in m."""
-    z = np.moveaxis(heights, axis, 0)
-    n = z.shape[0] - 6
-    if n < 1:
-        raise InputError("surface", f"{z.shape[0]} points along axis {axis}", "at least 7 points for slopes")
-    found = z[6:] - z[:n]
-    found -= 9.0 * (z[5 : n + 5] - z[1 : n + 1])
-    found += 45.0 * (z[4 : n + 4] - z[2 : n + 2])
-    found /= 60.0 * spacing
-    return np.moveaxis(found, 0, axis)
+    def _add_heights(self, z: Array) -> None:
+        squared = z * z
+        self.powers += [np.abs(z).sum(), squared.sum(), (squared * z).sum(), (squared * squared).sum()]
+        self.counts += np.histogram(z, len(self.counts), (self.edges[0], self.edges[-1]))[0]

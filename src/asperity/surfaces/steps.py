@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from typing import TypeVar
+from dataclasses import replace
+from typing import Any, TypeVar, cast
+
+import numpy as np
+import scipy
 
 from asperity.arguments import FORMS as POLYNOMIALS
-from asperity.errors import InputError
+from asperity.arguments import Array, require
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import Surface, band_limit, level, remove_form
-from asperity.surfaces.readers.headers import spell
-from asperity.surfaces.rotation import rotated
+from asperity.surfaces.levelling import FormName, remove_form
+from asperity.surfaces.readers.hints import spell
 
 S = TypeVar("S", HeightMap, Profile, HeightMap | Profile)
 FORMS = (*POLYNOMIALS, "sphere", "cylinder")
+
+QUARTER = 0.5 * math.pi
+ROUNDING = 1e-9
+"""Difference from a whole number of quarter turns that is rounding, rad."""
+ORDER = 5
+"""Degree of the spline: a wave of four points is then right within 0.2 %."""
 
 
 def stepped(
@@ -30,41 +40,83 @@ def stepped(
     `crop` is x, y and the two lengths of the piece of a map, position and length of that of a line, m; `form`
     one of "plane", "quadratic", "sphere", "cylinder"; `longest` and `shortest` are the nesting
     indices, m, of the L- and S-filter, see `levelling.band_limit`; `direction` is the angle, rad, of
-    `rotation.rotated`.
+    `rotated`.
     """
-    if isinstance(surface, Profile):
-        if direction is not None:
-            raise InputError(spell("direction"), "a line", "a height map", "Leave it out.")
-        return _finished(_line_piece(surface, crop), form, longest, shortest)
-    done = _finished(_map_piece(surface, crop), form, longest, shortest)
-    return done if direction is None else rotated(done, direction)
-
-
-def _finished(surface: Surface, form: str | None, longest: float | None, shortest: float | None) -> Surface:
-    if form == "sphere":
-        surface = remove_form(surface, "sphere")
-    elif form == "cylinder":
-        surface = remove_form(surface, "cylinder")
+    is_map = isinstance(surface, HeightMap)
+    if direction is not None:
+        require(is_map, spell("direction"), "a line", "a height map", "Leave it out.")
+    done: Any = surface
+    if crop is not None:
+        count = f"{len(crop)} lengths"
+        if is_map:
+            require(len(crop) == 4, spell("crop"), count, "four of a map: x, y and both sides")
+            done = done.crop((crop[0], crop[1]), (crop[2], crop[3]))
+        else:
+            allowed = "two of a line: where the piece begins, and its length"
+            require(len(crop) == 2, spell("crop"), count, allowed)
+            done = done.crop(*crop)
+    if form in ("sphere", "cylinder"):
+        done = remove_form(done, cast(FormName, form))
     elif form is not None:
-        surface = level(surface, form)
-    if longest is None and shortest is None:
-        return surface
-    return band_limit(surface, longest, shortest)
+        done = done.levelled(form)
+    if longest is not None or shortest is not None:
+        done = done.band_limited(longest, shortest)
+    if direction is not None:
+        done = rotated(done, direction)
+    return done
 
 
-def _map_piece(surface: HeightMap, crop: Sequence[float] | None) -> HeightMap:
-    if crop is None:
-        return surface
-    if len(crop) != 4:
-        raise InputError(spell("crop"), f"{len(crop)} lengths", "four of a map: x, y and both sides")
-    return surface.crop((crop[0], crop[1]), (crop[2], crop[3]))
+def rotated(surface: HeightMap, direction: float) -> HeightMap:
+    """Lay a map out so that its first axis is a direction, rad, from its x axis towards its y axis.
+
+    Quarter turns move points and change none. Other directions keep the largest rectangle inside the area
+    that was measured, about its middle, on the finer of the two spacings: heights are interpolated, none is
+    made up beyond the points. Waves shorter than four points are damped; resample first to keep them. Points
+    next to a missing one are missing.
+
+    A texture that varies most at an angle Std does so at Std − direction afterwards.
+    """
+    turns = direction / QUARTER
+    require(math.isfinite(turns), "direction", direction, "a finite angle, rad")
+    if abs(turns - round(turns)) < ROUNDING:
+        swapped = surface.spacing[::-1] if round(turns) % 2 else surface.spacing
+        return replace(surface, heights=np.rot90(surface.heights, -round(turns)), spacing=swapped)
+    lengths, step = (surface.x[-1], surface.y[-1]), min(surface.spacing)
+    sides = inscribed(lengths[0], lengths[1], direction)
+    counts = [math.floor(side / step * (1 + ROUNDING)) + 1 for side in sides]
+    received = f"{math.degrees(direction):.4g} degrees on a map of {surface.shape[0]} x {surface.shape[1]}"
+    allowed = "one that leaves two points or more along each side"
+    require(min(counts) >= 2, "direction", received, allowed)
+    along, across = (step * (np.arange(n) - 0.5 * (n - 1)) for n in counts)
+    cos, sin = math.cos(direction), math.sin(direction)
+    x = 0.5 * lengths[0] + along[:, None] * cos - across * sin
+    y = 0.5 * lengths[1] + along[:, None] * sin + across * cos
+    return replace(surface, heights=_interpolated(surface, x, y), spacing=(step, step))
 
 
-def _line_piece(surface: Profile, crop: Sequence[float] | None) -> Profile:
-    if crop is None:
-        return surface
-    if len(crop) != 2:
-        raise InputError(
-            "crop", f"{len(crop)} lengths", "two of a line: where the piece begins, and its length"
-        )
-    return surface.crop(crop[0], crop[1])
+def inscribed(length: float, width: float, angle: float) -> tuple[float, float]:
+    """Sides of the largest rectangle, turned by an angle, rad, inside another one.
+
+    The first side lies at the angle to the length. Either two opposite corners touch the long sides, or all
+    four corners touch: a c + b s = length and a s + b c = width, c and s the absolute cosine and sine.
+    """
+    cos, sin = abs(math.cos(angle)), abs(math.sin(angle))
+    short = min(length, width)
+    if short <= 2.0 * sin * cos * max(length, width) or abs(cos - sin) < ROUNDING:
+        sides = 0.5 * short / sin, 0.5 * short / cos
+        return sides if width <= length else (sides[1], sides[0])
+    both = cos**2 - sin**2
+    return (length * cos - width * sin) / both, (width * cos - length * sin) / both
+
+
+def _interpolated(surface: HeightMap, x: Array, y: Array) -> Array:
+    """Heights at places, m, inside a map; the spline needs more points than its degree."""
+    missing = np.isnan(surface.heights)
+    heights = surface.filled().heights if missing.any() else surface.heights
+    kx, ky = (min(ORDER, n - 1) for n in surface.shape)
+    turned = scipy.interpolate.RectBivariateSpline(surface.x, surface.y, heights, kx=kx, ky=ky).ev(x, y)
+    if missing.any():
+        index = np.stack([x / surface.spacing[0], y / surface.spacing[1]])
+        near = scipy.ndimage.map_coordinates(missing.astype(np.float64), index, order=1, mode="nearest")
+        turned[near > ROUNDING] = np.nan
+    return np.asarray(turned)

@@ -1,4 +1,4 @@
-"""Generated fields of heights, kept in a temporary file: paths are read many times, and fill no memory."""
+"""Heights along a path, asked for in pieces; generated ones stay in a temporary file, and fill no memory."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ import threading
 import weakref
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
-from typing import IO, Protocol
+from typing import IO, Any, Protocol
 
 import numpy as np
 
-from asperity.arguments import Array
-from asperity.errors import InputError
+from asperity.arguments import Array, require
 
 BYTES_KEPT = 2**29
 """Bytes of fields in the file; where there would be more, all are forgotten, and made again when read."""
-BYTES_HELD = 2**26
+BYTES_IN_MEMORY = 2**26
 """The same in memory, where no file can be written."""
 FEWEST = 3
 """Fields that are kept whatever their size: neighbours are read together."""
+TOGETHER = 2**12
+"""Rows of a strip that heights are added to in one go."""
 
 
 class Fields:
@@ -27,9 +28,10 @@ class Fields:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._kept: dict[Hashable, tuple[int, int]] = {}  # offset in the file, bytes, and ny
-        self._held: dict[Hashable, Array] = {}
+        self._in_file: dict[Hashable, tuple[int, int]] = {}  # offset in the file, bytes, and ny
+        self._in_memory: dict[Hashable, Array] = {}
         self._file: IO[bytes] | None = None
+        self._close: Callable[[], object] = lambda: None
         self._length = 0  # of the file, bytes
 
     def rows(self, name: Hashable, make: Callable[[], Array], first: int, stop: int) -> Array:
@@ -38,53 +40,43 @@ class Fields:
         They take memory for as long as they are held.
         """
         with self._lock:
-            if name not in self._kept and name not in self._held:
+            if name not in self._in_file and name not in self._in_memory:
                 self._put(name, make())
-            if name in self._held:
-                return self._held[name][first:stop]
+            if name in self._in_memory:
+                return self._in_memory[name][first:stop]
             assert self._file is not None
-            offset, columns = self._kept[name]
+            offset, columns = self._in_file[name]
             # mapped: a position in the file would be shared with forked processes
-            return np.memmap(
-                self._file, np.float64, "r", offset + 8 * columns * first, (stop - first, columns)
-            )
+            start, shape = offset + 8 * columns * first, (stop - first, columns)
+            return np.memmap(self._file, np.float64, "r", start, shape)
 
     @property
     def nbytes(self) -> int:
         """Bytes that are held in memory."""
-        return sum(heights.nbytes for heights in self._held.values())
+        return sum(heights.nbytes for heights in self._in_memory.values())
 
     def _put(self, name: Hashable, heights: Array) -> None:
-        full = self._length + heights.nbytes > BYTES_KEPT or self.nbytes + heights.nbytes > BYTES_HELD
-        if full and len(self._kept) + len(self._held) >= FEWEST:
-            self._forget()
-        try:
-            self._write(name, heights)
-        except OSError:
-            self._held[name] = heights
-
-    def _write(self, name: Hashable, heights: Array) -> None:
-        if self._file is None:
-            self._file = tempfile.TemporaryFile(prefix="asperity-")  # noqa: SIM115  closed below
-            self._close = weakref.finalize(self, self._file.close)
-        self._file.seek(self._length)
-        self._file.write(np.ascontiguousarray(heights).data)
-        self._file.flush()
-        self._kept[name] = self._length, heights.shape[1]
-        self._length += heights.nbytes
-
-    def _forget(self) -> None:
-        if self._file is not None:
+        size = heights.nbytes
+        full = self._length + size > BYTES_KEPT or self.nbytes + size > BYTES_IN_MEMORY
+        if full and len(self._in_file) + len(self._in_memory) >= FEWEST:
             self._close()
-        self._kept, self._held, self._file, self._length = {}, {}, None, 0
+            self._in_file, self._in_memory, self._file, self._length = {}, {}, None, 0
+        try:
+            if self._file is None:
+                self._file = tempfile.TemporaryFile(prefix="asperity-")  # noqa: SIM115  closed below
+                self._close = weakref.finalize(self, self._file.close)
+            self._file.seek(self._length)
+            self._file.write(np.ascontiguousarray(heights).data)
+            self._file.flush()
+        except OSError:
+            self._in_memory[name] = heights
+        else:
+            self._in_file[name] = self._length, heights.shape[1]
+            self._length += size
 
 
 fields = Fields()
 """Those of all strips: strips of one texture share them."""
-
-
-TOGETHER = 2**12
-"""Rows of a strip that heights are added to in one go."""
 
 
 class Strip(Protocol):
@@ -93,39 +85,33 @@ class Strip(Protocol):
     @property
     def shape(self) -> tuple[int, int]:
         """Number of points (nx, ny); the first axis is the rolling direction."""
-        ...
 
     @property
     def spacing(self) -> tuple[float, float]:
         """Distances (dx, dy), m."""
-        ...
 
     @property
     def size(self) -> tuple[float, float]:
         """Lengths (nx dx, ny dy), m."""
-        ...
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
-        ...
 
 
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """Heights in memory as a strip, without copying or checking them."""
-
-    heights: Array  # (nx, ny), m
-    spacing: tuple[float, float] = (1.0, 1.0)  # (dx, dy), m
+class _Sized:
+    """Strip whose lengths follow from its points."""
 
     @property
-    def shape(self) -> tuple[int, int]:
-        """Number of points (nx, ny)."""
-        return self.heights.shape[0], self.heights.shape[1]
-
-    @property
-    def size(self) -> tuple[float, float]:
+    def size(self: Any) -> tuple[float, float]:
         """Lengths (nx dx, ny dy), m."""
         return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
+
+
+class Rows(_Sized):
+    """Heights (nx, ny), m, in memory as a strip, without copying or checking them; spacing (dx, dy), m."""
+
+    def __init__(self, heights: Array, spacing: tuple[float, float] = (1.0, 1.0)) -> None:
+        self.heights, self.spacing, self.shape = heights, spacing, (heights.shape[0], heights.shape[1])
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m."""
@@ -133,7 +119,7 @@ class Rows:
 
 
 @dataclass(frozen=True, eq=False)
-class Raised:
+class Raised(_Sized):
     """A strip with heights added to it."""
 
     strip: Strip  # what lies below
@@ -149,19 +135,13 @@ class Raised:
         """Distances (dx, dy), m."""
         return self.strip.spacing
 
-    @property
-    def size(self) -> tuple[float, float]:
-        """Lengths (nx dx, ny dy), m."""
-        return self.strip.size
-
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m."""
         heights = np.empty((stop - first, self.shape[1]))
         for start in range(first, stop, TOGETHER):
             end = min(start + TOGETHER, stop)
-            np.add(
-                self.strip.rows(start, end), self.added(start, end), out=heights[start - first : end - first]
-            )
+            part = heights[start - first : end - first]
+            np.add(self.strip.rows(start, end), self.added(start, end), out=part)
         return heights
 
 
@@ -176,7 +156,7 @@ def turning(strip: Strip, turn: Array, start: int) -> Raised:
 
 
 @dataclass(frozen=True, eq=False)
-class LongStrip:
+class LongStrip(_Sized):
     """Gaussian strip of any length, generated in pieces that blend into each other.
 
     ``piece(rows, seed)`` returns a Gaussian field (rows, ny), stationary, with zero mean; fields of different
@@ -205,22 +185,14 @@ class LongStrip:
     name: Hashable = field(default_factory=object, repr=False)
 
     def __post_init__(self) -> None:
-        if len(self.shape) != 2 or min(self.shape) < 2:
-            raise InputError("shape", self.shape, "(nx, ny), at least 2 points each")
-        if not 1 <= self.blend <= self.stride:
-            raise InputError(
-                "blend of the strip", f"{self.blend} rows", f"1 to {self.stride} rows, the stride"
-            )
-
-    @property
-    def size(self) -> tuple[float, float]:
-        """Lengths (nx dx, ny dy), m."""
-        return self.shape[0] * self.spacing[0], self.shape[1] * self.spacing[1]
+        check_shape(self.shape)
+        received, allowed = f"{self.blend} rows", f"1 to {self.stride} rows, the stride"
+        require(1 <= self.blend <= self.stride, "blend of the strip", received, allowed)
 
     def rows(self, first: int, stop: int) -> Array:
         """Heights of the rows first … stop − 1, m, shape (stop − first, ny)."""
-        if not 0 <= first <= stop <= self.shape[0]:
-            raise InputError("rows of the strip", f"{first} to {stop}", f"rows from 0 to {self.shape[0]}")
+        inside, allowed = 0 <= first <= stop <= self.shape[0], f"rows from 0 to {self.shape[0]}"
+        require(inside, "rows of the strip", f"{first} to {stop}", allowed)
         heights = np.empty((stop - first, self.shape[1]))
         at, last = first - self.before, stop - self.before
         while at < last:
@@ -245,3 +217,8 @@ class LongStrip:
         seed = int(np.random.SeedSequence([self.seed, k % 2**32]).generate_state(1)[0])
         name = self.name, seed, self.stride, self.blend, self.shape[1]
         return fields.rows(name, lambda: self.piece(self.stride + self.blend, seed), first, stop)
+
+
+def check_shape(shape: tuple[int, int]) -> None:
+    """Refuse a number of points (nx, ny) that makes no surface."""
+    require(len(shape) == 2 and min(shape) >= 2, "shape", shape, "(nx, ny), at least 2 points each")

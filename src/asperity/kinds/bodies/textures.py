@@ -24,7 +24,7 @@ from asperity.scenarios.textures import Textures
 from asperity.scenes.textures import gather, warn_of_start
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
-from asperity.surfaces.parallel_lines import lines_of
+from asperity.surfaces.measured_lines import lines_of
 from asperity.surfaces.strip import raised
 from asperity.surfaces.synthesis import close
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.kinds.wheel_on_rail.wheel_keys import FlatKeys
 from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
-from asperity.surfaces.en15610 import roll_over
 from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.measured_lines import roll_over
 
 
 def corrugated(case: WheelOnRail, rows: int, seed: int) -> NDArray[np.float64]:

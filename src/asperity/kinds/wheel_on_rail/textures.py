@@ -50,10 +50,16 @@ from asperity.scenarios.textures import (
 )
 from asperity.scenes.textures import warn_of_start
 from asperity.surfaces.bands import check_levels
-from asperity.surfaces.en15610 import Processing, process
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import level, resample
-from asperity.surfaces.parallel_lines import bring_into_register, common_length, lines_of, strip_from_lines
+from asperity.surfaces.measured_lines import (
+    Processing,
+    bring_into_register,
+    common_length,
+    lines_of,
+    process,
+    strip_from_lines,
+)
 from asperity.surfaces.strip import LongStrip, Raised, Rows, raised, turning
 from asperity.surfaces.synthesis import Continuation, close, extend
 

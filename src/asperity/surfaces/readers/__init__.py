@@ -6,22 +6,21 @@ import warnings
 import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
-from asperity.arguments import shown, whole
-from asperity.errors import InputError, MissingPointsWarning
+from asperity.arguments import require, shown, whole
+from asperity.errors import MissingPointsWarning
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.readers import arrays, sdf, text, x3p
-from asperity.surfaces.readers.guards import Hints, Length, Surface, archive, checked_hints, readable_file
-from asperity.surfaces.readers.headers import advice, spell
+from asperity.surfaces.readers import arrays, guards, sdf, text, x3p
+from asperity.surfaces.readers.hints import Hints, Length, advice, checked_hints, spell
 from asperity.surfaces.readers.instruments import read_apart
 
 __all__ = ["read_surface", "read_surfaces"]
 
-S = TypeVar("S", HeightMap, Profile, Surface)
-Reader = Callable[[Path, Hints], list[Surface]]
+S = TypeVar("S", HeightMap, Profile, guards.Surface)
+Reader = Callable[[Path, Hints], list[guards.Surface]]
 
 NETCDF = read_apart("netcdf", "netCDF-4")
 INSTRUMENTS = read_apart("instruments", "known instrument")
@@ -111,12 +110,11 @@ def read_surface(
     """
     surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
     allowed = f"0 to {len(surfaces) - 1}"
-    if index is None and len(surfaces) > 1:
-        received = f"an ensemble of {len(surfaces)} samples"
-        remedy = advice("index", 0, f"Choose one of {allowed}, as in", "Keep one in the file.")
-        raise InputError(str(path), received, "one sample", remedy)
-    what = f"index of a sample in {path}"
-    chosen = 0 if index is None else whole(what, index, allowed, at_least=0, at_most=len(surfaces) - 1)
+    remedy = advice("index", 0, f"Choose one of {allowed}, as in", "Keep one in the file.")
+    single = index is not None or len(surfaces) == 1
+    require(single, str(path), f"an ensemble of {len(surfaces)} samples", "one sample", remedy)
+    what, index = f"index of a sample in {path}", 0 if index is None else index
+    chosen = whole(what, index, allowed, at_least=0, at_most=len(surfaces) - 1)
     return _finished([surfaces[chosen]], transpose, fill, spikes, lines)[0]
 
 
@@ -138,32 +136,24 @@ def read_surfaces(
     """
     surfaces = _read(path, checked_hints(array, height_unit, pixel, pixel_unit, decimal))
     maps = [surface for surface in surfaces if isinstance(surface, HeightMap)]
-    if len(maps) < len(surfaces):
-        raise InputError(str(path), "a line", "a height map", "Read it with read_surface, or give a map.")
+    remedy = "Read it with read_surface, or give a map."
+    require(len(maps) == len(surfaces), str(path), "a line", "a height map", remedy)
     return _finished(maps, transpose, fill, spikes)
 
 
-def _read(path: str | Path, hints: Hints) -> list[Surface]:
-    file = readable_file(path)
-    return _reader(file)(file, hints)
-
-
-def _reader(file: Path) -> Reader:
-    extension = file.suffix.lower()
+def _read(path: str | Path, hints: Hints) -> list[guards.Surface]:
+    file = guards.readable_file(path)
     with file.open("rb") as stream:
         head = stream.read(16)
-    found = _by_content(file, head)
+    extension, by_content = file.suffix.lower(), _by_content(file, head)
     if extension in OWN:
         kind, reader = OWN[extension]
-        if found is not reader:
-            received = f"a file that starts with {head[:8]!r}"
-            raise InputError(
-                file.name, received, f"a {kind} file", "Export it again, or correct the extension."
-            )
-        return reader
-    if found is not None:
-        return found
-    return text.read if extension in TEXT else INSTRUMENTS
+        received, same = f"a file that starts with {head[:8]!r}", by_content is reader
+        remedy = "Export it again, or correct the extension."
+        require(same, file.name, received, f"a {kind} file", remedy)
+    else:
+        reader = by_content or (text.read if extension in TEXT else INSTRUMENTS)
+    return reader(file, hints)
 
 
 def _by_content(file: Path, head: bytes) -> Reader | None:
@@ -175,75 +165,51 @@ def _by_content(file: Path, head: bytes) -> Reader | None:
         return arrays.read_npy
     if head.startswith(b"\x89HDF") and file.suffix.lower() in ("", ".nc", ".nc4"):
         return NETCDF
-    if head.startswith(b"PK"):
-        return _by_members(file)
-    return None
+    return _by_members(file) if head.startswith(b"PK") else None
 
 
 def _by_members(file: Path) -> Reader | None:
-    if not zipfile.is_zipfile(file):
-        remedy = "The file is truncated; copy or export it again."
-        raise InputError(file.name, "a zip archive without its directory", "an intact archive", remedy)
-    with archive(file) as opened:
+    received, allowed = "a zip archive without its directory", "an intact archive"
+    remedy = "The file is truncated; copy or export it again."
+    require(zipfile.is_zipfile(file), file.name, received, allowed, remedy)
+    with guards.archive(file) as opened:
         names = opened.namelist()
     if "main.xml" in names:
         return x3p.read
-    if names and all(name.endswith(".npy") for name in names):
-        return arrays.read_npz
-    return None
+    return arrays.read_npz if names and all(name.endswith(".npy") for name in names) else None
 
 
 def _finished(
     surfaces: list[S], transpose: bool, fill: bool, spikes: bool, lines: bool | None = None
 ) -> list[S]:
+    """Take spikes out, turn and fill as it was asked for, and warn of points without a height."""
+    of_lines = "Lines of a rail or a wheel have processing of their own."
+    of_maps = {"transpose": "Leave it out.", "spikes": of_lines}
     for name, flag in (("transpose", transpose), ("fill", fill), ("spikes", spikes)):
-        if not isinstance(flag, bool | np.bool_):
-            raise InputError(name, shown(flag), "True or False")
-    read = surfaces
+        require(isinstance(flag, bool | np.bool_), name, shown(flag), "True or False")
+        for surface in surfaces if flag and name in of_maps else ():
+            is_map, received = isinstance(surface, HeightMap), f"a line, {surface.source}"
+            require(is_map, name, received, "a height map", of_maps[name])
+    done: list[Any] = list(surfaces)
     if spikes:
-        surfaces = [_without_spikes(surface) for surface in surfaces]
+        done = [surface.without_spikes() for surface in done]
     if transpose:
-        surfaces = [_transposed(surface) for surface in surfaces]
-    filled = [_filled(surface, lines) for surface in surfaces] if fill else surfaces
-    _report_missing(read, surfaces, filled)
-    return filled
-
-
-def _without_spikes(surface: S) -> S:
-    if isinstance(surface, Profile):
-        remedy = "Lines of a rail or a wheel have processing of their own."
-        raise InputError("spikes", f"a line, {surface.source}", "a height map", remedy)
-    return surface.without_spikes()
-
-
-def _filled(surface: S, lines: bool | None) -> S:
-    return surface.filled() if isinstance(surface, Profile) else surface.filled(lines)
-
-
-def _transposed(surface: S) -> S:
-    if isinstance(surface, Profile):
-        raise InputError("transpose", f"a line, {surface.source}", "a height map", "Leave it out.")
-    return surface.transposed()
-
-
-def _missing_points(surfaces: Sequence[Surface]) -> int:
-    return sum(int(np.isnan(surface.heights).sum()) for surface in surfaces)
-
-
-def _report_missing(read: Sequence[Surface], surfaces: Sequence[Surface], filled: Sequence[Surface]) -> None:
-    """Warn of points without a height in what was read, of those that its spikes leave, and of the filled."""
-    missing = _missing_points(surfaces)
-    if not missing:
-        return
-    spikes = missing - _missing_points(read)
-    share = missing / sum(surface.heights.size for surface in surfaces)
-    left = "left as NaN, which contact cannot be solved with"
-    remedy = f"{spell('fill', True)} interpolates them"
-    if filled is not surfaces:
-        left, remedy = "interpolated from their neighbours", "check the measurement"
-        if ends := _missing_points(filled):
+        done = [surface.transposed() for surface in done]
+    filled = [surface.filled(lines) for surface in done] if fill else done
+    before, missing, ends = (
+        sum(int(np.isnan(each.heights).sum()) for each in some) for some in (surfaces, done, filled)
+    )
+    if missing:
+        share = missing / sum(surface.heights.size for surface in surfaces)
+        left = "left as NaN, which contact cannot be solved with"
+        remedy = f"{spell('fill', True)} interpolates them"
+        if fill:
+            left, remedy = "interpolated from their neighbours", "check the measurement"
+        if fill and ends:
             left = f"interpolated along the lines but for {ends} at their ends"
-    what = f"{read[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
-    what += f" ({spikes} of them were spikes)" * bool(spikes)
-    message = f"{what}; {left}; {remedy}"
-    warnings.warn(message, MissingPointsWarning, stacklevel=4)
+        what = (
+            f"{surfaces[0].source}: {missing} points ({100 * share:.3g} % of all) have no height, none should"
+        )
+        what += f" ({missing - before} of them were spikes)" * (missing > before)
+        warnings.warn(f"{what}; {left}; {remedy}", MissingPointsWarning, stacklevel=3)
+    return filled

@@ -7,17 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from asperity.arguments import Array, listed, shown
-from asperity.errors import InputError
+from asperity.arguments import Array, listed, require, shown
+from asperity.surfaces.readers import guards
 from asperity.surfaces.readers.arrays import only_one, uniform_step
-from asperity.surfaces.readers.guards import Hints, Surface, check_claim, hostile, scaled, surfaces_of
-from asperity.surfaces.readers.headers import advice
+from asperity.surfaces.readers.hints import Hints, advice
 from asperity.units import factor
 
 MAX_COMPRESSION = 1000  # deflate reaches 1032; more is an array that was never written
 
 
-def read(path: Path, hints: Hints) -> list[Surface]:
+def read(path: Path, hints: Hints) -> list[guards.Surface]:
     """Read the variable of a netCDF-4 file that the hints name (``group/variable`` in a group).
 
     Without a name it is ``heights`` or the only variable with dimensions that is no coordinate. The dimension
@@ -27,12 +26,11 @@ def read(path: Path, hints: Hints) -> list[Surface]:
     """
     import h5netcdf
 
-    with hostile(path.name, "netCDF-4"), h5netcdf.File(path, "r") as opened:
+    with guards.hostile(path.name, "netCDF-4"), h5netcdf.File(path, "r") as opened:
         variable = _chosen(opened, hints.array, path.name)
-        source = f"{path.name}:{variable.name.lstrip('/')}"
-        stated = _unit(variable)
-        check_claim(source, variable.shape, variable.dtype.itemsize / MAX_COMPRESSION, path.stat().st_size)
-        heights = _decoded(variable, hints.heights_in(source, stated), source)
+        source, item_bytes = f"{path.name}:{variable.name.lstrip('/')}", variable.dtype.itemsize
+        guards.check_claim(source, variable.shape, item_bytes / MAX_COMPRESSION, path.stat().st_size)
+        heights = _decoded(variable, hints.heights_in(source, _unit(variable)), source)
         names = [name.rpartition("/")[2] for name in variable.dimensions]
         within = variable.name.strip("/").rpartition("/")[0]
         group = opened[within] if within else opened
@@ -42,23 +40,22 @@ def read(path: Path, hints: Hints) -> list[Surface]:
         for axis, step in zip((-2, -1)[-len(steps) :], steps, strict=True):
             if step is not None and step < 0:
                 heights = np.flip(heights, axis)
-        known = [abs(step) for step in steps if step is not None]
-        spacing = (known[0], known[-1]) if len(known) == len(steps) else None
-        return surfaces_of(heights, hints.spacing_in(source, spacing), source)
+        stated = [abs(step) for step in steps if step is not None]
+        spacing = (stated[0], stated[-1]) if len(stated) == len(steps) else None
+        return guards.surfaces_of(heights, hints.spacing_in(source, spacing), source)
 
 
 def _chosen(opened: Any, name: str | None, source: str) -> Any:
-    variables = opened.variables
-    candidates = [n for n, v in variables.items() if v.ndim and n not in opened.dimensions]
+    candidates = [n for n, v in opened.variables.items() if v.ndim and n not in opened.dimensions]
     if name is None:
         name = "heights" if "heights" in candidates else only_one(candidates, source)
     try:
         variable = opened[name]
     except KeyError:
         variable = None
-    if variable is None or not hasattr(variable, "dimensions") or not hasattr(variable, "dtype"):
-        allowed = f"one of: {listed(candidates)}, or group/variable"
-        raise InputError(f"array in {source}", shown(name), allowed, "Choose one.")
+    is_variable = hasattr(variable, "dimensions") and hasattr(variable, "dtype")
+    allowed = f"one of: {listed(candidates)}, or group/variable"
+    require(is_variable, f"array in {source}", shown(name), allowed, "Choose one.")
     return variable
 
 
@@ -70,7 +67,7 @@ def _unit(variable: Any) -> float | None:
 def _decoded(variable: Any, unit: float, source: str) -> Array:
     """Apply the conventional attributes for missing values, scale and offset."""
     raw, attributes = np.asarray(variable[...]), variable.attrs
-    heights = scaled(raw, 1.0, source)
+    heights = guards.scaled(raw, 1.0, source)
     for name in ("_FillValue", "missing_value"):
         if name in attributes:
             heights[np.isin(raw, attributes[name])] = np.nan
@@ -83,7 +80,6 @@ def _step(group: Any, dimension: str, hints: Hints, source: str) -> float | None
         return None
     coordinate = group.variables[dimension]
     unit = hints.lateral_factor or _unit(coordinate)
-    if unit is None:
-        remedy = advice("pixel_unit", "um", "Give it, as in", "Add that attribute.")
-        raise InputError(f"{dimension} of {source}", "no unit", "a units attribute", remedy)
-    return uniform_step(np.asarray(coordinate[...], dtype=np.float64), source, dimension) * unit
+    remedy = advice("pixel_unit", "um", "Give it, as in", "Add that attribute.")
+    require(unit, f"{dimension} of {source}", "no unit", "a units attribute", remedy)
+    return uniform_step(np.asarray(coordinate[...], dtype=np.float64), source, dimension) * float(unit or 0)

@@ -5,21 +5,14 @@ from __future__ import annotations
 import re
 import struct
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from asperity.arguments import Array
-from asperity.errors import InputError
-from asperity.surfaces.readers.guards import (
-    Hints,
-    Surface,
-    check_claim,
-    count,
-    header_number,
-    hostile,
-    scaled,
-    surfaces_of,
-)
+from asperity.arguments import require
+from asperity.surfaces.readers import guards
+from asperity.surfaces.readers.hints import Hints
 from asperity.text_files import number_in
 
 DATA_TYPES = ("u1", "<u2", "<u4", "<f4", "i1", "<i2", "<i4", "<f8")  # by the code in the header
@@ -33,67 +26,63 @@ _FIELDS = (  # noqa: SIM905
 ).split()
 
 
-def read(path: Path, hints: Hints) -> list[Surface]:
+def read(path: Path, hints: Hints) -> list[guards.Surface]:
     """Read an SDF file; there are no hints to it.
 
     Its profiles run along x, so x is the first axis of the map and profiles follow one another along y; a
     single one is a profile. Lengths are in m by the standard. Compressed data are refused.
     """
-    hints.refuse(path.name, "SDF")
+    source = path.name
+    hints.refuse(source, "SDF")
     data = path.read_bytes()
-    with hostile(path.name, "SDF"):
-        if data[:1] == b"b":
-            header, raw = _read_binary(data, path.name)
-        else:
-            header, raw = _read_ascii(data, path.name)
-        kind = DATA_TYPES[_data_type(header, path.name)]
-        unit = header_number(path.name, "Zscale", header.get("zscale"))
-        if unit == 0:
-            raise InputError(f"Zscale in {path.name}", unit, "the height of one unit in m", "Export it.")
-        heights = scaled(raw, unit, path.name)
+    with guards.hostile(source, "SDF"):
+        binary = data[:1] == b"b"
+        header, body = _binary_header(data, source) if binary else _ascii_header(data)
+        compression = guards.header_number(source, "Compression", header.get("compression", "0"))
+        require(compression == 0, source, "compressed data", "Compression = 0", "Export it uncompressed.")
+        code = guards.header_number(
+            source, "DataType", header.get("datatype"), "0 to 7", range(len(DATA_TYPES)).__contains__
+        )
+        kind = DATA_TYPES[int(code)]
+        profiles, points = (
+            guards.count(source, name, header.get(name.lower())) for name in ("NumProfiles", "NumPoints")
+        )
+        raw = (_binary_heights if binary else _ascii_heights)(body, (profiles, points), kind, source)
+        unit = guards.header_number(
+            source, "Zscale", header.get("zscale"), "the height of one unit in m", bool
+        )
+        heights = guards.scaled(raw, unit, source)
         if kind in MISSING:
             heights[raw == MISSING[kind]] = np.nan
-        spacing = tuple(header_number(path.name, f"{a}scale", header.get(f"{a.lower()}scale")) for a in "XY")
-        return surfaces_of(heights.T, (spacing[0], spacing[1]), path.name)
-
-
-def _read_binary(data: bytes, source: str) -> tuple[dict[str, str], Array]:
-    if len(data) < _BINARY.size:
-        raise InputError(
-            source, f"{len(data)} bytes", f"a header of {_BINARY.size} bytes", "Export it again."
+        dx, dy = (
+            guards.header_number(source, name, header.get(name.lower())) for name in ("Xscale", "Yscale")
         )
-    header = {name: str(v) for name, v in zip(_FIELDS, _BINARY.unpack_from(data), strict=True)}
-    kind = np.dtype(DATA_TYPES[_data_type(header, source)])
-    shape = _shape(header, source)
-    points = check_claim(source, shape, kind.itemsize, len(data) - _BINARY.size)
-    return header, np.frombuffer(data, kind, points, _BINARY.size).reshape(shape)
+        return guards.surfaces_of(heights.T, (dx, dy), source)
 
 
-def _read_ascii(data: bytes, source: str) -> tuple[dict[str, str], Array]:
+def _binary_header(data: bytes, source: str) -> tuple[dict[str, str], bytes]:
+    size = _BINARY.size
+    received, allowed = f"{len(data)} bytes", f"a header of {size} bytes"
+    require(len(data) >= size, source, received, allowed, guards.EXPORT)
+    values = (str(value) for value in _BINARY.unpack_from(data))
+    return dict(zip(_FIELDS, values, strict=True)), data[size:]
+
+
+def _ascii_header(data: bytes) -> tuple[dict[str, str], bytes]:
     head, _, rest = data.partition(b"*")
     pairs = (line.partition("=") for line in head.decode("latin-1").splitlines())
     header = {name.strip().lower(): value.strip() for name, _, value in pairs}
-    shape = _shape(header, source)
-    body = rest.partition(b"*")[0]  # a trailer may follow
-    points = check_claim(source, shape, 2, len(body) + 1)  # a digit and a separator
+    return header, rest.partition(b"*")[0]  # a trailer may follow
+
+
+def _binary_heights(body: bytes, shape: tuple[int, int], kind: str, source: str) -> NDArray[Any]:
+    points = guards.check_claim(source, shape, np.dtype(kind).itemsize, len(body))
+    return np.frombuffer(body, kind, points).reshape(shape)
+
+
+def _ascii_heights(body: bytes, shape: tuple[int, int], kind: str, source: str) -> NDArray[Any]:
+    points = guards.check_claim(source, shape, 2, len(body) + 1)  # a digit and a separator
     words = re.sub(rb"(?i)\bBAD\b", b"nan", body).replace(b",", b" ").split()
-    if len(words) != points:
-        raise InputError(
-            source, f"{len(words)} heights", f"the {points} that its header claims", "Export it again."
-        )
-    _data_type(header, source)
-    return header, np.array([number_in(word) for word in words]).reshape(shape)
-
-
-def _shape(header: dict[str, str], source: str) -> tuple[int, int]:
-    profiles = count(source, "NumProfiles", header.get("numprofiles"))
-    return profiles, count(source, "NumPoints", header.get("numpoints"))
-
-
-def _data_type(header: dict[str, str], source: str) -> int:
-    if header_number(source, "Compression", header.get("compression", "0")) != 0:
-        raise InputError(source, "compressed data", "Compression = 0", "Export it uncompressed.")
-    code = header_number(source, "DataType", header.get("datatype"))
-    if code not in range(len(DATA_TYPES)):
-        raise InputError(f"DataType in {source}", code, "0 to 7", "Export the file again.")
-    return int(code)
+    received, allowed = f"{len(words)} heights", f"the {points} that its header claims"
+    require(len(words) == points, source, received, allowed, guards.EXPORT)
+    return np.array([number_in(word) for word in words]).reshape(shape)

@@ -1,4 +1,4 @@
-"""Text and CSV: lines, point lists and matrices of heights."""
+"""Text and CSV: lines, point lists and matrices of heights, and what their headings state."""
 
 from __future__ import annotations
 
@@ -13,25 +13,33 @@ from pathlib import Path
 
 import numpy as np
 
-from asperity.arguments import Array
+from asperity.arguments import Array, require
 from asperity.errors import InputError
 from asperity.files import amount
 from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.readers import guards
 from asperity.surfaces.readers.arrays import line, rasterised
-from asperity.surfaces.readers.guards import MAX_POINTS, Hints, Surface, check_claim, hostile, surfaces_of
-from asperity.surfaces.readers.headers import Header, advice, parsed_header, spell
+from asperity.surfaces.readers.hints import Hints, advice, spell
 from asperity.text_files import number_in
+from asperity.units import factor, quantity
 
 MISSING = {"", "nan", "bad", "na", "n/a", "null", "none"}  # and any number of asterisks
 COMMENT = ("#", "%", "//")
-
-_CHECK = "Check the file and its separators."
-_NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
-
-
 MAX_TEXT_BYTES = 1 << 30
 MAX_HEADER = 1 << 20  # characters of headings and comments
 PIECE = 1 << 16  # fields of a long line that are split off at a time; bytes that are looked at
+
+_CHECK = "Check the file and its separators."
+_NUMERIC = re.compile(r"(?:[\d\s.,;+\-eE*]++|nan|bad|null|none|na|n/a)*+", re.IGNORECASE)
+_NUMBER = r"[-+]?\d++(?:[.,]\d*+)?(?:[eE][-+]?\d++)?"
+# For lines in which one blank stands for all white space: whatever the line, they need time like its length.
+_BRACKET = re.compile(r"[\[(] ?([^\s\[\]()\d]{1,20}) ?[\])]")
+_UNIT_LINE = re.compile(r"(.*?)\bunits?\b ?[:=]? ?[\[(]?([^\s\[\]();,]{1,20})", re.IGNORECASE)
+_PIXEL_LINE = re.compile(
+    rf"(pixel(?:[ _]size)?|spacing|sample spacing|dx|dy) ?[:=]? ?({_NUMBER}) ?([^\s\d;,]{{1,20}})",
+    re.IGNORECASE,
+)
+_LATERAL_WORDS = {"x", "y", "xy", "lateral", "length", "distance", "position", "pixel"}
 
 
 @dataclass(frozen=True)
@@ -69,21 +77,19 @@ class Dialect:
         return self.delimiter is not None and not text.rpartition(self.delimiter)[2].strip()
 
 
-def read(path: Path, hints: Hints) -> list[Surface]:
+def read(path: Path, hints: Hints) -> list[guards.Surface]:
     """Read heights from text: tab, semicolon, comma or white space between columns, point or comma decimals.
 
     One column is a line z; two are x, z at uniform x; three are x, y, z on a regular grid; more are a matrix
     of heights whose rows follow one another along x, so the first axis of the map is the line number. Missing
     heights: ``NaN``, ``BAD``, ``NA``, ``***`` or nothing. Lines above the numbers and lines that start with
-    ``#``, ``%`` or ``//`` are header, see `asperity.surfaces.readers.headers`; a hint is stronger than it.
-    The file is read line by line, so that memory is a few times what its numbers take.
+    ``#``, ``%`` or ``//`` are header, see `parsed_header`; a hint is stronger than it. The file is read line
+    by line, so that memory is a few times what its numbers take.
     """
-    size = path.stat().st_size
-    if size > MAX_TEXT_BYTES:
-        allowed = f"at most {amount(MAX_TEXT_BYTES)} of text"
-        remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
-        raise InputError(f"size of {path.name}", amount(size), allowed, remedy)
-    with hostile(path.name, "text"):
+    size, allowed = path.stat().st_size, f"at most {amount(MAX_TEXT_BYTES)} of text"
+    remedy = "Crop or split the measurement, or save it as .npy, netCDF or X3P."
+    require(size <= MAX_TEXT_BYTES, f"size of {path.name}", amount(size), allowed, remedy)
+    with guards.hostile(path.name, "text"):
         encoding = _encoding(path)
         with path.open(encoding=encoding) as lines:
             dialect = _dialect(lines, hints.decimal, path.name)
@@ -96,25 +102,22 @@ def read(path: Path, hints: Hints) -> list[Surface]:
 def _encoding(path: Path) -> str:
     """Marked UTF-16, UTF-8, or Latin-1 for what is neither."""
     decoder = codecs.getincrementaldecoder("utf-8-sig")()
-    found = "utf-8-sig"
+    encoding = "utf-8-sig"
     with path.open("rb") as file:
         if file.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
             return "utf-16"
         file.seek(0)
-        while chunk := file.read(PIECE):
-            if b"\x00" in chunk:
-                remedy = "Rename the file to the extension of its format."
-                raise InputError(path.name, "binary data", "text", remedy)
+        chunk = None
+        while chunk != b"":
+            chunk = file.read(PIECE)
+            remedy = "Rename the file to the extension of its format."
+            require(b"\x00" not in chunk, path.name, "binary data", "text", remedy)
             try:
-                decoder.decode(chunk)
+                decoder.decode(chunk, final=not chunk)
             except UnicodeDecodeError:
                 decoder.reset()
-                found = "latin-1"
-        try:
-            decoder.decode(b"", final=True)
-        except UnicodeDecodeError:
-            found = "latin-1"
-    return found
+                encoding = "latin-1"
+    return encoding
 
 
 def _dialect(lines: Iterable[str], decimal: str | None, source: str) -> Dialect:
@@ -145,83 +148,154 @@ def _table(lines: Iterable[str], dialect: Dialect, source: str) -> tuple[list[st
     """Read lines above and among the numbers, and the numbers (rows, columns)."""
     header: list[str] = []
     marked: list[tuple[int, str, int]] = []  # headings that are numbers but for marks in them, and fields
-    found, columns, closed, said = array("d"), 0, True, 0
+    values, columns, closed, characters = array("d"), 0, True, 0
     blanks = array("q")  # how many rows stand above each empty line
     for number, text in enumerate(lines, 1):
         comment = text.lstrip().startswith(COMMENT)
         if not comment and dialect.is_blank(text, above=not columns):
-            blanks.append(len(found) // columns if columns else 0)
+            blanks.append(len(values) // columns if columns else 0)
             continue
         row = None if comment else dialect.numbers(text)
         if row is None:
             if columns and not comment:
-                raise _no_numbers(text, number, source)
+                raise _no_numbers(number, text, source)
             header.append(text)
             unmarked = dialect.numbers(text.replace("_", "")) if any(map(str.isdigit, text)) else None
             if unmarked and not comment:
                 marked.append((number, text, len(unmarked)))
-            said += len(text)
-            if said > MAX_HEADER:
-                received = f"more than {amount(MAX_HEADER)} of text that is no number"
-                raise InputError(source, received, "heights as text", _CHECK)
+            characters += len(text)
+            received = f"more than {amount(MAX_HEADER)} of text that is no number"
+            require(characters <= MAX_HEADER, source, received, "heights as text", _CHECK)
             continue
         if not columns:
             columns = len(row)
             for line_number, heading, fields in marked:
                 if fields == columns:
-                    raise _no_numbers(heading, line_number, source)
+                    raise _no_numbers(line_number, heading, source)
         if len(row) != columns:
-            received = f"{len(row)} values in row {len(found) // columns + 1}"
+            received = f"{len(row)} values in row {len(values) // columns + 1}"
             allowed = f"{columns}, as in the first row"
             raise InputError(source, received, allowed, "Mark missing heights with NaN.")
         closed = closed and dialect.is_closed(text)
-        found.extend(row)
-        if len(found) > MAX_POINTS:
-            check_claim(source, (len(found) // columns, columns), 1, len(found))
-    if not columns:
-        raise InputError(source, "no line of numbers", "heights as text", _CHECK)
-    table = np.frombuffer(found).reshape(-1, columns)
+        values.extend(row)
+        if len(values) > guards.MAX_POINTS:
+            guards.check_claim(source, (len(values) // columns, columns), 1, len(values))
+    require(columns, source, "no line of numbers", "heights as text", _CHECK)
+    table = np.frombuffer(values).reshape(-1, columns)
     if closed and columns > 1:  # every line ends with a delimiter
         table = table[:, :-1]
-    if table.shape[1] == 1:  # an empty line between single heights is a missing height
-        gaps = np.bincount(np.array(blanks, dtype=np.int64), minlength=len(table))[: len(table)]
-        gaps[0] = 0
-        spread = np.full((len(table) + int(gaps.sum()), 1), np.nan)
-        spread[np.arange(len(table)) + np.cumsum(gaps)] = table
-        table = spread
-    return header, table
+    return header, table if table.shape[1] > 1 else _with_gaps(table, blanks)
 
 
-def _no_numbers(text: str, number: int, source: str) -> InputError:
-    received = f"{text.strip()[:60]!r} in line {number}"
-    return InputError(
-        source, received, "numbers, NaN, BAD, NA, *** or nothing", "Correct or remove the line."
-    )
+def _with_gaps(table: Array, blanks: array[int]) -> Array:
+    """Single heights (rows, 1), with a missing one for each empty line between them."""
+    gaps = np.bincount(np.array(blanks, dtype=np.int64), minlength=len(table))[: len(table)]
+    gaps[0] = 0
+    spread = np.full((len(table) + int(gaps.sum()), 1), np.nan)
+    spread[np.arange(len(table)) + np.cumsum(gaps)] = table
+    return spread
 
 
-def _surfaces(table: Array, header: Header, hints: Hints, source: str) -> list[Surface]:
+def _no_numbers(number: int, text: str, source: str) -> InputError:
+    received, allowed = f"{text.strip()[:60]!r} in line {number}", "numbers, NaN, BAD, NA, *** or nothing"
+    return InputError(source, received, allowed, "Correct or remove the line.")
+
+
+def _surfaces(table: Array, header: Header, hints: Hints, source: str) -> list[guards.Surface]:
     unit = hints.heights_in(source, header.height_unit)
-    stated = hints.spacing or header.spacing
+    spacing = hints.spacing or header.spacing
     columns = table.shape[1]
     if columns == 2:
         heights, step = line(table[:, 0], table[:, 1], source)
-        dx = stated[0] if stated else step * _lateral(header.x_unit, hints, source)
+        dx = spacing[0] if spacing else step * _lateral(header.x_unit, hints, source)
         return [Profile(heights * unit, dx, source)]
     if columns == 3:
         heights, steps = rasterised(table[:, 0], table[:, 1], table[:, 2], source)
-        if stated is None:
+        if spacing is None:
             x, y = _lateral(header.x_unit, hints, source), _lateral(header.y_unit, hints, source)
-            stated = steps[0] * x, steps[1] * y
-        return surfaces_of(heights * unit, stated, source)
+            spacing = steps[0] * x, steps[1] * y
+        return guards.surfaces_of(heights * unit, spacing, source)
     table *= unit
-    return surfaces_of(table, hints.spacing_in(source, stated), source)
+    return guards.surfaces_of(table, hints.spacing_in(source, spacing), source)
 
 
 def _lateral(stated: float | None, hints: Hints, source: str) -> float:
     unit = hints.lateral_factor or stated
-    if unit is None:
-        allowed = "a unit of the coordinates"
-        heading = 'Write it into the heading, as "x (mm)"'
-        remedy = advice("pixel_unit", "mm", f"{heading}, or give", f"{heading}.")
-        raise InputError(source, "coordinates without a unit", allowed, remedy)
-    return unit
+    heading = 'Write it into the heading, as "x (mm)"'
+    remedy = advice("pixel_unit", "mm", f"{heading}, or give", f"{heading}.")
+    require(unit, source, "coordinates without a unit", "a unit of the coordinates", remedy)
+    return float(unit or 0.0)
+
+
+@dataclass(frozen=True)
+class Header:
+    """What the header lines of a text file state, in m; None where they are silent."""
+
+    height_unit: float | None = None  # length in m of one unit of the column
+    x_unit: float | None = None  # likewise
+    y_unit: float | None = None  # likewise
+    spacing: tuple[float, float] | None = None  # (dx, dy), m
+
+
+def parsed_header(lines: list[str], delimiter: str | None, columns: int) -> Header:
+    """Find units and pixel sizes in the lines above the numbers.
+
+    Understood are column titles with units (``x [mm]; z (µm)``, ``Height (nm)``), lines such as ``# unit:
+    um``, ``height unit = nm``, ``lateral unit: mm`` (a bare ``unit`` is that of the heights), and ``# pixel:
+    1.5 um``, ``dx = 1 mm``. The delimiter of the columns is None for white space.
+    """
+    cleaned = [each.strip().lstrip("#%/!").strip() for each in lines]
+    titles = _column_units(cleaned, delimiter, columns)
+    lateral = height = None
+    pixels: dict[str, float] = {}
+    for text in (" ".join(each.split()) for each in cleaned):
+        if match := _UNIT_LINE.match(text):
+            if _is_lateral(match[1]):
+                lateral = _length(match[2])
+            else:
+                height = _length(match[2])
+        if match := _PIXEL_LINE.fullmatch(text):
+            pixels[match[1].lower()] = quantity(f"{match[2].replace(',', '.')} {match[3]}", "m")
+    both = [size for name, size in pixels.items() if name not in ("dx", "dy")]
+    dx = pixels.get("dx", both[0] if both else pixels.get("dy"))
+    return Header(
+        height_unit=titles.get("z", height),
+        x_unit=titles.get("x", lateral),
+        y_unit=titles.get("y", titles.get("x", lateral)),
+        spacing=None if dx is None else (dx, pixels.get("dy", dx)),
+    )
+
+
+def _column_units(lines: list[str], delimiter: str | None, columns: int) -> dict[str, float]:
+    """Units of the column titles: of x, y, z for two or three columns, else of the heights alone."""
+    axes = {2: "xz", 3: "xyz"}.get(columns)
+    for text in reversed(lines):
+        units = _brackets(text)
+        if axes is None:
+            if len(units) == 1 and not _is_lateral(text):
+                return {"z": _length(units[0])}
+            continue
+        titles = text.split(delimiter) if delimiter else []
+        if len(titles) != columns and len(units) == columns:
+            return {axis: _length(unit) for axis, unit in zip(axes, units, strict=True)}
+        if units and len(titles) == columns:
+            each = [_brackets(title) for title in titles]
+            return {axis: _length(unit[-1]) for axis, unit in zip(axes, each, strict=True) if unit}
+    return {}
+
+
+def _brackets(text: str) -> list[str]:
+    return _BRACKET.findall(" ".join(text.split()))
+
+
+def _is_lateral(words: str) -> bool:
+    return not _LATERAL_WORDS.isdisjoint(re.findall(r"[a-z]+", words.lower()))
+
+
+def _length(unit: str) -> float:
+    try:
+        return factor(unit, "m")
+    except InputError as error:
+        correct = "Correct the header"
+        remedy = advice("height_unit", "um", f"{correct}, or leave the bracket out and give", f"{correct}.")
+        raise InputError("unit in the header", repr(unit), "a unit of length", remedy) from error

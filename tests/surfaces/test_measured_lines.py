@@ -6,8 +6,8 @@ from asperity.errors import CoarseSamplingWarning, InputError, MissingPointsWarn
 from asperity.reference import cnossos
 from asperity.spectra import energy_sum
 from asperity.surfaces.bands import band_levels_of, check_levels
-from asperity.surfaces.en15610 import process, remove_spikes, roll_over, trim
 from asperity.surfaces.heightmap import Profile
+from asperity.surfaces.measured_lines import process, remove_spikes, roll_over, trim
 from like_measured import either, wheel_lines
 
 MM, UM = 1e-3, 1e-6

@@ -1,0 +1,334 @@
+"""Measured roughness lines: EN 15610:2009, third octaves, and lines side by side as a strip.
+
+Later editions of the standard have not been compared.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike, NDArray
+from scipy import fft
+
+from asperity.arguments import Array, require
+from asperity.errors import CoarseSamplingWarning, PhysicsWarning, ShortRecordWarning
+from asperity.reference.cnossos import rail_roughness
+from asperity.surfaces.bands import LIKELY_WAVELENGTHS, band_levels_of, likely_band
+from asperity.surfaces.cleaning import nearly_complete
+from asperity.surfaces.heightmap import HeightMap, Profile
+
+ROLLED_RADIUS = 0.375
+"""Radius of the circle that is rolled over a line, m."""
+SPIKE_CURVATURE = -10.0
+"""Second derivative below which a point may be a spike, 1/m (-10^7 µm/m²)."""
+SPIKE_SCALE = 3.0
+"""A spike is higher than its width squared over this, m; 8 · 0.375 m: the circle does not fit it."""
+COARSEST_SPACING = 1e-3
+"""m."""
+FEWEST_BANDS = 6
+"""Of the limit, that a line resolves: others are no rail's or wheel's."""
+FULL_LINE = 0.95
+"""Share of the longest line from which a line counts as a full turn."""
+NEAR = 0.01
+"""Share of a turn by which the starts of neighbouring lines differ, unless others fit `CLEARLY` better."""
+CLEARLY = 0.2
+"""Gain in correlation that speaks for a start farther away."""
+
+
+@dataclass(frozen=True)
+class Processing:
+    """Every switch of `process`, and what it did."""
+
+    trimmed: tuple[int, int] = (0, 0)  # missing points cut off at the start and at the end
+    fill: bool = False  # whether gaps were to be filled
+    filled: int = 0  # points that were
+    spikes: bool = False  # whether spikes were to be removed
+    spikes_removed: int = 0
+    spike_points: int = 0  # points changed by it
+    curvature: bool = False  # whether a circle was rolled over the line
+    radius: float = ROLLED_RADIUS  # of that circle, m
+    lifted: float = 0.0  # share of the points that the circle did not touch, 0 to 1
+    largest_lift: float = 0.0  # largest height of the circle above a point, m
+
+    def __str__(self) -> str:
+        """Return what was done, in one sentence."""
+        rolled = f"rolled over with a circle of {self.radius:g} m: {self.lifted:.1%} of the points lifted"
+        rolled += f", by up to {self.largest_lift * 1e6:.3g} µm"
+        removed = f"{self.spikes_removed} spikes ({self.spike_points} points) removed"
+        parts = [
+            f"{sum(self.trimmed)} missing points trimmed at the ends",
+            f"{self.filled} points filled" if self.fill else "gaps not filled",
+            removed if self.spikes else "spikes kept",
+            rolled if self.curvature else "not rolled over",
+        ]
+        return "EN 15610:2009: " + "; ".join(parts)
+
+
+def process(
+    profile: Profile,
+    *,
+    fill_gaps: bool = False,
+    spikes: bool = True,
+    curvature: bool = True,
+    radius: float = ROLLED_RADIUS,
+) -> tuple[Profile, Processing]:
+    """Process a measured line, m: trim, fill, remove spikes, roll a circle over it; and tell what each did.
+
+    Missing points at the ends are cut off, those inside filled by straight lines or refused. Warned of are a
+    spacing beyond 1 mm and more than 5 % filled points. Pits narrower than the patch that the circle bridges
+    are no longer in the line: a contact filter or a contact geometry applied after it counts that effect
+    twice in part. Leave `curvature` out for laws that solve the contact on the heights themselves.
+    """
+    if profile.spacing > COARSEST_SPACING * (1.0 + 1e-6):
+        message = (
+            f"spacing {profile.spacing * 1e3:.3g} mm, more than the 1 mm of EN 15610: spikes and short waves "
+            "are not resolved; measure more finely or leave the processing out"
+        )
+        warnings.warn(message, CoarseSamplingWarning, stacklevel=2)
+    line, trimmed = trim(profile)
+    missing = int(np.isnan(line.heights).sum())
+    received = f"{missing} missing points inside {line.source or 'the line'}"
+    remedy = "Fill them, or cut a piece without."
+    require(fill_gaps or not missing, "measured line", received, "a line without gaps", remedy)
+    line = line.filled()
+    removed = changed = 0
+    if spikes:
+        line, removed, changed = remove_spikes(line)
+    lift = np.zeros(1)
+    if curvature:
+        rolled = roll_over(line, radius)
+        lift, line = rolled.heights - line.heights, rolled
+    lifted, largest = float(np.mean(lift > 1e-12)), float(lift.max())
+    done = Processing(
+        trimmed, fill_gaps, missing, spikes, removed, changed, curvature, radius, lifted, largest
+    )
+    return line, done
+
+
+def trim(profile: Profile) -> tuple[Profile, tuple[int, int]]:
+    """Cut missing points off both ends; and tell how many there."""
+    valid = np.flatnonzero(np.isfinite(profile.heights))
+    first, last = int(valid[0]), int(valid[-1]) + 1
+    cut = (first, len(profile.heights) - last)
+    return (profile if cut == (0, 0) else replace(profile, heights=profile.heights[first:last])), cut
+
+
+def remove_spikes(profile: Profile) -> tuple[Profile, int, int]:
+    """Remove narrow upward spikes, as dust and grains leave them; and tell how many, and of how many points.
+
+    A spike holds a point with a second derivative below -10⁷ µm/m², ends at the nearest feet on either side
+    (where a positive second derivative is largest) and is higher above the straight line between its feet
+    than w²/3 m, w their distance. It is replaced by that line. One pass; the ends of the record count as
+    feet. EN 15610:2009 (spike removal): curvature and height are the standard's; the feet are our reading of
+    where a spike ends.
+    """
+    heights = np.array(_complete(profile))
+    bend = np.diff(heights, 2)
+    foot = (bend > 0.0) & (bend >= np.append(0.0, bend[:-1])) & (bend >= np.append(bend[1:], 0.0))
+    feet = np.concatenate([[0], np.flatnonzero(foot) + 1, [len(heights) - 1]])
+    sharp = np.flatnonzero(bend < SPIKE_CURVATURE * profile.spacing**2) + 1
+    spikes = points = 0
+    for k in np.unique(np.searchsorted(feet, sharp)):
+        first, last = int(feet[k - 1]), int(feet[k])
+        width = (last - first) * profile.spacing
+        chord = np.linspace(heights[first], heights[last], last - first + 1)
+        if np.max(heights[first : last + 1] - chord) > width**2 / SPIKE_SCALE:
+            heights[first : last + 1] = chord
+            spikes, points = spikes + 1, points + last - first - 1
+    return replace(profile, heights=heights), spikes, points
+
+
+def roll_over(profile: Profile, radius: float = ROLLED_RADIUS) -> Profile:
+    """Path of a circle's lowest point as it rolls over a complete line, m, nowhere below it.
+
+    max over s of z(s) - R + √(R² - (s - x)²) at the points s of the line; at the ends only the line itself
+    carries. EN 15610:2009 (curvature processing). Contact is found at points of the line: the height between
+    them is off by at most spacing²/8R, 0.3 µm at 1 mm.
+    """
+    heights = _complete(profile)
+    require(0.0 < radius < math.inf, "radius of the circle", radius, "a finite positive length, m")
+    depth = min(float(np.ptp(heights)), radius)
+    reach = min(math.ceil(math.sqrt(depth * (2.0 * radius - depth)) / profile.spacing), len(heights) - 1)
+    across = np.minimum(np.arange(-reach, reach + 1) * profile.spacing, radius)
+    circle = np.sqrt(np.maximum(radius**2 - across**2, 0.0)) - radius
+    rolled = scipy.ndimage.grey_dilation(heights, structure=circle, mode="constant", cval=-np.inf)
+    return replace(profile, heights=rolled)
+
+
+def _complete(profile: Profile) -> Array:
+    received, remedy = f"{profile.missing_share:.2%} missing points", "Trim and fill it first."
+    require(profile.missing_share == 0.0, "measured line", received, "complete heights", remedy)
+    return profile.heights
+
+
+@dataclass(frozen=True, eq=False)
+class ThirdOctaves:
+    """One-third-octave levels of lines, mean power of all, dB re 1 µm, at wavelengths (b,), m, that fall."""
+
+    wavelength: Array
+    measured: Array  # levelled, gaps filled
+    processed: Array  # after EN 15610: without spikes, rolled over with a circle
+    limit: Array  # EN ISO 3095:2013; NaN where it gives none
+
+    @property
+    def limited(self) -> NDArray[np.bool_]:
+        """Bands for which there is a limit."""
+        return np.isfinite(self.limit)
+
+
+def full_lines(lines: Sequence[Profile]) -> list[Profile]:
+    """Lines that a spectrum can be taken of, cut to one length: those of a full length, nearly complete."""
+    cut = [trim(line)[0] for line in lines]
+    longest = max(len(line.heights) for line in cut)
+    whole = [nearly_complete(line) for line in cut if len(line.heights) >= FULL_LINE * longest]
+    complete = [line for line in whole if line is not None]
+    return [Profile(each, complete[0].spacing) for each in common_length(complete)] if complete else []
+
+
+def third_octaves(lines: Sequence[Profile]) -> ThirdOctaves | None:
+    """Levels of lines measured side by side, or of one, m, and the limit of EN ISO 3095:2013.
+
+    A Hann window lies over each whole line, so that its ends count less. None of lines that resolve fewer
+    than six bands of the limit, 400 mm to 3.15 mm. Whether lines have been processed after EN 15610 already
+    their file does not say: of those the levels as measured count.
+    """
+    full = full_lines(lines)
+    if not full or 4.0 * full[0].spacing > LIKELY_WAVELENGTHS[1] or full[0].size < LIKELY_WAVELENGTHS[0]:
+        return None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", PhysicsWarning)  # of a spacing beyond 1 mm
+        processed = [process(line)[0] for line in full]
+    (wavelength, before), (_, after) = map(_levels, (full, processed))
+    nominal, limits = rail_roughness("iso3095")
+    limit = np.full(wavelength.shape, np.nan)
+    for at, level in zip(nominal[likely_band(nominal)], limits[likely_band(nominal)], strict=True):
+        limit[np.abs(np.log10(wavelength / at)) < 0.03] = level
+    few = np.isfinite(limit).sum() < FEWEST_BANDS
+    return None if few else ThirdOctaves(wavelength, before, after, limit)
+
+
+def _levels(lines: list[Profile]) -> tuple[Array, Array]:
+    """Wavelengths, m, and levels, dB re 1 µm, of levelled lines, mean over their powers."""
+    levelled, spacing = [line.levelled().heights for line in lines], lines[0].spacing
+    if len(lines) == 1:
+        return band_levels_of(Profile(levelled[0], spacing))
+    return band_levels_of(HeightMap(np.array(levelled).T, (spacing, spacing)))
+
+
+def lines_of(surface: HeightMap) -> tuple[Profile, ...]:
+    """Take an array as lines side by side, which lie along its longer side."""
+    along = int(np.argmax(surface.shape))
+    heights = surface.heights if along == 1 else surface.heights.T
+    return tuple(
+        Profile(line, surface.spacing[along], f"{surface.source}, line {i}".lstrip(", "))
+        for i, line in enumerate(heights, 1)
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Register:
+    """Parallel lines in register, and what brought them there."""
+
+    lines: Array  # (k, n), heights, m, cut to the shortest full line
+    reversed: tuple[bool, ...]  # whether each line was turned round
+    shifts: tuple[int, ...]  # points by which each line was moved on, around its length
+    correlations: tuple[float, ...]  # coefficient of each line with the one before it; 1 for the first
+    # lines too short for a full turn, replaced by their neighbours, linearly in between
+    replaced: tuple[int, ...]
+
+
+def bring_into_register(profiles: Sequence[Profile]) -> Register:
+    """Turn and shift the complete, parallel lines of a wheel so that neighbours agree.
+
+    Lines are often measured to and fro, each starting anew. Every line but the first is tried in both
+    directions, and at all shifts around the wheel, against the line before it; the highest correlation wins.
+    Starts within 1 % of a turn are preferred, since long waves also agree elsewhere: one farther away must
+    raise the correlation by 0.2. A line shorter than 95 % of the longest is warned of.
+    """
+    count, longest = len(profiles), max((len(p.heights) for p in profiles), default=0)
+    full = [k for k, p in enumerate(profiles) if len(p.heights) >= FULL_LINE * longest]
+    lines = common_length([profiles[k] for k in full])
+    turned, shifts = [False] * count, [0] * count
+    aligned = [lines[0]]
+    for k, line in zip(full[1:], lines[1:], strict=True):
+        turned[k], shifts[k] = _best_match(aligned[-1], line)
+        aligned.append(np.roll(line[::-1] if turned[k] else line, shifts[k]))
+    replaced = tuple(k for k in range(count) if k not in full)
+    if replaced:
+        message = (
+            f"{len(replaced)} of {count} parallel lines are shorter than {FULL_LINE:.0%} of the "
+            f"longest, {longest} points: their neighbours replace them; measure again or leave them out"
+        )
+        warnings.warn(message, ShortRecordWarning, stacklevel=2)
+    result = np.repeat(aligned, count, axis=0)
+    if len(aligned) > 1:
+        between = scipy.interpolate.make_interp_spline(full, np.array(aligned), k=1)
+        result = between(np.clip(np.arange(count), full[0], full[-1]))
+    correlations = (1.0, *(_correlation(one, other) for one, other in pairwise(result)))
+    return Register(result, tuple(turned), tuple(shifts), correlations, replaced)
+
+
+def _best_match(reference: Array, line: Array) -> tuple[bool, int]:
+    """Whether to turn a periodic line round, and how far to move it on, to follow a reference."""
+    n = len(line)
+    wanted = fft.rfft(reference - reference.mean())
+    distance = np.minimum(np.arange(n), n - np.arange(n))
+    scale = n * float(reference.std() * line.std())
+    handicap = np.where(distance <= NEAR * n, 0.0, CLEARLY * scale)
+    matches = []
+    for backwards in (False, True):
+        tried = line[::-1] if backwards else line
+        agreement = fft.irfft(wanted * np.conj(fft.rfft(tried - tried.mean())), n) - handicap
+        shift = int(np.argmax(agreement))
+        matches.append((float(agreement[shift]), backwards, shift))
+    return max(matches)[1:]
+
+
+def _correlation(one: Array, other: Array) -> float:
+    scale = float(one.std() * other.std())
+    return float(np.mean((one - one.mean()) * (other - other.mean()))) / scale if scale else 0.0
+
+
+def common_length(profiles: Sequence[Profile]) -> Array:
+    """Complete parallel lines with one spacing, cut to the length of the shortest: heights (k, n), m."""
+    require(profiles, "parallel lines", "none", "one or more lines")
+    for profile in profiles:
+        received = f"{profile.missing_share:.2%} missing points in {profile.source or 'a line'}"
+        complete, remedy = profile.missing_share == 0.0, "Trim and fill them first."
+        require(complete, "parallel lines", received, "complete lines", remedy)
+        received = f"spacings {profiles[0].spacing} and {profile.spacing} m"
+        same = np.isclose(profile.spacing, profiles[0].spacing, rtol=1e-6, atol=0.0)
+        require(same, "parallel lines", received, "one spacing for all", "Use resample first.")
+    n = min(len(p.heights) for p in profiles)
+    return np.array([p.heights[:n] for p in profiles])
+
+
+def strip_from_lines(
+    lines: ArrayLike, spacing: float, distance_across: float, shape_y: int, spacing_y: float
+) -> Array:
+    """Strip (n, shape_y) through complete parallel lines (k, n), heights and distances in m.
+
+    The points across are centred on the lines. Across, one line is constant, two and three are joined by
+    straight lines, four and more by a cubic spline; beyond the outer lines their heights hold. Between lines
+    that have little in common the interpolated texture is smoother than a measured one: its mean square falls
+    to about half, midway between uncorrelated lines.
+    """
+    heights = np.asarray(lines, dtype=np.float64)
+    complete = heights.ndim == 2 and heights.size > 0 and np.isfinite(heights).all()
+    require(complete, "parallel lines", f"shape {heights.shape}", "complete heights (k, n)")
+    received = f"{spacing}, {distance_across}, {spacing_y} m and {shape_y} points"
+    positive = min(spacing, distance_across, spacing_y) > 0.0 and shape_y >= 1
+    require(positive, "spacings of the lines", received, "positive lengths and one point or more")
+    count = len(heights)
+    if count == 1:
+        return np.repeat(heights.T, shape_y, axis=1)
+    at = (np.arange(count) - 0.5 * (count - 1)) * distance_across
+    wanted = np.clip((np.arange(shape_y) - 0.5 * (shape_y - 1)) * spacing_y, at[0], at[-1])
+    spline = scipy.interpolate.make_interp_spline(at, heights, k=1 if count < 4 else 3)
+    return np.ascontiguousarray(spline(wanted).T)
