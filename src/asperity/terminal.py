@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import codecs
 import errno
 import json
 import math
 import os
 import shutil
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+import unicodedata
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from contextvars import ContextVar
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, TextIO
 
 from asperity.errors import ComputationError
@@ -30,28 +32,29 @@ class Manner:
     document: bool = False  # standard output is one JSON document, and holds nothing else
 
 
-_USUAL = Manner()
-_manner: ContextVar[Manner] = ContextVar("manner", default=_USUAL)
+_manner = Manner()
 
 
 def manner() -> Manner:
     """How much is said at present."""
-    return _manner.get()
+    return _manner
+
+
+def change_manner(**changes: bool) -> None:
+    """Change what is said from here on."""
+    global _manner
+    _manner = replace(_manner, **changes)
 
 
 @contextmanager
 def speaking(wanted: Manner) -> Iterator[None]:
     """Speak in a manner while the body of the ``with`` statement runs, until `change_manner` changes it."""
-    token = _manner.set(wanted)
+    global _manner
+    before, _manner = _manner, wanted
     try:
         yield
     finally:
-        _manner.reset(token)
-
-
-def change_manner(**changes: bool) -> None:
-    """Change what is said from here on."""
-    _manner.set(replace(manner(), **changes))
+        _manner = before
 
 
 def say(text: str, *, err: bool = False, lines: bool = False) -> None:
@@ -103,6 +106,12 @@ def write(stream: TextIO | None, text: str, *, lines: bool = False) -> None:
         stream.flush()
 
 
+def say_files(files: Mapping[str, Path]) -> None:
+    """Say what was written, by what it is, and where."""
+    for what, path in files.items():
+        say(f"{what.capitalize() + ':':9}{path.resolve()}")
+
+
 def line_width(otherwise: int) -> int:
     """Characters of a line of the terminal; `otherwise` where standard output is none."""
     return shutil.get_terminal_size().columns if sys.stdout.isatty() else otherwise
@@ -140,12 +149,12 @@ def say_table(
 
 
 @contextmanager
-def standard_streams(errors: str) -> Iterator[None]:
+def standard_streams() -> Iterator[None]:
     """Make standard output and error fit to be written to, whoever reads them, while a command runs.
 
-    `errors` handles characters that an encoding lacks. Where a stream is closed, no file that is opened later
-    may take its number: what libraries print would go into that file. Where a reader has ended, as ``head``
-    does, the command goes on unheard.
+    Where a stream is closed, no file that is opened later may take its number: what libraries print would go
+    into that file. Where a reader has ended, as ``head`` does, the command goes on unheard. Characters that
+    an encoding lacks are written in ASCII.
     """
     _open_closed()
     before = sys.stdout, sys.stderr
@@ -153,7 +162,7 @@ def standard_streams(errors: str) -> Iterator[None]:
         for name in ("stdout", "stderr"):
             stream: Any = getattr(sys, name)
             if hasattr(stream, "reconfigure"):
-                stream.reconfigure(errors=errors)
+                stream.reconfigure(errors=_IN_ASCII)
             setattr(sys, name, _Patient(stream, name))
         yield
     finally:
@@ -161,6 +170,31 @@ def standard_streams(errors: str) -> Iterator[None]:
             with suppress(ComputationError, ValueError):  # ValueError: closed by the command itself
                 stream.flush()
         sys.stdout, sys.stderr = before
+
+
+_IN_ASCII = "asperity-ascii"
+"""Name of the handler of characters that an encoding lacks."""
+_ALIKE = {
+    "−": "-", "–": "-", "—": "-", "×": "x", "·": "*", "±": "+/-", "∓": "-/+", "≤": "<=", "≥": ">=",
+    "→": "->", "←": "<-", "°": "deg", "√": "sqrt", "∝": "~", "“": '"', "”": '"', "„": '"', "’": "'",
+    "α": "alpha", "β": "beta", "δ": "delta", "Δ": "Delta", "ζ": "zeta", "η": "eta", "λ": "lambda",
+    "μ": "u", "ν": "nu", "π": "pi", "σ": "sigma", "Σ": "Sigma", "τ": "tau", "ω": "omega", "Ω": "Ohm",
+}  # fmt: skip
+
+
+def _in_ascii(error: UnicodeError) -> tuple[str, int]:
+    """Characters in ASCII: ``-`` for a minus sign, ``u`` for micro; ``?`` for what has no likeness."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(map(_alike, error.object[error.start : error.end])), error.end
+
+
+def _alike(character: str) -> str:
+    parts = [_ALIKE.get(part, part) for part in unicodedata.normalize("NFKD", character)]
+    return _ALIKE.get(character) or "".join(filter(str.isascii, parts)) or "?"
+
+
+codecs.register_error(_IN_ASCII, _in_ascii)
 
 
 def _open_closed() -> None:
@@ -192,31 +226,24 @@ class _Patient:
 
     def write(self, text: str) -> int:
         """Write text."""
-        try:
-            return self._stream.write(text)
-        except OSError as error:
-            self._give_up(error)
-            return len(text)
-
-    def writelines(self, lines: Iterable[str]) -> None:
-        """Write several texts."""
-        self.write("".join(lines))
+        self._trying(self._stream.write, text)
+        return len(text)
 
     def flush(self) -> None:
         """Hand over what is written."""
-        try:
-            self._stream.flush()
-        except OSError as error:
-            self._give_up(error)
+        self._trying(self._stream.flush)
 
-    def _give_up(self, error: OSError) -> None:
+    def _trying(self, work: Callable[..., object], *words: str) -> None:
         """Send what is still to come nowhere; what stands on a full disk is told, unless nobody hears it."""
-        null = os.open(os.devnull, os.O_WRONLY)
-        with suppress(OSError, ValueError):  # ValueError: a stream without a number
-            os.dup2(null, self._stream.fileno())
-        os.close(null)
-        if self._name == "stdout" and error.errno not in _NOBODY_LISTENS:
-            raise ComputationError(
-                f"standard output could not be written ({error.strerror or error})",
-                "another place for it, or free space on its disk",
-            ) from error
+        try:
+            work(*words)
+        except OSError as error:
+            null = os.open(os.devnull, os.O_WRONLY)
+            with suppress(OSError, ValueError):  # ValueError: a stream without a number
+                os.dup2(null, self._stream.fileno())
+            os.close(null)
+            if self._name == "stdout" and error.errno not in _NOBODY_LISTENS:
+                raise ComputationError(
+                    f"standard output could not be written ({error.strerror or error})",
+                    "another place for it, or free space on its disk",
+                ) from error

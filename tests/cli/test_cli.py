@@ -19,7 +19,7 @@ from click.testing import CliRunner
 
 import asperity
 from asperity.cli import main
-from asperity.cli.running import earlier_run, name_of_run
+from asperity.cli.running import earlier_result, name_of_run
 from asperity.kinds.cases import load_case, parse_case
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
 from asperity.results import read_result
@@ -249,17 +249,17 @@ INCOMPLETE = {
 
 @pytest.mark.parametrize("what", INCOMPLETE)
 def test_a_run_that_is_not_whole_is_none(out, what):
-    name = name_of_run(load_case("small.toml"))
-    assert earlier_run(name, out, out / "report.html", converge=False) is not None
+    case = load_case("small.toml")
+    assert earlier_result(case, out, report=True, converge=False) is not None
     INCOMPLETE[what](out)
-    assert earlier_run(name, out, out / "report.html", converge=False) is None
+    assert earlier_result(case, out, report=True, converge=False) is None
 
 
 def test_a_run_of_another_program_or_without_convergence_is_computed(out, monkeypatch):
     case = load_case("small.toml")
-    assert earlier_run(name_of_run(case), out, None, converge=True) is None
+    assert earlier_result(case, out, report=False, converge=True) is None
     monkeypatch.setattr("asperity.__version__", "9")
-    assert earlier_run(name_of_run(case), out, None, converge=False) is None
+    assert earlier_result(case, out, report=False, converge=False) is None
 
 
 def test_a_run_is_another_where_a_file_that_it_names_holds_something_else():
@@ -909,7 +909,7 @@ def test_each_array_and_map_has_a_picture_of_its_own(ensemble):
 def test_titles_of_pictures_name_array_and_map(ensemble, monkeypatch):
     titles = []
     monkeypatch.setattr(
-        "asperity.cli.inspecting._draw", lambda first, title, to, *drawn: titles.append(title) or to
+        "asperity.cli.surface.write_chart", lambda chart, title, to: titles.append(title) or to
     )
     call(*ensemble, "--array", "polished")
     call(*ensemble, "--array", "polished", "--index", "2")

@@ -252,7 +252,7 @@ def test_a_case_may_be_varied_without_a_file():
 def test_an_earlier_study_stays_whole_until_all_is_there_that_replaces_it(out, monkeypatch):
     before = {file.name: file.read_bytes() for file in out.iterdir()}
     full = Mock(side_effect=OSError(errno.ENOSPC, "No space left"))
-    monkeypatch.setattr("asperity.cli.studying.write_ensemble", full)
+    monkeypatch.setattr("asperity.cli.studying._page", full)
     told = call("study", "study.toml", "-o", "out", "--workers", "1", code=3).stderr
     assert "out could not be written: the disk is full" in told
     assert {file.name: file.read_bytes() for file in out.iterdir()} == before

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from asperity.cli import main
-from asperity.cli.documents import FORMAT
+from asperity.cli.program import FORMAT
 from asperity.results import read_result
 from asperity.terminal import json_ready
 

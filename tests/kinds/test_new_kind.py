@@ -50,7 +50,7 @@ def kind(tmp_path, monkeypatch):
 
 def command(*arguments):
     done = CliRunner().invoke(main, arguments, standalone_mode=False)
-    assert (done.exit_code, done.return_value, done.exception) == (0, None, None), done.output
+    assert (done.exit_code, done.exception) == (0, None), done.output
     return done.output
 
 

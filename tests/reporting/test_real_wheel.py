@@ -10,7 +10,7 @@ import pytest
 from report_reading import HOSTILE, Reader, read_csv
 from report_tree import laws_in
 
-from asperity.cli.studying import _show
+from asperity.cli.studying import print_table
 from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import chapters_of, figures_of, page_of
 from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
@@ -334,12 +334,12 @@ def study(tree):
 
 def test_a_study_shows_the_sound_of_rail_sleepers_and_wheel_and_the_pass_by(study, capsys):
     """In the terminal; what is missing throughout, as the sound of a rigid wheel, only if it is asked for."""
-    _show(study[0], USUAL, asked=False)
+    print_table(study[0], USUAL, asked=False)
     said = " ".join(capsys.readouterr().out.replace("┃", " ").replace("│", " ").split())
     for words in ("rail", "sleepers", "total", "pass by", "maximum level"):
         assert words in said
     assert "wheel" not in said
-    _show(study[0], ("radiated_power_level_a",), asked=True)
+    print_table(study[0], ("radiated_power_level_a",), asked=True)
     assert "wheel" in capsys.readouterr().out
 
 

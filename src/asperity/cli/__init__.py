@@ -2,276 +2,113 @@
 
 from __future__ import annotations
 
-import os
+import importlib.util
 from collections.abc import Callable
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
 import click
 
 from asperity import __version__
-from asperity.cli.door import Door
-from asperity.cli.options import (
-    PATH,
-    again,
-    complete_laws,
-    complete_sweep,
-    complete_templates,
-    converge,
-    device,
-    overwrite,
-    report,
-    run_folder,
-    templates,
-)
+from asperity.cli import options
+from asperity.cli.options import PATH, output
+from asperity.cli.program import Program
+from asperity.errors import InputError
 from asperity.kinds import KINDS
 from asperity.terminal import say
 
-_HELP = f"""Roll a body over a rough surface: 3-D contact, reduced to a point force, and its vibration.
-
-Kinds of case: {", ".join(KINDS)}.
-
-Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
-'asperity COMMAND --help' shows examples of each command.
-"""
-_EXAMPLES = (
-    ("asperity demo", "see what comes out: a page to open in a browser"),
-    (f"asperity new {next(iter(KINDS))} > case.toml", "a commented case; change what you know"),
-    ("asperity check case.toml", "valid? how long will it take? which law?"),
-    ("asperity run case.toml", "results, report and CSVs in runs/case"),
-)
-_SECTIONS = {
-    "Begin": ("demo", "new", "surface"),
-    "Compute": ("check", "run", "study", "optimise"),
-    "Look, listen and compare": ("serve", "report", "figures", "compare", "listen", "cite"),
-    "Around it": ("cache", "completion"),
-}
+Document = dict[str, Any]
+"""What a command says to programs."""
 
 
-@click.group(
-    cls=Door,
-    help=_HELP,
-    sections=_SECTIONS,
-    examples=_EXAMPLES,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+def templates() -> tuple[str, ...]:
+    """List what 'asperity new' can write."""
+    return (*KINDS, "study", "optimisation")
+
+
+@click.group(cls=Program, document=False, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="asperity")
 @click.option("--debug", is_flag=True, help="Show where in the program an error arose.")
 def main(debug: bool) -> None:
-    """Take the options that stand before a command."""
+    """Roll a body over a rough surface: 3-D contact, reduced to a point force, and its vibration.
+
+    Kinds of case: KINDS.
+
+    Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
+    'asperity COMMAND --help' shows examples of each command.
+
+    Examples
+    --------
+    # see what comes out: a page to open in a browser
+    asperity demo
+    # a commented case; change what you know
+    asperity new KIND > case.toml
+    # valid? how long will it take? which law?
+    asperity check case.toml
+    # results, report and CSVs in runs/case
+    asperity run case.toml
+    """
+
+
+# --- begin
 
 
 @main.command(
-    long_work=True,
-    short_help="Run a small example that needs no input.",
-    examples=[("asperity demo", "some seconds; open asperity-demo/report.html afterwards")],
+    section="Begin", document=False, long_work=True, short_help="Run a small example that needs no input."
 )
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    default=Path("asperity-demo"),
-    show_default=True,
-    type=PATH,
-    metavar="FOLDER",
-    help="Folder of the results.",
-)
-@again
-@overwrite
+@output("Folder of the results.", default=Path("asperity-demo"), show_default=True)
+@options.again
+@options.overwrite("the run of another case")
 def demo(directory: Path, again: bool, overwrite: bool) -> None:
     """Run a small example that needs no input, and say where its report lies.
 
     A steel ball rolls over a rough steel beam: texture, contact, force, vibration and six contact laws.
+
+    Examples
+    --------
+    # some seconds; open asperity-demo/report.html afterwards
+    asperity demo
     """
-    from asperity.cli.running import run_into, told_of_earlier
+    from asperity.cli.running import run_case
     from asperity.kinds.cases import demo_case
 
-    there = not again and os.path.lexists(directory / "run.nc")
-    if there and told_of_earlier(demo_case(), directory, report=True):
-        return
-    run_into(demo_case(), directory, overwrite=overwrite)
+    run_case(demo_case(), directory, again=again, overwrite=overwrite)
 
 
 @main.command(
-    short_help="Write a commented case, or a study, to begin with.",
-    examples=[
-        (f"asperity new {next(iter(KINDS))} > case.toml", "every key, with meaning, limits and default"),
-        (f"asperity new {list(KINDS)[-1]} --law areal --law linear > case.toml", "with laws of your choice"),
-        ("asperity new study > study.toml", "many cases: lists of values for some keys"),
-        ("asperity new optimisation > aim.toml", "the quietest texture of a case, within bounds"),
-    ],
+    section="Begin", document=False, short_help="Write a commented case, or a study, to begin with."
 )
-@click.argument("kind", metavar="|".join(templates()), shell_complete=complete_templates)
-@click.option(
-    "--law",
-    "laws",
-    multiple=True,
-    metavar="LAW",
-    shell_complete=complete_laws,
-    help="A law of the contact force, the first the main one. May be repeated.",
-)
+@click.argument("kind", metavar="|".join(templates()), shell_complete=options.completed(templates))
+@options.law_option("A law of the contact force, the first the main one. May be repeated.")
 def new(kind: str, laws: tuple[str, ...]) -> None:
     """Write a commented case, a study of one or its optimisation, to standard output.
 
     Every key stands in it with its meaning, what is allowed and its default; keys that need not be given
     stand behind a '#'.
+
+    Examples
+    --------
+    # every key, with meaning, limits and default
+    asperity new KIND > case.toml
+    # with laws of your choice
+    asperity new bodies --law areal --law linear > case.toml
+    # many cases: lists of values for some keys
+    asperity new study > study.toml
+    # the quietest texture of a case, within bounds
+    asperity new optimisation > aim.toml
     """
     from asperity.kinds.cases import not_a_kind, template
+    from asperity.optimising.definition import assignment_template
+    from asperity.studies.definition import TEMPLATE
 
     if kind not in templates():
         raise not_a_kind(kind, templates())
-    if kind == "optimisation":
-        from asperity.optimising.definition import assignment_template
-
-        say(assignment_template(), lines=True)
-    elif kind == "study":
-        from asperity.studies.definition import TEMPLATE
-
-        say(TEMPLATE, lines=True)
-    else:
-        say(template(kind, laws), lines=True)
+    others = {"study": lambda: TEMPLATE, "optimisation": assignment_template}
+    say(others[kind]() if kind in others else template(kind, laws), lines=True)
 
 
-@main.command(
-    document=True,
-    long_work=True,
-    short_help="Is a case valid, what will it compute, and how long?",
-    examples=[
-        ("asperity check case.toml", "values (those that differ from the default in bold), work, time"),
-        ("asperity check case.toml --converge", "and the time of computing it with finer settings"),
-        ("asperity check case.toml --json | jq .work.seconds", "the expected seconds, for a script"),
-    ],
-)
-@click.argument("case", type=PATH)
-@run_folder()
-@converge
-@device
-@overwrite
-def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -> dict[str, Any]:
-    """Check a CASE: show its values, what will be computed, and how long that takes.
-
-    Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
-    which law to take and how far the others are off.
-    """
-    from asperity.cli.planning import show_plan
-    from asperity.cli.running import refuse_folder
-    from asperity.kinds.cases import load_case
-
-    loaded = load_case(case)
-    refuse_folder(loaded, directory or Path("runs") / case.stem, overwrite=overwrite)
-    return show_plan(loaded, str(case), converge=converge)
-
-
-@main.command(
-    document=True,
-    long_work=True,
-    short_help="Compute a case: results, report and CSVs.",
-    examples=[
-        ("asperity run case.toml", "into runs/case; the same command again goes on after an interruption"),
-        ("asperity run case.toml -o runs/stiff --converge", "and how far grid, window, time step … matter"),
-        ("asperity run case.toml --json | jq .verdict", "what it found, for a script"),
-    ],
-)
-@click.argument("case", type=PATH)
-@run_folder()
-@report
-@converge
-@device
-@again
-@overwrite
-def run(
-    case: Path, directory: Path | None, report: bool, converge: bool, again: bool, overwrite: bool
-) -> dict[str, Any]:
-    """Compute a CASE: writes run.nc, report.html and the CSV of every figure.
-
-    Finished pieces of work are kept: a run that was interrupted goes on where it was. One that is finished
-    says so, as long as case, files and program are the same.
-    """
-    from asperity.cli.running import run_into, told_of_earlier
-    from asperity.kinds.cases import load_case
-
-    target = directory or Path("runs") / case.stem
-    words: dict[str, Any] = {"report": report, "source": str(case), "converge": converge}
-    there = not again and os.path.lexists(target / "run.nc")
-    if there and (found := told_of_earlier(load_case(case), target, **words)):
-        return found
-    return run_into(load_case(case), target, overwrite=overwrite, **words)
-
-
-@main.command(
-    document=True,
-    long_work=True,
-    short_help="Compute a case for every combination of values of some keys.",
-    examples=[
-        ('asperity study case.toml --vary "speed = 20 m/s, 200 km/h"', "two speeds, one table"),
-        (
-            'asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "speed = 20 m/s, 56 m/s"',
-            "mean and scatter over four textures, at two speeds",
-        ),
-        (
-            'asperity study case.toml --vary "speed = 80..300 km/h, 6 steps"',
-            "six speeds, both ends among them",
-        ),
-        (
-            'asperity study case.toml --vary "contact.spacing = 5..20 um, 3 ratios" --show working_stiffness',
-            "equal ratios; one quantity as a column and a figure",
-        ),
-        ("asperity study study.toml -o runs/grid --workers 4", "a study file, on four processes"),
-    ],
-)
-@click.argument("study", type=PATH)
-@click.option(
-    "--vary",
-    multiple=True,
-    metavar="KEY=VALUES",
-    shell_complete=complete_sweep,
-    help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
-    "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
-)
-@click.option(
-    "--show",
-    multiple=True,
-    metavar="NAMES",
-    help="Columns of the table and quantities of the figures, as in the headings of study.csv, with commas. "
-    "May be repeated. [default: the usual ones]",
-)
-@run_folder()
-@click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]")
-@click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
-@click.option("--overwrite", is_flag=True, help="Replace another study in the folder.")
-@device
-def study(
-    study: Path,
-    vary: tuple[str, ...],
-    show: tuple[str, ...],
-    directory: Path | None,
-    workers: int | None,
-    scheduler: str | None,
-    overwrite: bool,
-) -> dict[str, Any]:
-    """Compute a case for every combination of the values of some keys, into one table.
-
-    Writes study.csv and study.nc: band levels, dB(A), peak force and lost contact of every law, the sound of
-    a wheel, what running-in changed, swept keys in the units you typed; study.html with a figure for each
-    swept key; and with several seeds their mean and scatter.
-
-    'asperity new study' writes a commented study; with --vary, a case needs none. Members that are finished
-    are kept: the same command goes on where it was, and tries members again that failed.
-    """
-    from asperity.cli.studying import study_into, varied
-    from asperity.studies.definition import load_study
-
-    return study_into(
-        varied(study, vary) if vary else load_study(study),
-        directory or Path("runs") / study.stem,
-        workers=workers,
-        scheduler=scheduler,
-        overwrite=overwrite,
-        show=show,
-    )
-
-
-_surface_options: tuple[Callable[..., Any], ...] = (
+_SURFACE = (
     click.option("--array", help="Name of the array, where the file holds several."),
     click.option(
         "--index", type=int, help="Which map of an ensemble, from 0. [default: all, the first one pictured]"
@@ -302,151 +139,251 @@ _surface_options: tuple[Callable[..., Any], ...] = (
         help="Take an array for lines measured side by side, or for a map. [default: by its shape]",
     ),
     click.option("--psd", is_flag=True, help="Write the spectra of the picture as CSV beside it."),
-    click.option(
-        "-o",
-        "--output",
-        "picture",
-        type=PATH,
-        help="The picture. [default: NAME-surface.png here, with array and index in its name]",
+    output(
+        "The picture. [default: NAME-surface.png here, with array and index in its name]", "picture", None
     ),
 )
+"""Hints on a measured file, and steps that are taken with it: keys of a recipe."""
 
 
 def _with_surface_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    for option in reversed(_surface_options):
-        command = option(command)
-    return command
+    return reduce(lambda made, option: option(made), reversed(_SURFACE), command)
 
 
-@main.command(
-    document=True,
-    long_work=True,
-    short_help="Find the texture that rolls quietest within bounds.",
-    examples=[
-        ("asperity optimise aim.toml -o quiet", "of a file that 'asperity new optimisation' began"),
-    ],
-)
-@click.argument("optimisation", type=PATH)
-@run_folder()
-@report
-@click.option("--overwrite", is_flag=True, help="Replace another texture in the folder.")
-@device
-def optimise(optimisation: Path, directory: Path | None, report: bool, overwrite: bool) -> dict[str, Any]:
-    """Find the texture that rolls quietest within bounds, or the roughest that keeps a level.
-
-    Searches with a cheap law and verifies with another, before and after. Textures that were rolled over are
-    kept: interrupted, the same command goes on where it was.
-    """
-    from asperity.cli.optimising import optimise_into
-
-    return optimise_into(
-        optimisation, directory or Path("runs") / optimisation.stem, report=report, overwrite=overwrite
-    )
-
-
-@main.command(
-    document=True,
-    short_help="What is in a measured file: size, statistics, spectrum, picture.",
-    examples=[
-        ("asperity surface beam.x3p", "size, missing points, statistics, direction; a picture with spectrum"),
-        ("asperity surface maps.npz --array polished --index 2 --height-unit um --pixel '1.5 um'", "one map"),
-        ("asperity surface beam.x3p --direction '30 deg' --psd", "turned to the lay; the spectra as CSV"),
-        ("asperity surface track.csv --decimal , --height-unit um --pixel '1 mm'", "decimal commas"),
-        ("asperity surface beam.x3p --form sphere --shortest '8 um' --store recipe.toml", "filtered, kept"),
-    ],
-)
+@main.command(section="Begin", short_help="What is in a measured file: size, statistics, spectrum, picture.")
 @click.argument("file", type=PATH)
 @_with_surface_options
-def surface(file: Path, picture: Path | None, **choices: Any) -> dict[str, Any]:
+def surface(file: Path, picture: Path | None, **choices: Any) -> Document:
     """Say what is in a measured FILE: size, spacing, missing points, statistics, and a picture.
 
     The picture shows heights, their distribution and their power spectral density along x and along y. Std is
     the direction in which the texture varies most (ISO 25178-2); the lay is at right angles to it.
-    """
-    from asperity.cli.inspecting import inspect
 
-    return inspect(file, picture, **choices)
+    Examples
+    --------
+    # size, missing points, statistics, direction; a picture with spectrum
+    asperity surface beam.x3p
+    # one map
+    asperity surface maps.npz --array polished --index 2 --height-unit um --pixel '1.5 um'
+    # turned to the lay; the spectra as CSV
+    asperity surface beam.x3p --direction '30 deg' --psd
+    # decimal commas
+    asperity surface track.csv --decimal , --height-unit um --pixel '1 mm'
+    # filtered, kept
+    asperity surface beam.x3p --form sphere --shortest '8 um' --store recipe.toml
+    """
+    from asperity.cli.surface import show_surface
+
+    return show_surface(file, picture, **choices)
+
+
+# --- compute
 
 
 @main.command(
-    document=True,
-    short_help="What differs between runs: cases, levels, force, stiffness.",
-    examples=[
-        ("asperity compare runs/smooth runs/rough", "page and table in 'comparison'"),
-        ("asperity compare runs/a runs/b runs/c --law table -o what-if", "three runs, by one law"),
-    ],
+    section="Compute", long_work=True, short_help="Is a case valid, what will it compute, and how long?"
 )
-@click.argument("runs", nargs=-1, type=PATH, required=True)
+@click.argument("case", type=PATH)
+@options.run_folder
+@options.converge
+@options.device
+@options.overwrite("the run of another case")
+def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -> Document:
+    """Check a CASE: show its values, what will be computed, and how long that takes.
+
+    Refuses whatever 'asperity run' would refuse, tries small pieces of the work to expect its time, and says
+    which law to take and how far the others are off.
+
+    Examples
+    --------
+    # values (those that differ from the default in bold), work, time
+    asperity check case.toml
+    # and the time of computing it with finer settings
+    asperity check case.toml --converge
+    # the expected seconds, for a script
+    asperity check case.toml --json | jq .work.seconds
+    """
+    from asperity.cli.planning import show_plan
+    from asperity.cli.running import refuse_full, refuse_other
+    from asperity.kinds.cases import load_case
+
+    loaded, target = load_case(case), directory or Path("runs") / case.stem
+    refuse_full(loaded, target)
+    if not overwrite:
+        refuse_other(loaded, target)
+    return show_plan(loaded, str(case), converge=converge)
+
+
+@main.command(section="Compute", long_work=True, short_help="Compute a case: results, report and CSVs.")
+@click.argument("case", type=PATH)
+@options.run_folder
+@options.report
+@options.converge
+@options.device
+@options.again
+@options.overwrite("the run of another case")
+def run(case: Path, directory: Path | None, **choices: bool) -> Document:
+    """Compute a CASE: writes run.nc, report.html and the CSV of every figure.
+
+    Finished pieces of work are kept: a run that was interrupted goes on where it was. One that is finished
+    says so, as long as case, files and program are the same.
+
+    Examples
+    --------
+    # into runs/case; the same command again goes on after an interruption
+    asperity run case.toml
+    # and how far grid, window, time step … matter
+    asperity run case.toml -o runs/stiff --converge
+    # what it found, for a script
+    asperity run case.toml --json | jq .verdict
+    """
+    from asperity.cli.running import run_case
+    from asperity.kinds.cases import load_case
+
+    return run_case(load_case(case), directory or Path("runs") / case.stem, source=str(case), **choices)
+
+
+@main.command(
+    section="Compute",
+    long_work=True,
+    short_help="Compute a case for every combination of values of some keys.",
+)
+@click.argument("study", type=PATH)
 @click.option(
-    "--law",
-    "laws",
+    "--vary",
     multiple=True,
-    metavar="LAW",
-    shell_complete=complete_laws,
-    help="Compare this law alone, the first as the main one. May be repeated. [default: all that runs have]",
+    metavar="KEY=VALUES",
+    shell_complete=options.completed_sweep,
+    help="STUDY is a case: a key and its values, as 'speed = 20 m/s, 200 km/h', or a range, as "
+    "'80..300 km/h, 6 steps', '60..1900 MN/m, 6 ratios', '1..20'. May be repeated.",
 )
 @click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=PATH,
-    default=Path("comparison"),
-    show_default=True,
-    metavar="FOLDER",
-    help="Folder of comparison.html and comparison.csv, or the page itself, ….html.",
+    "--show",
+    multiple=True,
+    metavar="NAMES",
+    help="Columns of the table and quantities of the figures, as in the headings of study.csv, with commas. "
+    "May be repeated. [default: the usual ones]",
 )
-def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> dict[str, Any]:
-    """Compare RUNS (run.nc, or their folders) with the first of them: one page and one table.
+@options.run_folder
+@click.option("--workers", type=int, help="Processes of this machine. [default: one per processor]")
+@click.option("--scheduler", metavar="ADDRESS", help="Compute on the Dask cluster of this scheduler.")
+@options.overwrite("another study")
+@options.device
+def study(study: Path, vary: tuple[str, ...], directory: Path | None, **choices: Any) -> Document:
+    """Compute a case for every combination of the values of some keys, into one table.
 
-    What differs in the cases; levels and their differences in each one-third octave and in dB(A); force, loss
-    of contact, stiffness, filters and verdicts.
+    Writes study.csv and study.nc: band levels, dB(A), peak force and lost contact of every law, the sound of
+    a wheel, what running-in changed, swept keys in the units you typed; study.html with a figure for each
+    swept key; and with several seeds their mean and scatter.
+
+    'asperity new study' writes a commented study; with --vary, a case needs none. Members that are finished
+    are kept: the same command goes on where it was, and tries members again that failed.
+
+    Examples
+    --------
+    # two speeds, one table
+    asperity study case.toml --vary "speed = 20 m/s, 200 km/h"
+    # mean and scatter over four textures, at two speeds
+    asperity study case.toml --vary "seed = 1, 2, 3, 4" --vary "speed = 20 m/s, 56 m/s"
+    # six speeds, both ends among them
+    asperity study case.toml --vary "speed = 80..300 km/h, 6 steps"
+    # equal ratios; one quantity as a column and a figure
+    asperity study case.toml --vary "contact.spacing = 5..20 um, 3 ratios" --show working_stiffness
+    # a study file, on four processes
+    asperity study study.toml -o runs/grid --workers 4
     """
-    from asperity.cli.comparing import compare_into
+    from asperity.cli.studying import run_study, varied
+    from asperity.studies.definition import load_study
 
-    return compare_into(runs, directory, laws)
+    definition = varied(study, vary) if vary else load_study(study)
+    return run_study(definition, directory or Path("runs") / study.stem, **choices)
 
 
 @main.command(
-    "report",
-    document=True,
-    short_help="Write the report of a run again, or a summary of one page.",
-    examples=[
-        ("asperity report runs/case --summary", "one sheet of A4 for a client: runs/case/summary.html"),
-        ("asperity report runs/case -o page", "the page and its CSVs, from what run.nc holds"),
-    ],
+    section="Compute", long_work=True, short_help="Find the texture that rolls quietest within bounds."
 )
-@click.argument("run", type=PATH)
+@click.argument("optimisation", type=PATH)
+@options.run_folder
+@options.report
+@options.overwrite("another texture")
+@options.device
+def optimise(optimisation: Path, directory: Path | None, **choices: bool) -> Document:
+    """Find the texture that rolls quietest within bounds, or the roughest that keeps a level.
+
+    Searches with a cheap law and verifies with another, before and after. Textures that were rolled over are
+    kept: interrupted, the same command goes on where it was.
+
+    Examples
+    --------
+    # of a file that 'asperity new optimisation' began
+    asperity optimise aim.toml -o quiet
+    """
+    from asperity.cli.optimising import run_optimisation
+
+    return run_optimisation(optimisation, directory or Path("runs") / optimisation.stem, **choices)
+
+
+# --- look, listen and compare
+
+_LOOK = "Look, listen and compare"
+
+
+@main.command(
+    section=_LOOK, document=False, short_help="A page in the browser: set cases, press, roll, watch, listen."
+)
+@click.option("--port", type=int, default=0, help="Port of this machine. [default: one that is free]")
+@output(
+    "Folder of surfaces and runs; those of an earlier time are found again.",
+    default=Path("asperity-page"),
+    show_default=True,
+)
+def serve(port: int, directory: Path) -> None:
+    """Serve a page on this machine: set cases, press the contact, roll, watch, compare and listen.
+
+    Prints the address, which holds a token: whoever has it may use the page. Needs the extra app.
+
+    Examples
+    --------
+    # open the address that it prints; Ctrl-C ends it
+    asperity serve
+    # a folder and a port of your choice
+    asperity serve -o shared/bearing --port 8080
+    """
+    missing = [name for name in ("starlette", "uvicorn") if importlib.util.find_spec(name) is None]
+    if missing:
+        remedy = 'Install them: python -m pip install "asperity[app]".'
+        raise InputError("asperity serve", f"no {' and no '.join(missing)}", "the extra app", remedy)
+    from asperity.serving.server import serve_folder
+
+    serve_folder(directory, port)
+    say("Ended; runs and surfaces are kept.", err=True)
+
+
+@main.command(
+    "report", section=_LOOK, short_help="Write the report of a run again, or a summary of one page."
+)
+@options.run_argument
 @click.option(
     "--summary", is_flag=True, help="Result, three figures, validity and origin on one sheet of A4."
 )
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=PATH,
-    metavar="FOLDER",
-    help="Folder of the report. [default: that of the run]",
-)
-def report_again(run: Path, summary: bool, directory: Path | None) -> dict[str, Any]:
-    """Write the report of a RUN (run.nc, or its folder) again, or a summary of it on one sheet of paper."""
-    from asperity.cli.reporting import report_into
+@output("Folder of the report. [default: that of the run]")
+def report_again(run: Path, summary: bool, directory: Path | None) -> Document:
+    """Write the report of a RUN (run.nc, or its folder) again, or a summary of it on one sheet of paper.
 
-    return report_into(run, directory, summary=summary)
+    Examples
+    --------
+    # one sheet of A4 for a client: runs/case/summary.html
+    asperity report runs/case --summary
+    # the page and its CSVs, from what run.nc holds
+    asperity report runs/case -o page
+    """
+    from asperity.cli.results import report_again as write_report
+
+    return write_report(run, directory, summary=summary)
 
 
-@main.command(
-    document=True,
-    short_help="Draw the figures of a run to files, for a paper.",
-    examples=[
-        ("asperity figures runs/case", "all of them, as SVG, into runs/case/figures"),
-        ("asperity figures runs/case --format pdf force_bands scene", "two, by the names of their CSV files"),
-        (
-            "asperity figures runs/case 'contact force levels' -o paper",
-            "by its title, or the beginning of it",
-        ),
-    ],
-)
-@click.argument("run", type=PATH)
+@main.command(section=_LOOK, short_help="Draw the figures of a run to files, for a paper.")
+@options.run_argument
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option(
     "--format",
@@ -455,33 +392,56 @@ def report_again(run: Path, summary: bool, directory: Path | None) -> dict[str, 
     show_default=True,
     help="Of the files; words stay words in SVG and PDF.",
 )
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=PATH,
-    metavar="FOLDER",
-    help="Folder of the figures. [default: figures, beside the run]",
-)
-def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | None) -> dict[str, Any]:
+@output("Folder of the figures. [default: figures, beside the run]")
+def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | None) -> Document:
     """Draw the figures of a RUN (run.nc, or its folder) to files: all of them, or those with a NAME.
 
     A name is that of a CSV file, which holds the numbers of the figure, or its title in the report.
+
+    Examples
+    --------
+    # all of them, as SVG, into runs/case/figures
+    asperity figures runs/case
+    # two, by the names of their CSV files
+    asperity figures runs/case --format pdf force_bands scene
+    # by its title, or the beginning of it
+    asperity figures runs/case 'contact force levels' -o paper
     """
-    from asperity.cli.reporting import figures_into
+    from asperity.cli.results import draw_figures
 
-    return figures_into(run, directory, format, names)
+    return draw_figures(run, directory, format, names)
 
 
-@main.command(
-    document=True,
-    short_help="Write what a run sounds like, as WAV files.",
-    examples=[
-        ("asperity listen runs/case", "into runs/case/sounds, all on one scale"),
-        ("asperity listen runs/case --matched", "equally loud, so that only the sound differs"),
-    ],
+@main.command(section=_LOOK, short_help="What differs between runs: cases, levels, force, stiffness.")
+@click.argument("runs", nargs=-1, type=PATH, required=True)
+@options.law_option(
+    "Compare this law alone, the first as the main one. May be repeated. [default: all that runs have]"
 )
-@click.argument("run", type=PATH)
+@output(
+    "Folder of comparison.html and comparison.csv, or the page itself, ….html.",
+    default=Path("comparison"),
+    show_default=True,
+)
+def compare(runs: tuple[Path, ...], laws: tuple[str, ...], directory: Path) -> Document:
+    """Compare RUNS (run.nc, or their folders) with the first of them: one page and one table.
+
+    What differs in the cases; levels and their differences in each one-third octave and in dB(A); force, loss
+    of contact, stiffness, filters and verdicts.
+
+    Examples
+    --------
+    # page and table in 'comparison'
+    asperity compare runs/smooth runs/rough
+    # three runs, by one law
+    asperity compare runs/a runs/b runs/c --law table -o what-if
+    """
+    from asperity.cli.results import compare_runs
+
+    return compare_runs(runs, directory, laws)
+
+
+@main.command(section=_LOOK, short_help="Write what a run sounds like, as WAV files.")
+@options.run_argument
 @click.option(
     "--what",
     metavar="NAME",
@@ -491,97 +451,80 @@ def figures(run: Path, names: tuple[str, ...], format: str, directory: Path | No
 @click.option(
     "--matched", is_flag=True, help="Make all as loud as each other. [default: louder laws are louder]"
 )
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    type=PATH,
-    metavar="FOLDER",
-    help="Folder of the sounds. [default: sounds, beside the run]",
-)
-def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> dict[str, Any]:
-    """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz."""
-    from asperity.cli.reporting import listen_into
+@output("Folder of the sounds. [default: sounds, beside the run]")
+def listen(run: Path, what: str | None, matched: bool, directory: Path | None) -> Document:
+    """Write what a RUN sounds like (run.nc, or its folder): a WAV file for each law and place, 48 kHz.
 
-    return listen_into(run, directory, what, matched=matched)
-
-
-@main.command(
-    document=True,
-    short_help="Say what to cite for a run.",
-    examples=[("asperity cite runs/case", "the program in its version, and the sources of the run")],
-)
-@click.argument("run", type=PATH)
-def cite(run: Path) -> dict[str, Any]:
-    """Say what to cite for a RUN (run.nc, or its folder): the program and its sources."""
-    from asperity.cli.citing import show_citations
-
-    return show_citations(run)
-
-
-@main.command(
-    short_help="A page in the browser: set cases, press, roll, watch, listen.",
-    examples=[
-        ("asperity serve", "open the address that it prints; Ctrl-C ends it"),
-        (
-            "asperity serve -o shared/bearing --port 8080",
-            "a folder and a port of your choice",
-        ),
-    ],
-)
-@click.option("--port", type=int, default=0, help="Port of this machine. [default: one that is free]")
-@click.option(
-    "-o",
-    "--output",
-    "directory",
-    default=Path("asperity-page"),
-    show_default=True,
-    type=PATH,
-    metavar="FOLDER",
-    help="Folder of surfaces and runs; those of an earlier time are found again.",
-)
-def serve(port: int, directory: Path) -> None:
-    """Serve a page on this machine: set cases, press the contact, roll, watch, compare and listen.
-
-    Prints the address, which holds a token: whoever has it may use the page. Needs the extra app.
+    Examples
+    --------
+    # into runs/case/sounds, all on one scale
+    asperity listen runs/case
+    # equally loud, so that only the sound differs
+    asperity listen runs/case --matched
     """
-    from asperity.cli.serving import serve_page
+    from asperity.cli.results import write_sounds
 
-    serve_page(directory, port)
+    return write_sounds(run, directory, what, matched=matched)
 
 
-@main.command(
-    document=True,
-    short_help="Show or delete what is kept between runs.",
-    examples=[
-        ("asperity cache", "what is kept, where, and how much it is"),
-        ("asperity cache --clear", "delete it; it is computed again when it is needed"),
-    ],
-)
+@main.command(section=_LOOK, short_help="Say what to cite for a run.")
+@options.run_argument
+def cite(run: Path) -> Document:
+    """Say what to cite for a RUN (run.nc, or its folder): the program and its sources.
+
+    Examples
+    --------
+    # the program in its version, and the sources of the run
+    asperity cite runs/case
+    """
+    from asperity.reporting.page import literature
+    from asperity.results import read_result
+
+    sources = literature(read_result(run))
+    for source in sources:
+        say(source)
+    return {"run": run.resolve(), "sources": sources}
+
+
+# --- around it
+
+
+@main.command(section="Around it", short_help="Show or delete what is kept between runs.")
 @click.option("--clear", is_flag=True, help="Delete what is kept; it is computed again when it is needed.")
-def cache(clear: bool) -> dict[str, Any]:
+def cache(clear: bool) -> Document:
     """Show what is kept: finished pieces of work, compiled functions, and what interrupted runs left.
 
     Work is kept in $ASPERITY_CACHE, by default in the cache folder of the system.
-    """
-    from asperity.cli.keeping import show_kept
 
-    return show_kept(clear=clear)
+    Examples
+    --------
+    # what is kept, where, and how much it is
+    asperity cache
+    # delete it; it is computed again when it is needed
+    asperity cache --clear
+    """
+    from asperity.cli.results import show_cache
+
+    return show_cache(clear=clear)
 
 
 @main.command(
-    short_help="Let the shell complete commands, files, kinds and laws.",
-    examples=[
-        ("""echo 'eval "$(asperity completion bash)"' >> ~/.bashrc""", "bash 4.4 or later"),
-        ("""echo 'eval "$(asperity completion zsh)"' >> ~/.zshrc""", "zsh, below the line with compinit"),
-        ("asperity completion fish > ~/.config/fish/completions/asperity.fish", "fish"),
-    ],
+    section="Around it", document=False, short_help="Let the shell complete commands, files, kinds and laws."
 )
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 def completion(shell: str) -> None:
     """Print what makes a SHELL complete commands, options, files, kinds of case, keys and laws.
 
     It works in shells that are opened after one of the lines below.
+
+    Examples
+    --------
+    # bash 4.4 or later
+    echo 'eval "$(asperity completion bash)"' >> ~/.bashrc
+    # zsh, below the line with compinit
+    echo 'eval "$(asperity completion zsh)"' >> ~/.zshrc
+    # fish
+    asperity completion fish > ~/.config/fish/completions/asperity.fish
     """
     from click.shell_completion import get_completion_class
 

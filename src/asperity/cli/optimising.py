@@ -1,4 +1,4 @@
-"""Optimise a texture into a folder: its case, its bands as table and on a page, and both runs."""
+"""Finds a texture into a folder: its case, its bands as table and on a page, the runs before and after."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from asperity import files
 from asperity.config.content import content, file_digest
 from asperity.config.describing import in_toml, toml_text
 from asperity.config.parsing import read_definition
 from asperity.errors import InputError
-from asperity.files import alone_in, refuse_unwritable, together, write_bytes
-from asperity.kinds import report as reports
+from asperity.kinds.report import PAGE as REPORT
+from asperity.kinds.report import write_page
 from asperity.laws import spec_of
-from asperity.optimising.definition import Assignment, load_assignment
+from asperity.optimising.definition import load_assignment
 from asperity.optimising.running import Optimised, optimise
 from asperity.progress import progress_bar
 from asperity.reporting.data import read_entries
@@ -29,12 +30,18 @@ from asperity.store import content_key
 from asperity.terminal import say
 from asperity.text_files import write_csv
 
-TEXTURE, CASE, TABLE, PAGE, TRIALS = (
-    "texture.csv", "case.toml", "bands.csv", "bands.html", "trials.csv",
-)  # fmt: skip
+FILES = {
+    "case": "case.toml",
+    "texture": "texture.csv",
+    "table": "bands.csv",
+    "page": "bands.html",
+    "trials": "trials.csv",
+    "before": "before/run.nc",
+    "after": "after/run.nc",
+}
 
 
-def optimise_into(
+def run_optimisation(
     path: Path, directory: Path, *, report: bool = True, overwrite: bool = False
 ) -> dict[str, Any]:
     """Find a texture and write it to a folder, with the runs before and after it.
@@ -42,23 +49,24 @@ def optimise_into(
     `overwrite` says whether a texture in the folder may be replaced, and `report` whether the runs get pages.
     """
     assignment = load_assignment(path)
-    refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
-    asked = _asked(assignment)
+    written = {what: directory / name for what, name in FILES.items()}
+    files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    asked = json.dumps([content(each, file_digest) for each in (assignment.case, assignment.aim)])
     if not overwrite:
-        _refuse_another(asked, directory / CASE)
-    with alone_in(directory), progress_bar() as progress:
+        _refuse_other(asked, written["case"])
+    with files.alone_in(directory), progress_bar() as progress:
         found = optimise(assignment, progress)
-        with together(directory, last=CASE) as new:
-            _write(found, new, report=report)
-            text = _case_text(found)
-            write_bytes(new / CASE, f"{_mark(asked, text)}{text}".encode())
+        bands = _bands(found)
+        with files.together(directory, last=FILES["case"]) as new:
+            _write(found, bands, new, report=report)
+            keys = in_toml(found.case, in_memory=lambda *_: FILES["texture"])
+            text = toml_text({"kind": found.case.kind, **keys})
+            files.write_bytes(new / FILES["case"], f"{_mark(asked, text)}{text}".encode())
     say(found.sentence)
-    say(f"Case:    {(directory / CASE).resolve()}")
-    say(f"Page:    {(directory / PAGE).resolve()}, and as numbers {TABLE}")
-    say(f"Runs:    {(directory / 'before').resolve()}, {(directory / 'after').resolve()}")
-    titles, columns = _table(texture_bands(found), found.measure.units)
-    written = {"case": CASE, "texture": TEXTURE, "table": TABLE, "page": PAGE, "trials": TRIALS}
-    written |= {name: f"{name}/run.nc" for name in ("before", "after")}
+    say(f"Case:    {written['case'].resolve()}")
+    say(f"Page:    {written['page'].resolve()}, and as numbers {FILES['table']}")
+    say(f"Runs:    {written['before'].parent.resolve()}, {written['after'].parent.resolve()}")
+    titles, rows = _table(bands, found.measure.units)
     return {
         "summary": found.sentence,
         "quantity": found.measure.meaning,
@@ -67,15 +75,9 @@ def optimise_into(
         "changes": found.changes,
         "limits": found.active,
         "columns": titles,
-        "rows": columns,
-        "warnings": [],
-        "files": {name: str((directory / file).resolve()) for name, file in written.items()},
+        "rows": rows,
+        "files": written,
     }
-
-
-def _asked(assignment: Assignment) -> str:
-    """What was asked for, whatever the files are called that say it."""
-    return json.dumps([content(each, file_digest) for each in (assignment.case, assignment.aim)])
 
 
 def _mark(asked: str, text: str) -> str:
@@ -83,7 +85,7 @@ def _mark(asked: str, text: str) -> str:
     return f"# {content_key('texture', asked, text)}\n"
 
 
-def _refuse_another(asked: str, case: Path) -> None:
+def _refuse_other(asked: str, case: Path) -> None:
     """Let an optimisation replace what it has found itself; any other case in the folder stays."""
     if not case.exists():
         return
@@ -93,49 +95,43 @@ def _refuse_another(asked: str, case: Path) -> None:
     if f"{mark}\n" != _mark(asked, text):
         remedy = "Choose another folder with -o, or replace it with --overwrite."
         allowed = "a new folder, or that of the same optimisation"
-        raise InputError(str(case.parent), f"a folder that holds another {CASE}", allowed, remedy)
+        raise InputError(str(case.parent), f"a folder that holds another {case.name}", allowed, remedy)
 
 
-def _write(found: Optimised, directory: Path, *, report: bool) -> None:
+def _write(found: Optimised, bands: TextureBands, directory: Path, *, report: bool) -> None:
     """Write the texture found as tables and on a page, and the runs before and after it."""
-    bands = texture_bands(found)
-    rows = zip(found.after.wavelength.tolist(), found.after.levels.tolist(), strict=True)
-    write_csv(directory / TEXTURE, ["wavelength (m)", "level (dB re 1 um)"], [list(row) for row in rows])
-    write_csv(directory / TABLE, *_table(bands, found.measure.units))
-    write_csv(directory / TRIALS, *_trials(found))
-    for name, tree in (("before", found.result_before), ("after", found.result_after)):
-        save(tree, directory / name / "run.nc")
+    texture = np.stack([found.after.wavelength, found.after.levels], axis=1).tolist()
+    write_csv(directory / FILES["texture"], ["wavelength (m)", "level (dB re 1 um)"], texture)
+    write_csv(directory / FILES["table"], *_table(bands, found.measure.units))
+    heading = ["trial", f"level [{found.measure.units}]", "lateral"]
+    heading += [f"{wavelength:.6g} m [dB re 1 um]" for wavelength in found.after.changed_wavelength]
+    trials = [
+        [number, each.level, "" if each.lateral is None else each.lateral, *each.levels.tolist()]
+        for number, each in enumerate(found.trials)  # textures that the search went on from, in their order
+    ]
+    write_csv(directory / FILES["trials"], heading, trials)
+    for what, tree in (("before", found.result_before), ("after", found.result_after)):
+        run = save(tree, directory / FILES[what])
         if report:
-            reports.write_page(tree, directory / name / "report.html")
-    _write_page(found, bands, directory / PAGE, report=report)
+            write_page(tree, run.with_name(REPORT))
+    files.write_bytes(directory / FILES["page"], _page(found, bands, report=report).encode())
 
 
-def texture_bands(found: Optimised) -> TextureBands:
+def _bands(found: Optimised) -> TextureBands:
     """Numbers of the bands: of those that were changed."""
-    changed = found.after.changed
-    low, high = found.after.edges(found.case.speed)
-    aim = found.assignment.aim
-    heard = {
-        law: {
-            name: found.band_levels(tree, law)
-            for name, tree in (("before", found.result_before), ("after", found.result_after))
-        }
-        for law in dict.fromkeys((aim.verify, aim.law))
-    }
+    changed, aim = found.after.changed, found.assignment.aim
+    trees = {"before": found.result_before, "after": found.result_after}
     return TextureBands(
-        found.after.wavelength[changed],
+        found.after.changed_wavelength,
         {"before": found.before.levels[changed], "after": found.after.levels[changed]},
         found.limits.lowest,
         found.limits.highest,
-        np.sqrt(low * high),
-        heard,
+        np.sqrt(np.prod(found.after.edges(found.case.speed), axis=0)),
+        {
+            law: {name: found.band_levels(tree, law) for name, tree in trees.items()}
+            for law in dict.fromkeys((aim.verify, aim.law))
+        },
     )
-
-
-def _case_text(found: Optimised) -> str:
-    """The case with the texture found, as a file beside its table."""
-    keys = in_toml(found.case, in_memory=lambda _, value: TEXTURE)
-    return toml_text({"kind": found.case.kind, **keys})
 
 
 def _table(bands: TextureBands, units: str) -> tuple[list[str], list[list[float]]]:
@@ -148,21 +144,10 @@ def _table(bands: TextureBands, units: str) -> tuple[list[str], list[list[float]
     }
     for law, levels in bands.heard.items():
         columns |= {f"{law} {name} [{units}]": each for name, each in levels.items()}
-    return list(columns), [list(row) for row in np.stack(list(columns.values()), axis=1).tolist()]
+    return list(columns), np.stack(list(columns.values()), axis=1).tolist()
 
 
-def _trials(found: Optimised) -> tuple[list[str], list[list[object]]]:
-    """Textures that the search went on from, in their order."""
-    heading = ["trial", f"level [{found.measure.units}]", "lateral"]
-    heading += [f"{w:.6g} m [dB re 1 um]" for w in found.after.changed_wavelength]
-    rows: list[list[object]] = [
-        [number, trial.level, "" if trial.lateral is None else trial.lateral, *trial.levels.tolist()]
-        for number, trial in enumerate(found.trials)
-    ]
-    return heading, rows
-
-
-def _write_page(found: Optimised, bands: TextureBands, path: Path, *, report: bool) -> None:
+def _page(found: Optimised, bands: TextureBands, *, report: bool) -> str:
     laws = read_entries(spec_of(law).entry() for law in bands.heard)
     colours = {name: law.colour for name, law in laws.items()}
     chart = optimised_chart(bands, found.measure.meaning, found.measure.units, colours)
@@ -171,9 +156,11 @@ def _write_page(found: Optimised, bands: TextureBands, path: Path, *, report: bo
     )
     titles, rows = _table(bands, found.measure.units)
     numbers = ReportTable("", "Numbers", titles, [[number_cell(each) for each in row] for row in rows])
-    figure = PageFigure("bands", "Texture and response in bands", caption, chart, [numbers], TABLE)
-    files = {"texture (CSV)": TEXTURE, "case": CASE, "trials (CSV)": TRIALS}
+    name = "Texture and response in bands"
+    figure = PageFigure("bands", name, caption, chart, [numbers], FILES["table"])
+    offered = {"texture (CSV)": "texture", "case": "case", "trials (CSV)": "trials"}
+    links = {words: FILES[what] for words, what in offered.items()}
     if report:
-        files |= {f"report {name}": f"{name}/report.html" for name in ("before", "after")}
+        links |= {f"report {what}": f"{what}/{REPORT}" for what in ("before", "after")}
     summary = f"{found.sentence[:1].upper()}{found.sentence[1:]}"
-    write_bytes(path, figures_page("Optimised texture", summary, [figure], files).encode())
+    return figures_page("Optimised texture", summary, [figure], links)

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import click
 
 from asperity.kinds import KINDS
 
 PATH = click.Path(path_type=Path)
+Completion = Callable[[click.Context, click.Parameter, str], list[str]]
 
 
-def run_folder(what: str = "Folder of the results.") -> Callable[..., Callable[..., object]]:
+def output(help: str, name: str = "directory", metavar: str | None = "FOLDER", **more: Any) -> Any:
     """Where results go."""
-    return click.option(
-        "-o", "--output", "directory", type=PATH, metavar="FOLDER", help=f"{what} [default: runs/NAME]"
-    )
+    return click.option("-o", "--output", name, type=PATH, metavar=metavar, help=help, **more)
 
 
-overwrite = click.option("--overwrite", is_flag=True, help="Replace the run of another case in the folder.")
+run_argument = click.argument("run", type=PATH)
+run_folder = output("Folder of the results. [default: runs/NAME]")
 again = click.option(
     "--again", is_flag=True, help="Compute even what this program has computed already from the same files."
 )
@@ -33,72 +34,71 @@ converge = click.option(
 )
 
 
-def _choose(device: str | None) -> None:
-    if device is not None:
+def overwrite(what: str) -> Any:
+    """Whether what a folder holds already may be replaced."""
+    return click.option("--overwrite", is_flag=True, help=f"Replace {what} in the folder.")
+
+
+def _choose_device(context: click.Context, option: click.Parameter, name: str | None) -> None:
+    if name is not None:
         from asperity.contact.batched import choose_device
 
-        choose_device(device)
+        choose_device(name)
 
 
 device = click.option(
     "--device",
     type=click.Choice(["cpu", "gpu"]),
     help="Where contacts are solved; gpu needs CuPy. [default: $ASPERITY_DEVICE, else cpu]",
-    callback=lambda context, option, name: _choose(name),
+    callback=_choose_device,
     expose_value=False,
 )
 
 
-def templates() -> tuple[str, ...]:
-    """List what 'asperity new' can write."""
-    return (*KINDS, "study", "optimisation")
+def completed(names: Callable[[], Iterable[str]]) -> Completion:
+    """Complete one of some names."""
+    return lambda context, parameter, begun: [name for name in names() if name.startswith(begun)]
 
 
-def complete_templates(context: click.Context, argument: click.Parameter, incomplete: str) -> list[str]:
-    """Complete what 'asperity new' can write."""
-    return [name for name in templates() if name.startswith(incomplete)]
-
-
-def complete_laws(context: click.Context, option: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the name of a law."""
+def _laws() -> Iterable[str]:
     from asperity.laws import names
 
-    return [name for name in names() if name.startswith(incomplete)]
+    return names()
 
 
-def complete_sweep(context: click.Context, option: click.Parameter, incomplete: str) -> list[str]:
+def law_option(help: str) -> Any:
+    """Laws by their names."""
+    completion = completed(_laws)
+    return click.option("--law", "laws", multiple=True, metavar="LAW", shell_complete=completion, help=help)
+
+
+def completed_sweep(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
     """Complete ``KEY=`` of a case, and the words of a key that takes words, behind its last comma."""
-    key, mark, values = incomplete.partition("=")
-    entries = _keys(context.params.get("study"))
+    key, mark, values = begun.partition("=")
+    words_of = _keys(context.params.get("study"))
     if not mark:
-        return [f"{name}=" for name in entries if name.startswith(key)]
+        return [f"{name}=" for name in words_of if name.startswith(key)]
     before, comma, last = values.rpartition(",")
-    words = entries.get(key.strip(), ())
+    words = words_of.get(key.strip(), ())
     return [f"{key}={before}{comma}{word}" for word in words if word.startswith(last.strip())]
 
 
-def _keys(case: Path | None) -> dict[str, Sequence[str]]:
+def _keys(case: Path | None) -> Mapping[str, Collection[str]]:
     """Keys of the kind of a case, of all kinds where that cannot be told, with the words they take."""
     from asperity.config.describing import entries
-    from asperity.config.values import value_kind
-
-    found: dict[str, Sequence[str]] = {}
-    for kind in _kinds(case):
-        for entry in entries(KINDS[kind].case):
-            taken = value_kind(entry.field.annotation, entry.field.metadata)
-            known = getattr(taken, "known", getattr(taken, "words", ()))
-            if entry.dotted != "kind":  # one kind in a study
-                found[entry.dotted] = tuple(known)
-    return found
-
-
-def _kinds(case: Path | None) -> Sequence[str]:
     from asperity.config.parsing import read_toml
+    from asperity.config.values import value_kind
     from asperity.errors import InputError
 
     try:
         text = Path(case or "").read_text(encoding="utf-8")
         kind = str(read_toml(text, "case", str(case)).get("kind"))
     except (OSError, UnicodeError, InputError):
-        return list(KINDS)
-    return [kind] if kind in KINDS else list(KINDS)
+        kind = ""
+    found: dict[str, Collection[str]] = {}
+    for name in [kind] if kind in KINDS else KINDS:
+        for entry in entries(KINDS[name].case):
+            taken = value_kind(entry.field.annotation, entry.field.metadata)
+            found[entry.dotted] = getattr(taken, "known", getattr(taken, "words", ()))
+    found.pop("kind")  # one in a study
+    return found

@@ -1,130 +1,42 @@
-"""What a study writes beside its table: means over seeds, an ensemble's band, a page of figures."""
+"""Computes a study into a folder: its table, means and band over seeds, a page of figures; and prints it."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext, suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import xarray
 
+from asperity import files
 from asperity.arguments import shown
 from asperity.errors import InputError
-from asperity.files import alone_in, discard, final_place, refuse_unwritable, together, write_bytes
 from asperity.laws import spec_of
 from asperity.progress import progress_bar
+from asperity.reporting import study_figures
 from asperity.reporting.data import read_entries
 from asperity.reporting.page import PageFigure, figures_page
 from asperity.reporting.payload import chart_tables
-from asperity.reporting.study_figures import ensemble_chart, key_caption, key_chart
+from asperity.results import attributes_of, save
+from asperity.studies import table as tables
 from asperity.studies.definition import Study, separated, study_of
 from asperity.studies.ensemble import FEWEST, SCATTER, mean_and_scatter, prediction_band
 from asperity.studies.member import PLACES, names_kept
-from asperity.studies.table import OVER, USUAL, USUAL_IN_FIGURES, axes_of, chosen, columns_of, long_columns
 from asperity.terminal import line_width, remark, say, say_table
 from asperity.text_files import write_csv
 
-if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
-    import xarray
-
 SEED = "seed"
 """The key by which members differ by chance alone."""
-NOT_ALWAYS = ("study_mean.csv", "ensemble.csv", "study.html")
-"""What not every study writes: that of an earlier one goes."""
-
-
-def write_mean(means: xarray.Dataset | None, directory: Path) -> dict[str, Path]:
-    """Write mean and standard deviation over the seeds, if they were swept."""
-    path = directory / "study_mean.csv"
-    if means is None:
-        return {}
-    write_csv(path, *columns_of(means))
-    over = f"{means.attrs['members']} values of {SEED}"
-    say(f"Means:   {final_place(path).resolve()}, over {over}, ± their standard deviation")
-    return {"mean": path}
-
-
-def write_ensemble(bands: xarray.Dataset | None, directory: Path) -> dict[str, Path]:
-    """Write mean and band over the seeds of a study, if it sweeps enough of them."""
-    if bands is None:
-        return {}
-    file = directory / "ensemble.csv"
-    swept = [str(name) for name in bands["force_level"].dims if name not in ("law", "band")]
-    write_csv(file, *long_columns(bands, [*swept, "law", "band"]))
-    say(f"Seeds:   {final_place(file).resolve()}")
-    say(str(bands.attrs["meaning"]))
-    return {"ensemble": file}
-
-
-def band_over_seeds(table: xarray.Dataset) -> xarray.Dataset | None:
-    """Mean and band of levels over the seeds of a study, if it sweeps enough of them."""
-    return prediction_band(table) if table.sizes.get(SEED, 0) >= FEWEST else None
-
-
-def write_study_page(
-    table: xarray.Dataset,
-    means: xarray.Dataset | None,
-    bands: xarray.Dataset | None,
-    names: Sequence[str],
-    directory: Path,
-) -> dict[str, Path]:
-    """Write figures on a page: of quantities by name over each swept key, and of the band over seeds."""
-    laws = read_entries(spec_of(str(law)).entry() for law in table["law"].values)
-    looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
-    figures = _key_figures(table, means, names, looks)
-    if bands is not None:
-        chart = ensemble_chart(bands, looks)
-        told = "Contact force over the seeds", str(bands.attrs["meaning"])
-        figures.append(PageFigure("ensemble", *told, chart, chart_tables(chart), "ensemble.csv"))
-    if not figures:
-        return {}
-    swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
-    done, count = int(table["completed"].sum()), table["completed"].size
-    summary = swept if done == count else f"{swept}; {done} of {count} members completed"
-    held = {
-        "table (CSV)": "study.csv",
-        "means over seeds (CSV)": "study_mean.csv",
-        "band over seeds (CSV)": "ensemble.csv",
-        "results (netCDF)": "study.nc",
-    }
-    files = {what: file for what, file in held.items() if (directory / file).exists()}
-    path = directory / "study.html"
-    write_bytes(path, figures_page("Study", summary, figures, files).encode())
-    say(f"Page:    {final_place(path).resolve()}")
-    return {"page": path}
-
-
-def _key_figures(
-    table: xarray.Dataset,
-    means: xarray.Dataset | None,
-    names: Sequence[str],
-    looks: dict[str, dict[str, Any]],
-) -> list[PageFigure]:
-    """A figure for each swept key that is more than chance."""
-    shown, scatter = table, None
-    if means is not None:
-        held = [str(name) for name in means.data_vars if str(name).endswith(SCATTER)]
-        shown = means.drop_vars(held)
-        scatter = means[held].rename({name: name.removesuffix(SCATTER) for name in held})
-    swept = [key for key in json.loads(table.attrs["sweep"]) if shown.sizes.get(key, 0) > 1]
-    charts = {key: key_chart(shown, scatter, key, looks, names) for key in swept}
-    return [
-        PageFigure(f"key-{key}", f"Over {key}", key_caption(shown, scatter, key), chart, chart_tables(chart))
-        for key, chart in charts.items()
-    ]
-
-
+RESULTS, TABLE, MEANS, BAND, PAGE = "study.nc", "study.csv", "study_mean.csv", "ensemble.csv", "study.html"
 MOST_ROWS = 60  # that are printed; the file has all of them
 FOLDED = 14  # characters of a line of a heading
 WIDTH = 200  # characters of a line where standard output is no terminal
 MOST_NAMED = 6  # members of a group of failures that are printed
 
 
-def study_into(
+def run_study(
     study: Study,
     directory: Path,
     *,
@@ -139,55 +51,25 @@ def study_into(
     scheduler at an address. `overwrite` says whether another study in the folder may be replaced, `show`
     names what is printed and drawn instead of what is usual.
     """
-    asked = chosen(show)
+    asked = tables.chosen(show)
     if scheduler is not None and workers is not None:
         raise InputError("--workers", "a number beside --scheduler", "one of them")
-    refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
-    with alone_in(directory):
+    files.refuse_unwritable(directory, "folder of the results", "Choose another folder with -o.")
+    with files.alone_in(directory):
         if not overwrite:
-            _refuse_to_overwrite(study, directory)
-        return _study_alone(study, directory, workers, scheduler, asked)
-
-
-def _study_alone(
-    study: Study, directory: Path, workers: int | None, scheduler: str | None, asked: tuple[str, ...]
-) -> dict[str, Any]:
-    """Compute a study and write its table, while no other run does into this folder."""
-    from xarray import DataTree
-
-    from asperity.results import save
-    from asperity.studies.cluster import cluster
-    from asperity.studies.running import study as computed
-
-    remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
-    place: AbstractContextManager[Executor | None] = nullcontext()
-    if scheduler is not None:
-        place = cluster(scheduler)
-    with place as executor, progress_bar() as progress:
-        table = computed(study, executor=executor, workers=workers, progress=progress)
-    means = mean_and_scatter(table) if table.sizes.get(SEED, 0) > 1 else None
-    names = asked or USUAL
-    _show(table if means is None else means, names, asked=bool(asked))
-    for name in asked:
-        if name not in table:
-            say(
-                f"{name}: no member has it; there {names_kept()[name] or 'are no bands to add up'}",
-                err=True,
-            )
-    _report(table)
-    with together(directory, last="study.nc") as new:
-        files = {"results": save(DataTree(table), new / "study.nc")}
-        files["table"] = write_csv(new / "study.csv", *columns_of(table))
-        say(f"Results: {final_place(files['results']).resolve()}")
-        say(f"Table:   {final_place(files['table']).resolve()}")
-        bands = band_over_seeds(table)
-        files |= write_mean(means, new) | write_ensemble(bands, new)
-        files |= write_study_page(table, means, bands, asked or USUAL_IN_FIGURES, new)
-        for file in (each for pattern in NOT_ALWAYS for each in directory.glob(pattern)):
-            if not (new / file.name).exists():
-                discard(file)
+            _refuse_other(study, directory)
+        table = _computed(study, workers, scheduler)
+        several = table.sizes.get(SEED, 0)
+        means = mean_and_scatter(table) if several > 1 else None
+        band = prediction_band(table) if several >= FEWEST else None
+        print_table(table if means is None else means, asked or tables.USUAL, asked=bool(asked))
+        for name in (name for name in asked if name not in table):
+            reason = names_kept()[name] or "are no bands to add up"
+            say(f"{name}: no member has it; there {reason}", err=True)
+        _print_messages(table)
+        written = _write(directory, table, means, band, asked)
     told = table[[name for name in asked if name in table]].assign_attrs(table.attrs) if asked else table
-    heading, rows = columns_of(told, bands=bool(asked))
+    heading, rows = tables.columns_of(told, bands=bool(asked))
     return {
         "sweep": study.sweep,
         "members": int(table["completed"].size),
@@ -196,8 +78,19 @@ def _study_alone(
         "rows": rows,
         "warnings": json.loads(table.attrs["warnings"]),
         "failures": json.loads(table.attrs["failures"]),
-        "files": {name: str(final_place(path).resolve()) for name, path in files.items()},
+        "files": written,
     }
+
+
+def _computed(study: Study, workers: int | None, scheduler: str | None) -> xarray.Dataset:
+    """The table of a study."""
+    from asperity.studies.cluster import cluster
+    from asperity.studies.running import study as computed
+
+    remark(f"Study of {' × '.join(f'{len(axis.values)} {axis.name}' for axis in study.axes)}")
+    place = nullcontext() if scheduler is None else cluster(scheduler)
+    with place as executor, progress_bar() as progress:
+        return computed(study, executor=executor, workers=workers, progress=progress)
 
 
 def varied(case: Path, words: Sequence[str]) -> Study:
@@ -209,9 +102,8 @@ def varied(case: Path, words: Sequence[str]) -> Study:
             remedy = "Write, for instance, --vary 'speed = 20 m/s, 200 km/h'."
             raise InputError("--vary", shown(word), "a key of the case, =, and its values", remedy)
         if name in sweep:
-            raise InputError(
-                "--vary", f"{name} more than once", "each key once", "Put all values behind one."
-            )
+            received = f"{name} more than once"
+            raise InputError("--vary", received, "each key once", "Put all values behind one.")
         sweep[name] = [_value(each) for each in separated(values)]
     return study_of(case, sweep)
 
@@ -220,59 +112,138 @@ def _value(word: str) -> Any:
     """A number or a truth value as such, as TOML would read it; anything else as text."""
     if word in ("true", "false"):
         return word == "true"
-    try:
-        return int(word)
-    except ValueError:
+    for number in (int, float):
         with suppress(ValueError):
-            return word if "inf" in word.lower() else float(word)
+            return word if "inf" in word.lower() else number(word)
     return word
 
 
-def _refuse_to_overwrite(study: Study, directory: Path) -> None:
+def _refuse_other(study: Study, directory: Path) -> None:
     """Let a study replace its own table; another one in the folder stays."""
-    file = directory / "study.nc"
+    file = directory / RESULTS
     if not file.exists():
         return
-    from asperity.results import attributes_of
-
     try:
         earlier = attributes_of(file)
-        swept = json.loads(earlier["sweep"])
+        same = earlier.get("case") == study.text and json.loads(earlier["sweep"]) == study.sweep
     except (InputError, ValueError, KeyError, TypeError):  # damaged, or of another kind
-        earlier, swept = {}, None
-    if earlier.get("case") != study.text or swept != study.sweep:
+        same = False
+    if not same:
         remedy = "Choose another folder with -o, or replace it with --overwrite."
         allowed = "a new folder, or the folder of the same study"
         raise InputError(str(directory), "the study.nc of another study", allowed, remedy)
 
 
-def _show(found: xarray.Dataset, names: Sequence[str], *, asked: bool) -> None:
+# --- files
+
+
+def _write(
+    directory: Path,
+    table: xarray.Dataset,
+    means: xarray.Dataset | None,
+    band: xarray.Dataset | None,
+    asked: Sequence[str],
+) -> dict[str, Path]:
+    """Write all that there is of a study, in place of an earlier one, and say where; return files by name."""
+    names, notes = {"results": RESULTS, "table": TABLE}, {}
+    with files.together(directory, last=RESULTS) as new:
+        save(xarray.DataTree(table), new / RESULTS)
+        write_csv(new / TABLE, *tables.columns_of(table))
+        if means is not None:
+            names["mean"] = MEANS
+            notes["mean"] = f", over {means.attrs['members']} values of {SEED}, ± their standard deviation"
+            write_csv(new / MEANS, *tables.columns_of(means))
+        if band is not None:
+            names["ensemble"] = BAND
+            notes["ensemble"] = f"\n{band.attrs['meaning']}"
+            axes = [str(name) for name in band["force_level"].dims if name not in ("law", "band")]
+            write_csv(new / BAND, *tables.long_columns(band, [*axes, "law", "band"]))
+        if figures := _figures(table, means, band, asked or tables.USUAL_IN_FIGURES):
+            names["page"] = PAGE
+            files.write_bytes(new / PAGE, _page(table, figures, list(names)).encode())
+        for name in {MEANS, BAND, PAGE} - set(names.values()):  # of an earlier study
+            files.discard(directory / name)
+    for what, name in names.items():
+        label = {"mean": "Means", "ensemble": "Seeds"}.get(what, what.capitalize())
+        say(f"{label + ':':9}{(directory / name).resolve()}{notes.get(what, '')}", lines=True)
+    return {what: directory / name for what, name in names.items()}
+
+
+def _page(table: xarray.Dataset, figures: Sequence[PageFigure], written: Sequence[str]) -> str:
+    """The page of a study, with the files that lie beside it."""
+    swept = " × ".join(f"{table.sizes[name]} values of {name}" for name in json.loads(table.attrs["sweep"]))
+    done, count = int(table["completed"].sum()), table["completed"].size
+    summary = swept if done == count else f"{swept}; {done} of {count} members completed"
+    offered = {
+        "table": ("table (CSV)", TABLE),
+        "mean": ("means over seeds (CSV)", MEANS),
+        "ensemble": ("band over seeds (CSV)", BAND),
+        "results": ("results (netCDF)", RESULTS),
+    }
+    return figures_page("Study", summary, figures, dict(offered[what] for what in offered if what in written))
+
+
+def _figures(
+    table: xarray.Dataset, means: xarray.Dataset | None, band: xarray.Dataset | None, names: Sequence[str]
+) -> list[PageFigure]:
+    """A figure for each swept key that is more than chance, of quantities by name, and one of the band."""
+    laws = read_entries(spec_of(str(law)).entry() for law in table["law"].values)
+    looks = {name: law.style(1.6) | {"marker": law.marker} for name, law in laws.items()}
+    drawn, scatter = table, None
+    if means is not None:
+        deviations = [str(name) for name in means.data_vars if str(name).endswith(SCATTER)]
+        drawn = means.drop_vars(deviations)
+        scatter = means[deviations].rename({name: name.removesuffix(SCATTER) for name in deviations})
+    figures = []
+    for key in json.loads(table.attrs["sweep"]):
+        if drawn.sizes.get(key, 0) > 1:
+            chart = study_figures.key_chart(drawn, scatter, key, looks, names)
+            caption = study_figures.key_caption(drawn, scatter, key)
+            figures.append(PageFigure(f"key-{key}", f"Over {key}", caption, chart, chart_tables(chart)))
+    if band is not None:
+        chart = study_figures.ensemble_chart(band, looks)
+        words = "Contact force over the seeds", str(band.attrs["meaning"])
+        figures.append(PageFigure("ensemble", *words, chart, chart_tables(chart), BAND))
+    return figures
+
+
+# --- what is printed
+
+
+def print_table(table: xarray.Dataset, names: Sequence[str], *, asked: bool) -> None:
     """Print quantities by name, with ± where they are means over seeds.
 
     Unasked, neither what is missing throughout nor what each place on a body has for itself.
     """
-    held = [name for name in names if name in found and (asked or not {*PLACES} & {*found[name].dims})]
-    heading, rows = columns_of(found[held])
-    scatter = [f"{name}{SCATTER}" for name in held if f"{name}{SCATTER}" in found]
-    spread: list[list[object]] = [[""] * len(row) for row in rows]
-    title = "Study"
-    if scatter:
-        names_of = {name: name.removesuffix(SCATTER) for name in scatter}
-        spread = columns_of(found[scatter].rename(names_of))[1]
-        title = (
-            f"Study: mean ± standard deviation over {found.attrs['members']} values of {found.attrs['over']}"
-        )
-    keys = len(axes_of(found[held]))
-    words = [_printed_row(*pair, keys) for pair in zip(rows, spread, strict=True)]
-    heading[keys:] = [each.replace(OVER, "dB(A) over ").replace("_", " ") for each in heading[keys:]]
-    kept = [n for n in range(len(heading)) if asked or any(row[n] != "–" for row in words)]
-    needs = [_width(heading[n], [row[n] for row in words[:MOST_ROWS]]) for n in range(len(heading))]
-    for columns in _side_by_side(needs, kept, keys):
-        shown = [[row[n] for n in columns] for row in words[:MOST_ROWS]]
-        widths = [needs[n] for n in columns]
-        say_table(title, [heading[n] for n in columns], shown, width=WIDTH, widths=widths)
+    shown = [name for name in names if name in table and (asked or not {*PLACES} & {*table[name].dims})]
+    heading, rows = tables.columns_of(table[shown])
+    keys, title = len(tables.axes_of(table[shown])), "Study"
+    cells = [[*map(_short, row)] for row in rows]
+    deviations = {f"{name}{SCATTER}": name for name in shown if f"{name}{SCATTER}" in table}
+    if deviations:
+        members, over = table.attrs["members"], table.attrs["over"]
+        title = f"Study: mean ± standard deviation over {members} values of {over}"
+        scatter = tables.columns_of(table[list(deviations)].rename(deviations))[1]
+        for row, spread in zip(cells, scatter, strict=True):
+            reach = map(_short, spread[keys:])
+            row[keys:] = [
+                f"{word} ± {by}" if by != "–" else word for word, by in zip(row[keys:], reach, strict=True)
+            ]
+    heading[keys:] = [each.replace(tables.OVER, "dB(A) over ").replace("_", " ") for each in heading[keys:]]
+    columns = [n for n in range(len(heading)) if asked or any(row[n] != "–" for row in cells)]
+    needs = [_width(heading[n], [row[n] for row in cells[:MOST_ROWS]]) for n in range(len(heading))]
+    for block in _side_by_side(needs, columns, keys):
+        rows_of_block = [[row[n] for n in block] for row in cells[:MOST_ROWS]]
+        widths = [needs[n] for n in block]
+        say_table(title, [heading[n] for n in block], rows_of_block, width=WIDTH, widths=widths)
     if len(rows) > MOST_ROWS:
         say(f"… and {len(rows) - MOST_ROWS} more rows, in study.csv")
+
+
+def _short(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    return "–" if value != value else f"{value:.4g}"
 
 
 def _width(heading: str, cells: Sequence[str]) -> int:
@@ -281,36 +252,25 @@ def _width(heading: str, cells: Sequence[str]) -> int:
     return min(max(longest, FOLDED), len(heading)) if longest < len(heading) else longest
 
 
-def _side_by_side(needs: Sequence[int], kept: Sequence[int], keys: int) -> Iterator[list[int]]:
+def _side_by_side(needs: Sequence[int], columns: Sequence[int], keys: int) -> Iterator[list[int]]:
     """Columns that one table is wide enough for; what is swept stands in each table."""
-    width = line_width(WIDTH)
-    block = list(kept[:keys])
-    for n in kept[keys:]:
+    width, swept = line_width(WIDTH), list(columns[:keys])
+    block = list(swept)
+    for n in columns[keys:]:
         if len(block) > keys and 1 + sum(3 + needs[each] for each in (*block, n)) > width:
             yield block
-            block = list(kept[:keys])
+            block = list(swept)
         block.append(n)
     yield block
 
 
-def _printed_row(row: Sequence[object], scatter: Sequence[object], keys: int) -> list[str]:
-    """What is swept, and numbers, each with its ± where it has one."""
-    words, reach = ([each if isinstance(each, str) else _short(each) for each in of] for of in (row, scatter))
-    numbers = zip(words[keys:], reach[keys:], strict=True)
-    return [*words[:keys], *(f"{word} ± {by}" if by not in ("", "–") else word for word, by in numbers)]
-
-
-def _short(number: object) -> str:
-    return "–" if number != number else f"{number:.4g}"
-
-
-def _report(found: xarray.Dataset) -> None:
+def _print_messages(table: xarray.Dataset) -> None:
     """Print what members met, each kind of warning and failure once."""
-    count = found["completed"].size
-    for warning in json.loads(found.attrs["warnings"]):
+    count = table["completed"].size
+    for warning in json.loads(table.attrs["warnings"]):
         grade = warning.get("grade", "warning").capitalize()
         say(f"{grade} ({warning['members']} of {count} members): {warning['message']}", err=True)
-    for failure in json.loads(found.attrs["failures"]):
+    for failure in json.loads(table.attrs["failures"]):
         names = failure["members"]
         say(f"Failed ({len(names)} of {count} members): {failure['message']}", err=True, lines=True)
         for name in names[:MOST_NAMED]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from asperity.errors import InputError
 from asperity.files import alone_in, refuse_unwritable
 from asperity.serving.guard import Guard, new_token
 from asperity.serving.routes import Server
+from asperity.terminal import say
 
 HOME = "127.0.0.1"
 ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
@@ -21,8 +22,8 @@ PATIENCE = 3
 """Time that requests have to be answered when the server ends, s."""
 
 
-def serve_folder(folder: Path, port: int, announce: Callable[[str], None]) -> None:
-    """Serve the page, and keep surfaces and runs in a folder.
+def serve_folder(folder: Path, port: int) -> None:
+    """Serve the page until Ctrl-C, and keep surfaces and runs in a folder; say where the page is.
 
     Parameters
     ----------
@@ -30,8 +31,6 @@ def serve_folder(folder: Path, port: int, announce: Callable[[str], None]) -> No
         Where surfaces and runs are kept; those of an earlier time are found again.
     port : int
         Port of this machine; 0 for any that is free.
-    announce : callable
-        Receives the address, with its token, once it can be opened.
 
     Raises
     ------
@@ -50,7 +49,10 @@ def serve_folder(folder: Path, port: int, announce: Callable[[str], None]) -> No
             date_header=False, lifespan="on", proxy_headers=False, ws="none",
             timeout_graceful_shutdown=PATIENCE,
         )  # fmt: skip
-        announce(f"http://{HOME}:{port}/{token}/")
+        say(f"Page:  http://{HOME}:{port}/{token}/")
+        say(f"Runs:  {folder.resolve()}")
+        whose = "Open the address in a browser of this machine; whoever has it may use the page."
+        say(f"{whose} Ctrl-C ends it.", err=True)
         with suppress(KeyboardInterrupt):  # before it listens for signals, or after
             _Ending(config).run(sockets=[listener])
 

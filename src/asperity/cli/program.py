@@ -1,0 +1,207 @@
+"""The program around its commands: errors and exit codes, documents for programs, help with examples."""
+
+from __future__ import annotations
+
+import gc
+import inspect
+import io
+import sys
+import textwrap
+import traceback
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import groupby
+from typing import Any
+
+import click
+
+from asperity import __version__, errors
+from asperity.interrupts import interruptible, was_interrupted
+from asperity.kinds import KINDS
+from asperity.printable import printable
+from asperity.terminal import Manner, change_manner, manner, say, say_document, speaking, standard_streams
+
+FORMAT = 1
+"""Of documents, which ``docs/json.md`` describes: raised where a name or meaning in them changes or goes."""
+FAILED = 3
+INTERRUPTED = 130
+_INTERRUPTED = "interrupted; run the same command again to continue"
+COLLECT_AFTER = 1_000_000
+"""New objects until unused ones are sought: imports and figures make many, and few are ever unused."""
+_PARTS = {
+    errors.CaseError: ("errors",),
+    errors.InputError: ("what", "received", "allowed", "remedy"),
+    errors.ComputationError: ("what", "remedy"),
+}
+"""What a document says of an error beside its message; the first class that fits."""
+
+
+class Command(click.Command):
+    """A command whose help ends with the examples of its docstring, where KIND is the first kind of case.
+
+    Parameters
+    ----------
+    section : str
+        Under which the program lists it.
+    document : bool
+        Whether it has a form for programs, with ``--json``: it then returns what stands in the document.
+    long_work : bool
+        Whether it can be told to say less or more of what it does.
+    """
+
+    def __init__(
+        self,
+        *arguments: Any,
+        section: str = "More",
+        document: bool = True,
+        long_work: bool = False,
+        **settings: Any,
+    ) -> None:
+        super().__init__(*arguments, **settings)
+        self.section = section
+        text = inspect.cleandoc(self.help or "").replace("KINDS", ", ".join(KINDS))
+        text = text.replace("KIND", next(iter(KINDS)))
+        self.help, _, self.examples = text.partition("\n\nExamples\n--------\n")
+        if document:
+            words = "Print one JSON document, as docs/json.md describes, for programs."
+            self.params.append(_manner_option("--json", "document", help=words))
+        if long_work:
+            quiet = "Show no progress and no remarks; warnings and errors stay."
+            verbose = "Show what each piece of the work took, and how long the compiler."
+            self.params.append(_manner_option("-q", "--quiet", help=quiet))
+            self.params.append(_manner_option("-v", "--verbose", help=verbose))
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write command lines that can be copied, each under what it does."""
+        if self.examples:
+            formatter.write(f"\nExamples:\n{textwrap.indent(self.examples, '  ')}\n")
+
+
+def _manner_option(*names: str, help: str) -> click.Option:
+    """An option that changes how the program speaks, and which its command need not know."""
+
+    def change(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+        if wanted:
+            change_manner(**{str(option.name): True})
+
+    return click.Option(names, is_flag=True, expose_value=False, callback=change, help=help)
+
+
+class Program(Command, click.Group):
+    """A group of commands that turns every error into one clear message and an exit code.
+
+    0 done; 2 the input is wrong; 3 the computation failed; 130 interrupted. With ``--json`` what a command
+    returns, or why it failed, is one document on standard output.
+    """
+
+    command_class = Command
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **extra: Any,
+    ) -> Any:
+        """Run the program, with standard streams that need no reader."""
+        args = sys.argv[1:] if args is None else list(args)
+        name = next((word for word in args if not word.startswith("-")), "")
+        gc.set_threshold(COLLECT_AFTER)
+        wanted = Manner(document="--json" in args)  # known before anything can be wrong
+        with standard_streams(), speaking(wanted), interruptible(), _warnings_in_lines() as warned:
+            try:
+                content = super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
+                code = content if isinstance(content, int) else 0
+                if isinstance(content, Mapping) and manner().document:
+                    met = [{"grade": "warning", "message": message} for message in warned]
+                    files = {what: path.resolve() for what, path in content.get("files", {}).items()}
+                    told = {"warnings": [*content.get("warnings", ()), *met]} | (
+                        {"files": files} if files else {}
+                    )
+                    _say_document(name, code, {**content, **told})
+            except (click.ClickException, click.Abort, errors.ComputationError) as error:
+                code = _failed(error, name)
+        if standalone_mode:
+            sys.exit(code)
+        return code
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; click would end with some errors itself, or write a line of its own."""
+        try:
+            return super().invoke(ctx)
+        except (click.ClickException, click.exceptions.Exit):
+            raise
+        except (Exception, KeyboardInterrupt) as error:
+            ctx.exit(_failed(error, str(ctx.invoked_subcommand), debug=ctx.params["debug"]))
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands in the order of the work, section by section."""
+        width = max(map(len, self.commands))
+        listed = [command for command in self.commands.values() if isinstance(command, Command)]
+        for title, commands in groupby(listed, lambda command: command.section):
+            with formatter.section(title):
+                rows = [(str(each.name).ljust(width), each.get_short_help_str(100)) for each in commands]
+                formatter.write_dl(rows)
+
+
+def _failed(error: BaseException, command: str, *, debug: bool = False) -> int:
+    """Say what went wrong, in words and, if one is wanted, in a document; return the exit code."""
+    if isinstance(error, click.ClickException):
+        usage = io.StringIO()
+        error.show(usage)
+        told, message, code = usage.getvalue(), error.format_message(), error.exit_code
+    elif isinstance(error, KeyboardInterrupt | click.Abort) or was_interrupted():
+        told = message = _INTERRUPTED  # even where an import has made another error of it
+        code = INTERRUPTED
+    else:
+        message, code = _outcome(error)
+        told = f"Error: {message}"
+        if debug:
+            say(traceback.format_exc(), err=True, lines=True)
+    say(told, err=True, lines=True)
+    if manner().document:
+        kind = "UsageError" if isinstance(error, click.ClickException) else "ProgramError"
+        kind = type(error).__name__ if isinstance(error, errors.AsperityError) else kind
+        names = next((names for known, names in _PARTS.items() if isinstance(error, known)), ())
+        parts = {name: getattr(error, name) for name in names}
+        if "received" in parts:
+            parts["received"] = str(parts["received"])
+        try:
+            _say_document(command, code, {"error": {"message": message, "kind": kind, **parts}})
+        except errors.ComputationError as unheard:
+            return _failed(unheard, command)
+    return code
+
+
+def _outcome(error: BaseException) -> tuple[str, int]:
+    """Message and exit code of an error that is neither one of use nor an interrupt."""
+    if isinstance(error, errors.AsperityError):
+        return str(error), error.exit_code
+    if isinstance(error, MemoryError):
+        return errors.TOO_MUCH_MEMORY, FAILED
+    what = printable(f"the program failed with {type(error).__name__}: {error}")
+    return f"{what}. Try: asperity --debug …, which shows where.", FAILED
+
+
+def _say_document(command: str, code: int, content: Mapping[str, Any]) -> None:
+    say_document(
+        {"format": FORMAT, "asperity": __version__, "command": command, "exit_code": code, **content}
+    )
+
+
+@contextmanager
+def _warnings_in_lines() -> Iterator[dict[str, None]]:
+    """Print each warning once, on one line; gives those that were printed."""
+    printed: dict[str, None] = {}
+
+    def show(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if str(message) not in printed and not issubclass(category, DeprecationWarning | ImportWarning):
+            printed[str(message)] = None
+            say(f"Warning: {message}", err=True)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        warnings.showwarning = show
+        yield printed

@@ -1,0 +1,142 @@
+"""What is made of finished runs: reports, figures, comparisons, sounds; and what is kept between runs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.files import amount, discard, left_overs, refuse_unwritable, together
+from asperity.kinds import comparing
+from asperity.kinds.report import PAGE, SUMMARY, figures_of, write_page, write_summary
+from asperity.reporting.comparison import compared
+from asperity.reporting.comparison_page import listed_keys, summary
+from asperity.reporting.data import signed
+from asperity.reporting.figure import chosen_figures, write_figures
+from asperity.reporting.sound import TABLE, listen
+from asperity.results import read_result
+from asperity.store import Store, is_private, kernel_folders
+from asperity.terminal import say, say_files, say_table
+
+
+def _folder_beside(run: Path, folder: Path | None, name: str = "") -> Path:
+    """A folder of one's choice, or by default one of this name in that of a run."""
+    return folder or (run if run.is_dir() else run.parent) / name
+
+
+def report_again(run: Path, folder: Path | None, *, summary: bool) -> dict[str, Any]:
+    """Write the page of a run, or its summary alone; by default beside it."""
+    target = _folder_beside(run, folder)
+    refuse_unwritable(target, "folder of the report", "Choose another folder with -o.")
+    tree = read_result(run)
+    what, name, write = ("summary", SUMMARY, write_summary) if summary else ("report", PAGE, write_page)
+    with together(target, last=name) as new:
+        write(tree, new / name)
+    files = {what: target / name}
+    say_files(files)
+    return {"run": run.resolve(), "files": files}
+
+
+def draw_figures(run: Path, folder: Path | None, format: str, names: Sequence[str]) -> dict[str, Any]:
+    """Draw figures of a run, by default into ``figures`` beside it, all or none."""
+    target = _folder_beside(run, folder, "figures")
+    refuse_unwritable(target, "folder of the figures", "Choose another folder with -o.")
+    tree = read_result(run)
+    drawn = chosen_figures(figures_of(tree), names)
+    with together(target, last="") as new:
+        files = [target / path.name for path in write_figures(tree, drawn, new, format)]
+    say(f"Figures: {target.absolute()}, {', '.join(path.name for path in files) or 'none'}")
+    return {
+        "run": run.resolve(),
+        "file_format": format,
+        "titles": {figure.name: figure.title for figure in drawn},
+        "files": {figure.name: path for figure, path in zip(drawn, files, strict=True)},
+    }
+
+
+def write_sounds(run: Path, folder: Path | None, what: str | None, *, matched: bool) -> dict[str, Any]:
+    """Write the sounds of a run, by default into ``sounds`` beside it."""
+    target = _folder_beside(run, folder, "sounds")
+    files = listen(read_result(run), target, what=what, matched=matched)
+    scale = "all as loud as each other" if matched else "all on one scale"
+    say(f"Sounds: {target.absolute()}, {len(files)} files, {scale}; {TABLE} says which is which")
+    return {"run": run.resolve(), "matched": matched, "files": {path.name: path for path in files}}
+
+
+def compare_runs(paths: Sequence[Path], target: Path, laws: Sequence[str]) -> dict[str, Any]:
+    """Compare runs into a page and a table, and say in short what differs."""
+    folder = target.parent if target.suffix.lower() == ".html" else target
+    refuse_unwritable(folder, "folder of the comparison", "Choose another folder with -o.")
+    runs = comparing.named_runs(paths)
+    entries = comparing.compared_levels(runs)
+    table = compared(runs, entries, laws)
+    levels = comparing.shown_levels(table, entries)
+    names = [run.name for run in runs]
+    keys = [
+        [item["key"], *("–" if v is None else str(v) for v in item["values"])] for item in listed_keys(table)
+    ]
+    if keys:
+        say_table("Keys that differ", ["key", *names], keys, width=120)
+    changes = np.stack([table[f"{name}_a_difference"].values for name in levels], axis=-1)  # run, law, level
+    rows = [
+        [names[r], str(law), *map(signed, changes[r, k])]
+        for r in range(1, len(names))
+        for k, law in enumerate(table["law"].values)
+        if np.isfinite(changes[r, k]).any()
+    ]
+    say_table(f"A-weighted, less {names[0]}, in dB", ["run", "law", *levels.values()], rows, width=120)
+    say(sentence := summary(runs, table, levels))
+    page, numbers = comparing.write_comparison(runs, table, levels, target)
+    files = {"page": page, "table": numbers}
+    say_files(files)
+    columns = {
+        "level": "",
+        "difference": "_difference",
+        "a_weighted": "_a",
+        "a_weighted_difference": "_a_difference",
+    }
+    return {
+        "runs": [{"name": run.name, "path": path.resolve()} for run, path in zip(runs, paths, strict=True)],
+        "summary": sentence,
+        "cases": json.loads(table.attrs["cases"]),
+        "laws": table["law"].values,
+        "bands": table["band"].values if "band" in table else [],
+        "levels": {
+            name: {"meaning": title, "units": table[name].attrs["units"]}
+            | {column: table[f"{name}{ending}"].values for column, ending in columns.items()}
+            for name, title in levels.items()
+        },
+        "files": files,
+    }
+
+
+def show_cache(*, clear: bool = False) -> dict[str, Any]:
+    """Print what is kept, how much it is and where; delete it if asked, but for what another run writes."""
+    store = Store()
+    kept = [("results", store.root, store.files())]
+    left = {store.root: left_overs(store.root)}
+    for folder in kernel_folders():
+        versions: list[Path] = []
+        with suppress(OSError):  # a name that is too long
+            versions = [place for place in folder.glob("[0-9a-f]" * 16) if is_private(place)]
+        kernels = [file for place in versions for file in place.iterdir() if not file.name.startswith(".")]
+        left[folder] = [part for place in versions for part in left_overs(place)]
+        kept += [("compiled functions", folder, sorted(kernels))] if kernels else []
+    kept += [
+        ("files left by interrupted runs", folder, sorted(parts)) for folder, parts in left.items() if parts
+    ]
+    told = []
+    for what, folder, files in kept:
+        size = 0
+        for file in files:
+            with suppress(OSError):
+                size += file.stat().st_size
+            if clear:
+                discard(file)
+        say(f"{folder}: {len(files)} {what}{' deleted' if clear else ''}, {amount(size)}")
+        told.append({"what": what, "folder": folder, "count": len(files), "bytes": size})
+    return {"kept": told, "deleted": clear}

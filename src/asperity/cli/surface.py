@@ -1,0 +1,315 @@
+"""What a measured file holds, in words, as numbers and as a picture: size, statistics, spectra and limits."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import asdict, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from asperity.arguments import Array, shown
+from asperity.config import recipe as recipes
+from asperity.config.parsing import Origin, validated
+from asperity.errors import InputError
+from asperity.files import write_bytes
+from asperity.reporting.figure import write_chart, write_columns
+from asperity.reporting.texture_figures import lines_chart, surface_chart
+from asperity.spectra import nominal
+from asperity.surfaces.cleaning import FILLED_SHARE_WARNED, nearly_complete
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.homogeneity import TILES, homogeneity
+from asperity.surfaces.levelling import level
+from asperity.surfaces.likeness import FLAT
+from asperity.surfaces.measured_lines import ThirdOctaves, full_lines, lines_of, third_octaves
+from asperity.surfaces.readers.hints import on_command_line, spelled
+from asperity.surfaces.spectra import psd_1d, psd_radial
+from asperity.surfaces.statistics import (
+    Statistic,
+    areal_statistics,
+    line_statistics,
+    material_ratio_curve,
+    profile_statistics,
+)
+from asperity.surfaces.steps import stepped
+from asperity.terminal import say
+from asperity.units import quantity
+
+Surfaces = Sequence[HeightMap | Profile]
+Spectra = dict[str, tuple[Array, Array]]
+"""Wavenumbers, cycles/m, above zero, and one-sided PSD, m³, by the direction of the lines."""
+AREAL = "areal"
+FORMATS = (".png", ".pdf", ".svg")
+
+
+def show_surface(
+    file: Path,
+    picture: Path | None,
+    *,
+    psd: bool = False,
+    recipe: Path | None = None,
+    store: Path | None = None,
+    **options: Any,
+) -> dict[str, Any]:
+    """Print what is in a measured file, and draw it; return what a program wants to know.
+
+    The ending of `picture` names its format; by default its name is made of those of file, array and map, in
+    the working folder. `psd` says whether the spectra go to a CSV file beside the picture. Options are the
+    keys of a recipe as they are typed, lengths with their units, angles with theirs or in degrees; `recipe`
+    is a file with others, `store` the one to write them all to.
+    """
+    typed = _typed(recipe, options)
+    steps = validated(recipes.Recipe, typed, Origin("options"))
+    array, index = steps.array, steps.index
+    if picture is None:
+        chosen = [re.sub(r"[^\w.]+", "-", str(part)) for part in (array, index) if part is not None]
+        picture = Path("-".join([file.stem, *chosen, "surface.png"]))
+    if picture.suffix.lower() not in FORMATS:
+        raise InputError("picture", f"'{picture}'", f"a name that ends in {', '.join(FORMATS)}")
+    if picture.resolve() == file.resolve():
+        raise InputError("picture", f"'{picture}'", "another name than that of the measured file")
+    with spelled(on_command_line):
+        surfaces: Surfaces = recipes.read_measured(file, **steps.hints)
+        lines = [stepped(line, **steps.steps) for line in _side_by_side(surfaces, steps.lines)]
+        surfaces = surfaces if lines else [stepped(surface, **steps.steps) for surface in surfaces]
+    if store is not None:
+        write_bytes(store, recipes.recipe_text(typed).encode())
+        say(f"Recipe: {store.resolve()}")
+    title = ", ".join(filter(None, [file.name, array, "" if index is None else f"map {index}"]))
+    show = partial(_show_lines, lines) if lines else partial(_show_first, surfaces)
+    contents, spectra = show(title, picture, steps)
+    say(f"Picture: {picture.resolve()}")
+    files = {"picture": picture}
+    if psd:
+        files["psd"] = _write_spectra(spectra, picture)
+        say(f"Spectra: {files['psd'].resolve()}")
+    first = surfaces[0]
+    return {
+        "file": file.resolve(),
+        "array": array,
+        "index": index,
+        "count": len(surfaces),
+        "shape": first.shape,
+        "size": np.atleast_1d(first.size),
+        "spacing": np.atleast_1d(first.spacing),
+        "missing_share": max(surface.missing_share for surface in surfaces),
+        **contents,
+        "files": files,
+    }
+
+
+def _typed(recipe: Path | None, options: dict[str, Any]) -> dict[str, Any]:
+    """Keys of a recipe from a file with the options that are given beside it, or these alone."""
+    given = {name: value for name, value in options.items() if value is not None}
+    given = {name: value for name, value in given.items() if value is not False or name == "lines"}
+    if "direction" in given:
+        given["direction"] = _angle(given["direction"])
+    if "crop" in given:
+        given["crop"] = [part.strip() for part in given["crop"].split(",")]
+    if recipe is None:
+        return given
+    recipes.read_recipe(recipe)
+    return recipes.typed_recipe(recipe) | given
+
+
+def _angle(text: str) -> str:
+    """An angle with its unit; a bare number is in degrees."""
+    for angle in (text, f"{text} deg"):
+        with suppress(InputError):
+            if math.isfinite(quantity(angle, "rad")):
+                return angle
+    raise InputError("--direction", shown(text), "an angle, as 30 (degrees) or '0.5 rad'")
+
+
+def _side_by_side(surfaces: Surfaces, wanted: bool | None) -> tuple[Profile, ...]:
+    """Lines side by side, where the user or the shape of an array says so; else none."""
+    first = surfaces[0]
+    if len(surfaces) > 1 or not isinstance(first, HeightMap):
+        return ()
+    return lines_of(first) if (first.holds_lines if wanted is None else wanted) else ()
+
+
+# --- maps and lines
+
+
+def _show_first(
+    surfaces: Surfaces, title: str, picture: Path, steps: recipes.Recipe
+) -> tuple[dict[str, Any], Spectra]:
+    """Print what is in the first of maps, or in a line, and draw it; return numbers and spectra."""
+    say(f"{title}: {described(surfaces)}")
+    first = surfaces[0].levelled()
+    if len(surfaces) > 1:
+        say(f"Statistics of the first of {len(surfaces)} maps; choose another one with --index.")
+        title += f", the first of {len(surfaces)} maps"
+    band, section = _filtered(first, steps)
+    if isinstance(first, HeightMap):
+        items, spacing = areal_statistics(first, band), first.spacing
+    else:
+        items, spacing = profile_statistics(first, band, section), (first.spacing, first.spacing)
+    say(f"Levelled; wavelengths {_band(items[0])}:")
+    for item in items:
+        say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning}")
+    homogeneous = _homogeneity(first)
+    spectra = _spectra_of(first)
+    octaves = _third_octaves([first] if isinstance(first, Profile) else [])
+    write_chart(surface_chart(first.heights, spacing, spectra, octaves), title, picture)
+    if isinstance(first, HeightMap) and spectra:
+        spectra[AREAL] = psd_radial(nearly_complete(first) or first)
+    told = {"statistics": [asdict(item) for item in items], "homogeneity": homogeneous}
+    return told | _numbers(first.heights, octaves), spectra
+
+
+def _show_lines(
+    lines: list[Profile], title: str, picture: Path, steps: recipes.Recipe
+) -> tuple[dict[str, Any], Spectra]:
+    """Print what is in lines side by side, and draw them; return numbers and spectra."""
+    say(f"{title}: {described(lines, side_by_side=True)}")
+    if steps.lines is None:
+        say("Taken for lines measured side by side, by its shape; --map takes it for a map.")
+    levelled = [line.levelled() for line in lines]
+    items = line_statistics(levelled, *_filtered(levelled[0], steps))
+    say(f"Each line levelled; wavelengths {_band(items[0][0])}; mean (lowest to highest of a line):")
+    for item, *ends in items:
+        spread = " to ".join(_scaled(replace(item, value=value)) for value in ends)
+        say(f"  {item.symbol:4} {_scaled(item):>12}  {item.meaning} ({spread})")
+    each = [psd_1d(line) for line in full_lines(levelled)]
+    mean = np.mean([density for _, density in each], axis=0) if each else None
+    spectra = {} if mean is None else {"along the lines, mean": (each[0][0][1:], mean[1:])}
+    octaves = _third_octaves(levelled)
+    heights = [line.heights for line in levelled]
+    write_chart(lines_chart(heights, lines[0].spacing, spectra, octaves), title, picture)
+    rows = [asdict(item) | {"lowest": low, "highest": high} for item, low, high in items]
+    told = {"statistics": rows, "homogeneity": None}
+    return told | _numbers(np.concatenate(heights), octaves), spectra
+
+
+def _numbers(heights: Array, octaves: ThirdOctaves | None) -> dict[str, Any]:
+    """The material ratio curve, shares of points and heights, m, that they reach; and one-third octaves."""
+    names = ("wavelength", "limit", "measured", "processed")
+    bands = octaves and {name: getattr(octaves, name)[octaves.limited] for name in names}
+    curve = dict(zip(("ratio", "height"), material_ratio_curve(heights), strict=True))
+    return {"material_ratio": curve, "third_octaves": bands}
+
+
+def _spectra_of(surface: HeightMap | Profile) -> Spectra:
+    """Spectra of levelled heights along x, and of a map along y; none where more than 5 % are missing."""
+    whole: HeightMap | Profile | None
+    if isinstance(surface, Profile):
+        names, whole = ["along the line"], nearly_complete(surface)
+    else:
+        names, whole = ["along x", "along y"], nearly_complete(surface)
+    if whole is None:
+        return {}
+    spectra = {name: psd_1d(whole, axis) for axis, name in enumerate(names)}
+    return {name: (wavenumber[1:], density[1:]) for name, (wavenumber, density) in spectra.items()}
+
+
+def _write_spectra(spectra: Spectra, picture: Path) -> Path:
+    """Write spectra to a CSV file beside the picture; they need complete heights."""
+    if not spectra:
+        received = "more than 5 % of points without a height"
+        raise InputError("--psd", received, "nearly complete heights", "Fill them with --fill.")
+    columns = {}
+    longest = max(len(wavenumber) for wavenumber, _ in spectra.values())
+    for name, pair in spectra.items():
+        titles = (f"wavenumber {name} [1/m]", f"PSD {name} [m³]")
+        if name == AREAL:
+            titles = ("angular wavenumber [rad/m]", "areal PSD, mean over directions [m⁴]")
+        for title, values in zip(titles, pair, strict=True):
+            columns[title] = np.concatenate([values, np.full(longest - len(values), np.nan)])
+    name = f"{picture.stem.removesuffix('-surface')}-psd.csv"
+    return write_columns(columns, picture.with_name(name))
+
+
+# --- in words
+
+
+def described(surfaces: Surfaces, *, side_by_side: bool = False) -> str:
+    """Say in one line what was read: a map or a line, several maps, or lines side by side."""
+    first, shares = surfaces[0], [surface.missing_share for surface in surfaces]
+    sizes, spacings = np.atleast_1d(first.size), np.atleast_1d(first.spacing)
+    what, missing = "map" if len(sizes) == 2 else "line", max(shares)
+    many = f"{len(surfaces)} {what}s, each" if len(surfaces) > 1 else f"a {what} of"
+    if side_by_side:
+        many, missing = f"{len(surfaces)} parallel lines, each of", sum(shares) / len(shares)
+    points = " × ".join(map(str, first.shape))
+    extent = f"{_lengths(sizes)}, {_lengths(spacings)} apart"
+    return f"{many} {points} points, {extent}, {missing:.2%} without a height"
+
+
+def _lengths(metres: Iterable[float]) -> str:
+    """Lengths in the one unit that suits the largest: ``"0.8 × 0.4 mm"``."""
+    lengths = list(metres)
+    units = ((1.0, 1.0, "m"), (0.05e-3, 1e3, "mm"), (0.0, 1e6, "µm"))
+    scale, unit = next((scale, unit) for least, scale, unit in units if max(lengths) >= least)
+    return " × ".join(f"{length * scale:.4g}" for length in lengths) + f" {unit}"
+
+
+def _filtered(
+    surface: HeightMap | Profile, steps: recipes.Recipe
+) -> tuple[tuple[float, float] | None, float | None]:
+    """Shortest and longest wavelength that filters left, m, and the section length of a line."""
+    if steps.longest is None and steps.shortest is None:
+        return None, None
+    shortest = steps.shortest or 2.0 * float(np.min(surface.spacing))
+    return (shortest, steps.longest or float(np.max(surface.size))), steps.longest
+
+
+def _band(item: Statistic) -> str:
+    return " to ".join(_lengths([float(f"{wavelength:.3g}")]) for wavelength in item.bandwidth)
+
+
+def _scaled(item: Statistic) -> str:
+    if not math.isfinite(item.value):
+        return "–"
+    if item.unit == "rad":
+        return f"{math.degrees(item.value):.0f}°"
+    return f"{item.value * 1e6:.4g} µm" if item.unit == "m" else f"{item.value:.4g}"
+
+
+def _homogeneity(surface: HeightMap | Profile) -> dict[str, Any] | None:
+    """Print whether the texture of a map is the same everywhere; return its numbers, none of a line."""
+    if not isinstance(surface, HeightMap) or min(surface.shape) < 2 * max(TILES):
+        return None
+    whole, what = nearly_complete(surface), "Homogeneity, Std and spectra are those of"
+    if whole is None:
+        share = f"{1.0 - FILLED_SHARE_WARNED:.0%}"
+        say(f"{what} a map with at least {share} of its points: --fill fills missing points.")
+        return None
+    if np.ptp(level(whole).heights) <= FLAT:
+        say("Homogeneity: a plane has no texture to be tested")
+        return None
+    found = homogeneity(whole)
+    tiles = " × ".join(map(str, found.tile_rms.shape))
+    verdict = "the same everywhere, as far as chance tells"
+    if not found.homogeneous:
+        verdict = "not the same everywhere: a piece of it does not stand for another"
+    say(
+        f"Homogeneity: mean squares of {tiles} tiles vary by {100 * found.variation:.0f} %, of stationary "
+        f"textures like it by {100 * found.expected:.0f} % (p = {found.p_value:.2g}): {verdict}"
+    )
+    if surface.missing_share:
+        say(f"{what} the map with its missing points, {surface.missing_share:.2g} of all, interpolated.")
+    names = ("variation", "expected", "p_value")
+    return {name: getattr(found, name) for name in names} | {"homogeneous": bool(found.homogeneous)}
+
+
+def _third_octaves(lines: list[Profile]) -> ThirdOctaves | None:
+    """One-third-octave levels of a rail's or wheel's lines and the limit, printed band by band."""
+    found = third_octaves(lines) if lines else None
+    if found is None:
+        return None
+    say("One-third octaves, dB re 1 µm, and the limit of EN ISO 3095:2013 for rails; by EN 15610: without")
+    say("spikes, rolled over with a circle (what was processed before counts as measured):")
+    say(f"  {'wavelength':>10} {'limit':>7} {'as measured':>17} {'by EN 15610':>17}")
+    bands = zip(found.wavelength, found.limit, found.measured, found.processed, strict=True)
+    for wavelength, limit, *levels in bands:
+        if math.isfinite(limit):
+            judged = " ".join(f"{value:10.1f} {'pass' if value <= limit else 'FAIL':>6}" for value in levels)
+            say(f"  {f'{nominal(1e3 * wavelength):g} mm':>10} {limit:7.1f} {judged}")
+    return found
