@@ -89,7 +89,7 @@ def compile_case(kind: str, folder: Path, *, ahead: bool) -> None:
     """Run a default case, or compile its kernels ahead only, from nothing kept, in this process."""
     os.environ |= {"ASPERITY_KERNELS": str(folder / "kernels"), "ASPERITY_CACHE": str(folder / "cache")}
     tempfile.tempdir = str(folder)  # kernels are looked for there, too
-    from asperity.kinds.cases import as_case, demo_case, template
+    from asperity.case.cases import as_case, demo_case, template
     from asperity.running import run
     from asperity.scenarios import compiling
 

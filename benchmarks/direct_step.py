@@ -58,7 +58,7 @@ Timed = dict[str, float]
 
 def rolled(name: str) -> tuple[Any, Callable[[Clock], Any]]:
     """Prepare a case; its law, and what rolls it."""
-    from asperity.kinds.cases import parse_case
+    from asperity.case.cases import parse_case
     from asperity.rolling.roll import roll_bodies
     from asperity.running import prepare_case
     from asperity.scenes.compute import compute

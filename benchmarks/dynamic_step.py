@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from step_clock import Clock
 
+from asperity.case.cases import parse_case
 from asperity.errors import PhysicsWarning
-from asperity.kinds.cases import parse_case
 from asperity.laws import Law
 from asperity.progress import progress_bar
 from asperity.rolling.roll import RolledBodies, roll_bodies

@@ -18,13 +18,14 @@ from scipy.integrate import quad_vec
 from scipy.optimize import brentq
 from scipy.special import j0
 
-from asperity.config.case import Case
+from asperity.case.cases import parse_case
+from asperity.case.scene import Case
 from asperity.errors import PhysicsWarning
-from asperity.kinds.cases import kind_of, parse_case
 from asperity.laws.layout import force
 from asperity.progress import Progress
 from asperity.reference.law_accuracy import HIGH, LOW
 from asperity.running import prepare_case
+from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.law_choice import place_of
 from asperity.scenes.compute import Computed, compute
 from asperity.spectra import band_levels, psd
@@ -74,7 +75,7 @@ class Point:
 def smooth_contact(kind: str, load: float) -> tuple[float, float]:
     """Approach and semi-axis in the rolling direction of smooth bodies under a load, N; m."""
     case = parse_case(f'kind = "{kind}"\n[surface]\nrms = "1 um"')
-    hertz = kind_of(case).geometry_of(case).hertz
+    hertz = geometry_of(case).hertz
     return hertz.approach(load), hertz.semi_axes(hertz.approach(load))[0]
 
 
@@ -204,7 +205,7 @@ def rolled(case: Case, direct: Mapping[str, NDArray[Any]], progress: Progress) -
 def place_on_map(point: Point, seed: int) -> dict[str, float]:
     """Place of one path of a point on the map."""
     prepared = prepare_case(case_of(point, seed, LAWS))
-    transfer = prepared.bodies.square_transfer
+    transfer = prepared.scene.square_transfer
     place = place_of(prepared.textures.path, prepared.shape, prepared.case.speed, transfer)
     assert place is not None
     return asdict(place)
@@ -220,7 +221,7 @@ def compute_point(point: Point, first_seed: int, folder: Path, progress: Progres
         with warnings.catch_warnings(record=True) as messages:
             warnings.simplefilter("always", PhysicsWarning)
             direct = solved(point, seed, folder, progress)
-            with practice(kind_of(bare).geometry_of(bare), DIAMETER[point.kind]) as filters:
+            with practice(geometry_of(bare), DIAMETER[point.kind]) as filters:
                 paths.append(rolled(case_of(point, seed, (*names, *filters)), direct, progress))
         caught.update(message.category.__name__ for message in messages)
     return {

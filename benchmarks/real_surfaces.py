@@ -18,9 +18,9 @@ import numpy as np
 
 import asperity
 from asperity import HeightMap, read_surface
+from asperity.case.cases import as_case
 from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
-from asperity.kinds.cases import as_case
 from asperity.reduction.stiffness import patches
 from asperity.reduction.texture import punch_weights
 from asperity.reporting.chart import Axis, Chart, Field, Panel

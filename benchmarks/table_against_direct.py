@@ -23,9 +23,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from asperity.case.ball_on_beam import BallOnBeam
+from asperity.case.cases import parse_case
 from asperity.errors import PhysicsWarning
-from asperity.kinds.ball_on_beam.case import BallOnBeam
-from asperity.kinds.cases import parse_case
 from asperity.progress import progress_bar
 from asperity.running import prepare_case
 from asperity.scenes.compute import Computed, compute

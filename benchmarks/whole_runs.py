@@ -34,7 +34,7 @@ import json, sys, time, warnings
 clock = [time.perf_counter()]
 def lap(): clock.append(time.perf_counter())
 warnings.simplefilter("ignore")
-from asperity.kinds.cases import load_case
+from asperity.case.cases import load_case
 case = load_case("wheel.toml")
 from asperity.running import prepare_case, run
 lap()

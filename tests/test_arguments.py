@@ -190,7 +190,7 @@ KEYS = {
 
 @pytest.mark.usefixtures("own_cache")
 def test_a_mapping_of_keys_is_run_as_its_toml_text():
-    from asperity.kinds.cases import parse_case
+    from asperity.case.cases import parse_case
 
     result = asperity.run(KEYS)
     again = asperity.run(parse_case(result.attrs["case"]))
@@ -209,7 +209,7 @@ def test_a_study_of_a_mapping():
 
 def test_a_number_in_a_mapping_is_in_si_units():
     """From Python a number is metres; in a file it has to say so."""
-    from asperity.kinds.cases import as_case, parse_case
+    from asperity.case.cases import as_case, parse_case
 
     assert as_case({"kind": "ball-on-beam", "surface": {"rms": 5e-7}}).surface.rms == 5e-7
     with pytest.raises(InputError, match=r"surface.rms: received 5e-07"):

@@ -92,7 +92,6 @@ def test_files_that_contributors_are_sent_to_are_there():
         package,
         package / "laws",
         package / "surfaces",
-        package / "kinds/ball_on_beam",
         ROOT / ".github/workflows",
     ]
     names = re.findall(r"`([\w./]+(?:\.py|\.md|\.yml|/)|\.ci/\w+)`", text("CONTRIBUTING.md"))

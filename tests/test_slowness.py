@@ -46,6 +46,6 @@ def test_a_run_is_told_apart_by_its_pieces():
 
 
 def test_its_cases_are_cases():
-    from asperity.kinds.cases import as_case
+    from asperity.case.cases import as_case
 
     assert {as_case(case).kind for case in CASES.values()} == {"ball-on-beam", "wheel-on-rail"}

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import click
 
+from asperity.case import PRESETS
+from asperity.case.cases import template
 from asperity.cli import main
-from asperity.kinds import KINDS
-from asperity.kinds.cases import template
 from asperity.laws import Need, names, spec_of
 
 DOCS = Path(__file__).parents[1]
@@ -169,7 +169,7 @@ def write(app: object) -> None:
     """Write all pages whose text has changed."""
     pages = {f"{name}.md": text for name, text in copied()}
     pages["commands.md"] = commands()
-    pages |= {f"keys-{kind}.md": keys_of(kind) for kind in KINDS}
+    pages |= {f"keys-{kind}.md": keys_of(kind) for kind in PRESETS}
     pages |= {"api.rst": api(), "parts/laws.md": laws(), "parts/conformance.md": agreement()}
     (WRITTEN / "parts").mkdir(parents=True, exist_ok=True)
     for name, text in pages.items():

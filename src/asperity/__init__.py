@@ -38,10 +38,10 @@ _HOME = {
 """Module of each public name; the cases of each kind come beside them."""
 
 
-def _cases() -> dict[str, Any]:
-    """Kinds by the classes of their cases, the words of their names joined."""
-    kinds = importlib.import_module("asperity.kinds").KINDS
-    return {name.title().replace("-", ""): kind for name, kind in kinds.items()}
+def _cases() -> dict[str, str]:
+    """Kinds of case by the classes of their cases."""
+    presets = importlib.import_module("asperity.case").PRESETS
+    return {place.rpartition(".")[2]: kind for kind, place in presets.items()}
 
 
 def __getattr__(name: str) -> Any:
@@ -53,7 +53,7 @@ def __getattr__(name: str) -> Any:
         return module if _HOME[name] == name else getattr(module, name)
     if name.startswith("_") or name not in (cases := _cases()):
         raise AttributeError(f"module 'asperity' has no attribute {name!r}")
-    return cases[name].case
+    return importlib.import_module("asperity.case.cases").case_class(cases[name])
 
 
 def __dir__() -> list[str]:

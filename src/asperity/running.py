@@ -11,7 +11,7 @@ from asperity.arguments import shown
 from asperity.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    from asperity.config.case import Case
+    from asperity.case.scene import Case
     from asperity.kinds.notebook import Result
     from asperity.progress import Progress
     from asperity.scenarios.preparing import PreparedCase
@@ -62,11 +62,12 @@ def run(
     >>> asperity.run(case.with_(speed=2.0)).attrs["seed"]  # a case does not change: with_ makes another one
     1
     """
+    from asperity.case.cases import as_case
     from asperity.errors import PhysicsWarning
-    from asperity.kinds.cases import as_case
     from asperity.kinds.notebook import Result
     from asperity.progress import shown_progress
     from asperity.scenarios.preparing import PreparedCase
+    from asperity.scenes.result import computed_result
     from asperity.threads import one_thread_in_linear_algebra
 
     loaded = case if isinstance(case, PreparedCase) else as_case(case)
@@ -81,7 +82,7 @@ def run(
             warnings.simplefilter("always", PhysicsWarning)
             prepared = loaded if isinstance(loaded, PreparedCase) else prepare_case(loaded)
             caught += prepared.caught
-            result = prepared.kind.computed(prepared, told, caught, brief=brief)
+            result = computed_result(prepared, told, caught, brief=brief)
             if converge:
                 from asperity.convergence.running import with_convergence
 
@@ -132,7 +133,6 @@ def open_result(path: str | os.PathLike[str]) -> Result:
 
 def prepare_case(case: Case, source: str = "case") -> PreparedCase:
     """Lay a case of any kind ready to be run or announced; messages call it `source`."""
-    from asperity.kinds.cases import kind_of
-    from asperity.scenarios import preparing
+    from asperity.scenarios.preparing import prepare
 
-    return preparing.prepare_of_kind(case, kind_of(case), source)
+    return prepare(case, source)

@@ -18,10 +18,9 @@ import pytest
 from click.testing import CliRunner
 
 import asperity
+from asperity.case.cases import load_case, parse_case
 from asperity.cli import main
 from asperity.cli.running import earlier_result, name_of_run
-from asperity.kinds.cases import load_case, parse_case
-from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
 from asperity.results import read_result
 from asperity.store import Store
 from asperity.studies.definition import load_study
@@ -798,8 +797,7 @@ def test_a_scan_that_the_disk_cannot_hold_is_refused(monkeypatch):
 def test_a_run_leaves_no_report_of_another(out):
     """Neither its page nor the CSVs of another kind of case; files of other names stay."""
     (out / "measured.csv").write_text("x")
-    rail = [part.name for chapter in WHEEL_ON_RAIL for part in chapter.figures]
-    (out / f"{rail[0]}.csv").write_text("x")
+    (out / "receptance.csv").write_text("x")
     call("run", "small.toml", "-o", "out", "--no-report", "--again")
     assert sorted(path.name for path in out.iterdir() if path.is_file()) == ["measured.csv", "run.nc"]
 

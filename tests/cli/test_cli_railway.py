@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from asperity.case.cases import load_case
 from asperity.cli import main
-from asperity.kinds.cases import load_case
 
 RAIL = 'kind = "wheel-on-rail"\nduration = "0.2 s"\nsettling = "0.1 s"\n[surface]\nspectrum = "iso3095"\n'
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from asperity.case.cases import demo_case, load_case, parse_case, template
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import demo_case, load_case, parse_case, template
 from asperity.laws import names
 
 MINIMAL = 'kind = "ball-on-beam"\n[surface]\nrms = "0.5 um"\n'
@@ -93,7 +93,7 @@ def test_a_case_is_frozen():
     case = parse_case(MINIMAL)
     with pytest.raises(AttributeError, match="speed of BallOnBeam does not change"):
         case.speed = 2.0
-    with pytest.raises(AttributeError, match=r"radius of Ball.* does not change"):
+    with pytest.raises(AttributeError, match=r"radius of Rolling does not change"):
         case.ball.radius = 2.0
 
 
@@ -239,13 +239,13 @@ def test_parameters_are_listed_with_units_and_marked():
         "value": "12 mm",
         "default": "25 mm",
         "is_default": False,
-        "note": "radius",
+        "note": "rolling radius",
     }
     assert listed["speed"]["is_default"]
     assert listed["speed"]["value"] == "1 m/s"
     assert not listed["beam.sensors"]["is_default"]
     assert listed["beam.sensors"]["value"] == "0.5 m"
-    assert listed["ball.load"]["value"] == "its weight"
+    assert listed["ball.load"]["value"] == "the weights"
     assert listed["ball.load"]["is_default"]
     assert not {"surface.file", "surface.level", "surface.array", "beam.suspension_frequency"} & listed.keys()
 
@@ -362,7 +362,7 @@ def test_messages_of_sections(section, key, message):
         ('[balls]\nradius = "1 mm"', 'Did you mean "ball"?'),
         (
             '[ball]\nradius = "0.2 mm"\n[contact]\nwindow = "0.5 mm"',
-            "contact.window: received 0.5 mm; allowed: at most the ball's diameter, 0.4 mm",
+            "contact.window: received 0.5 mm; allowed: at most the smallest diameter of the bodies, 0.4 mm",
         ),
     ],
 )
@@ -373,7 +373,7 @@ def test_messages_of_the_top(top, message):
 @pytest.mark.parametrize(
     ("surface", "message"),
     [
-        ("", "surface: received no texture; allowed: file, rms, line or spectrum"),
+        ("", "surface: received no texture; allowed: file, rms, line, spectrum or a defect in [surface]"),
         ('file = "map.npy"\nrms = "1 um"', "surface: received both file and rms; allowed: one of them"),
         ('file = "absent.npy"', "absent.npy"),
         ('file = ""', "the path of an existing file"),

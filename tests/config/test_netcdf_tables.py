@@ -4,11 +4,9 @@ import h5netcdf
 import numpy as np
 import pytest
 
-from asperity.config import tables
-from asperity.config.tables import read_table
+from asperity.case import tables
+from asperity.case.tables import RECEPTANCES, read_receptance, read_table
 from asperity.errors import InputError
-from asperity.kinds.bodies.structure_keys import RECEPTANCES
-from asperity.scenes.tables import read_receptance
 from asperity.structures.receptance_fit import receptances_in
 
 RNG = np.random.default_rng(1)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import asperity
+from asperity.case.cases import as_case, parse_case
 from asperity.errors import CaseError
-from asperity.kinds.cases import as_case, parse_case
 from asperity.reference.materials import MATERIALS, Material, contact_modulus
 from asperity.studies.definition import study_of
 

@@ -4,30 +4,29 @@ import math
 
 import pytest
 
-from asperity.config.describing import entries
-from asperity.config.form import extra_of
-from asperity.config.values import Number, Quantity, value_kind
+from asperity.case import PRESETS
+from asperity.case.cases import case_class, case_of
+from asperity.case.describing import entries
 from asperity.errors import CaseError
-from asperity.kinds import KINDS
-from asperity.kinds.cases import case_of
 from asperity.units import quantity
+from asperity.values import ListOf, Number, Quantity
 
 NUMBERS = [
     pytest.param(kind, entry, id=f"{kind} {entry.dotted}")
-    for kind, model in ((name, kind.case) for name, kind in KINDS.items())
-    for entry in entries(model)
-    if isinstance(value_kind(entry.field.annotation, entry.field.metadata), Quantity | Number)
+    for kind in PRESETS
+    for entry in entries(case_class(kind))
+    if isinstance(entry.key.one, Quantity | Number)
 ]
 
 
 def limits(entry):
     """Least and largest value in SI, and the unit; those of the kind, where it has both."""
-    kind = value_kind(entry.field.annotation, entry.field.metadata)
+    kind = entry.key.one
     unit = kind.dimension if isinstance(kind, Quantity) else ""
-    if "within" in extra_of(entry.field):
-        low, high, reason = extra_of(entry.field)["within"]
+    if entry.key.within is not None:
+        low, high, reason = entry.key.within
         assert len(reason) > 10
-        return *(quantity(v, unit) if isinstance(v, str) else v for v in (low, high)), unit
+        return *(quantity(v, unit) for v in (low, high)), unit
     return kind.above if kind.at_least is None else kind.at_least, kind.at_most, unit
 
 
@@ -39,16 +38,16 @@ def test_every_number_has_limits(kind, entry):
 
 @pytest.mark.parametrize(("kind", "entry"), NUMBERS)
 def test_numbers_beyond_their_limits_are_told_with_a_reason(kind, entry):
-    if "within" not in extra_of(entry.field):
+    if entry.key.within is None:
         pytest.skip("its kind has limits of its own")
     low, high, unit = limits(entry)
-    _, _, reason = extra_of(entry.field)["within"]
+    _, _, reason = entry.key.within
     section, _, name = entry.dotted.rpartition(".")
     for value in (1.01 * high, low / 1.01 if low > 0 else 1.01 * low):
         if value == 0.0:
             continue
         given = f"{value!r} {unit}" if unit else value
-        several = "tuple" in str(entry.field.annotation)
+        several = isinstance(entry.key.kind, ListOf)
         keys = {name: [given] if several else given}
         texture = {"surface": {"smooth": True} if kind == "wheel-on-rail" else {"rms": "0.3 um"}}
         case = {"kind": kind, **texture, **({section: keys} if section else keys)}

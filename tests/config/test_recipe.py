@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from asperity.case.cases import parse_case
+from asperity.case.recipe import read_recipe
 from asperity.cli import main
-from asperity.config.recipe import read_recipe
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import parse_case
 from asperity.scenarios.records import read_maps
 from asperity.surfaces.heightmap import HeightMap, Profile
 from asperity.surfaces.levelling import GAUSSIAN_CONSTANT, band_limit, level

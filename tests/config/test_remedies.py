@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 import asperity
-from asperity.config.describing import entries
+from asperity.case import PRESETS
+from asperity.case.cases import as_case, case_class
+from asperity.case.describing import entries
 from asperity.errors import CaseError
-from asperity.kinds.cases import KINDS, as_case
 from asperity.units import quantity
 
 SOURCE = Path(asperity.__file__).parent
@@ -21,7 +22,7 @@ FILES = (".png", ".x3p", ".csv", ".nc", ".toml")
 @cache
 def keys():
     """All keys of all kinds of case, as ``"contact.window"``, and those of studies."""
-    known = {entry.dotted for kind in KINDS.values() for entry in entries(kind.case)}
+    known = {entry.dotted for kind in PRESETS for entry in entries(case_class(kind))}
     return known | {f"sweep.{key}" for key in known}
 
 

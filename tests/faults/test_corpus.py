@@ -23,7 +23,7 @@ SECONDS = 30
 """Of processor time that no failure takes."""
 FORKS = f"""
 import json, os, signal, sys
-import asperity.cli, asperity.kinds.cases, asperity.studies.definition, asperity.surfaces.readers
+import asperity.cli, asperity.case.cases, asperity.studies.definition, asperity.surfaces.readers
 from asperity.__main__ import start
 for line in sys.stdin:
     folder, words = json.loads(line)

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from program import LONG
 
+from asperity.case.cases import parse_case
 from asperity.errors import AsperityError, InputError, PhysicsWarning
-from asperity.kinds.cases import parse_case
 from asperity.results import read_result, save, variable
 from asperity.sandbox import MEMORY
 from asperity.schema import VERSION

@@ -8,14 +8,13 @@ import pytest
 from program import LONG
 
 import asperity
-from asperity.config.describing import entries
-from asperity.config.form import extra_of
-from asperity.config.values import Choice, Number, Quantity, value_kind
+from asperity.case import PRESETS
+from asperity.case.cases import case_class, case_of
+from asperity.case.describing import entries
 from asperity.errors import AsperityError
-from asperity.kinds import KINDS
-from asperity.kinds.cases import case_of
 from asperity.schema.entry import UNKNOWN
 from asperity.units import quantity
+from asperity.values import Choice, Number, Quantity
 
 SHORT = {
     "ball-on-beam": {
@@ -47,17 +46,17 @@ LEFT = ("duration", "settling", "laws", "kind", "seed", "samples", "window", "sp
 
 def drawn(entry, source):
     """A value of a key: near its default mostly, at a limit of what is plausible now and then; or None."""
-    kind, default = value_kind(entry.field.annotation, entry.field.metadata), entry.default
+    kind, default = entry.key.kind, entry.key.default
     if isinstance(kind, Choice):
         return source.choice(kind.known)
     if isinstance(kind, Number) and not kind.whole and isinstance(default, int | float):
         low, high = kind.at_least or kind.above or 0.0, kind.at_most or 10.0
         return source.choice([low, high, source.uniform(low, high), 0.5 * default])
-    within = extra_of(entry.field).get("within")
-    if not isinstance(kind, Quantity) or within is None or "tuple" in str(entry.field.annotation):
+    within = entry.key.within
+    if not isinstance(kind, Quantity) or within is None:
         return None
     limits = [quantity(limit, kind.dimension) for limit in within[:2]]
-    example = default or extra_of(entry.field)["example"]
+    example = entry.key.written_example
     if not isinstance(example, str) or example == "inf":
         return None
     value = quantity(example, kind.dimension) * 10.0 ** source.uniform(-0.7, 0.7)
@@ -67,11 +66,11 @@ def drawn(entry, source):
 
 
 def random_case(source):
-    kind = source.choice(list(KINDS))
+    kind = source.choice(list(PRESETS))
     case = {"kind": kind, **{k: dict(v) if isinstance(v, dict) else v for k, v in SHORT[kind].items()}}
     case["laws"] = source.sample(LAWS, 2)
     case["seed"] = source.randrange(100)
-    known = [entry for entry in entries(KINDS[kind].case) if entry.name not in LEFT]
+    known = [entry for entry in entries(case_class(kind)) if entry.name not in LEFT]
     for entry in source.sample(known, source.randint(1, 5)):
         section, _, name = entry.dotted.rpartition(".")
         value = drawn(entry, source)

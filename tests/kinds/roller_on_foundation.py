@@ -1,69 +1,23 @@
-"""A roller on an elastic foundation: a kind of case in one file, as a user would write it.
+"""A roller on an elastic foundation: a scene, with a structure of its own, in one file of a user.
 
-The foundation is massless: w = F/k. The roller is a rigid mass under a load.
+The foundation is massless: w = F/k. The roller is what rolls in any scene, with other defaults.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
-from pydantic import BeforeValidator
 
-from asperity.config.case import Case, Law
-from asperity.config.chosen import NominalPatch
-from asperity.config.form import Section, key
-from asperity.config.sections import ContactCase, Numerics
-from asperity.config.values import Choice, Force, Length, Mass, OwnOrNamed, Stiffness
-from asperity.contact import Hertz
-from asperity.reference.materials import contact_modulus
-from asperity.scenarios.geometry import geometry, parabola
-from asperity.scenarios.kind import Words
-from asperity.scenarios.scene import Scene
-from asperity.structures.body import Body
+from asperity.case.body import STIFFNESS, Rolling
+from asperity.case.form import section
+from asperity.case.over import RolledOver
+from asperity.case.scene import Case
+from asperity.case.sections import ContactKeys, NumericsKeys
+from asperity.parameters import key
+from asperity.reference.materials import Material
 from asperity.structures.modal import STATIC, STATIC_DAMPING
-
-
-class Roller(Section):
-    """What rolls."""
-
-    radius: Length = key("25 mm", "radius", "10 um to 10 m: rollers lie between")
-    mass: Mass = key("0.5 kg", "mass", "1 mg to 1000 t: rollers lie between")
-    load: Force = key("30 N", "force that presses it down", "1 nN to 1 GN: loads lie between")
-    material: OwnOrNamed = key("steel", "material")
-
-
-class Foundation(Section):
-    """What is rolled over."""
-
-    stiffness: Stiffness = key("5 MN/m", "stiffness", "1 N/m to 1 TN/m: foundations lie between")
-    material: OwnOrNamed = key("steel", "material of its surface")
-
-
-class RollerOnFoundation(Case):
-    """A roller on an elastic foundation."""
-
-    kind: Annotated[str, BeforeValidator(Choice(("roller-on-foundation",)))] = key(
-        "roller-on-foundation", "what rolls"
-    )
-    laws: tuple[Law, ...] = key(("areal", "hertz", "linear"), "laws of the contact force")
-    roller: Roller = key({}, "the roller")
-    foundation: Foundation = key({}, "the foundation")
-    contact: ContactCase = key({}, "how the rough contact is solved and reduced")
-    numerics: Numerics = key({}, "how finely time is resolved")
-
-    @property
-    def nominal_patch(self):
-        """Contact from which grid and window are chosen."""
-        roller = self.roller
-        modulus = contact_modulus(roller.material, self.foundation.material)
-        return NominalPatch.of(modulus, roller.radius, roller.radius, roller.load)
-
-
-CASE = RollerOnFoundation
-ROLLING = "roller"
-WORDS = Words("A roller on an elastic foundation.", " in [surface]", {"surface.rms": '"0.2 um"'})
+from asperity.values import Choice, MaterialOrName
 
 
 @dataclass(frozen=True)
@@ -86,22 +40,28 @@ class ElasticFoundation:
         return self.shapes(np.zeros(count))
 
 
-def bodies_of(case):
-    """Build the scene of a case."""
-    roller = Body.rigid(case.roller.mass, case.roller.load)
-    return Scene(ElasticFoundation(case.foundation.stiffness), (roller,), "A roller on an elastic foundation")
+class Foundation(RolledOver):
+    """What is rolled over, endless."""
+
+    stiffness: float = key(STIFFNESS, "5 MN/m", "stiffness", "1 N/m to 1 TN/m: foundations lie between")
+    material: Material = key(MaterialOrName(), "steel", "material of its surface")
+
+    def model(self, highest_frequency):
+        """Build it."""
+        return ElasticFoundation(self.stiffness)
 
 
-def geometry_of(case):
-    """Lay out the roller on the contact grid."""
-    modulus = contact_modulus(case.roller.material, case.foundation.material)
-    hertz = Hertz(modulus, case.roller.radius, case.roller.radius)
-    section = parabola(case.contact, case.roller.radius)
-    return geometry(
-        case.contact,
-        section,
-        hertz,
-        case.roller.load,
-        smallest_radius=case.roller.radius,
-        body="roller",
-    )
+DEFAULTS = {"laws": ["areal", "hertz", "linear"]}
+
+
+class RollerOnFoundation(Case, defaults=DEFAULTS):
+    """A roller on an elastic foundation."""
+
+    TITLE = "A roller on an elastic foundation."
+    ROLLING, OVER = "roller", "foundation"
+
+    kind: str = key(Choice(("roller-on-foundation",)), "roller-on-foundation", "what rolls")
+    roller: Rolling = section(Rolling, "the roller", mass="0.5 kg", load="30 N")
+    foundation: Foundation = section(Foundation, "what is rolled over")
+    contact: ContactKeys = section(ContactKeys, "how the rough contact is solved and reduced")
+    numerics: NumericsKeys = section(NumericsKeys, "how finely time is resolved")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity.kinds.bodies.textures import contacts_of, textures_of
+from asperity.scenarios.textures import other_contacts, textures_of
 from asperity.scenes.schema import (
     LINEAR_REFERENCE_LEVEL,
     PASS_BY_MAXIMUM_LEVEL,
@@ -138,7 +138,7 @@ def test_each_contact_bears_its_own_measured_line():
     body = BOGIE | {"line": lines, "line_spacing": 1e-3}
     case = asperity.Bodies(**{"over": "track", "body": body, "surface": SURFACE} | SHARED)
     first = textures_of(case)
-    which, others = contacts_of(case, np.array([65e3, 65e3]))
+    which, others = other_contacts(case, np.array([65e3, 65e3]))
     second = others[0].textures(first)
     assert which == [0, 1]
     for textures, line in zip((first, second), lines, strict=True):

@@ -7,7 +7,7 @@ from asperity.errors import Grade, InputError, OutOfRangeWarning
 from asperity.reference.cnossos import nearest_pad_class, nearest_wheel_transfer
 from asperity.running import prepare_case
 from asperity.scenes.noise import findings_of_labels, track_label, wheel_label
-from asperity.scenes.plan import rows
+from asperity.scenes.plan import planned_rows
 
 
 def case(noise=None, track=None, wheel=None):
@@ -90,13 +90,11 @@ def test_what_is_not_positive_has_no_class(nearest, message):
 
 
 def test_a_check_says_whose_sound_power_is_computed():
-    found = dict(rows(prepare_case(case())))
+    found = dict(planned_rows(prepare_case(case())))
     assert found["sound power"] == (
         "of rail and sleepers, for the wheel is rigid; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
     )
     with pytest.warns(OutOfRangeWarning, match='those of the class "hard"'):
-        rows(prepare_case(case({"track_pad": "hard"})))
-    assert (
-        "CNOSSOS"
-        not in dict(rows(prepare_case(case({"track_pad": "hard"}).with_(laws=["hertz"]))))["sound power"]
-    )
+        planned_rows(prepare_case(case({"track_pad": "hard"})))
+    without = prepare_case(case({"track_pad": "hard"}).with_(laws=["hertz"]))
+    assert "CNOSSOS" not in dict(planned_rows(without))["sound power"]

@@ -4,14 +4,14 @@ import json
 
 import pytest
 
-from asperity.kinds import KINDS
-from asperity.kinds.cases import parse_case, template
+from asperity.case import PRESETS
+from asperity.case.cases import parse_case, template
 from asperity.running import run
 
 pytestmark = pytest.mark.usefixtures("cache_of_module")  # the ball's scans are those of the bodies
 
 
-@pytest.mark.parametrize("kind", sorted(KINDS))
+@pytest.mark.parametrize("kind", sorted(PRESETS))
 def test_what_new_prints_runs_with_all_checks_in_range(kind):
     tree = run(parse_case(template(kind)))
     assert [w for w in json.loads(tree.attrs["warnings"]) if w["grade"] != "note"] == []

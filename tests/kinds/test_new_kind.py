@@ -1,4 +1,4 @@
-"""A kind of case takes one file and one line, and whatever runs cases runs it."""
+"""A scene, and a structure, takes one file and one line, and whatever runs cases runs it."""
 
 import shutil
 from pathlib import Path
@@ -8,9 +8,9 @@ import pytest
 from click.testing import CliRunner
 
 import asperity
+from asperity.case import PRESETS
+from asperity.case.cases import case_class
 from asperity.cli import main
-from asperity.kinds import KINDS
-from asperity.scenarios.kind import Kind
 
 NAME = "roller-on-foundation"
 FILE = Path(__file__).with_name("roller_on_foundation.py")
@@ -44,8 +44,7 @@ def kind(tmp_path, monkeypatch):
     (tmp_path / "own").mkdir()
     shutil.copy(FILE, tmp_path / "own" / "rollers.py")
     monkeypatch.syspath_prepend(str(tmp_path / "own"))
-    monkeypatch.setitem(KINDS, NAME, Kind("rollers"))
-    return KINDS[NAME]
+    monkeypatch.setitem(PRESETS, NAME, "rollers.RollerOnFoundation")
 
 
 def command(*arguments):
@@ -64,7 +63,7 @@ def test_a_kind_in_one_file_is_written_checked_run_and_reported(kind, tmp_path, 
     assert "foundation.stiffness" in plan
     command("run", "case.toml", "-o", "out")
     result = asperity.open_result("out/run.nc")
-    assert result.attrs["title"] == "A roller on an elastic foundation"
+    assert result.attrs["title"] == "A body over a foundation"
     assert "roller" in result.attrs["verdict"]
     rolling, spectra = result["rolling"].to_dataset(), result["spectra"].to_dataset()
     assert list(rolling["law"].values) == ["areal", "hertz", "linear"]
@@ -89,19 +88,7 @@ def test_a_kind_in_one_file_runs_from_python(kind):
     }
     result = asperity.run(case)
     assert result["scenario"].attrs["kind"] == NAME
-    assert asperity.RollerOnFoundation is kind.case
-
-
-def test_what_is_not_usual_and_not_offered_is_told(tmp_path, monkeypatch):
-    (tmp_path / "bare.py").write_text("")
-    monkeypatch.syspath_prepend(str(tmp_path))
-    with pytest.raises(AttributeError, match="bare offers no CASE, and none is usual"):
-        Kind("bare").case  # noqa: B018
-    (tmp_path / "broken").mkdir()
-    (tmp_path / "broken" / "__init__.py").write_text("")
-    (tmp_path / "broken" / "case.py").write_text("import a_module_that_is_not_there")
-    with pytest.raises(ModuleNotFoundError, match="a_module_that_is_not_there"):
-        Kind("broken").case  # noqa: B018
+    assert asperity.RollerOnFoundation is case_class(NAME)
 
 
 def test_a_kind_takes_one_file_and_one_line():

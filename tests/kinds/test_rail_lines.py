@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
+from asperity.case.cases import parse_case
 from asperity.errors import InputError, ShortRecordWarning
-from asperity.kinds.cases import parse_case
-from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.running import prepare_case, run
 from asperity.scenarios.laws import working_point
 from asperity.scenarios.linear_force import force_transfer
+from asperity.scenarios.textures import textures_of
 from asperity.scenes.compute import compute
 from like_measured import either, wheel_lines, where_measured
 from one_contact import first_contact

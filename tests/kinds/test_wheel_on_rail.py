@@ -9,14 +9,14 @@ import pytest
 import xarray
 
 import asperity
+from asperity.case.cases import parse_case
 from asperity.contact import Hertz
 from asperity.errors import InputError, OutOfRangeWarning
-from asperity.kinds.cases import parse_case
-from asperity.kinds.wheel_on_rail.bodies import geometry_of
-from asperity.kinds.wheel_on_rail.textures import textures_of
 from asperity.reference.cnossos import rail_roughness
 from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.running import prepare_case, run
+from asperity.scenarios.geometry import geometry_of
+from asperity.scenarios.textures import textures_of
 from asperity.scenes.track import described_losses, loss_factor_error, relaxed
 from asperity.structures.track import Track
 from asperity.structures.wheel import Wheel

@@ -16,14 +16,17 @@ from asperity.reporting.chart import COLOURS
 from small_cases import BALL
 
 FILE = '''
-"""`cubic`: a law that did not come with the program."""
+"""`cubic`: a law that did not come with the program, with a key of its own."""
 
 from asperity.laws.areal import Areal
 from asperity.laws.spec import LawSpec, Look, Need
+from asperity.parameters import key
+from asperity.values import Quantity
 
 
 def build(materials):
-    return Areal(materials.curve, materials.areal, materials.damping, plane=materials.plane, name="cubic")
+    damping = materials.damping + materials.parameters["viscosity"]
+    return Areal(materials.curve, materials.areal, damping, plane=materials.plane, name="cubic")
 
 
 LAW = LawSpec(
@@ -32,13 +35,15 @@ LAW = LawSpec(
     build,
     frozenset({Need.SAMPLES, Need.AREAL}),
     look=Look("#7f3b08", "-", "p"),
+    parameters={"viscosity": key(Quantity("N s/m", at_least=0.0), "0 N s/m", "damping of this law besides")},
 )
 '''
 SCRIPT = """
 import json, pathlib, sys
-from asperity.kinds.cases import parse_case, template
+from asperity.case.cases import parse_case, template
 from asperity.kinds.report import report
 from asperity.running import run
+from asperity.studies.running import study
 
 assert '"direct", "cubic", "hertz"' in template("ball-on-beam")
 assert '"direct", "cubic", "hertz"' in template("wheel-on-rail")
@@ -46,9 +51,21 @@ try:
     parse_case('kind = "ball-on-beam"\\nlaws = ["cubik"]')
 except ValueError as error:
     assert 'Did you mean "cubic"?' in str(error), error
-tree = run(json.loads(sys.argv[2]))
+case = json.loads(sys.argv[2])
+tree = run(case)
 force = tree["rolling/contact_force"]
 assert (force.sel(law="cubic").values == force.sel(law="areal").values).all()
+varied = study(case, {"cubic.viscosity": ["0 N s/m", "1 kN s/m"]})
+levels = varied["force_level_a"].sel(law="cubic").values
+assert levels[0] > levels[1] + 0.1, levels
+assert "viscosity" not in template("bodies"), "not rolled"
+assert "[cubic]" in template("bodies", laws=["cubic"])
+assert 'viscosity = "0 N s/m"' in template("bodies", laws=["cubic"])
+assert '"key": "cubic.viscosity"' in tree["scenario"].attrs["parameters"]
+try:
+    run(case | {"cubic": {"viscosity": "-1 N s/m"}})
+except ValueError as error:
+    assert "cubic.viscosity: received '-1 N s/m'; allowed: " in str(error), error
 page = report(tree, sys.argv[1]).read_text(encoding="utf-8")
 order = [page.index(f"<strong>{law}</strong>") for law in ("cubic", "areal", "linear")]
 assert order == sorted(order)
@@ -76,8 +93,8 @@ def test_a_law_is_one_file_and_one_line(tmp_path):
 
 
 def test_importing_laws_and_cases_compiles_nothing():
-    heavy = ("numba", "scipy", "xarray", "matplotlib")
-    modules = ("asperity.laws", "asperity.config.case", "asperity.kinds.ball_on_beam.case")
+    heavy = ("numba", "scipy.fft", "scipy.optimize", "xarray", "matplotlib")
+    modules = ("asperity.laws", "asperity.case.scene", "asperity.case.ball_on_beam")
     code = f"import sys, {', '.join(modules)}; print([m for m in {heavy!r} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -10,8 +10,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from asperity import laws
+from asperity.case.cases import as_case, parse_case, template
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import as_case, parse_case, template
 from asperity.kinds.report import report
 from asperity.laws import LawSpec, Look, Need, Role, Variant
 from asperity.running import run

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import asperity
-from asperity.config.parsing import FROM_PYTHON, read_toml, validated
+from asperity.case.toml import read_toml
 from asperity.errors import CaseError, InputError
 from asperity.optimising.definition import Aim, assignment_template, bands_of, load_assignment, with_texture
+from asperity.values import FROM_PYTHON
 from small_cases import COARSE, WHEEL
 
 CASE = COARSE | {"start": "0.2 m", "duration": "0.2 s"}
@@ -21,7 +22,7 @@ def refused(match, **aim):
 def test_the_template_is_an_aim():
     data = read_toml(assignment_template(), "optimisation", "template")
     assert data.pop("case") == "case.toml"
-    assert validated(Aim, data, FROM_PYTHON).rms_at_least == pytest.approx(0.5e-6)
+    assert Aim.read(data, FROM_PYTHON).rms_at_least == pytest.approx(0.5e-6)
 
 
 def test_wrong_aims_are_refused_with_all_that_is_wrong():
@@ -43,12 +44,12 @@ def test_a_line_has_no_lay():
         asperity.optimise(line, rms_at_least="0.1 um", lateral=[0.5, 2.0], law="hertz", verify="linear")
 
 
-def test_a_quantity_that_a_kind_does_not_know_is_refused(monkeypatch):
-    from asperity.kinds.cases import as_case, kind_of
-    from asperity.scenes.plan import MEASURES
-
-    monkeypatch.setattr(type(kind_of(as_case(CASE))), "measures", property(lambda kind: MEASURES))
-    refused('"rms acceleration" of ball-on-beam', rms_at_least="1 um", quantity="rms acceleration")
+def test_a_quantity_that_a_scene_does_not_know_is_refused():
+    on_plane = {"kind": "bodies", "over": "plane"} | {
+        k: v for k, v in CASE.items() if k in ("surface", "laws")
+    }
+    with pytest.raises(InputError, match='"rms acceleration" of bodies'):
+        asperity.optimise(on_plane, rms_at_least="1 um", quantity="rms acceleration")
 
 
 @pytest.mark.parametrize(

@@ -15,8 +15,8 @@ from click.testing import CliRunner
 from scipy.fft import rfft, rfftfreq
 
 import asperity
+from asperity.case.cases import load_case
 from asperity.cli import main, optimising
-from asperity.kinds.cases import load_case
 from asperity.optimising.allocation import rms_of
 from asperity.optimising.running import optimise
 from small_cases import COARSE, WHEEL

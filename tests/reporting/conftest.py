@@ -3,7 +3,7 @@
 import pytest
 
 import asperity
-from asperity.kinds import KINDS
+from asperity.case import PRESETS
 from asperity.kinds.report import report
 from small_cases import CASES
 
@@ -41,7 +41,7 @@ def real_runs(tmp_path_factory):
     return Made(run)
 
 
-@pytest.fixture(scope="session", params=list(KINDS))
+@pytest.fixture(scope="session", params=list(PRESETS))
 def real_run(request, real_runs):
     """Result of one kind of case after the other."""
     return real_runs[request.param]

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from asperity.laws import spec_of
+from asperity.scenes.chapters import chapters_of
 from asperity.schema import VERSION
 
 LAWS = ["areal", "shifted", "printed", "table", "linear-filtered", "linear"]
@@ -16,6 +17,14 @@ DATUM = 1.5e-6
 LOAD = 5.0
 RADIUS = 0.025
 MODULUS = 115e9  # E* of steel on steel
+
+
+def figures_by_name(kind="ball-on-beam"):
+    """All figures that a result of a kind of case may have."""
+    groups = {"/scenario": xr.Dataset(attrs={"kind": kind})}
+    groups |= {"/track": xr.Dataset()} if kind == "wheel-on-rail" else {}
+    chapters = chapters_of(xr.DataTree.from_dict(groups))
+    return {figure.name: figure for chapter in chapters for figure in chapter.figures}
 
 
 def variable(dims, values, units, long_name):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from asperity.scenarios.kind import SHARED
 from asperity.scenes import schema
-from asperity.schema import VERSION, contents_of
+from asperity.schema import VERSION, contact, contents_of, convergence, provenance, rolling, spectra, surface
+
+SHARED = (provenance, surface, contact, rolling, spectra, convergence)
 
 PAGE = Path(__file__).parents[2] / "docs" / "result_file.md"
 HEAD = f"""# What `run.nc` holds

@@ -7,16 +7,15 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
-from report_tree import LAWS, laws_in, report_tree, uncertain, with_force
+from report_tree import LAWS, figures_by_name, laws_in, report_tree, uncertain, with_force
 
-from asperity.kinds.ball_on_beam.chapters import CHAPTERS
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Field, Line, Note, Rules
 from asperity.reporting.data import law_entries, missing
 from asperity.scenes.figures.force import piece
 from asperity.schema import contact
 
-PARTS = {part.name: part for chapter in CHAPTERS for part in chapter.figures}
+PARTS = figures_by_name()
 SPECTRA = ("force_bands", "force_psd", "acceleration_sensors", "acceleration_laws")
 
 

@@ -9,18 +9,11 @@ import numpy as np
 import pytest
 from report_reading import Reader, read_csv, without
 
-from asperity.kinds import KINDS
 from asperity.kinds.report import figures_of, page_of
 from asperity.reporting.figure import columns_text
 from asperity.results import read_result, save
+from asperity.scenes.chapters import chapters_of
 
-ORDER = ("wheel-on-rail", "ball-on-beam", "bodies")
-PARTS = {
-    (kind, part.name): part for kind in ORDER for chapter in KINDS[kind].chapters for part in chapter.figures
-}
-FIRST = {id(part): key for key, part in reversed(PARTS.items())}
-DRAWN = [key for key, part in PARTS.items() if FIRST[id(part)] == key]
-each_part = pytest.mark.parametrize(("kind", "name"), DRAWN, ids=lambda value: value)
 TABLES = {
     "ball-on-beam": {"statistics", "practice", "reference", "contact_loss", "energy_balance"},
     "wheel-on-rail": {"statistics", "practice", "contact_loss", "sound_power_table"},
@@ -69,12 +62,9 @@ def test_links_lead_somewhere(text, folder):
 def test_all_figures_tables_and_numbers_are_there(real_run, text, folder):
     kind, names = kind_of(real_run), set(Reader(text).all("id"))
     drawn = {part.name for part in figures_of(real_run)}
-    parts = {name for known, name in PARTS if known == kind and name in drawn}
-    chapters = {
-        c.name for c in KINDS[kind].chapters if not c.figures or drawn & {part.name for part in c.figures}
-    }
-    assert parts | chapters | TABLES[kind] | {"case", "literature", "remake", "provenance"} <= names
-    assert {path.name for path in folder.iterdir()} == {"report.html", *(f"{name}.csv" for name in parts)}
+    chapters = {c.name for c in chapters_of(real_run) if drawn & {part.name for part in c.figures}}
+    assert drawn | chapters | TABLES[kind] | {"case", "literature", "remake", "provenance"} <= names
+    assert {path.name for path in folder.iterdir()} == {"report.html", *(f"{name}.csv" for name in drawn)}
 
 
 def test_what_the_run_says_is_shown(real_run, text):
@@ -125,32 +115,33 @@ def test_same_result_same_page(real_run, text):
     assert page_of(real_run) == text
 
 
-@each_part
-def test_figure_without_its_numbers_is_left_out(real_runs, kind, name):
-    part, tree = PARTS[kind, name], real_runs[kind]
-    for need in part.needs:
-        assert not part.drawable(without(tree, need.group, need.name))
+def test_figure_without_its_numbers_is_left_out(real_run):
+    for part in figures_of(real_run):
+        for need in part.needs:
+            assert not part.drawable(without(real_run, need.group, need.name))
 
 
-@each_part
-def test_figure_goes_without_attributes(real_runs, kind, name):
-    part, tree = PARTS[kind, name], real_runs[kind].copy()
-    for group in tree.children:
-        tree[group].attrs = {}
-    assert part.laid_out(tree).panels
-    assert part.collect(tree).columns
-    assert part.said(tree)
+def test_figure_goes_without_attributes(real_run):
+    bare = real_run.copy()
+    for group in bare.children:
+        bare[group].attrs = {}
+    for part in figures_of(real_run):
+        drawn(part, bare)
 
 
-@each_part
-def test_figure_goes_without_each_number_that_it_does_not_need(real_runs, kind, name):
+def test_figure_goes_without_each_number_that_it_does_not_need(real_run):
     """Drawn without everything else at once: what it needs is what it says."""
-    part, tree = PARTS[kind, name], real_runs[kind]
-    kept = {(entry.group, entry.name) for entry in (*part.needs, *part.any_of[:1])}
-    for group in tree.children:
-        others = [str(v) for v in tree[group].data_vars if (group, str(v)) not in kept]
-        tree = without(tree, group, *others)
-    assert part.drawable(tree)
+    for part in figures_of(real_run):
+        tree = real_run
+        kept = {(entry.group, entry.name) for entry in (*part.needs, *part.any_of[:1])}
+        for group in tree.children:
+            others = [str(v) for v in tree[group].data_vars if (group, str(v)) not in kept]
+            tree = without(tree, group, *others)
+        assert part.drawable(tree)
+        drawn(part, tree)
+
+
+def drawn(part, tree):
     assert part.laid_out(tree).panels
     assert part.collect(tree).columns
     assert part.said(tree)

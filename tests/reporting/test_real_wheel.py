@@ -8,23 +8,20 @@ import re
 import numpy as np
 import pytest
 from report_reading import HOSTILE, Reader, read_csv
-from report_tree import laws_in
+from report_tree import figures_by_name, laws_in
 
 from asperity.cli.studying import print_table
-from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
-from asperity.kinds.report import chapters_of, figures_of, page_of
-from asperity.kinds.wheel_on_rail.chapters import CHAPTERS as WHEEL_ON_RAIL
+from asperity.kinds.report import figures_of, page_of
 from asperity.laws import spec_of
 from asperity.reporting.chart import Boxes, Line, Note, Rules
 from asperity.reporting.study_figures import key_chart
-from asperity.scenes.chapters import UNCERTAINTY
 from asperity.scenes.figures.force import AROUND_PEAK, around_peak
 from asperity.scenes.figures.motion import point_labels
 from asperity.scenes.figures.noise import sound_power_table
 from asperity.studies.member import kept, names_kept
 from asperity.studies.table import USUAL, USUAL_IN_FIGURES, chosen, columns_of
 
-PARTS = {part.name: part for chapter in WHEEL_ON_RAIL for part in chapter.figures}
+PARTS = figures_by_name("wheel-on-rail")
 
 
 @pytest.fixture
@@ -51,17 +48,9 @@ def rules_of(tree, name, *, short=False, panel=0):
     return [at for mark in marks_of(tree, name, Rules, panel) if mark.short == short for at in mark.at]
 
 
-def test_kind_of_case_chooses_the_chapters(real_runs, tree):
-    assert chapters_of(tree) == (*WHEEL_ON_RAIL, UNCERTAINTY)
-    assert chapters_of(real_runs["ball-on-beam"]) == (*BALL_ON_BEAM, UNCERTAINTY)
-    ball = {part.name for chapter in BALL_ON_BEAM for part in chapter.figures}
+def test_a_ball_has_no_chapters_of_a_track(real_runs):
+    ball = {part.name for part in figures_of(real_runs["ball-on-beam"])}
     assert not {"receptance", "sound_power", "displacement"} & ball
-
-
-def test_result_without_a_kind_is_known_by_its_track(tree):
-    tree = tree.copy()
-    tree["scenario"].attrs = {}
-    assert chapters_of(tree) == (*WHEEL_ON_RAIL, UNCERTAINTY)
 
 
 def test_numbers_survive_the_csv_files_to_the_last_bit(tree, folder):
@@ -196,11 +185,11 @@ def test_hostile_names_stay_text(tree):
 
 
 def test_smooth_surface_has_no_map_and_no_spectrum(tree):
-    tree = tree.copy(deep=True)
+    rough, tree = tree, tree.copy(deep=True)
     for name in ("sample_heights", "psd_sample", "psd_path"):
         tree["surface"][name].values[:] = 0.0
     drawn = {part.name for part in figures_of(tree)}
-    assert set(PARTS) - drawn == {"texture_sample", "texture_psd"}
+    assert {part.name for part in figures_of(rough)} - drawn == {"texture_sample", "texture_psd"}
 
 
 def test_spectra_are_shaded_where_their_bands_say_little(tree):

@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from report_reading import HOSTILE, Reader, read_csv
-from report_tree import DATUM, LAWS, LOAD, report_tree, uncertain, with_force
+from report_tree import DATUM, LAWS, LOAD, figures_by_name, report_tree, uncertain, with_force
 
 from asperity.convergence.group import sentence
 from asperity.errors import ComputationError, InputError
-from asperity.kinds.ball_on_beam.chapters import CHAPTERS as BALL_ON_BEAM
 from asperity.kinds.report import figures_of, page_of, report
 from asperity.laws import spec_of
 from asperity.reporting.chart import envelope, smooth_on_log_axis
@@ -30,7 +29,7 @@ from asperity.reporting.uncertainty import uncertainty_table
 from asperity.scenes.acceleration_answers import acceleration_answers
 from asperity.spectra import a_weighting, nominal_frequency
 
-PARTS = [part for chapter in BALL_ON_BEAM for part in chapter.figures]
+PARTS = list(figures_by_name().values())
 
 
 @pytest.fixture(scope="module")

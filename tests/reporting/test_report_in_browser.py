@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from drawn import EMPTY, OVERLAPS, RECORDER, settled
 
-from asperity.kinds import KINDS
+from asperity.case import PRESETS
 
 
-@pytest.fixture(params=list(KINDS))
+@pytest.fixture(params=list(PRESETS))
 def address(request, reports):
     """A report of each kind."""
     return (reports[request.param] / "report.html").as_uri()

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from asperity.config.content import content
-from asperity.kinds.cases import as_case
+from asperity.case.cases import as_case
+from asperity.case.content import content
 from asperity.scenes.compute import TOLD_OF, checkpoint_of
 from small_cases import CASES
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from asperity.case.cases import parse_case
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import parse_case
 from asperity.running import prepare_case
 from asperity.scenarios.expecting import expect, scan_sizes, try_contacts
 from asperity.scenes.compute import compute

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from asperity.case.cases import parse_case
+from asperity.case.wheel_on_rail import WheelOnRail
 from asperity.cli.planning import plan
-from asperity.kinds.ball_on_beam.bodies import bodies_of
-from asperity.kinds.cases import kind_of, parse_case
-from asperity.kinds.wheel_on_rail.case import WheelOnRail
 from asperity.reference.law_accuracy import Place, law_map, mapped_points
 from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work
+from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.law_choice import (
     UNMAPPED,
     ExpectedError,
@@ -26,6 +26,7 @@ from asperity.scenarios.law_choice import (
     place_of,
     without_slow,
 )
+from asperity.scenarios.scene import scene_of
 from asperity.scenes.validity import doubted_by_area
 from asperity.surfaces.heightmap import HeightMap
 
@@ -57,7 +58,7 @@ def case_of(surface=SMOOTH, laws=("areal",)):
 @pytest.fixture(scope="module")
 def shape():
     case = case_of()
-    return kind_of(case).geometry_of(case)
+    return geometry_of(case)
 
 
 def wave(shape, length, amplitude=1e-8, rows=4000):
@@ -140,7 +141,7 @@ def test_the_linear_force_is_that_of_a_mass_on_a_spring_on_a_stiff_beam(shape):
     )
     frequency = np.array([60.0, 200.0, 20e3])
     k, w = 1e6, 2.0 * np.pi * frequency
-    found = bodies_of(case).square_transfer(k, frequency)
+    found = scene_of(case).square_transfer(k, frequency)
     np.testing.assert_allclose(found, np.abs(1.0 / (1.0 / k - 1.0 / (2.0 * w**2))) ** 2, rtol=0.05)
 
 
@@ -278,7 +279,7 @@ def test_nothing_is_said_where_the_map_knows_nothing(surface, tmp_path):
     speed = 'laws = ["hertz"]\nduration = "0.1 s"\nsettling = "0.05 s"'
     case = parse_case(f'kind = "{kind}"\n{speed}\n[surface]\n{surface}\n')
     prepared = prepare_case(case)
-    assert law_choice(case, prepared.shape, prepared.textures, prepared.bodies) is None
+    assert law_choice(case, prepared.shape, prepared.textures, prepared.scene) is None
     assert "law to take" not in dict(plan(prepared, Work({}, {}, 0, None, 0.0)))
 
 

@@ -7,9 +7,9 @@ import warnings
 import numpy as np
 import pytest
 
+from asperity.case.cases import parse_case
 from asperity.contact.scan import first_touch
 from asperity.errors import PhysicsWarning
-from asperity.kinds.cases import parse_case
 from asperity.kinds.report import figures_of
 from asperity.laws import Printed, Shifted
 from asperity.laws.layout import force

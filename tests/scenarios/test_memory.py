@@ -5,7 +5,7 @@ import weakref
 
 import pytest
 
-from asperity.kinds.cases import as_case
+from asperity.case.cases import as_case
 from asperity.running import prepare_case, run
 from asperity.scenarios.laws import LawMaterials
 from asperity.scenes import compute as ball_on_beam

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import asperity
+from asperity.case.cases import as_case
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import as_case
 from asperity.reporting.tables import condition_table, passes_table
 from asperity.reporting.texture_figures import RUNNING_IN
 from asperity.running import prepare_case

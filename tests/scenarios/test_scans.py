@@ -5,9 +5,9 @@ import warnings
 import numpy as np
 import pytest
 
+from asperity.case.cases import parse_case
 from asperity.contact.scan import ScanJob, first_touch
 from asperity.errors import PhysicsWarning
-from asperity.kinds.cases import parse_case
 from asperity.running import prepare_case
 from asperity.scenarios import laws, reducing
 from asperity.scenarios.laws import table_stride

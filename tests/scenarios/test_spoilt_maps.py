@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from asperity import HeightMap
+from asperity.case.cases import as_case
 from asperity.contact.scan import first_touch
-from asperity.kinds.cases import as_case
 from asperity.reduction.stiffness import patches, stiffness_ensemble
 from asperity.reduction.texture import punch_weights
 from asperity.running import prepare_case

@@ -5,10 +5,11 @@ import warnings
 import numpy as np
 import pytest
 
+from asperity.case.cases import parse_case
 from asperity.errors import PhysicsWarning
-from asperity.kinds.cases import kind_of, parse_case
 from asperity.laws.layout import force
 from asperity.running import prepare_case
+from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.reducing import chosen_states, filtered_loads, touched_places
 from asperity.scenes.compute import compute
 from one_contact import first_contact
@@ -88,7 +89,7 @@ def test_states_of_smooth_bodies_begin_at_a_fiftieth_of_the_load_and_filters_at_
     case = parse_case(
         'kind = "ball-on-beam"\nlaws = ["hertz"]\n[surface]\nrms = "1 nm"\n[ball]\nload = "50 N"\n'
     )
-    shape = kind_of(case).geometry_of(case)
+    shape = geometry_of(case)
     found = chosen_states([np.zeros(shape.body.shape)], shape, shape.half_space(None))
     lightest, heaviest = (shape.hertz.force(found[at]) for at in (0, -1))
     assert lightest == pytest.approx(0.02 * shape.class_load, rel=0.1)

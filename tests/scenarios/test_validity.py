@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from asperity.case.cases import parse_case
 from asperity.cli.planning import plan, planned
 from asperity.contact import HalfSpace
 from asperity.contact.scan import Counts, warn_of_flaws, window_for
 from asperity.errors import Grade, PhysicsWarning
-from asperity.kinds.cases import parse_case
 from asperity.running import prepare_case, run
 from asperity.scenarios.expecting import Work
 from asperity.scenes.validity import SLOPE

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from asperity.case.cases import case_of
 from asperity.errors import InputError
-from asperity.kinds.cases import case_of
 from asperity.running import prepare_case
 from asperity.surfaces.synthesis import self_affine
 

@@ -2,12 +2,13 @@
 
 import pytest
 
-from asperity.config.describing import entries
-from asperity.config.parsing import Origin, read_toml
+from asperity.case import PRESETS
+from asperity.case.cases import case_class, case_of, parse_case, template
+from asperity.case.describing import entries
+from asperity.case.toml import read_toml
 from asperity.errors import InputError
-from asperity.kinds import KINDS
-from asperity.kinds.cases import case_of, parse_case, template
 from asperity.serving.case_form import case_data, form_values, forms
+from asperity.values import Origin
 
 UNITS = Origin("the case", units=True)
 
@@ -19,8 +20,11 @@ def no_file(identifier):
 @pytest.mark.parametrize("form", forms(), ids=lambda form: form.kind)
 def test_the_form_holds_every_key_with_its_words(form):
     fields = {field.key: field for group in form.groups for field in group.fields}
-    model = KINDS[form.kind].case
-    assert set(fields) == {entry.dotted for entry in entries(model)} - {"kind"}
+    model = case_class(form.kind)
+    every = {entry.dotted for entry in entries(model)}
+    hidden = {f"{title}.{name}" for title in model.SHOWN for name in model.sections()[title].model.keys}
+    hidden -= {f"{title}.{name}" for title, names in model.SHOWN.items() for name in names}
+    assert set(fields) == every - hidden - {"kind"}
     assert all(field.meaning and field.allowed for field in fields.values())
     keys = {group.title for group in form.groups for field in group.fields}
     assert "" in keys
@@ -29,7 +33,7 @@ def test_the_form_holds_every_key_with_its_words(form):
             assert companion.partition("=")[0] in fields, field
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", PRESETS)
 def test_what_is_typed_reads_as_the_case_file_does(kind):
     text = template(kind)
     data = read_toml(text, "case", "case")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from asperity.kinds.cases import case_of
+from asperity.case.cases import case_of
 from asperity.serving.contact_preview import MOST_CELLS_SHOWN, PressedSample
 from small_cases import BALL, WHEEL
 

@@ -19,8 +19,8 @@ pytest.importorskip("starlette", reason="the extra app is not installed")
 pytest.importorskip("uvicorn", reason="the extra app is not installed")
 
 import asperity
-from asperity.config.describing import toml_text
-from asperity.kinds.cases import load_case
+from asperity.case.cases import load_case
+from asperity.case.toml import toml_text
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the server is ended by signals")
 
@@ -186,7 +186,7 @@ def test_a_bad_upload_is_refused_and_a_good_one_is_pressed(tab, served, tmp_path
     tab.set_input_files("#surface-file", good)
     tab.wait_for_selector("#upload-state:not(.alert):has-text('map of 120 × 120 points')")
     tab.wait_for_function(
-        "() => document.getElementById('contact-note').textContent.includes('measured from good.txt')"
+        "() => document.getElementById('contact-note').textContent.includes('samples measured, good.txt')"
     )
 
 

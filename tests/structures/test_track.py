@@ -338,8 +338,8 @@ def test_overrides_replace_the_other_kind_of_damping():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"bending_stiffness": 0.0}, "bending stiffness of the rail"),
-        ({"mass_per_length": -1.0}, "mass per length of the rail"),
+        ({"bending_stiffness": 0.0}, "bending stiffness"),
+        ({"mass_per_length": -1.0}, "mass per length"),
         ({"pad_stiffness": math.nan}, "pad stiffness"),
         ({"ballast_stiffness": math.inf}, "ballast stiffness"),
         ({"sleeper_spacing": 0.0}, "sleeper spacing"),

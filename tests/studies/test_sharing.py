@@ -10,9 +10,9 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 import asperity
+from asperity.case.cases import as_case
 from asperity.contact import HalfSpace
 from asperity.contact.scan import ScanJob, scan_forces
-from asperity.kinds.cases import as_case
 from asperity.running import prepare_case, run
 from asperity.store import Store
 from asperity.studies.definition import study_of

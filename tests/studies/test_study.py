@@ -15,8 +15,8 @@ import pytest
 import xarray
 
 import asperity
+from asperity.case.cases import load_case, parse_case
 from asperity.errors import CaseError, ComputationError, InputError
-from asperity.kinds.cases import load_case, parse_case
 from asperity.laws import Role
 from asperity.running import run
 from asperity.schema.spectra import FORCE_LEVEL_DIFFERENCES

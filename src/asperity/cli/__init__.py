@@ -11,11 +11,11 @@ from typing import Any
 import click
 
 from asperity import __version__
+from asperity.case import PRESETS
 from asperity.cli import options
 from asperity.cli.options import PATH, output
 from asperity.cli.program import Program
 from asperity.errors import InputError
-from asperity.kinds import KINDS
 from asperity.terminal import say
 
 Document = dict[str, Any]
@@ -24,7 +24,7 @@ Document = dict[str, Any]
 
 def templates() -> tuple[str, ...]:
     """List what 'asperity new' can write."""
-    return (*KINDS, "study", "optimisation")
+    return (*PRESETS, "study", "optimisation")
 
 
 @click.group(cls=Program, document=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -33,7 +33,7 @@ def templates() -> tuple[str, ...]:
 def main(debug: bool) -> None:
     """Roll a body over a rough surface: 3-D contact, reduced to a point force, and its vibration.
 
-    Kinds of case: KINDS.
+    Kinds of case: PRESETS.
 
     Exit codes: 0 done, 2 the input is wrong, 3 the computation failed, 130 interrupted.
     'asperity COMMAND --help' shows examples of each command.
@@ -70,8 +70,8 @@ def demo(directory: Path, again: bool, overwrite: bool) -> None:
     # some seconds; open asperity-demo/report.html afterwards
     asperity demo
     """
+    from asperity.case.cases import demo_case
     from asperity.cli.running import run_case
-    from asperity.kinds.cases import demo_case
 
     run_case(demo_case(), directory, again=again, overwrite=overwrite)
 
@@ -98,7 +98,7 @@ def new(kind: str, laws: tuple[str, ...]) -> None:
     # the quietest texture of a case, within bounds
     asperity new optimisation > aim.toml
     """
-    from asperity.kinds.cases import not_a_kind, template
+    from asperity.case.cases import not_a_kind, template
     from asperity.optimising.definition import assignment_template
     from asperity.studies.definition import TEMPLATE
 
@@ -203,9 +203,9 @@ def check(case: Path, directory: Path | None, converge: bool, overwrite: bool) -
     # the expected seconds, for a script
     asperity check case.toml --json | jq .work.seconds
     """
+    from asperity.case.cases import load_case
     from asperity.cli.planning import show_plan
     from asperity.cli.running import refuse_full, refuse_other
-    from asperity.kinds.cases import load_case
 
     loaded, target = load_case(case), directory or Path("runs") / case.stem
     refuse_full(loaded, target)
@@ -237,8 +237,8 @@ def run(case: Path, directory: Path | None, **choices: bool) -> Document:
     # what it found, for a script
     asperity run case.toml --json | jq .verdict
     """
+    from asperity.case.cases import load_case
     from asperity.cli.running import run_case
-    from asperity.kinds.cases import load_case
 
     return run_case(load_case(case), directory or Path("runs") / case.stem, source=str(case), **choices)
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from asperity import files
-from asperity.config.content import content, file_digest
-from asperity.config.describing import in_toml, toml_text
-from asperity.config.parsing import read_definition
+from asperity.case.content import content, file_digest
+from asperity.case.describing import in_toml
+from asperity.case.toml import read_definition, toml_text
 from asperity.errors import InputError
 from asperity.kinds.report import PAGE as REPORT
 from asperity.kinds.report import write_page

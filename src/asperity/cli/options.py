@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from asperity.kinds import KINDS
+from asperity.case import PRESETS
 
 PATH = click.Path(path_type=Path)
 Completion = Callable[[click.Context, click.Parameter, str], list[str]]
@@ -85,9 +85,9 @@ def completed_sweep(context: click.Context, option: click.Parameter, begun: str)
 
 def _keys(case: Path | None) -> Mapping[str, Collection[str]]:
     """Keys of the kind of a case, of all kinds where that cannot be told, with the words they take."""
-    from asperity.config.describing import entries
-    from asperity.config.parsing import read_toml
-    from asperity.config.values import value_kind
+    from asperity.case.cases import case_class
+    from asperity.case.describing import entries
+    from asperity.case.toml import read_toml
     from asperity.errors import InputError
 
     try:
@@ -96,9 +96,8 @@ def _keys(case: Path | None) -> Mapping[str, Collection[str]]:
     except (OSError, UnicodeError, InputError):
         kind = ""
     found: dict[str, Collection[str]] = {}
-    for name in [kind] if kind in KINDS else KINDS:
-        for entry in entries(KINDS[name].case):
-            taken = value_kind(entry.field.annotation, entry.field.metadata)
-            found[entry.dotted] = getattr(taken, "known", getattr(taken, "words", ()))
+    for name in [kind] if kind in PRESETS else PRESETS:
+        for entry in entries(case_class(name)):
+            found[entry.dotted] = getattr(entry.key.one, "known", getattr(entry.key.one, "words", ()))
     found.pop("kind")  # one in a study
     return found

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from asperity.case.scene import Case
+from asperity.case.surface import MeasuredLine
 from asperity.cli.running import described_scan, name_of_run, prepared_case
-from asperity.config.case import Case
-from asperity.config.sections import MeasuredLine
 from asperity.errors import Grade, PhysicsWarning
 from asperity.progress import duration, progress_bar
 from asperity.store import Store, content_key
@@ -87,6 +87,7 @@ def planned(prepared: PreparedCase, *, converge: bool = False) -> dict[str, Any]
 def plan(prepared: PreparedCase, work: Work) -> Rows:
     """List what will be computed and how much work it is, from `asperity.scenarios.expecting.expect`."""
     from asperity.scenarios.reducing import STATES
+    from asperity.scenes.plan import planned_rows
 
     case, (nx, ny), choice = prepared.case, prepared.shape.body.shape, _law_choice(prepared)
     contact, settling = case.contact, case.settled_time
@@ -99,7 +100,7 @@ def plan(prepared: PreparedCase, work: Work) -> Rows:
         ("textures", prepared.textures.origin),
         ("path", f"{last - first:g} m from {first:g} m, {points} points {contact.spacing * 1e6:g} µm apart"),
         ("time", f"{case.rolled_time:g} s{run_in}, {work.steps} steps of {case.time_step * 1e6:.4g} µs"),
-        *prepared.kind.plan("rows")(prepared),
+        *planned_rows(prepared),
         ("laws", ", ".join(case.laws)),
         ("contact", f"{nx} × {ny} cells, {contact.samples} samples, {states} approaches"),
         *_running_in(prepared),
@@ -123,7 +124,7 @@ def _law_choice(prepared: PreparedCase) -> LawChoice | None:
     """Which law to take, and how far the laws are expected from `direct`."""
     from asperity.scenarios.law_choice import law_choice
 
-    return law_choice(prepared.case, prepared.shape, prepared.textures, prepared.bodies)
+    return law_choice(prepared.case, prepared.shape, prepared.textures, prepared.scene)
 
 
 def _measured(case: Case) -> Rows:
@@ -138,7 +139,7 @@ def _measured(case: Case) -> Rows:
         warnings.simplefilter("ignore", PhysicsWarning)  # said before
         if case.surface.file is not None:
             rows.append(("measured map", described(list(read_maps(case.surface)))))
-        for name in type(case).model_fields:
+        for name in case.section_names:
             section = getattr(case, name)
             if isinstance(section, MeasuredLine) and section.line is not None:
                 lines = read_lines(section, name)

@@ -17,8 +17,8 @@ from typing import Any
 import click
 
 from asperity import __version__, errors
+from asperity.case import PRESETS
 from asperity.interrupts import interruptible, was_interrupted
-from asperity.kinds import KINDS
 from asperity.printable import printable
 from asperity.terminal import Manner, change_manner, manner, say, say_document, speaking, standard_streams
 
@@ -60,8 +60,8 @@ class Command(click.Command):
     ) -> None:
         super().__init__(*arguments, **settings)
         self.section = section
-        text = inspect.cleandoc(self.help or "").replace("KINDS", ", ".join(KINDS))
-        text = text.replace("KIND", next(iter(KINDS)))
+        text = inspect.cleandoc(self.help or "").replace("PRESETS", ", ".join(PRESETS))
+        text = text.replace("KIND", next(iter(PRESETS)))
         self.help, _, self.examples = text.partition("\n\nExamples\n--------\n")
         if document:
             words = "Print one JSON document, as docs/json.md describes, for programs."

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import asperity
 from asperity import files
 from asperity.arguments import no_file
-from asperity.config.case import Case
-from asperity.config.content import content, file_digest
+from asperity.case.content import content, file_digest
+from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.progress import COMPILATION, duration, progress_bar
 from asperity.schema import provenance, rolling, spectra

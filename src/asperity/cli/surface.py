@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, shown
-from asperity.config import recipe as recipes
-from asperity.config.parsing import Origin, validated
+from asperity.case import recipe as recipes
 from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.reporting.figure import write_chart, write_columns
@@ -39,6 +38,7 @@ from asperity.surfaces.statistics import (
 from asperity.surfaces.steps import stepped
 from asperity.terminal import say
 from asperity.units import quantity
+from asperity.values import Origin
 
 Surfaces = Sequence[HeightMap | Profile]
 Spectra = dict[str, tuple[Array, Array]]
@@ -64,7 +64,7 @@ def show_surface(
     is a file with others, `store` the one to write them all to.
     """
     typed = _typed(recipe, options)
-    steps = validated(recipes.Recipe, typed, Origin("options"))
+    steps = recipes.Recipe.read(typed, Origin("options"))
     array, index = steps.array, steps.index
     if picture is None:
         chosen = [re.sub(r"[^\w.]+", "-", str(part)) for part in (array, index) if part is not None]

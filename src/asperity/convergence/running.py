@@ -11,14 +11,16 @@ import numpy as np
 from xarray import DataTree
 
 from asperity import __version__
-from asperity.config.case import Case
-from asperity.config.content import content, file_digest
+from asperity.case.content import content, file_digest
+from asperity.case.scene import Case
 from asperity.convergence.group import NOT_CONVERGED, Comparison, Levels, convergence_group, halves
 from asperity.errors import AsperityError, CaseError, InputError, PhysicsWarning
 from asperity.progress import COMPILED, Progress
 from asperity.scenarios.geometry import window_cells
-from asperity.scenarios.preparing import PreparedCase, prepare_of_kind
+from asperity.scenarios.preparing import PreparedCase, prepare
 from asperity.scenarios.refining import Setting, Way, restricted, shared_settings
+from asperity.scenes.plan import own_settings
+from asperity.scenes.result import computed_result
 from asperity.schema import contact, convergence, provenance
 from asperity.store import Store, content_key
 from asperity.threads import one_thread_in_linear_algebra
@@ -67,7 +69,7 @@ def with_convergence(prepared: PreparedCase, result: DataTree, progress: Progres
 def settings_for(prepared: PreparedCase, states: np.ndarray) -> list[Setting]:
     """All settings of a case; its states (k,), m."""
     first, last = shared_settings(prepared.case, prepared.textures, states)
-    return [*first, *prepared.kind.settings_of(prepared.case), *last]
+    return [*first, *own_settings(prepared.case), *last]
 
 
 def unchangeable(prepared: PreparedCase, states: np.ndarray) -> dict[str, str]:
@@ -141,7 +143,7 @@ def _both(
 
 def changed_case(prepared: PreparedCase, way: Way) -> PreparedCase:
     """The case with a setting changed."""
-    return prepare_of_kind(prepared.case.with_(**way.changes), prepared.kind)
+    return prepare(prepared.case.with_(**way.changes))
 
 
 def on_the_surface_of(small: PreparedCase, large: PreparedCase) -> PreparedCase:
@@ -161,7 +163,7 @@ def _levels(case: Case, textures_of: str, make: Callable[[], PreparedCase], prog
     if found is not None:
         return Levels.unpacked(found)
     prepared = make()
-    levels = Levels.of_result(prepared.kind.computed(prepared, progress, []))
+    levels = Levels.of_result(computed_result(prepared, progress, []))
     store.put(key, levels.packed())
     return levels
 

@@ -10,25 +10,11 @@ from xarray import DataTree
 from asperity.arguments import file_path, shown
 from asperity.errors import InputError
 from asperity.files import together, write_bytes
-from asperity.kinds import KINDS
-from asperity.reporting.data import stated
-from asperity.reporting.figure import Chapter, Figure, figure_format, write_columns, write_figures
+from asperity.reporting.figure import Figure, figure_format, write_columns, write_figures
 from asperity.reporting.page import drawable_figures, page
-from asperity.schema.provenance import KIND
+from asperity.scenes.chapters import chapters_of
 
 PAGE, SUMMARY = "report.html", "summary.html"
-
-
-def chapters_of(tree: DataTree) -> tuple[Chapter, ...]:
-    """Chapters for the kind of case that `tree` is the result of, or those it fills most."""
-    kind = stated(tree, KIND)
-    if kind in KINDS:
-        return KINDS[kind].chapters
-
-    def filled(chapters: tuple[Chapter, ...]) -> float:
-        return len(drawable_figures(tree, chapters)) / sum(len(chapter.figures) for chapter in chapters)
-
-    return max((kind.chapters for kind in KINDS.values()), key=filled)
 
 
 def figures_of(tree: DataTree) -> list[Figure]:
@@ -100,7 +86,9 @@ def write_summary(result: DataTree, target: Path) -> Path:
 
 
 def names_of_reports() -> list[str]:
-    """Names of all files that a report of any kind may have, or that of an earlier version."""
-    chapters = (chapter for kind in KINDS.values() for chapter in kind.chapters)
-    names = dict.fromkeys(figure.name for chapter in chapters for figure in chapter.figures)
-    return [PAGE, *(f"{name}.{ending}" for name in names for ending in ("csv", "svg"))]
+    """Names of all files that a report may have, or that of an earlier version."""
+    every = DataTree.from_dict({"/scenario": None, "/track": None})
+    figures = [
+        each for tree in (DataTree(), every) for chapter in chapters_of(tree) for each in chapter.figures
+    ]
+    return [PAGE, *dict.fromkeys(f"{each.name}.{ending}" for each in figures for ending in ("csv", "svg"))]

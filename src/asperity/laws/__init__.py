@@ -18,7 +18,9 @@ from asperity.laws.linear import Linear as Linear
 from asperity.laws.materials import Materials as Materials
 from asperity.laws.printed import Printed as Printed
 from asperity.laws.registry import baselines as baselines
+from asperity.laws.registry import family_of as family_of
 from asperity.laws.registry import in_role as in_role
+from asperity.laws.registry import law_keys as law_keys
 from asperity.laws.registry import names as names
 from asperity.laws.registry import needs_of as needs_of
 from asperity.laws.registry import reference as reference

@@ -37,6 +37,7 @@ class Materials:
     spacing: tuple[float, float]  # steps of the contact grid, (dx, dy), m
     hardness: float | None  # pressure that the softer body bears, Pa; None if it stays elastic
     rtol: float  # tolerance of a contact solution, as in `HalfSpace.solve`
+    parameters: Mapping[str, Any]  # values of the law's own keys in the case, by name
     made_by: Mapping[str, Callable[[], Any]]  # what makes all others, by name
     _made: dict[str, Any] = field(default_factory=dict)
 

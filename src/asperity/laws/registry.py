@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from asperity.arguments import nearest, require, shown
 from asperity.errors import InputError
 from asperity.laws.spec import LawSpec, Need, Role
+from asperity.parameters import Key
 
 BUILT_IN = (
     "areal",
@@ -35,6 +36,16 @@ def spec_of(name: object) -> LawSpec:
         allowed = ", ".join(f'"{known}"' for known in _specs)
         raise InputError("law", shown(name), allowed, nearest(name, names()))
     return _specs[name]
+
+
+def family_of(name: str) -> str:
+    """Name of the law that a law is a variant of, or is itself."""
+    return next(family for family, members in _families.items() if name in members)
+
+
+def law_keys() -> dict[str, Mapping[str, Key]]:
+    """Keys of the laws that have some of their own, by the name of the law and by theirs."""
+    return {name: _specs[name].parameters for name in _families if _specs[name].parameters}
 
 
 def register(law: LawSpec) -> None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Set
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Literal
 
 from asperity.arguments import require, shown
 from asperity.errors import InputError
+from asperity.parameters import Key
 from asperity.schema import spectra
 
 if TYPE_CHECKING:
@@ -149,6 +150,9 @@ class LawSpec:
         Colour, dashes and marker in figures.
     variants : tuple of Variant
         Laws of the same file that are built from other materials.
+    parameters : mapping
+        Keys of its own, made by `asperity.parameters.key`, by name: in a case they stand in a section called
+        as the law, and in ``materials.parameters`` under their names.
 
     Raises
     ------
@@ -166,6 +170,7 @@ class LawSpec:
     role: Role | None = None
     look: Look = Look()
     variants: tuple[Variant, ...] = ()
+    parameters: Mapping[str, Key] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         allowed = 'small letters and digits, with hyphens between words, as "my-law"'
@@ -178,6 +183,10 @@ class LawSpec:
             "look": (isinstance(self.look, Look), "a Look of colour, dashes and marker"),
             "role": (self.role is None or isinstance(self.role, Role), "None, or a Role"),
             "variants": (all(isinstance(each, Variant) for each in self.variants), "a tuple of Variant"),
+            "parameters": (
+                all(isinstance(each, Key) for each in self.parameters.values()),
+                "keys of asperity.parameters.key, by name",
+            ),
         }
         for name, (right, allowed) in checks.items():
             require(right, f"{name} {of}", shown(getattr(self, name)), allowed)

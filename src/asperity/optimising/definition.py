@@ -6,27 +6,28 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import shown
-from asperity.config import values
-from asperity.config.case import Case, Law
-from asperity.config.describing import commented
-from asperity.config.form import Section, extra_of, key, optional
-from asperity.config.parsing import Origin, read_definition, read_toml, validated
-from asperity.config.sections import Surface
+from asperity.case.cases import as_case, case_of, load_case
+from asperity.case.describing import commented
+from asperity.case.form import Section
+from asperity.case.scene import LAW, Case
+from asperity.case.surface import DEFECTS, LENGTH, LEVEL, Surface
+from asperity.case.toml import read_definition, read_toml
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import as_case, case_of, load_case
 from asperity.optimising.allocation import Limits
+from asperity.parameters import key, optional
 from asperity.running import prepare_case
 from asperity.scenarios.measure import A_WEIGHTED, MEASURE_NAMES
 from asperity.scenarios.records import spectrum_levels
 from asperity.spectra import HALF_BAND, third_octave_bands
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.values import Choice, ListOf, Number, Origin, Quantity
 
 C = TypeVar("C", bound=Case)
 ROWS = 2**17
@@ -116,9 +117,7 @@ def _measured(case: Case) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 def with_texture(case: C, bands: Bands) -> C:
     """The case over a texture of these bands; defects and other bodies stay as they are."""
     keys = case.given()
-    fields = type(case.surface).model_fields
-    sources = set(Surface.model_fields) | {"smooth"}
-    sources |= {name for name, field in fields.items() if extra_of(field)["goes_with"] in sources}
+    sources = Surface.keys.keys() - set(DEFECTS)
     kept = {name: value for name, value in keys.get("surface", {}).items() if name not in sources}
     lay = {} if bands.lateral is None else {"lateral": bands.lateral}
     keys["surface"] = kept | {"spectrum": bands.table} | lay
@@ -134,66 +133,75 @@ case = "case.toml"
 """
 _TEXTURES = "10 nm to 10 m: textures lie between"
 _LEVELS = "-200 dB to 120 dB: 1e-10 um to 1 m in one band"
-Price = Annotated[float, values.Number(at_least=0)]
+_PRICE = Number(at_least=0)
 
 
 class Aim(Section):
     """What the texture of a case shall be."""
 
-    quantity: Annotated[str, values.Choice(MEASURE_NAMES)] = key(
+    quantity: str = key(
+        Choice(MEASURE_NAMES),
         A_WEIGHTED,
         "what it is judged by: sound power of a wheel, else motion; or the unweighted acceleration",
     )
-    limit: values.Level | None = optional(
+    limit: float | None = optional(
+        LEVEL,
         "100 dB",
         "level of the quantity that is kept: the roughest texture is sought, by its price",
         "the quantity is made as small as the bounds allow",
         "-400 dB to 400 dB: levels lie between",
     )
-    law: Law = key("areal", "law of the contact force that is rolled while searching")
-    verify: Law = key("table", "law with which the texture is rolled before and after")
-    longest: values.Length | None = optional(
-        "10 mm", "longest wavelength that is changed", "the longest that is heard", _TEXTURES
+    law: str = key(LAW, "areal", "law of the contact force that is rolled while searching")
+    verify: str = key(LAW, "table", "law with which the texture is rolled before and after")
+    longest: float | None = optional(
+        LENGTH, "10 mm", "longest wavelength that is changed", "the longest that is heard", _TEXTURES
     )
-    shortest: values.Length | None = optional(
-        "100 um", "shortest wavelength that is changed", "the shortest that is heard", _TEXTURES
+    shortest: float | None = optional(
+        LENGTH, "100 um", "shortest wavelength that is changed", "the shortest that is heard", _TEXTURES
     )
-    reach: Annotated[float, values.Quantity("dB", above=0)] = key(
+    reach: float = key(
+        Quantity("dB", above=0),
         "20 dB",
         "how far levels may go from those of the case where no bound is given",
         "0.01 dB to 100 dB: five powers of ten are another surface",
     )
-    lowest: tuple[values.Level, ...] | None = optional(
+    lowest: tuple[float, ...] | None = optional(
+        ListOf(LEVEL),
         ["-40 dB"],
         "least level of a one-third octave, dB re 1 um: one for all, or one for each from the longest",
         "the reach below that of the case",
         _LEVELS,
     )
-    highest: tuple[values.Level, ...] | None = optional(
+    highest: tuple[float, ...] | None = optional(
+        ListOf(LEVEL),
         ["+10 dB"],
         "largest level of a one-third octave, dB re 1 um: one for all, or one for each from the longest",
         "the reach above that of the case",
         _LEVELS,
     )
-    rms_at_least: values.Length | None = optional(
+    rms_at_least: float | None = optional(
+        LENGTH,
         "0.5 um",
         "least rms height of these wavelengths together, as friction or oil asks for",
         "any",
         "1 pm to 1 mm: rms heights lie between",
     )
-    rms_at_most: values.Length | None = optional(
+    rms_at_most: float | None = optional(
+        LENGTH,
         "2 um",
         "largest rms height of these wavelengths together",
         "any",
         "1 pm to 1 mm: rms heights lie between",
     )
-    price: tuple[Price, ...] = key(
+    price: tuple[float, ...] = key(
+        ListOf(_PRICE),
         (1.0,),
         "price of lowering a one-third octave by 1 dB, which raising it saves: one for all, or one for each "
         "from the longest",
     )
-    budget: Price | None = optional(30.0, "largest price of all changes together", "any")
-    lateral: tuple[Annotated[float, values.Number(above=0)], ...] | None = optional(
+    budget: float | None = optional(_PRICE, 30.0, "largest price of all changes together", "any")
+    lateral: tuple[float, ...] | None = optional(
+        ListOf(Number(above=0)),
         [0.5, 2.0],
         "least and largest correlation length across over that along: the lay, which is chosen between",
         "as it is in the case",
@@ -256,7 +264,7 @@ def load_assignment(path: str | os.PathLike[str]) -> Assignment:
         raise CaseError(str(path), [str(error)])
     origin = Origin.file(path)
     case = case_of(base, origin) if isinstance(base, dict) else load_case(Path(path).parent / base)
-    return Assignment(case, validated(Aim, data, origin))
+    return Assignment(case, Aim.read(data, origin))
 
 
 def assignment_of(

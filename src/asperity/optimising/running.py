@@ -14,16 +14,17 @@ from numpy.typing import NDArray
 
 from asperity import __version__
 from asperity.arguments import shown
-from asperity.config.case import Case
-from asperity.config.content import content, file_digest
+from asperity.case.content import content, file_digest
+from asperity.case.scene import Case
 from asperity.errors import InputError, PhysicsWarning
-from asperity.kinds.cases import kind_of
 from asperity.optimising.allocation import Limits, rms_of
 from asperity.optimising.definition import Assignment, Bands, assignment_of, bands_of, with_texture
 from asperity.optimising.searching import Trial, search
 from asperity.progress import Progress, shown_progress
 from asperity.running import prepare_case, run
 from asperity.scenarios.measure import Measure, line_frequencies
+from asperity.scenes.plan import measures_of
+from asperity.scenes.result import computed_result
 from asperity.spectra import band_energies
 from asperity.store import Store, content_key
 from asperity.threads import one_thread_in_linear_algebra
@@ -186,7 +187,7 @@ def optimise(
 
 def _optimised(assignment: Assignment, progress: Progress) -> Optimised:
     case, aim = assignment.case, assignment.aim
-    measures = kind_of(case).measures
+    measures = measures_of(case)
     if aim.quantity not in measures:
         raise InputError("quantity", f'"{aim.quantity}" of {case.kind}', " or ".join(measures))
     measure = measures[aim.quantity]
@@ -227,7 +228,7 @@ def _rolled(assignment: Assignment, measure: Measure, bands: Bands, progress: Pr
         with warnings.catch_warnings(), one_thread_in_linear_algebra():
             warnings.simplefilter("ignore", PhysicsWarning)  # those of the texture found are told
             prepared = prepare_case(case)
-            tree = prepared.kind.computed(prepared, progress, [])
+            tree = computed_result(prepared, progress, [])
         kept = {"frequency": line_frequencies(tree), "density": measure.density(tree, aim.law)}
         store.put(key, kept)
     frequency, density = kept["frequency"], kept["density"]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.case import Case
+from asperity.case.scene import Case
 from asperity.contact.scan import FILTER_SHARE, ScanJob, rtol_for, scan_forces
 from asperity.errors import InputError, PhysicsWarning
 from asperity.files import amount, free_space
@@ -173,9 +173,9 @@ def expect(prepared: PreparedCase, progress: Progress) -> Work:
     solutions = {f"scan for the {name}": scan.solutions for name, scan in scans.items()}
     if case.contact.running_in is not None:
         solutions["running in"] = running_in_passes(case) * running_in_positions(shape, textures)
-    contacts = len(prepared.bodies.offsets)
+    contacts = len(prepared.scene.offsets)
     solved = [law for law in case.laws if spec_of(law).solved_every_step]
-    seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.bodies.points)
+    seconds = START_TIME + prepared.processor + TRACK_TIME * len(prepared.scene.points)
     seconds += STEP_TIME * steps * contacts * len(case.laws)
     if trial is not None:
         one = NEIGHBOUR * trial.solution

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from asperity.config.case import Case
+from asperity.case.scene import Case
 from asperity.errors import percent
 from asperity.reduction.texture import areal_texture
 from asperity.reference.law_accuracy import HIGH, LOW, LawMap, MappedPoint, Place, law_map

@@ -6,13 +6,14 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import shown
-from asperity.config.sections import ContactCase, Numerics
+from asperity.case.scene import Case
+from asperity.case.sections import ContactKeys
 from asperity.contact.scan import ScanJob, ScannedForces, first_touch, rtol_for, warn_of_flaws
 from asperity.errors import InputError
 from asperity.laws import Law, LawSpec, Materials, Need, spec_of
@@ -22,23 +23,15 @@ from asperity.reduction.table import ForceTable, StoredForces, scan_into
 from asperity.reduction.texture import StateTexture, areal_texture
 from asperity.scenarios import reducing
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.textures import Textures
+from asperity.scenarios.textures import OtherContact, Textures
 from asperity.store import Cache
-
-
-class OwnContact(NamedTuple):
-    """A contact that differs from the first of a case."""
-
-    textures: Callable[[Textures], Textures]  # its own, from those of the first
-    load: float  # N
 
 
 @dataclass(frozen=True, eq=False)
 class LawMaterials:
     """What the laws of one contact of a case are made of."""
 
-    contact: ContactCase
-    numerics: Numerics  # how accurately contacts are solved
+    case: Case
     textures: Textures
     shape: Geometry
     reduction: reducing.Reduction | None  # state functions; None where the case has no samples
@@ -47,7 +40,7 @@ class LawMaterials:
     cache: Cache  # for the scan of the path
     progress: Progress
 
-    def of_contact(self, own: OwnContact) -> LawMaterials:
+    def of_contact(self, own: OtherContact) -> LawMaterials:
         """Those of another contact of the same bodies."""
         textures, shape = own.textures(self.textures), replace(self.shape, load=own.load)
         planes = None if textures.path is None else reducing.patch_planes(textures.path, self.shape)
@@ -66,7 +59,7 @@ class LawMaterials:
         return law
 
     def _of_law(self, spec: LawSpec) -> Materials:
-        contact, shape = self.contact, self.shape
+        case, contact, shape = self.case, self.case.contact, self.shape
         made_by: dict[str, Callable[[], Any]] = {
             "line": partial(self._line, spec),
             "areal": self._areal,
@@ -80,7 +73,7 @@ class LawMaterials:
         return Materials(
             spec, contact.damping, shape.load, shape.hertz.stiffness_constant, shape.modulus,
             working_point(contact, shape, self.reduction), self.textures.start, shape.body, shape.spacing,
-            contact.hardness, self.numerics.rtol, made_by,
+            contact.hardness, case.numerics.rtol, case.law_parameters(spec.name), made_by,
         )  # fmt: skip
 
     @cached_property
@@ -96,7 +89,7 @@ class LawMaterials:
         if self.reduction is None:  # smooth bodies: the filter of Hertz's patch, in closed form
             taps, states = punch_taps(self.shape.semi_axes[0], dx), np.zeros(1)
         else:
-            line_filter = self.reduction.filters[reducing.normalisation(self.contact, law)]
+            line_filter = self.reduction.filters[reducing.normalisation(self.case.contact, law)]
             reducing.warn_of_filter(line_filter, law.name, self.reduction.pressed.approach)
             taps, states = line_filter.taps, line_filter.contact_filter.approaches
         return self._over_defects(filtered_texture(self.textures.line, dx, taps, states, start))
@@ -127,8 +120,8 @@ class LawMaterials:
     def scan(self) -> ScannedForces[StoredForces]:
         """The scan of the path."""
         job = ScanJob(
-            self.shape.half_space(self.contact.hardness), self.textures.surface, self.shape.body,
-            self._reduced.approaches, table_stride(self.shape), rtol_for(self.numerics.force_accuracy),
+            self.shape.half_space(self.case.contact.hardness), self.textures.surface, self.shape.body,
+            self._reduced.approaches, table_stride(self.shape), rtol_for(self.case.numerics.force_accuracy),
             self._scanned_planes, self.textures.before,
         )  # fmt: skip
         scanned = scan_into(self.cache, job, progress=self.progress, message="scanning the path")
@@ -168,7 +161,7 @@ def table_stride(shape: Geometry) -> int:
 
 
 def working_point(
-    contact: ContactCase, shape: Geometry, reduction: reducing.Reduction | None
+    contact: ContactKeys, shape: Geometry, reduction: reducing.Reduction | None
 ) -> tuple[float, float]:
     """Approach under the working load, m, and the stiffness that a linear contact has there, N/m.
 

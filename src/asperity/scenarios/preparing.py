@@ -7,20 +7,20 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
-from asperity.config.case import Case
-from asperity.config.chosen import with_chosen_window
+from asperity.case.chosen import with_chosen
+from asperity.case.scene import Case
 from asperity.contact.batched import find_device
 from asperity.errors import CaseError, InputError, PhysicsWarning
 from asperity.reduction.filter import FEWEST_POSITIONS
 from asperity.scenarios.expecting import problem_of_disk, scan_sizes
-from asperity.scenarios.geometry import Geometry, window_cells
-from asperity.scenarios.kind import Kind
+from asperity.scenarios.geometry import Geometry, geometry_of, window_cells
 from asperity.scenarios.reducing import filter_stride
-from asperity.scenarios.textures import Textures
+from asperity.scenarios.scene import Scene, scene_of
+from asperity.scenarios.textures import Textures, textures_of, warn_of_textures
 from asperity.store import Store
 from asperity.threads import one_thread_in_linear_algebra, thread_count
 from asperity.units import written
@@ -45,8 +45,7 @@ class PreparedCase:
     """A case that can be computed."""
 
     case: Case
-    kind: Kind
-    bodies: Any
+    scene: Scene  # what rolls over what
     shape: Geometry  # the gap of the bodies on the contact grid
     textures: Textures  # what is rolled over
     caught: tuple[warnings.WarningMessage, ...]  # warnings met on the way
@@ -54,37 +53,37 @@ class PreparedCase:
     processor: float  # time, s
 
 
-def prepare_of_kind(case: Case, kind: Kind, source: str = "case") -> PreparedCase:
+def prepare(case: Case, source: str = "case") -> PreparedCase:
     """Build and read all that a case needs, and refuse what cannot be computed, with all errors at once."""
     begin, spent = time.perf_counter(), time.process_time()
     with warnings.catch_warnings(record=True) as caught, one_thread_in_linear_algebra():
         warnings.simplefilter("always", PhysicsWarning)
         tried = _Attempts()
-        bodies = tried(lambda: kind.bodies_of(case))
-        shape = tried(lambda: kind.geometry_of(case))
-        textures = tried(lambda: kind.textures_of(case))
+        scene = tried(lambda: scene_of(case))
+        shape = tried(lambda: geometry_of(case))
+        textures = tried(lambda: textures_of(case))
         tried(thread_count)
         tried(find_device)
         tried.refuse(source)
-        assert bodies is not None
+        assert scene is not None
         assert shape is not None
         assert textures is not None
         if (smaller := _within_the_map(case, textures)) is not None:
-            return prepare_of_kind(smaller, kind, source)
+            return prepare(smaller, source)
         tried.errors += _problems(case, shape, textures)
         tried.refuse(source)
-        kind.warn_of(case, shape, textures)
+        warn_of_textures(case, shape, textures)
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
-    return PreparedCase(case, kind, bodies, shape, textures, tuple(caught), seconds, processor)
+    return PreparedCase(case, scene, shape, textures, tuple(caught), seconds, processor)
 
 
 def _within_the_map(case: Case, textures: Textures) -> Case | None:
     """The case with a window no wider than its measured maps, where it was chosen wider; else None."""
     smallest = min((min(sample.shape) for sample in textures.maps), default=math.inf)
-    if "window" in case.contact.model_fields_set or window_cells(case.contact) <= smallest:
+    if "window" in case.contact.given_names or window_cells(case.contact) <= smallest:
         return None
     cells = int(smallest) - 1 + int(smallest) % 2  # odd, as those of every window
-    return with_chosen_window(case, cells * case.contact.spacing)
+    return with_chosen(case, {"contact": {"window": cells * case.contact.spacing}})
 
 
 class _Attempts:

@@ -1,28 +1,53 @@
-"""Textures of a body along a path: lines and maps read from files, and strips from band levels."""
+"""Textures of one body along a path: maps and lines read from files, and strips from band levels."""
 
 from __future__ import annotations
 
+import math
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from asperity.config.content import name_of
-from asperity.config.recipe import read_recipe
-from asperity.config.sections import MeasuredLine, Surface
-from asperity.config.tables import TableSource, read_levels
-from asperity.errors import InputError
+from asperity.case.body import Rolling
+from asperity.case.content import name_of
+from asperity.case.recipe import read_recipe
+from asperity.case.surface import MeasuredLine, Surface
+from asperity.case.tables import TableSource, read_levels
+from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.reference import cnossos
 from asperity.spectra import HALF_BAND, nominal_length
-from asperity.surfaces.bands import strip_from_bands
+from asperity.surfaces.bands import check_levels, strip_from_bands
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.levelling import band_limit, level, resample
+from asperity.surfaces.measured_lines import (
+    Processing,
+    bring_into_register,
+    common_length,
+    lines_of,
+    process,
+    strip_from_lines,
+)
 from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.surfaces.readers.hints import in_case, spelled
-from asperity.surfaces.strip import Strip
-from asperity.surfaces.synthesis import long_strip_from_bands
+from asperity.surfaces.steps import QUARTER, rotated
+from asperity.surfaces.strip import Rows, Strip
+from asperity.surfaces.synthesis import Continuation, close, extend, from_bands, long_strip_from_bands
+
+Array = NDArray[np.float64]
+
+MOST_POINTS = 2.0**27
+"""Points of a measured map on the contact grid (1 GiB)."""
+FULL_TURN = 0.02
+"""Share of the circumference that a measured line around what rolls may lack or exceed."""
+JOIN = 10e-3
+"""Length on either side over which the ends of a turn are made to meet, m."""
+SAME_TEXTURE = 0.3
+"""Median correlation of neighbouring lines from which they are brought into register."""
 
 
 @dataclass(frozen=True)
@@ -33,84 +58,84 @@ class Grid:
     lines: int  # points across
     spacing: float  # in both directions, m
 
+    @property
+    def length(self) -> float:
+        """Length of the strip, m."""
+        return self.rows * self.spacing
+
 
 @dataclass(frozen=True, eq=False)
 class Record:
     """Texture of one body along the path."""
 
-    strip: Strip  # (rows, lines), peaks positive
+    strip: Strip  # (rows, lines), peaks positive; one line where nothing is known beside it
     origin: str  # where it comes from
     areal: bool = True  # whether heights beside a line are a texture of their own, not carried over from it
     # measured lines that heights are interpolated between, m; none of an areal texture
     lines: tuple[Profile, ...] = ()
 
     @property
-    def heights(self) -> NDArray[np.float64]:
+    def heights(self) -> Array:
         """All heights, m, shape (rows, lines)."""
         return self.strip.rows(0, self.strip.shape[0])
 
 
-def spectrum_strip(
-    wavelength: ArrayLike, levels: ArrayLike, grid: Grid, *, lateral: float, seed: int, name: str
+# --- band levels
+
+
+def spectrum_record(
+    spectrum: str | TableSource, level_db: float, grid: Grid, *, lateral: float, seed: int, before: int | None
 ) -> Record:
-    """Synthesise a strip from band levels, dB re 1 µm, leaving out bands that grid or length cannot hold.
+    """Synthesise a strip of a spectrum by name or from a table, leaving out bands that the grid cannot hold.
 
-    Centres (b,) in m. The strip closes on itself along the grid; `lateral` is its correlation length across
-    over that along. `name` is that of the spectrum.
+    With a level added, dB; `lateral` is its correlation length across over that along. Without rows `before`
+    it closes on itself along the grid. With them it is of any length, made in pieces where it is read, holds
+    all bands that the spacing can, and from there on is the same however many rows there are: a track that is
+    rolled over at any speed.
     """
-    length = grid.rows * grid.spacing
-    given, level_db = _held(wavelength, levels, grid, length, name)
-    strip = strip_from_bands(
-        (grid.rows, grid.lines), (grid.spacing, grid.spacing), given, level_db, lateral=lateral, seed=seed
-    )
-    return Record(strip, _bands(given, name), areal=bool(np.isfinite(lateral)))
+    wavelength, levels, name = spectrum_levels(spectrum)
+    size, spacing = (grid.rows, grid.lines), (grid.spacing, grid.spacing)
+    wavelength, levels = _held(wavelength, levels + level_db, grid, name, closed=before is None)
+    if before is None:
+        strip: Strip = strip_from_bands(size, spacing, wavelength, levels, lateral=lateral, seed=seed)
+    else:
+        strip = long_strip_from_bands(
+            size, spacing, wavelength, levels, lateral=lateral, seed=seed, before=before
+        )
+    bands = f"{name}, bands of {nominal_length(wavelength.max())} to {nominal_length(wavelength.min())}"
+    return Record(strip, f"{bands}, {level_db:+g} dB", areal=bool(np.isfinite(lateral)))
 
 
-def long_spectrum_strip(
-    wavelength: ArrayLike,
-    levels: ArrayLike,
-    grid: Grid,
-    *,
-    lateral: float,
-    seed: int,
-    name: str,
-    before: int,
-) -> Record:
-    """Synthesise a strip of any length as `spectrum_strip` does, in pieces, where it is read.
-
-    It does not close on itself, and holds all bands that the spacing can. From row `before` on it is the same
-    however many rows there are: a track that is rolled over at any speed.
-    """
-    given, level_db = _held(wavelength, levels, grid, np.inf, name)
-    strip = long_strip_from_bands(
-        (grid.rows, grid.lines), (grid.spacing, grid.spacing), given, level_db,
-        lateral=lateral, seed=seed, before=before,
-    )  # fmt: skip
-    return Record(strip, _bands(given, name), areal=bool(np.isfinite(lateral)))
+def spectrum_line(spectrum: str | TableSource, level_db: float, grid: Grid, seed: int) -> Record:
+    """Synthesise a line of a spectrum, cut from one that closes on itself: longer than its longest band."""
+    wavelength, levels, name = spectrum_levels(spectrum)
+    fits = wavelength / HALF_BAND > 2.06 * grid.spacing  # bands that the grid can hold
+    points = max(grid.rows, math.ceil(1.2 * wavelength[fits].max() / grid.spacing))
+    line = from_bands(points, grid.spacing, wavelength[fits], levels[fits] + level_db, seed).heights
+    return Record(Rows(line[: grid.rows, None]), f"{name}, {level_db:+g} dB")
 
 
-def _held(
-    wavelength: ArrayLike, levels: ArrayLike, grid: Grid, length: float, name: str
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Bands that a spacing and a length, m, can hold."""
-    given, level_db = np.asarray(wavelength, float), np.asarray(levels, float)
-    held = (given * HALF_BAND < 0.97 * length) & (given / HALF_BAND > 2.06 * grid.spacing)
+def _held(wavelength: Array, levels: Array, grid: Grid, name: str, *, closed: bool) -> tuple[Array, Array]:
+    """Bands that a spacing and, of what closes on itself, a length can hold."""
+    held = wavelength / HALF_BAND > 2.06 * grid.spacing
+    if closed:
+        held &= wavelength * HALF_BAND < 0.97 * grid.length
     if not held.any():
-        received = f"a length of {grid.rows * grid.spacing:.4g} m at {grid.spacing * 1e3:.4g} mm"
+        received = f"a length of {grid.length:.4g} m at {grid.spacing * 1e3:.4g} mm"
         raise InputError(f"bands of {name}", received, "a length and a spacing that hold a band")
-    return given[held], level_db[held]
+    return wavelength[held], levels[held]
 
 
-def _bands(kept: NDArray[np.float64], name: str) -> str:
-    return f"{name}, bands of {nominal_length(kept.max())} to {nominal_length(kept.min())}"
-
-
-def spectrum_levels(spectrum: str | TableSource) -> tuple[NDArray[np.float64], NDArray[np.float64], str]:
-    """Band levels of a path, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
+def spectrum_levels(spectrum: str | TableSource) -> tuple[Array, Array, str]:
+    """Band levels of a texture, by name or from a table: wavelengths, m, levels, dB re 1 µm, and a name."""
     if not isinstance(spectrum, str):
         return *read_levels(spectrum), name_of(spectrum)
+    if spectrum in cnossos.WHEEL_ROUGHNESS:
+        return *cnossos.wheel_roughness(spectrum), spectrum
     return *cnossos.rail_roughness(spectrum), spectrum
 
+
+# --- measured maps
 
 _MAP_KEYS = {name: name for name in ("array", "height_unit", "pixel", "index", "fill", "spikes")}
 _LINE_KEYS = {"array": "line_array", "height_unit": "line_unit", "pixel": "line_spacing"}
@@ -129,18 +154,63 @@ def read_maps(surface: Surface) -> Sequence[HeightMap | Profile]:
             chosen = tuple(each.without_spikes() for each in chosen)
         return [each.filled() if surface.fill else each for each in chosen]
     if surface.recipe is not None:
-        return read_recipe(surface.recipe).read(surface.file)
+        return read_recipe(surface.recipe).surfaces(surface.file)
     with spelled(in_case("surface", _MAP_KEYS)):
         read = read_surfaces if surface.index is None else partial(read_surface, index=surface.index)
-        found = read(
-            surface.file,
-            array=surface.array,
-            height_unit=surface.height_unit,
-            pixel=surface.pixel,
-            fill=surface.fill,
-            spikes=surface.spikes,
-        )
+        hints = {name: getattr(surface, name) for name in _MAP_KEYS if name != "index"}
+        found = read(surface.file, **hints)
     return found if isinstance(found, list) else [found]
+
+
+def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:
+    """Read the maps of a case's file, complete, levelled and on the contact grid of a spacing, m.
+
+    With the share of points that had no height in the file.
+    """
+    read = read_maps(surface)
+    maps = []
+    for measured in read:
+        if not isinstance(measured, HeightMap):
+            remedy = "A single line can be the path: give it as surface.line."
+            raise InputError("surface.file", "a line of heights", "maps of heights", remedy)
+        if measured.missing_share > 0.0:
+            received = f"{100 * measured.missing_share:.2g} % of the points without a height"
+            raise InputError("surface.file", received, "complete maps", "Set fill = true in [surface].")
+        points = math.prod(measured.size) / spacing**2
+        if points > MOST_POINTS:
+            sides = " × ".join(f"{1e3 * side:.4g} mm" for side in measured.size)
+            received = f"maps of {sides}, {points:.2g} points at contact.spacing = {spacing * 1e6:.3g} um"
+            remedy = "Is the pixel in µm, not mm? Else cut the map, or coarsen contact.spacing."
+            raise InputError("surface.file", received, f"at most {MOST_POINTS:.2g} points", remedy)
+        if max(measured.spacing) > spacing * (1 + 1e-9):
+            warnings.warn(
+                f"the map's points are {max(measured.spacing) * 1e6:.3g} µm apart, more than contact.spacing "
+                f"= {spacing * 1e6:.3g} µm: shorter waves are missing. Coarsen contact.spacing.",
+                ShortRecordWarning,
+                stacklevel=2,
+            )
+        levelled = level(measured, surface.form)
+        if surface.direction % QUARTER:  # no wave that the spacing holds suffers from turning
+            levelled = resample(levelled, 0.5 * spacing)
+        on_grid = level(resample(rotated(levelled, surface.direction), spacing), surface.form)
+        longest, shortest = surface.longest, surface.shortest
+        limited = longest is not None or shortest is not None
+        maps.append(band_limit(on_grid, longest=longest, shortest=shortest) if limited else on_grid)
+    return tuple(maps), float(np.mean([measured.missing_share for measured in read]))
+
+
+def direction_words(surface: Surface, maps: tuple[HeightMap, ...]) -> str:
+    """Say in which direction measured maps are rolled over, if not along x, and what is left of the first."""
+    if not surface.direction:
+        return ""
+    length, width = maps[0].size
+    return (
+        f", rolled over at {math.degrees(surface.direction):.4g}° to their x axis, on the largest rectangle "
+        f"inside: {1e3 * length:.3g} mm × {1e3 * width:.3g} mm"
+    )
+
+
+# --- measured lines
 
 
 def read_lines(section: MeasuredLine, name: str) -> HeightMap | Profile:
@@ -151,10 +221,168 @@ def read_lines(section: MeasuredLine, name: str) -> HeightMap | Profile:
     assert section.line is not None
     if not isinstance(section.line, Path):
         return section.line
+    hints = {hint: getattr(section, key) for hint, key in _LINE_KEYS.items()}
     with spelled(in_case(name, _LINE_KEYS)):
-        return read_surface(
-            section.line, array=section.line_array, height_unit=section.line_unit, pixel=section.line_spacing
+        return read_surface(section.line, **hints)
+
+
+def single_line(surface: Surface, grid: Grid, lead: int, least: int, *, may_shorten: bool) -> Record:
+    """Lay a measured line out for a record of `grid.rows` points behind `lead` points of a run-in.
+
+    The record takes at least so many points; a shorter line ends the record where it `may_shorten`.
+    """
+    measured = read_lines(surface, "surface")
+    if not isinstance(measured, Profile):
+        remedy = "Give a map as surface.file, or the distance of the lines as surface.line_distance."
+        raise InputError("surface.line", "a map of heights", "a line of heights", remedy)
+    if surface.processing:
+        (measured,), _ = processed(surface, "surface", degree=1)
+    if measured.missing_share > 0.0:
+        remedy = "Interpolate them in the file."
+        raise InputError("surface.line", "points without a height", "a complete line", remedy)
+    spacing, rows = grid.spacing, grid.rows
+    line = level(resample(level(measured), spacing)).heights
+    origin = f"measured, {name_of(surface.line)}"  # type: ignore[arg-type]
+    how = surface.continuation
+    if how in ("mirror", "repeat") and line.size < rows:
+        fade = min(least, line.size) // 2 if how == "repeat" else 0
+        kind = cast(Continuation, how)
+        line = extend(line, rows + lead, kind, spacing=spacing, start=-lead, crossfade=fade)
+        return Record(Rows(line[:, None]), f"{origin}, {how}ed")
+    if may_shorten:
+        rows = min(rows, line.size)
+    if line.size < rows or rows < least:
+        needed = f"{max(rows, least) * spacing:.4g} m: the path and a window at both ends"
+        remedy = "Give a shorter duration, a longer line, or surface.continuation."
+        raise InputError("surface.line", f"{line.size * spacing:.4g} m", f"at least {needed}", remedy)
+    held = line[: rows + lead]
+    margin = 1e3 * spacing * ((least - 2) // 2)
+    origin += f", from {margin:.4g} mm before the record on{mirrored_words(held, rows + lead)}"
+    return Record(Rows(mirrored_before(held, rows + lead)[:, None]), origin)
+
+
+def lines_across(surface: Surface, grid: Grid) -> Record:
+    """Lay measured lines out along the path, and across it, m; the record begins where the run-in begins.
+
+    Refused are a record shorter than the path that is not to be continued, and unlikely levels.
+    """
+    profiles, origin = processed(surface, "surface", degree=1)
+    lines = common_length([resample(profile, grid.spacing) for profile in profiles])
+    if not surface.accept_levels:
+        check_levels([Profile(line, grid.spacing) for line in lines], "rail's lines")
+    if lines.shape[1] < grid.rows:
+        origin += f", {surface.continuation}ed"
+    how = cast(Continuation, surface.continuation or "refuse")
+    extended = extend(lines.T, grid.rows, how, spacing=grid.spacing, what="rail's record").T
+    return Record(Rows(_across(extended, surface, grid)), origin, areal=False, lines=tuple(profiles))
+
+
+def lines_around(rolling: Rolling, name: str, grid: Grid, *, check: bool) -> Record:
+    """Lay measured lines around what rolls out as one turn that closes on itself, m.
+
+    `grid` holds one turn of the path's grid; the rows returned are those of the record, if it is nearly as
+    long. `check` says whether unlikely levels are refused. Lines that do not go round are left out, with a
+    warning.
+    """
+    measured, origin = processed(rolling, name, degree=0)
+    profiles = [p for p in measured if len(p.heights) * p.spacing >= (1.0 - FULL_TURN) * grid.length]
+    if not profiles:
+        longest = max(len(p.heights) * p.spacing for p in measured)
+        raise _not_round(name, f"{longest:.4g} m without gaps", grid.length)
+    if len(profiles) < len(measured):
+        warnings.warn(
+            f"{len(measured) - len(profiles)} of {len(measured)} lines of the {name} are shorter than its "
+            "circumference and left out: the others move together across. Measure them again.",
+            ShortRecordWarning,
+            stacklevel=2,
         )
+    register = bring_into_register(profiles)
+    lines = register.lines
+    if len(lines) > 1 and np.median(register.correlations[1:]) > SAME_TEXTURE:
+        moved = sum(bool(s) or r for s, r in zip(register.shifts, register.reversed, strict=True))
+        origin += f", {moved} brought into register ({sum(register.reversed)} turned round)"
+    else:
+        lines = common_length(profiles)
+    spacing = profiles[0].spacing
+    if lines.shape[1] * spacing > (1.0 + FULL_TURN) * grid.length:
+        lines = lines[:, : round(grid.length / spacing)]
+    fine = np.array([resample(Profile(line, spacing), grid.spacing).heights for line in lines])
+    if check:
+        check_levels([Profile(line, grid.spacing) for line in fine], f"{name}'s lines")
+    heights = _across(close(fine.T, round(JOIN / grid.spacing)).T, rolling, grid)
+    return Record(Rows(heights), origin, areal=False, lines=tuple(profiles))
+
+
+def line_around(rolling: Rolling, name: str, contact: int, grid: Grid) -> Record:
+    """Lay the measured line of a contact out as one turn that closes on itself, the same all across, m."""
+    measured, origin = processed(rolling, name, degree=0)
+    line, whole = measured[contact % len(measured)], grid.length
+    length = len(line.heights) * line.spacing
+    if line.missing_share > 0.0 or length < (1.0 - FULL_TURN) * whole:
+        raise _not_round(name, f"{length:.4g} m" + ", with gaps" * bool(line.missing_share), whole)
+    once = line.heights[: round(whole / line.spacing)] if length > (1.0 + FULL_TURN) * whole else line.heights
+    fine = resample(level(Profile(once, line.spacing), 0), grid.spacing).heights
+    return Record(Rows(close(fine[:, None], round(JOIN / grid.spacing))), origin, areal=False)
+
+
+def _not_round(name: str, received: str, whole: float) -> InputError:
+    allowed = f"a full turn of {name}.radius, {whole:.4g} m, or up to {100 * FULL_TURN:g} % less"
+    return InputError(f"{name}.line", received, allowed, f"Does {name}.radius fit what was measured?")
+
+
+def processed(section: MeasuredLine, name: str, *, degree: int) -> tuple[list[Profile], str]:
+    """Complete lines of a file, processed as the section says and levelled, and what was done.
+
+    A line that goes round keeps its slope: it has none, but what noise gives it.
+    """
+    with warnings.catch_warnings():
+        # ends are trimmed and gaps refused below
+        warnings.simplefilter("ignore", MissingPointsWarning)
+        measured = read_lines(section, name)
+    raw = (measured,) if isinstance(measured, Profile) else lines_of(measured)
+    steps = {step: step in section.processing for step in ("spikes", "curvature")}
+    done = [process(line, fill_gaps="fill" in section.processing, **steps) for line in raw]
+    words = f"{name_of(section.line)}, {_done([how for _, how in done])}"  # type: ignore[arg-type]
+    return [level(line, degree) for line, _ in done], words
+
+
+def _done(steps: Sequence[Processing]) -> str:
+    """What processing did to all lines together."""
+    sums = {
+        name: sum(getattr(s, name) for s in steps) for name in ("filled", "spikes_removed", "spike_points")
+    }
+    together = replace(
+        steps[0],
+        trimmed=(sum(s.trimmed[0] for s in steps), sum(s.trimmed[1] for s in steps)),
+        lifted=sum(s.lifted for s in steps) / len(steps),
+        largest_lift=max(s.largest_lift for s in steps),
+        **sums,
+    )
+    return f"{len(steps)} line{'s' if len(steps) > 1 else ''} measured, {together}"
+
+
+def _across(lines: Array, section: MeasuredLine, grid: Grid) -> Array:
+    if len(lines) > 1 and section.line_distance is None:
+        name = "wheel" if isinstance(section, Rolling) else "surface"
+        allowed = "the distance across between neighbouring lines"
+        received, remedy = f"no distance for {len(lines)} lines", 'Add line_distance = "5 mm", say.'
+        raise InputError(f"{name}.line_distance", received, allowed, remedy)
+    distance = section.line_distance or grid.spacing
+    return strip_from_lines(lines, grid.spacing, distance, grid.lines, grid.spacing)
+
+
+def mirrored_before(heights: Array, rows: int) -> Array:
+    """Put the mirror image of a texture (n, ...) before it, for a run-in over what was not measured.
+
+    The texture is at the end of the (rows, ...), mirrored at its first point as often as it takes.
+    """
+    before = [(max(rows - len(heights), 0), 0), *((0, 0) for _ in heights.shape[1:])]
+    return np.pad(heights, before, mode="reflect")
+
+
+def mirrored_words(heights: Array, rows: int) -> str:
+    """Say that a run-in is mirrored, where it is."""
+    return ", its mirror image for the run-in" if len(heights) < rows else ""
 
 
 def read_section(measured: Path | Profile, key: str) -> Profile:

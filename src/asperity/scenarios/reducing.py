@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.case import Case
-from asperity.config.sections import ContactCase
+from asperity.case.scene import Case
+from asperity.case.sections import ContactKeys
 from asperity.contact import Contact, HalfSpace, scan
 from asperity.contact.batched import find_device
 from asperity.errors import ContactFilterWarning, InputError
@@ -158,7 +158,7 @@ def reduce(
     return Reduction(approaches, ensemble, datums, axes, filters, pressed, remedy, along, counts)
 
 
-def filtered_loads(contact: ContactCase, shape: Geometry) -> tuple[float, float]:
+def filtered_loads(contact: ContactKeys, shape: Geometry) -> tuple[float, float]:
     """Least and largest mean force of a state that has a filter, N.
 
     Chosen states go on to where the flattest place carries the largest force, and others carry far more.
@@ -209,7 +209,7 @@ def _centred(planes: Array, shape: Geometry) -> Array:
 
 
 def _approaches(
-    contact: ContactCase,
+    contact: ContactKeys,
     textures: Textures,
     shape: Geometry,
     along: Array | None,
@@ -285,7 +285,7 @@ SMOOTH_WAVENUMBERS = 120
 LineFilters = Mapping[filter.Normalise, filter.LineFilter]
 
 
-def normalisation(contact: ContactCase, law: LawSpec) -> filter.Normalise:
+def normalisation(contact: ContactKeys, law: LawSpec) -> filter.Normalise:
     """How the filter of a law is normalised: as the case says, else as the law wants it."""
     return law.normalise if contact.normalise is None else contact.normalise  # type: ignore[return-value]
 

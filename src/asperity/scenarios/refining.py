@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from asperity.config.case import Case
+from asperity.case.scene import Case
 from asperity.errors import InputError
 from asperity.scenarios.geometry import window_cells
 from asperity.scenarios.textures import Textures

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity.arguments import passes_of
-from asperity.config.case import Case
+from asperity.case.scene import Case
 from asperity.contact.running_in import RunInHeights, RunningIn, run_in, tolerance_of, warn_of_running_in
 from asperity.contact.scan import total
 from asperity.progress import Progress

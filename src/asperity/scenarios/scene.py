@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.case.scene import Case
 from asperity.scenarios.linear_force import force_transfer
-from asperity.schema import Entry
 from asperity.structures.body import Body
 from asperity.structures.modal import Modal, modal_receptance
 from asperity.structures.track import Track
@@ -65,7 +65,7 @@ class Scene:
     # degrees of freedom, body by body, and what makes them lengths: 1, or a lever, m; numbered if not named
     degrees: Mapping[str, float] = field(default_factory=dict)
     # what its displacements at a contact are called: of what is rolled over, and of what rolls
-    displacements: tuple[Entry, ...] = ()
+    displacements: tuple[str, str] = ("over_displacement", "rolling_displacement")
     like: str = ""  # kind of case whose errors of laws are its own, as far as a map knows
     wheel: Wheel | None = None  # what touches a rail, by itself: its mass and its modes
     scattered: bool = False  # a track is carried on by its whole past, not by poles
@@ -136,3 +136,26 @@ class Scene:
             return np.zeros(1)
         begin, end = self.over.extent
         return begin + (end - begin) * np.array(PLACES)
+
+
+def scene_of(case: Case) -> Scene:
+    """Build what rolls and what it rolls over, of a case."""
+    body, over, highest = case.rolling, case.rolled_over, case.numerics.highest_frequency
+    model = over.model(highest)
+    on_track = isinstance(model, Track)
+    one = body.model(case.upper_stiffness, highest, case.ROLLING)
+    degrees = body.degrees if len(body.degrees) > 1 or case.ROLLING == "body" else {case.ROLLING: 1.0}
+    return Scene(
+        model,
+        (one,) * len(body.positions),
+        case.title,
+        positions=body.positions,
+        sensors=over.sensor_positions,
+        points=case.point_positions,
+        degrees=degrees,
+        displacements=case.DISPLACEMENTS,
+        like="wheel-on-rail" if on_track else "ball-on-beam",
+        wheel=body.tread if on_track else None,
+        scattered=case.numerics.kernel == "scatter",
+        most_poles=case.numerics.poles,
+    )

@@ -1,24 +1,32 @@
-"""The textures of a case: samples that are reduced, and the path that is rolled over."""
+"""The textures of a case: samples that are reduced, and the path that is rolled over, under each contact."""
 
 from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, field
-from typing import cast
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.sections import ContactCase, Surface
-from asperity.errors import InputError, ShortRecordWarning
-from asperity.scenarios.geometry import window_cells
-from asperity.scenarios.records import read_maps
+from asperity.case.content import name_of
+from asperity.case.scene import SETTLED, Case
+from asperity.case.sections import ContactKeys
+from asperity.case.surface import Surface
+from asperity.errors import InputError, OutOfRangeWarning, ShortRecordWarning, TruncatedContactWarning
+from asperity.laws import spec_of
+from asperity.scenarios import records
+from asperity.scenarios.geometry import Geometry, cells_over, window_cells
+from asperity.scenarios.records import Grid, Record
+from asperity.surfaces.defects import FlatShape, corrugation, dipped_joint, flat_geometry, flat_trajectory
 from asperity.surfaces.heightmap import HeightMap, Profile
-from asperity.surfaces.levelling import band_limit, level, resample
+from asperity.surfaces.levelling import level
+from asperity.surfaces.measured_lines import roll_over
 from asperity.surfaces.statistics import rms_slope
-from asperity.surfaces.steps import QUARTER, rotated
-from asperity.surfaces.strip import LongStrip, Strip, raised
+from asperity.surfaces.strip import LongStrip, Raised, Rows, Strip, raised, turning
 from asperity.surfaces.synthesis import (
     Continuation,
     extend,
@@ -32,12 +40,16 @@ STRIP_WINDOWS = 16
 """Length of a strip for the filters, in windows: few bins of its spectra span the fall of a filter else."""
 FEWEST_WINDOWS = 4
 """Least length of maps that strips are cut from, in windows, where the case does not ask for more."""
-
 READ_POINTS = 2**18
 """Points of a path that are read in one go (2 MiB)."""
-
 MOST_POINTS = 2.0**27
-"""Points of a measured map on the contact grid (1 GiB)."""
+"""Points of a path that a measured map is mirrored or repeated along (1 GiB)."""
+SAMPLED_LENGTH = 5.0
+"""Samples of a synthesised rail are cut from so much of it at least, from where the record starts, m."""
+EQUAL = 1e-9
+"""Relative difference of loads that are the same."""
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,17 +60,17 @@ class Textures:
     strips: tuple[HeightMap, ...]  # (n, ny) each, for the filters, as wide as the window
     # (rows, ny), texture of the path with its neighbourhood; None where the path is a line
     path: Strip | None
-    line: NDArray[np.float64]  # (rows,), texture of the path, m, peaks positive
+    line: Array  # (rows,), texture of the path, m, peaks positive
     start: float  # position of the first row, m
     before: int  # rows of the path before the place where the record starts
     beyond: int  # rows beyond its end
     missing_share: float  # of points without a height in the measured file
     origin: str  # where samples and path come from, in one sentence
     # line textures that `line` is the sum of, by the body that bears them, m
-    parts: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    parts: dict[str, Array] = field(default_factory=dict)
     # (rows,), heights of defects along the path, m; neither in `line` nor in `path`
-    defects: NDArray[np.float64] | None = None
-    trajectory: NDArray[np.float64] | None = None  # (rows,), height of the rolling body's centre over them, m
+    defects: Array | None = None
+    trajectory: Array | None = None  # (rows,), height of the rolling body's centre over them, m
     # whether heights beside the line are a texture of their own, not carried over from lines
     areal: bool = True
     # measured ones that a texture is interpolated between, by the body that bears them, m
@@ -86,7 +98,7 @@ class Textures:
         return (cells - (cells + 1) % 2) * self.maps[0].spacing[0]  # windows have a middle cell
 
     @property
-    def followed(self) -> NDArray[np.float64]:
+    def followed(self) -> Array:
         """Line texture with the trajectory over defects, m, peaks positive, shape (rows,)."""
         return self.line if self.trajectory is None else self.line + self.trajectory
 
@@ -97,67 +109,288 @@ class Textures:
         return self.path if self.defects is None else raised(self.path, self.defects)
 
 
-def measured_maps(surface: Surface, spacing: float) -> tuple[tuple[HeightMap, ...], float]:
-    """Read the maps of a case's file, complete, levelled and on the contact grid of a spacing, m.
+class OtherContact(NamedTuple):
+    """A contact that differs from the first."""
 
-    With the share of points that had no height in the file.
+    textures: Callable[[Textures], Textures]  # its own, from those of the first
+    load: float  # N
+
+
+def textures_of(case: Case) -> Textures:
+    """Read or synthesise the textures of a case: what is rolled over, and the first body on it.
+
+    Heights of both add up; those of the body repeat with its circumference, rounded to whole cells. Samples
+    and strips are those of the surface, or cut from the path before defects are put on it: where the surface
+    has none, and where what rolls is rough itself. A synthesised path is the same at every speed.
     """
-    found = read_maps(surface)
-    result = []
-    for measured in found:
-        if not isinstance(measured, HeightMap):
-            remedy = "A single line can be the path: give it as surface.line."
-            raise InputError("surface.file", "a line of heights", "maps of heights", remedy)
-        if measured.missing_share > 0.0:
-            received = f"{100 * measured.missing_share:.2g} % of the points without a height"
-            raise InputError("surface.file", received, "complete maps", "Set fill = true in [surface].")
-        points = math.prod(measured.size) / spacing**2
-        if points > MOST_POINTS:
-            sides = " × ".join(f"{1e3 * side:.4g} mm" for side in measured.size)
-            received = f"maps of {sides}, {points:.2g} points at contact.spacing = {spacing * 1e6:.3g} um"
-            remedy = "Is the pixel in µm, not mm? Else cut the map, or coarsen contact.spacing."
-            raise InputError("surface.file", received, f"at most {MOST_POINTS:.2g} points", remedy)
-        if max(measured.spacing) > spacing * (1 + 1e-9):
-            warnings.warn(
-                f"the map's points are {max(measured.spacing) * 1e6:.3g} µm apart, more than contact.spacing "
-                f"= {spacing * 1e6:.3g} µm: shorter waves are missing. Coarsen contact.spacing.",
-                ShortRecordWarning,
-                stacklevel=2,
-            )
-        along = _in_direction(level(measured, surface.form), surface.direction, spacing)
-        on_grid = level(resample(along, spacing), surface.form)
-        longest, shortest = surface.longest, surface.shortest
-        limited = longest is not None or shortest is not None
-        result.append(band_limit(on_grid, longest=longest, shortest=shortest) if limited else on_grid)
-    return tuple(result), float(np.mean([m.missing_share for m in found]))
+    contact, spacing, margin = case.contact, case.contact.spacing, window_cells(case.contact)
+    lead = cells_over(case.settled_time * case.speed, spacing)
+    recorded = cells_over(case.rolled_time * case.speed + max(case.rolling.offsets), spacing) + 1
+    before = margin + lead
+    grid = Grid(before + recorded + margin, margin, spacing)
+    seeds = [int(s) for s in np.random.SeedSequence(case.seed).generate_state(contact.samples + 3)]
+    own = seeds[3:] if case.surface.IN_STRIPS else seeds[1:-2]
+    maps, strips, missing, sampled = _samples(case, own)
+    over = _path(case, grid, maps, seeds[0], lead)
+    turn = _turn(case, 0, grid, seeds[1])
+    strip = turning(over.strip, turn.heights, _first_row(case, before)) if turn.heights.any() else over.strip
+    is_line = case.surface.has_line
+    if not is_line and (not maps or turn.heights.any()):
+        maps = strips = _cut(case, strip, before)
+        sampled = f"{len(strips)} samples cut from the path"
+    line = middle_line(over.strip)  # of a measured one, the run may end before the grid
+    on_path = _corrugated(case, len(line), seeds[2])
+    around = turn.heights[:, turn.heights.shape[1] // 2]
+    parts = {"rail": line + on_path, "wheel": around[_rows_of_turn(case, len(line), len(around), before)]}
+    lines = {name: body.lines for name, body in (("rail", over), ("wheel", turn)) if body.lines}
+    origins = (sampled, f"path: {over.origin}", f"{case.ROLLING}: {turn.origin}" * bool(turn.origin))
+    path = raised(strip, on_path) if on_path.any() else strip
+    textures = Textures(
+        maps,
+        strips,
+        None if is_line else path,
+        parts["rail"] + parts["wheel"],
+        case.record_start - before * spacing,
+        before,
+        margin,
+        missing,
+        "; ".join(filter(None, origins)),
+        parts,
+        areal=is_line or ((over.areal or turn.areal) and not lines),
+        lines=lines,
+    )
+    return replace(textures, **_defects(case, 0, textures))
 
 
-def _in_direction(measured: HeightMap, direction: float, spacing: float) -> HeightMap:
-    """Turn a levelled map into the direction of rolling; no wave that the spacing, m, holds suffers."""
-    if direction % QUARTER:
-        measured = resample(measured, 0.5 * spacing)
-    return rotated(measured, direction)
+def other_contacts(case: Case, loads: Array) -> tuple[list[int], list[OtherContact]]:
+    """Which of the contacts differ from the first: for each, which one it equals; and those that differ.
+
+    Loads (c,), N. Zero stands for the first contact, k for the k-th of the others.
+    """
+    rolling, which = case.rolling, list[int]()
+    others, known = list[OtherContact](), [(0, float(loads[0]))]
+    flat = rolling.flat is not None
+    for contact, load in enumerate(loads):
+        flats = flat and {contact + 1, 1} & set(rolling.flat_contacts)
+        texture = contact if rolling.has_own_texture or flats else 0
+        for k, (bearing, at) in enumerate(known):
+            if bearing == texture and math.isclose(at, load, rel_tol=EQUAL):
+                which.append(k)
+                break
+        else:
+            which.append(len(known))
+            known.append((texture, float(load)))
+            others.append(OtherContact(partial(_under, case, texture), float(load)))
+    return which, others
 
 
-def direction_words(surface: Surface, maps: tuple[HeightMap, ...]) -> str:
-    """Say in which direction measured maps are rolled over, if not along x, and what is left of the first."""
-    if not surface.direction:
-        return ""
-    length, width = maps[0].size
+def _under(case: Case, contact: int, first: Textures) -> Textures:
+    """Textures under a contact, from those under the first: the turn of its own body is there."""
+    rows, before = len(first.line), first.before
+    if contact == 0 or not case.rolling.has_own_texture:
+        return replace(first, **_defects(case, contact, first))
+    grid = Grid(rows, window_cells(case.contact), case.contact.spacing)
+    seed = int(np.random.SeedSequence(case.seed).generate_state(2)[1])
+    turns = [_turn(case, each, grid, seed).heights for each in (0, contact)]
+    change, middle = turns[1] - turns[0], turns[0].shape[1] // 2
+    along = _rows_of_turn(case, rows, len(change), before)
+    added = turns[1][along, middle] - turns[0][along, middle]
+    path = None if first.path is None else turning(first.path, change, _first_row(case, before))
+    parts = first.parts | {"wheel": first.parts["wheel"] + added}
+    turned = replace(first, path=path, line=first.line + added, parts=parts)
+    return replace(turned, **_defects(case, contact, first))
+
+
+def recorded_time(case: Case, textures: Textures) -> float:
+    """Time of the record, s: that of the case, or until its line ends."""
+    pace = case.contact.spacing / case.speed
+    ahead = max(case.rolling.offsets) / case.speed
+    return min(case.rolled_time, (len(textures.line[textures.recorded]) - 1) * pace - ahead)
+
+
+def warn_of_textures(case: Case, shape: Geometry, textures: Textures) -> None:
+    """Warn of a record that holds the start, and of laws and windows that do not see a defect."""
+    settling = case.settled_time
+    if settling < SETTLED * (1 - 1e-9):
+        remedy = (
+            "set settling" if case.room is None else "shorten the duration or start farther along the path"
+        )
+        warnings.warn(
+            f"the record starts {settling * 1e3:.3g} ms after rest, less than {SETTLED * 1e3:.3g} ms: its "
+            f"levels hold the start. So that there is time for settling, {remedy}.",
+            ShortRecordWarning,
+            stacklevel=2,
+        )
+    if not case.has_defect:
+        return
+    seen = [law for law in case.laws if spec_of(law).sees_heights]
+    if case.laws[0] not in seen:
+        warnings.warn(
+            f"{case.laws[0]} follows the path of the {case.ROLLING}'s centre over a flat or a joint, not "
+            "their shape: peaks of the force come out up to a quarter too high, and levels above 1.6 kHz up "
+            "to 6 dB. Take direct, or table, as the first law.",
+            OutOfRangeWarning,
+            stacklevel=2,
+        )
+    length, window, a = case.defect_length, case.contact.window, shape.semi_axes[0]
+    if seen and length and length + 2 * a > window:
+        warnings.warn(
+            f"the flat is {length * 1e3:.3g} mm long and the contact {2e3 * a:.3g} mm, together more than "
+            f"contact.window = {window * 1e3:.3g} mm: where the {case.ROLLING} stands on the flat's ends, "
+            f"{' and '.join(seen)} cut the contact off. Enlarge the window.",
+            TruncatedContactWarning,
+            stacklevel=2,
+        )
+
+
+# --- samples and path
+
+
+def _samples(case: Case, seeds: list[int]) -> tuple[tuple[HeightMap, ...], tuple[HeightMap, ...], float, str]:
+    """Samples and strips that the surface section names; none where they are to be cut from the path."""
+    surface, contact = case.surface, case.contact
+    if surface.file is not None:
+        maps, missing = records.measured_maps(surface, contact.spacing)
+        strips, origin = strips_of(maps, contact, seeds)
+        measured = f"{len(maps)} samples measured, {name_of(surface.file)}"
+        return maps, strips, missing, f"{measured}{records.direction_words(surface, maps)}; {origin}"
+    if surface.rms is not None:
+        shape = (strip_rows(contact), window_cells(contact))
+        strips = tuple(synthesised(surface, contact.spacing, shape, seed) for seed in seeds)
+        return strips, strips, 0.0, "samples synthesised: self-affine, Gaussian"
+    return (), (), 0.0, ""
+
+
+def _path(case: Case, grid: Grid, maps: tuple[HeightMap, ...], seed: int, lead: int) -> Record:
+    """Texture of what is rolled over, all along the path."""
+    surface, shape, margin = case.surface, (grid.rows, grid.lines), grid.lines
+    before = margin + lead
+    if surface.spectrum is not None:
+        if surface.lateral is None:
+            return records.spectrum_line(surface.spectrum, surface.level, grid, seed)
+        keys: dict[str, Any] = {"lateral": surface.lateral, "seed": seed}
+        if surface.IN_STRIPS:
+            return records.spectrum_record(surface.spectrum, surface.level, grid, **keys, before=before)
+        # one that closes on itself: longer than the path and than the longest band
+        wavelength, *_ = records.spectrum_levels(surface.spectrum)
+        rows = max(grid.rows, math.ceil(1.2 * wavelength.max() / grid.spacing))
+        longer = replace(grid, rows=rows)
+        made = records.spectrum_record(surface.spectrum, surface.level, longer, **keys, before=None)
+        return replace(made, strip=HeightMap(made.strip.rows(0, grid.rows), (grid.spacing, grid.spacing)))
+    if surface.line is not None:
+        if not surface.has_line:
+            return records.lines_across(surface, grid)
+        record = replace(grid, rows=grid.rows - lead)
+        may_shorten = case.duration is None
+        return records.single_line(surface, record, lead, 2 * margin + 2, may_shorten=may_shorten)
+    if surface.rms is not None:
+        return Record(synthesised_path(surface, grid.spacing, shape, seed, before), "self-affine, Gaussian")
+    if maps:
+        run_in = 0 if surface.IN_STRIPS else lead
+        return Record(*path_of(maps, shape, seed, run_in, before, surface.continuation))
+    return Record(Rows(np.zeros(shape), (grid.spacing, grid.spacing)), "smooth", areal=False)
+
+
+def _cut(case: Case, strip: Strip, before: int) -> tuple[HeightMap, ...]:
+    """Cut samples from the path; of a synthesised rail from a stretch that does not depend on the speed."""
+    contact, lower = case.contact, strip.strip if isinstance(strip, Raised) else strip
+    if not isinstance(lower, LongStrip) or case.surface.spectrum is None:
+        return cut_from(strip, contact, case.rolled_time)
+    rows = max(math.ceil(SAMPLED_LENGTH / contact.spacing), contact.samples * strip_rows(contact))
+    longer: Strip = replace(lower, shape=(before + rows, lower.shape[1]))
+    if isinstance(strip, Raised):
+        longer = replace(strip, strip=longer)
+    return cut_from(longer, contact, case.rolled_time, first=before)
+
+
+def _turn(case: Case, contact: int, grid: Grid, seed: int) -> Record:
+    """One turn of what rolls on a contact, closed on itself, (rows, lines or 1); `seed` is the first's."""
+    rolling, surface = case.rolling, case.surface
+    turn = replace(grid, rows=round(rolling.circumference / grid.spacing))
+    if rolling.line is not None:
+        across = rolling.line_distance is not None or (surface.IN_STRIPS and len(rolling.offsets) == 1)
+        if across:
+            check = surface.IN_STRIPS and not surface.accept_levels
+            return records.lines_around(rolling, case.ROLLING, turn, check=check)
+        return records.line_around(rolling, case.ROLLING, contact, turn)
+    if rolling.roughness is None:
+        return Record(Rows(np.zeros((turn.rows, 1))), "", areal=False)
+    if contact or not surface.IN_STRIPS:
+        seed = int(np.random.SeedSequence([case.seed, 1, contact]).generate_state(1)[0])
+    lateral = math.inf
+    if surface.IN_STRIPS:
+        lateral = math.inf if surface.lateral is None else surface.lateral
+    else:
+        turn = replace(turn, lines=2)  # that are alike
+    made = records.spectrum_record(
+        rolling.roughness, rolling.roughness_level, turn, lateral=lateral, seed=seed, before=None
+    )
+    return made if surface.IN_STRIPS else replace(made, strip=Rows(made.heights[:, :1]))
+
+
+def _first_row(case: Case, before: int) -> int:
+    """Row of a turn on row zero of the path; in strips, row zero of it is where the record starts."""
+    return -before if case.surface.IN_STRIPS else 0
+
+
+def _rows_of_turn(case: Case, rows: int, turn: int, before: int) -> NDArray[np.intp]:
+    return (np.arange(rows) + _first_row(case, before)) % turn
+
+
+# --- defects
+
+
+def _corrugated(case: Case, rows: int, seed: int) -> Array:
+    """Corrugation along the path: heights (rows,), m, the same all across; zero without one."""
+    surface = case.surface
+    if surface.corrugation is None or surface.corrugation_wavelength is None:
+        return np.zeros(rows)
+    return corrugation(
+        rows,
+        case.contact.spacing,
+        wavelength=surface.corrugation_wavelength,
+        amplitude=surface.corrugation,
+        bandwidth=surface.corrugation_bandwidth,
+        seed=seed,
+    ).heights
+
+
+def _defects(case: Case, contact: int, textures: Textures) -> dict[str, Any]:
+    """Heights (rows,), m, of a joint and of the flat of a contact's body, and of its centre over them."""
+    rolling, surface, spacing = case.rolling, case.surface, case.contact.spacing
+    position = textures.start + spacing * np.arange(len(textures.line), dtype=np.float64)
+    heights, centre = np.zeros((2, len(position)))
+    if surface.joint_depth is not None:
+        joint = surface.joint_position
+        if joint is None:
+            joint = case.record_start + 0.5 * case.speed * case.rolled_time
+        dip = dipped_joint(position - joint, surface.joint_depth, surface.joint_length)
+        heights += dip
+        centre += roll_over(Profile(dip, spacing), rolling.radius).heights
+    if rolling.flat is not None and contact + 1 in rolling.flat_contacts:
+        (depth, length), around = rolling.flat, round(rolling.circumference / spacing) * spacing
+        first = rolling.flat_position
+        if first is None:
+            first = 0.5 * min(around, case.speed * case.rolled_time)
+        rolled = position - case.record_start - rolling.offsets[contact]
+        along = np.mod(rolled - first + 0.5 * around, around) - 0.5 * around
+        shape = cast(FlatShape, rolling.flat_shape)
+        worn = length if shape == "worn" else None
+        heights += flat_geometry(along, depth, rolling.radius, shape, worn)
+        centre += flat_trajectory(along, depth, rolling.radius, shape, worn)
     return (
-        f", rolled over at {math.degrees(surface.direction):.4g}° to their x axis, on the largest rectangle "
-        f"inside: {1e3 * length:.3g} mm × {1e3 * width:.3g} mm"
+        {"defects": heights, "trajectory": centre} if heights.any() else {"defects": None, "trajectory": None}
     )
 
 
-def strip_rows(contact: ContactCase) -> int:
+def strip_rows(contact: ContactKeys) -> int:
     """Rows of the contact grid in a strip for the filters."""
     wanted = contact.sample_length
     return STRIP_WINDOWS * window_cells(contact) if wanted is None else math.ceil(wanted / contact.spacing)
 
 
 def strips_of(
-    maps: tuple[HeightMap, ...], contact: ContactCase, seeds: list[int]
+    maps: tuple[HeightMap, ...], contact: ContactKeys, seeds: list[int]
 ) -> tuple[tuple[HeightMap, ...], str]:
     """Take strips for the filters from measured maps, one for each seed, and say how.
 
@@ -179,7 +412,7 @@ def strips_of(
     return strips, "filter strips synthesised in their likeness"
 
 
-def cut_from(path: Strip, contact: ContactCase, duration: float, *, first: int = 0) -> tuple[HeightMap, ...]:
+def cut_from(path: Strip, contact: ContactKeys, duration: float, *, first: int = 0) -> tuple[HeightMap, ...]:
     """Cut strips for stiffness and filters from a path, spread evenly; one flat one if all are.
 
     The path of a run of a duration, s, from row `first` on.
@@ -217,8 +450,8 @@ def path_of(
     if first.shape[0] >= shape[0] - run_in and first.shape[1] >= shape[1]:
         middle = (first.shape[1] - shape[1]) // 2
         heights = first.heights[: shape[0], middle : middle + shape[1]]
-        origin = "path cut from the first" + mirrored_words(heights, shape[0])
-        path = mirrored_before(heights - heights.mean(), shape[0])
+        origin = "path cut from the first" + records.mirrored_words(heights, shape[0])
+        path = records.mirrored_before(heights - heights.mean(), shape[0])
         return HeightMap(path, first.spacing, first.source), origin
     if continuation in ("mirror", "repeat"):
         return _continued(first, shape, run_in, cast(Continuation, continuation))
@@ -245,21 +478,7 @@ def _continued(
     return HeightMap(path, first.spacing, first.source), f"path cut from the first, {how}ed"
 
 
-def mirrored_before(heights: NDArray[np.float64], rows: int) -> NDArray[np.float64]:
-    """Put the mirror image of a texture (n, ...) before it, for a run-in over what was not measured.
-
-    The texture is at the end of the (rows, ...), mirrored at its first point as often as it takes.
-    """
-    before = [(max(rows - len(heights), 0), 0), *((0, 0) for _ in heights.shape[1:])]
-    return np.pad(heights, before, mode="reflect")
-
-
-def mirrored_words(heights: NDArray[np.float64], rows: int) -> str:
-    """Say that a run-in is mirrored, where it is."""
-    return ", its mirror image for the run-in" if len(heights) < rows else ""
-
-
-def middle_line(strip: Strip) -> NDArray[np.float64]:
+def middle_line(strip: Strip) -> Array:
     """Take the line (rows,) in the middle of a strip, m."""
     rows, ny = strip.shape
     piece = max(1, READ_POINTS // ny)

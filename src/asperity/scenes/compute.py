@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from asperity import __version__
-from asperity.config.case import Case
-from asperity.config.content import content, file_digest
+from asperity.case.content import content, file_digest
+from asperity.case.scene import Case
 from asperity.contact.scan import ScannedForces
 from asperity.errors import PhysicsWarning
 from asperity.laws import Law, Need, needs_of, spec_of
@@ -23,14 +23,12 @@ from asperity.radiation.passing import passed_points
 from asperity.rolling.roll import RolledBodies, roll_bodies
 from asperity.scenarios.compiling import compile_kernels
 from asperity.scenarios.geometry import Geometry
-from asperity.scenarios.kind import Kind
 from asperity.scenarios.laws import LawMaterials, working_point
 from asperity.scenarios.preparing import PreparedCase
 from asperity.scenarios.reducing import Reduction, patch_planes, reduce
 from asperity.scenarios.running_in import RunInCase, run_in_case
 from asperity.scenarios.scene import Scene
-from asperity.scenarios.textures import Textures
-from asperity.scenes.textures import recorded_time
+from asperity.scenarios.textures import Textures, other_contacts, recorded_time
 from asperity.spectra import band_levels, psd
 from asperity.store import Checkpoint, Store, content_key
 from asperity.structures.modal import Modal
@@ -49,8 +47,7 @@ TOLD_OF = ("laws", "noise")
 class Computed:
     """Everything that was computed for a case, before it is laid out as a result."""
 
-    kind: Kind
-    case: Any
+    case: Case
     scene: Scene
     over: Modal | RailBetween | None  # what was rolled over, as it was carried on in time
     materials: (
@@ -88,7 +85,7 @@ class Computed:
     @property
     def stiffness(self) -> float:
         """Stiffness of a linear contact under the working load, N/m."""
-        return working_point(self.materials.contact, self.shape, self.reduction)[1]
+        return working_point(self.case.contact, self.shape, self.reduction)[1]
 
     @property
     def highest(self) -> float:
@@ -178,8 +175,7 @@ def spectrum_segment(samples: int, step: float) -> int:
 
 def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     """Run the textures of a case in, if it asks for it, reduce its samples, build its laws and roll each."""
-    case, scene, textures, shape = prepared.case, prepared.bodies, prepared.textures, prepared.shape
-    assert isinstance(scene, Scene)
+    case, scene, textures, shape = prepared.case, prepared.scene, prepared.textures, prepared.shape
     store, seconds, last, ran = Store(), {"textures": prepared.seconds}, time.perf_counter(), None
 
     def book(part: str) -> None:
@@ -192,7 +188,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     book("compiled functions")
     over = in_time(scene, case, store, progress)
     book("what is rolled over")
-    which, others = prepared.kind.contacts_of(case, scene.loads)
+    which, others = other_contacts(case, scene.loads)
     duration = recorded_time(case, textures)
     if case.contact.running_in is not None:
         ran = run_in_case(case, textures, shape, store, progress)
@@ -201,7 +197,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
     planes = None if textures.path is None else patch_planes(textures.path, shape)
     reduction = reduce(case, textures, shape, planes, store, progress) if textures.maps else None
     book("reduction")
-    first = LawMaterials(case.contact, case.numerics, textures, shape, reduction, planes, store, progress)
+    first = LawMaterials(case, textures, shape, reduction, planes, store, progress)
     every, unused = [first, *(first.of_contact(own) for own in others)], replace(first)
     runs: dict[str, RolledBodies] = {}
     for name in case.laws:
@@ -224,7 +220,7 @@ def compute(prepared: PreparedCase, progress: Progress) -> Computed:
         del laws
         book(f"law {name}")
     scan = first.scan if Need.SCAN in needs_of(case.laws) else None
-    computed = Computed(prepared.kind, case, scene, over, unused, runs, scan, ran, seconds)
+    computed = Computed(case, scene, over, unused, runs, scan, ran, seconds)
     if scene.points:
         computed = replace(computed, points=_passed(computed, progress))
         book("passed points")

@@ -11,6 +11,7 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike, NDArray
 
+from asperity.case.tables import read_mode_shapes, read_ratios
 from asperity.errors import Finding, Grade, MissingSourceWarning
 from asperity.laws import Role, in_role
 from asperity.radiation import pass_by
@@ -20,7 +21,6 @@ from asperity.reference import cnossos
 from asperity.scenarios.linear_force import force_transfer
 from asperity.scenes import schema
 from asperity.scenes.compute import Computed
-from asperity.scenes.tables import read_mode_shapes, read_ratios
 from asperity.schema import Entry, attributes, spectra, variables
 from asperity.spectra import HALF_BAND, a_weighted_total, a_weighting, band_energies, energy_sum
 from asperity.structures.track import Track, decay_rate
@@ -45,12 +45,12 @@ CLOSE_DIAMETER = 0.15
 
 def track_label(case: Any) -> str:
     """Class of rail pads: that which the case names, or that nearest to its pads."""
-    return case.noise.track_pad or cnossos.nearest_pad_class(case.track_model().pad_stiffness)
+    return case.noise.track_pad or cnossos.nearest_pad_class(case.track.model().pad_stiffness)
 
 
 def wheel_label(case: Any) -> str:
     """Diameter of the wheel: that which the case names, or that nearest to its wheel."""
-    return case.noise.wheel_transfer or cnossos.nearest_wheel_transfer(2.0 * case.rolling_radius)
+    return case.noise.wheel_transfer or cnossos.nearest_wheel_transfer(2.0 * case.rolling.radius)
 
 
 def findings_of_labels(case: Any) -> list[Finding]:
@@ -64,7 +64,7 @@ def findings_of_labels(case: Any) -> list[Finding]:
 
 def _strangers(case: Any) -> Iterator[tuple[str, str, str, str]]:
     """What of track and wheel CNOSSOS-EU does not mean: quantity, value, limit and remedy."""
-    label, track = track_label(case), case.track_model()
+    label, track = track_label(case), case.track.model()
     stiffness, mass = track.pad_stiffness, track.sleeper_mass
     least, most = cnossos.PAD_CLASSES[label]
     if not least <= stiffness <= most:
@@ -76,7 +76,7 @@ def _strangers(case: Any) -> Iterator[tuple[str, str, str, str]]:
         limit = f"{MONO_BLOCK[0]:g} to {MONO_BLOCK[1]:g} kg, those of one block of concrete"
         remedy = "Its tables here are those of mono-block sleepers; take the sound power from the vibration."
         yield "mass of half a sleeper", f"{mass:.4g} kg", limit, remedy
-    label, diameter = wheel_label(case), 2.0 * case.rolling_radius
+    label, diameter = wheel_label(case), 2.0 * case.rolling.radius
     if abs(math.log(diameter / (1e-3 * float(label.split()[0])))) > math.log1p(CLOSE_DIAMETER):
         fitting, none = cnossos.nearest_wheel_transfer(diameter), "It has no class for such a wheel."
         remedy = _relabelled("wheel_transfer", label, fitting, none)
@@ -147,7 +147,7 @@ def noise(computed: Computed) -> dict[Entry, Any]:
     bare = in_role(Role.BARE, laws)
     if bare is None or not np.ptp(computed.textures.line):
         return {}
-    contact_filter = cnossos.nearest_contact_filter(computed.shape.load, 2.0 * case.rolling_radius)
+    contact_filter = cnossos.nearest_contact_filter(computed.shape.load, 2.0 * case.rolling.radius)
     centres, linear = _linear(computed, None)
     _, filtered = _linear(computed, cnossos.contact_filter(contact_filter))
     changes = computed.force_levels - computed.force_levels[laws.index(bare)]
@@ -212,21 +212,21 @@ def radiating_wheel(case: Any) -> RadiatingWheel | None:
 
     A rigid wheel that moves up and down has one nodal diameter around its tread.
     """
-    shapes = None if case.tread.modes is None else read_mode_shapes(case.tread.modes)
+    shapes = None if case.rolling.modes is None else read_mode_shapes(case.rolling.modes)
     if shapes is None:
         return None
     diameters, axial, radial = np.vstack([[1.0, 0.0, math.sqrt(0.5)], shapes]).T
-    return RadiatingWheel(case.rolling_radius, case.noise.wheel_width, diameters.astype(int), axial, radial)
+    return RadiatingWheel(case.rolling.radius, case.noise.wheel_width, diameters.astype(int), axial, radial)
 
 
 def silent_wheel(case: Any) -> str:
     """Say why the sound of a wheel is not computed; nothing where it is."""
-    if case.tread.modes is None:
-        if case.tread.receptance is None:
+    if case.rolling.modes is None:
+        if case.rolling.receptance is None:
             return "the wheel is rigid"
         return "the wheel's receptance does not say how its disc and tread move"
     if radiating_wheel(case) is None:
-        return f"the table {case.tread_name}.modes does not say how the modes move disc and tread"
+        return f"the table {case.ROLLING}.modes does not say how the modes move disc and tread"
     return ""
 
 
@@ -236,7 +236,7 @@ def warn_of_silence(case: Any) -> None:
         warnings.warn(
             MissingSourceWarning(
                 f"the sound power from vibration is that of rail and sleepers alone: {reason}. Above about "
-                f"2 kHz the wheel is the loudest. Give {case.tread_name}.modes, with how they move the "
+                f"2 kHz the wheel is the loudest. Give {case.ROLLING}.modes, with how they move the "
                 "wheel.",
                 Grade.NOTE,
             ),
@@ -358,7 +358,7 @@ def _sources(case: Any, over_frequency: xarray.Dataset) -> list[pass_by.AxleSour
     power = PICOWATT * np.nan_to_num(10.0 ** (level.values / 10.0)) / case.axles
     decay = over_frequency[schema.BAND_DECAY_RATE.name].values
     length = ONE_WAVE / np.maximum(decay, ONE_WAVE / LONGEST)
-    places = {"wheel": (0.0, case.rolling_radius)}
+    places = {"wheel": (0.0, case.rolling.radius)}
     return [
         pass_by.AxleSource(power[:, number], *places.get(name, (length, 0.0)))
         for number, name in enumerate(level["radiator"].values.tolist())

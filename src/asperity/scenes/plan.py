@@ -1,29 +1,37 @@
-"""What rolling takes, from a few steps of it."""
+"""What a run will look at, in words; how finely its bodies are resolved; what its textures are judged by."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from xarray import DataTree
 
-from asperity.config.case import Case
-from asperity.errors import warn_of_findings
+from asperity.case.over import BeamKeys, TrackKeys
+from asperity.case.scene import Case
+from asperity.errors import ComputationError, warn_of_findings
 from asperity.laws import Role, in_role
 from asperity.scenarios.laws import working_point
-from asperity.scenarios.measure import A_WEIGHTED, Measure, a_weighted, density_of
+from asperity.scenarios.measure import (
+    A_WEIGHTED,
+    ACCELERATION,
+    Measure,
+    a_weighted,
+    density_of,
+    line_frequencies,
+)
 from asperity.scenarios.preparing import PreparedCase
-from asperity.scenarios.refining import Setting
-from asperity.scenes import noise
+from asperity.scenarios.refining import Setting, Way
+from asperity.scenes import noise, schema
 from asperity.scenes.track import described_losses, loss_factor_error, warn_of_loss_factors
 from asperity.schema import spectra
+from asperity.structures.rail_poles import POLES
 from asperity.structures.track import Track
+from asperity.units import written
 
 
-def rows(prepared: PreparedCase) -> list[tuple[str, str]]:
+def planned_rows(prepared: PreparedCase) -> list[tuple[str, str]]:
     """What else will be computed, in words: several contacts, a track, and its sound."""
-    offsets, over = prepared.bodies.offsets, prepared.bodies.over
+    offsets, over = prepared.scene.offsets, prepared.scene.over
     found = []
     if len(offsets) > 1:
         places = f"{min(offsets):g} to {max(offsets):g} m ahead of the position"
@@ -33,9 +41,9 @@ def rows(prepared: PreparedCase) -> list[tuple[str, str]]:
 
 def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]]:
     """Characteristic numbers of the track, in words, and what is known of its sound."""
-    case: Any = prepared.case
+    case = prepared.case
     _, stiffness = working_point(case.contact, prepared.shape, None)
-    scene, highest = prepared.bodies, case.numerics.highest_frequency
+    scene, highest = prepared.scene, case.numerics.highest_frequency
     losses = loss_factor_error(track, scene.first, stiffness, highest)
     warn_of_loss_factors(losses)
     known = "rail, sleepers and wheel"
@@ -57,17 +65,67 @@ def _rows_of_track(prepared: PreparedCase, track: Track) -> list[tuple[str, str]
     ]
 
 
-def settings_of(case: Case) -> list[Setting]:
-    """List them."""
-    return []
+def own_settings(case: Case) -> list[Setting]:
+    """How finely what is rolled over is resolved: modes of a beam, or the kernel behind a track's poles."""
+    over = case.rolled_over
+    if isinstance(over, TrackKeys):
+        if case.numerics.kernel != "poles":
+            return [Setting("poles", (), "the rail is scattered from its kernel, without poles")]
+        words = f"up to {case.numerics.poles or POLES} → the kernel that they are fitted to"
+        scattered = Way(words, {"numerics.kernel": "scatter", "numerics.poles": None})
+        return [Setting("poles", (scattered,), scans_kept=True)]
+    if not isinstance(over, BeamKeys):
+        return []
+    before = over.highest_mode(case.numerics.highest_frequency)
+    words = f"up to {written(before, 'Hz', 'kHz')} → up to {written(2.0 * before, 'Hz', 'kHz')}"
+    return [Setting("modes", (Way(words, {f"{case.over_name}.modes_up_to": 2.0 * before}),), scans_kept=True)]
+
+
+def measures_of(case: Case) -> dict[str, Measure]:
+    """What textures of a case are judged by, by name: sound where a track is rolled over, else motion."""
+    if isinstance(case.rolled_over, TrackKeys):
+        power = "sound power level of rolling, A-weighted"
+        at_points = "acceleration level of the rail at the points passed by, energy mean"
+        return {
+            A_WEIGHTED: Measure(power, "dB(A) re 1 pW", a_weighted(_sound_power), ("linear",)),
+            ACCELERATION: Measure(at_points, "dB re 1e-6 m/s²", _of_points),
+        }
+    if case.rolled_over.sensor_positions:
+        meaning = f"acceleration level of the {case.over_name}, energy mean over its sensors"
+        return {
+            A_WEIGHTED: Measure(f"{meaning}, A-weighted", "dB(A) re 1e-6 m/s²", a_weighted(_of_sensors)),
+            ACCELERATION: Measure(meaning, "dB re 1e-6 m/s²", _of_sensors),
+        }
+    meaning = "contact force level, energy mean over the contacts, A-weighted"
+    return {A_WEIGHTED: Measure(meaning, "dB(A) re 1 N", a_weighted(_force))}
 
 
 def _force(tree: DataTree, law: str) -> NDArray[np.float64]:
     return density_of(tree, spectra.FORCE_PSD, law)
 
 
-MEASURES = {
-    A_WEIGHTED: Measure(
-        "contact force level, energy mean over the contacts, A-weighted", "dB(A) re 1 N", a_weighted(_force)
-    ),
-}
+def _of_sensors(tree: DataTree, law: str) -> NDArray[np.float64]:
+    return density_of(tree, schema.ACCELERATION_PSD, law) / schema.ACCELERATION_REFERENCE**2
+
+
+def _of_points(tree: DataTree, law: str) -> NDArray[np.float64]:
+    velocity = density_of(tree, schema.POINT_VELOCITY_PSD, law)
+    return velocity * (2.0 * np.pi * line_frequencies(tree) / schema.ACCELERATION_REFERENCE) ** 2
+
+
+def _sound_power(tree: DataTree, law: str) -> NDArray[np.float64]:
+    """Energy of a band, shared out over its lines as the force is: it has no finer spectrum."""
+    held = tree[schema.SOUND_POWER_LEVEL.group].to_dataset()
+    if schema.SOUND_POWER_LEVEL.name not in held:
+        what = "the sound power of rolling is not known"
+        raise ComputationError(what, "a rough rail, and bands between 50 Hz and 10 kHz")
+    power = held[schema.SOUND_POWER_LEVEL.name].sel(law=law, source="total").values
+    centre, frequency = held[schema.NOISE_BAND.name].values, line_frequencies(tree)
+    force = _force(tree, law)
+    step = frequency[1] - frequency[0]
+    density = np.zeros_like(force)
+    for middle, level in zip(centre, power, strict=True):
+        inside = np.abs(np.log10(frequency / middle)) <= 0.05
+        if inside.any() and force[inside].sum() > 0.0 and np.isfinite(level):
+            density[inside] = 10.0 ** (level / 10.0) * force[inside] / (force[inside].sum() * step)
+    return density

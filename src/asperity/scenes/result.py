@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from asperity import __version__, laws
 from asperity.contact.batched import find_device
 from asperity.errors import Grade, PhysicsWarning, warn_of_findings
+from asperity.progress import Progress
 from asperity.reference import cnossos
 from asperity.results import checked
 from asperity.scenarios.law_choice import LawChoice
+from asperity.scenarios.preparing import PreparedCase
 from asperity.scenes import noise, schema, track, validity
 from asperity.scenes.chance import sureness
-from asperity.scenes.compute import Computed
+from asperity.scenes.compute import Computed, compute
 from asperity.scenes.groups import as_json, contact_group, surface_group
 from asperity.scenes.population import answers
 from asperity.schema import VERSION, Entry, attributes, provenance, rolling, spectra, variables
@@ -43,6 +45,20 @@ ROUGH_CONTACT = (
 )
 BANDS = ("IEC 61260-1:2014 (one-third octaves, base 10).",)
 EXPECTED = ("G. Matheron, Economic Geology 58 (1963) 1246 (kriging, of the expected errors of laws).",)
+
+
+def computed_result(
+    prepared: PreparedCase,
+    progress: Progress,
+    caught: list[warnings.WarningMessage],
+    *,
+    brief: bool = False,
+) -> xarray.DataTree:
+    """Compute a case and lay out its result, in brief without what only its report shows.
+
+    Warnings of laying out may be added to `caught`.
+    """
+    return layout(compute(prepared, progress), caught, brief=brief)
 
 
 def layout(
@@ -170,7 +186,7 @@ def rolling_group(computed: Computed) -> xarray.Dataset:
     """Lay out what was recorded in time: each contact, what it is over, each body, energy."""
     scene, stack, first = computed.scene, computed.stacked, computed.first
     runs, losses = computed.runs.values(), [run.contact_loss for run in computed.runs.values()]
-    over, rolls = scene.displacements or (schema.OVER_DISPLACEMENT, schema.ROLLING_DISPLACEMENT)
+    over, rolls = (getattr(schema, name.upper()) for name in scene.displacements)
     laid_out: dict[Entry, Any] = {
         rolling.LAW: list(computed.runs),
         rolling.TIME: first.time,

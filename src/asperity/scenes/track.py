@@ -155,7 +155,7 @@ def tones(computed: Computed) -> dict[Attribute, float]:
         schema.SLEEPER_PASSING_FREQUENCY: 2.0 * half,
         schema.PINNED_PINNED_LOW: pinned - half,
         schema.PINNED_PINNED_HIGH: pinned + half,
-        schema.WHEEL_REVOLUTION_FREQUENCY: case.speed / (2.0 * math.pi * case.rolling_radius),
+        schema.WHEEL_REVOLUTION_FREQUENCY: case.speed / (2.0 * math.pi * case.rolling.radius),
     }
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 from numpy.typing import NDArray
 
-from asperity.config.case import Case
+from asperity.case.scene import Case
 from asperity.errors import Finding, Grade, percent
 from asperity.laws import baselines, names, spec_of
 from asperity.rolling.roll import RolledBodies
@@ -221,7 +221,7 @@ def verdict(
     main, run = next(iter(computed.runs.items()))
     sentences = list(_doubts(computed, found))
     forces = "the contact force varies" if len(run.contact_force) == 1 else "the contact forces vary"
-    sentences.append(f"{_contact(run, computed.kind.rolling)} ({main}); {forces} by {_varies(run)} rms")
+    sentences.append(f"{_contact(run, computed.case.ROLLING)} ({main}); {forces} by {_varies(run)} rms")
     secant = " (linear with the stiffness F/r)" if computed.case.contact.linearise == "secant" else ""
     others = {law: difference_to(law).name for law in baselines(computed.runs) if law != main}
     others = {law: name for law, name in others.items() if name in over_frequency}

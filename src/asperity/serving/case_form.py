@@ -11,24 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from asperity.arguments import shown
-from asperity.config.describing import CaseKey, entries, toml_value
-from asperity.config.form import extra_of
-from asperity.config.single_keys import entry_of
-from asperity.config.values import (
-    Choice,
-    ChoiceOrFile,
-    File,
-    Flag,
-    MaterialOrName,
-    Number,
-    NumberOrWord,
-    allowed_in,
-    is_list,
-    value_kind,
-)
+from asperity.case import PRESETS
+from asperity.case.cases import case_class
+from asperity.case.describing import CaseKey, allowed_in, entries, entry_of
+from asperity.case.toml import toml_value
 from asperity.errors import InputError
-from asperity.kinds import KINDS
-from asperity.kinds.cases import kind_named
+from asperity.values import Choice, Either, File, Flag, ListOf, MaterialOrName, Number
 
 LONGEST_VALUE = 2000
 """Characters of one value: more than any list of a case needs."""
@@ -72,30 +60,29 @@ class CaseForm:
 @lru_cache
 def forms() -> tuple[CaseForm, ...]:
     """Make the form of each kind of case."""
-    return tuple(_form(name) for name in KINDS)
+    return tuple(_form(name) for name in PRESETS)
 
 
 def _form(name: str) -> CaseForm:
-    kind = kind_named(name)
-    groups = []
-    for title, found in groupby(entries(kind.case), lambda entry: entry.dotted.rpartition(".")[0]):
-        meaning = str(kind.case.model_fields[title].description) if title else kind.words.title.rstrip(".")
-        written_out = kind.words.written_out
-        fields = (_field(entry, title, written_out) for entry in found if entry.dotted != _KIND)
+    model, groups = case_class(name), []
+    whole = model.TITLE.rstrip(".")
+    shown = [each for each in entries(model) if each.name in model.SHOWN.get(each.section, (each.name,))]
+    for title, keys in groupby(shown, lambda entry: entry.section):
+        meaning = model.sections()[title].meaning if title else whole
+        fields = (_field(entry, title, model.WRITTEN_OUT) for entry in keys if entry.dotted != _KIND)
         groups.append(FormGroup(title, meaning, tuple(fields)))
-    return CaseForm(name, kind.words.title.rstrip("."), tuple(groups))
+    return CaseForm(name, whole, tuple(groups))
 
 
 def _field(entry: CaseKey, title: str, written_out: Mapping[str, str]) -> FormField:
-    usual, written = entry.default, written_out.get(entry.dotted)
-    companion = str(extra_of(entry.field)["goes_with"])
+    usual, written, companion = entry.key.default, written_out.get(entry.dotted), entry.key.goes_with
     control, choices = _control(entry)
     return FormField(
         entry.dotted,
         entry.name,
-        str(entry.field.description),
-        allowed_in(entry.field).split(", with its unit")[0].removesuffix(" in quotes"),
-        entry.otherwise if usual is None else typed(usual),
+        entry.key.meaning,
+        allowed_in(entry.key).removesuffix(" in quotes"),
+        entry.key.otherwise if usual is None else typed(usual),
         control,
         choices,
         "" if written is None else typed(tomllib.loads(f"v = {written}")["v"]),
@@ -104,15 +91,17 @@ def _field(entry: CaseKey, title: str, written_out: Mapping[str, str]) -> FormFi
 
 
 def _control(entry: CaseKey) -> tuple[str, tuple[str, ...]]:
-    match value_kind(entry.field.annotation, entry.field.metadata):
+    match entry.key.kind:
         case Choice() as choice:
-            return ("choices" if is_list(entry.field.annotation) else "choice"), choice.known
+            return "choice", choice.known
+        case ListOf(Choice() as choice):
+            return "choices", choice.known
         case Flag():
             return "choice", (YES, NO)
         case File():
             return "file", ()
-        case ChoiceOrFile() as either:
-            return "file", either.words
+        case Either(words, File()):
+            return "file", words
     return "text", ()
 
 
@@ -144,7 +133,7 @@ def case_data(
     InputError
         If a key or a file is unknown, or a value is no text.
     """
-    model = kind_named(kind).case
+    model = case_class(kind)
     data: dict[str, Any] = {_KIND: kind}
     for dotted, text in values.items():
         entry = entry_of(model, dotted)
@@ -158,18 +147,18 @@ def case_data(
 
 
 def _value(entry: CaseKey, text: str, file_of: Callable[[str], Path | None]) -> Any:
-    kind = value_kind(entry.field.annotation, entry.field.metadata)
-    if is_list(entry.field.annotation):
+    kind = entry.key.kind
+    if isinstance(kind, ListOf):
         parts = (part.strip() for part in text.split(","))
-        return [_number(part) if isinstance(kind, Number) else part for part in parts if part]
+        return [_number(part) if isinstance(kind.each, Number) else part for part in parts if part]
     match kind:
-        case Number() | NumberOrWord():
+        case Number() | Either(_, Number()):
             return _number(text)
         case Flag():
             return {YES: True, NO: False}.get(text, text)
-        case ChoiceOrFile() if text in kind.words:
+        case Either(words, File()) if text in words:
             return text
-        case File() | ChoiceOrFile():
+        case File() | Either(_, File()):
             found = file_of(text)
             if found is None:
                 raise InputError(entry.dotted, shown(text), "a surface that was uploaded", "Upload it.")
@@ -193,7 +182,7 @@ def _table(entry: CaseKey, text: str) -> Any:
     try:
         return tomllib.loads(f"v = {text}")["v"]
     except (ValueError, RecursionError):
-        raise InputError(entry.dotted, shown(text), allowed_in(entry.field)) from None
+        raise InputError(entry.dotted, shown(text), entry.key.kind.allowed) from None
 
 
 def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> dict[str, str]:
@@ -201,13 +190,14 @@ def form_values(data: Mapping[str, Any], id_of: Callable[[str], str | None]) -> 
 
     `id_of` finds the identifier of a file's path; an `InputError` names a file that has none.
     """
-    model = kind_named(data.get(_KIND)).case
+    model = case_class(data.get(_KIND))
     found = {}
     for dotted, value in _flat(data):
         if dotted == _KIND:
             continue
-        kind = value_kind((field := entry_of(model, dotted).field).annotation, field.metadata)
-        named = isinstance(kind, File) or (isinstance(kind, ChoiceOrFile) and value not in kind.words)
+        kind = entry_of(model, dotted).key.kind
+        named = isinstance(kind, File)
+        named |= isinstance(kind, Either) and isinstance(kind.other, File) and value not in kind.words
         text = id_of(str(value)) if named else typed(value)
         if text is None:
             remedy = "Upload it, and choose it in the form."

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from asperity.config.case import Case
+from asperity.case.scene import Case
 from asperity.contact import Contact, HalfSpace
 from asperity.errors import CaseError, InputError
 from asperity.reduction.stiffness import patches

@@ -13,7 +13,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from asperity.config.parsing import LARGEST_CASE
+from asperity.case.toml import LARGEST_CASE
 from asperity.errors import InputError
 from asperity.files import discard, write_bytes
 from asperity.printable import printable

@@ -41,9 +41,9 @@ def roll_run() -> None:
 def _roll(folder: Path, progress: _Reports) -> None:
     """Compute the case, and write all that the page shows of it; the result, which says so, comes last."""
     progress(0, 1, "importing")
+    from asperity.case.cases import load_case
     from asperity.errors import InputError
     from asperity.files import alone_in
-    from asperity.kinds.cases import load_case
     from asperity.reporting.sound import listen
     from asperity.results import save
     from asperity.running import prepare_case, run

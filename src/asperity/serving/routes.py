@@ -17,7 +17,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
-from asperity.config.parsing import LARGEST_CASE
+from asperity.case.toml import LARGEST_CASE
 from asperity.errors import AsperityError
 from asperity.reporting.payload import chart_script
 from asperity.serving import kept_runs, uploads

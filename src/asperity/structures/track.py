@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike
 
 from asperity.arguments import Array, Complex, finite_array, not_negative, positive, shown
 from asperity.errors import InputError
+from asperity.parameters import keys_of, parameter
 from asperity.reference.tracks import named_track
 from asperity.structures.periodic_rail import PeriodicWaves, periodic_waves, static_receptance
+from asperity.values import Number, Quantity
 
 
 @dataclass(frozen=True)
@@ -174,25 +176,11 @@ class SleeperSupport:
         return pad * ballast / (pad + ballast)
 
 
-_POSITIVE = {
-    "bending_stiffness": "bending stiffness of the rail (N m^2)",
-    "mass_per_length": "mass per length of the rail (kg/m)",
-    "pad_stiffness": "pad stiffness (N/m)",
-    "ballast_stiffness": "ballast stiffness (N/m)",
-    "sleeper_spacing": "sleeper spacing (m)",
-    "shear_stiffness": "shear stiffness of the rail (N)",
-    "rotary_inertia": "rotary inertia of the rail (kg m)",
-}
-_NOT_NEGATIVE = {
-    "sleeper_mass": "sleeper mass (kg)",
-    "rail_loss_factor": "rail loss factor",
-    "pad_damping": "pad damping (N s/m)",
-    "pad_loss_factor": "pad loss factor",
-    "ballast_damping": "ballast damping (N s/m)",
-    "ballast_loss_factor": "ballast loss factor",
-}
-"""Parameters of a track in the words of messages."""
 _VANISHING_DAMPING = 1e-9  # relative; picks the outgoing wave where nothing in the track dissipates
+
+
+_LOSS = Number(at_least=0, at_most=5)
+_RAILS, _PADS, _BALLAST = "rails lie between", "pads lie between", "ballast lies between"
 
 
 @dataclass(frozen=True)
@@ -253,28 +241,85 @@ class Track:
     True
     """
 
-    bending_stiffness: float
-    mass_per_length: float
-    pad_stiffness: float
-    sleeper_mass: float
-    ballast_stiffness: float
-    sleeper_spacing: float
-    rail_loss_factor: float = 0.0
-    pad_damping: float | None = None
-    pad_loss_factor: float | None = None
-    ballast_damping: float | None = None
-    ballast_loss_factor: float | None = None
-    shear_stiffness: float | None = None
-    rotary_inertia: float | None = None
+    bending_stiffness: float = parameter(
+        Quantity("N m^2", above=0),
+        "4.7 MN m^2",
+        "bending stiffness of the rail",
+        f"1 kN m^2 to 1 GN m^2: {_RAILS}",
+    )
+    mass_per_length: float = parameter(
+        Quantity("kg/m", above=0), "60 kg/m", "mass of the rail per length", f"1 kg/m to 1000 kg/m: {_RAILS}"
+    )
+    pad_stiffness: float = parameter(
+        Quantity("N/m", above=0), "300 MN/m", "stiffness of a rail pad", f"1 kN/m to 1 TN/m: {_PADS}"
+    )
+    sleeper_mass: float = parameter(
+        Quantity("kg", above=0),
+        "150 kg",
+        "mass of a sleeper under one rail: half a sleeper",
+        "1 kg to 100 t: sleepers lie between",
+    )
+    ballast_stiffness: float = parameter(
+        Quantity("N/m", above=0),
+        "150 MN/m",
+        "stiffness of the ballast under half a sleeper",
+        f"1 kN/m to 1 TN/m: {_BALLAST}",
+    )
+    sleeper_spacing: float = parameter(
+        Quantity("m", above=0),
+        "0.6 m",
+        "distance of the sleepers",
+        "0.1 m to 10 m: sleepers are as far apart",
+    )
+    rail_loss_factor: float = parameter(_LOSS, 0.01, "loss factor of the rail", default=0.0)
+    pad_damping: float | None = parameter(
+        Quantity("N s/m", at_least=0),
+        "18 kN s/m",
+        "viscous damping of a pad",
+        f"1e-3 N s/m to 1e9 N s/m: {_PADS}",
+        default=None,
+    )
+    pad_loss_factor: float | None = parameter(
+        _LOSS, 0.15, "loss factor of a pad, instead of pad_damping; approximated in time", default=None
+    )
+    ballast_damping: float | None = parameter(
+        Quantity("N s/m", at_least=0),
+        "48 kN s/m",
+        "viscous damping of the ballast",
+        f"1e-3 N s/m to 1e9 N s/m: {_BALLAST}",
+        default=None,
+    )
+    ballast_loss_factor: float | None = parameter(
+        _LOSS,
+        0.4,
+        "loss factor of the ballast, instead of ballast_damping; approximated in time",
+        default=None,
+    )
+    shear_stiffness: float | None = parameter(
+        Quantity("N", above=0),
+        "243 MN",
+        "shear stiffness of the rail; with it, the rail is a Timoshenko beam",
+        f"1 kN to 1 TN: {_RAILS}",
+        default=None,
+    )
+    rotary_inertia: float | None = parameter(
+        Quantity("kg m", above=0),
+        "0.24 kg m",
+        "rotary inertia of the rail per length",
+        f"1e-6 kg m to 1000 kg m: {_RAILS}",
+        default=None,
+    )
     name: str = ""
     sources: tuple[str, ...] = ()
     relaxations: Relaxations | None = None
 
     def __post_init__(self) -> None:
-        for words, check in ((_POSITIVE, positive), (_NOT_NEGATIVE, not_negative)):
-            for name, what in words.items():
-                if (value := getattr(self, name)) is not None or getattr(type(self), name, 0.0) is not None:
-                    check(what, value)
+        for name, key in keys_of(type(self), "").items():
+            value, unit = getattr(self, name), getattr(key.kind, "dimension", "")
+            above_zero = getattr(key.kind, "above", None) == 0 and name != "sleeper_mass"
+            what = name.replace("_", " ") + f" ({unit})" * bool(unit)
+            if value is not None or getattr(type(self), name, 0.0) is not None:
+                (positive if above_zero else not_negative)(what, value)
         for element in ("pad", "ballast"):
             viscous, factor = (getattr(self, f"{element}_{each}") for each in ("damping", "loss_factor"))
             if viscous is not None and factor is not None:

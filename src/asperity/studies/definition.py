@@ -17,18 +17,18 @@ from numpy.typing import NDArray
 
 from asperity import __version__
 from asperity.arguments import file_path, shown
-from asperity.config.case import Case
-from asperity.config.chosen import shared_lengths
-from asperity.config.content import content, described_value, file_digest, holds_memory
-from asperity.config.describing import CaseKey, in_toml, toml_text, value_in_toml
-from asperity.config.parsing import FROM_PYTHON, Origin, plain_data, read_definition, read_toml
-from asperity.config.single_keys import entry_of, reader_of, unit_of
+from asperity.case.cases import case_class, case_of
+from asperity.case.chosen import shared_lengths
+from asperity.case.content import content, described_value, file_digest, holds_memory
+from asperity.case.describing import CaseKey, entry_of, in_toml, value_in_toml
+from asperity.case.scene import Case
+from asperity.case.toml import plain_data, read_definition, read_toml, toml_text
 from asperity.errors import CaseError, InputError
-from asperity.kinds.cases import case_of, kind_named
 from asperity.reference.materials import Material
 from asperity.reporting.data import TYPED_FACTOR, TYPED_UNIT
 from asperity.store import content_key
 from asperity.units import factor, unit_in
+from asperity.values import FROM_PYTHON, Origin
 
 _NUMBER = r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[eE][+-]?\d++)?"
 _RANGE = re.compile(
@@ -124,7 +124,7 @@ class SweptAxis:
     @property
     def units(self) -> str:
         """SI unit of the coordinate; ``"1"`` where the values are words."""
-        return unit_of(self.entry) or "1"
+        return self.entry.unit or "1"
 
     @property
     def typed(self) -> dict[str, Any]:
@@ -141,7 +141,7 @@ class SweptAxis:
     @property
     def coordinate(self) -> NDArray[Any]:
         """Values along the axis: numbers in SI, or words as they were written."""
-        if unit_of(self.entry) is not None:
+        if self.entry.unit is not None:
             return np.array(self.values)
         return np.array([written_out(value) for value in self.written])
 
@@ -327,7 +327,7 @@ def _flat(sweep: Mapping[str, Any], section: str = "") -> Iterator[tuple[str, An
 def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxis:
     if dotted == "kind":
         raise InputError("kind", "a swept key", "one kind of case in a study", "Write a study for each kind.")
-    entry = entry_of(kind_named(kind).case, dotted)
+    entry = entry_of(case_class(kind), dotted)
     if isinstance(values, np.ndarray) and values.ndim == 1:
         values = values.tolist()
     values = expanded(dotted, values)
@@ -339,10 +339,9 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
     if len(values) > MOST_MEMBERS:
         raise InputError(dotted, f"{len(values)} values", f"at most {MOST_MEMBERS}", "Split the study.")
     read: dict[str, Any] = {}  # in their order
-    value_of = reader_of(entry, origin)
     for number, value in enumerate(values, 1):
         try:
-            found = value_of(value)
+            found = entry.read(value, origin)
         except InputError as error:
             raise InputError(f"{dotted}[{number}]", error.received, error.allowed, error.remedy) from None
         told = json.dumps(content(found))
@@ -356,7 +355,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
 def _in_toml(value: Any, found: Any, entry: CaseKey) -> Any:
     """A swept value as it would stand in a file: as it was given, but for numbers in SI."""
     bare = isinstance(value, int | float | np.generic | Material) and not isinstance(value, bool)
-    return value_in_toml(found, entry.field) if bare else value
+    return value_in_toml(found, entry.key) if bare else value
 
 
 def _with_values(data: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:

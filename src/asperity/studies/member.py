@@ -20,7 +20,7 @@ from asperity.schema import Entry, contact, provenance, rolling, spectra
 from asperity.spectra import a_weighted_total
 
 if TYPE_CHECKING:
-    from asperity.config.case import Case
+    from asperity.case.scene import Case
 
 KEPT = (
     spectra.FORCE_LEVEL,

@@ -22,7 +22,7 @@ from contextlib import closing, contextmanager
 from typing import TYPE_CHECKING, Any
 
 from asperity.arguments import shown, whole
-from asperity.config.case import Case
+from asperity.case.scene import Case
 from asperity.errors import ComputationError, InputError
 from asperity.interrupts import no_interrupt_for_children
 from asperity.progress import shown_progress

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from asperity import __version__
 from asperity.arguments import nearest, shown
-from asperity.config.content import described_value
+from asperity.case.content import described_value
 from asperity.errors import InputError
 from asperity.reporting.data import typed_unit, typed_values
 from asperity.results import variable
@@ -40,9 +40,7 @@ def tabulated(
     ordered = [(member.index, results[member.index]) for member in members if member.index in results]
     coordinates = _coordinates([table for _, table in ordered])
     variables: dict[str, xarray.Variable] = {
-        axis.name: variable(
-            axis.name, axis.coordinate, axis.units, str(axis.entry.field.description), **axis.typed
-        )
+        axis.name: variable(axis.name, axis.coordinate, axis.units, axis.entry.key.meaning, **axis.typed)
         for axis in study.axes
     }
     variables |= coordinates

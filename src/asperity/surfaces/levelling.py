@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 import numpy as np
 import scipy
 from numpy.typing import NDArray
-from scipy import fft
 
 from asperity.arguments import FORMS, Array, real, require, shown
 from asperity.errors import ComputationError, ShortRecordWarning
@@ -113,13 +112,13 @@ def _resample_axis(heights: Array, old_step: float, new_step: float, axis: int) 
     points = heights.shape[axis]
     length = points * old_step
     count = int(np.floor(length / new_step + 1e-9))
-    series = np.moveaxis(fft.dct(heights, type=2, axis=axis), axis, -1)
+    series = np.moveaxis(scipy.fft.dct(heights, type=2, axis=axis), axis, -1)
     terms = min(points, count)  # term k has the wavelength 2 length/k
     # four samples or more per shortest wavelength left: the quintic spline is then right within 0.2 %
-    dense = fft.next_fast_len(max(2 * terms, 16), real=True)
+    dense = scipy.fft.next_fast_len(max(2 * terms, 16), real=True)
     padded = np.zeros((*series.shape[:-1], dense))
     padded[..., :terms] = series[..., :terms] * (dense / points)
-    values = fft.idct(padded, type=2, axis=-1)
+    values = scipy.fft.idct(padded, type=2, axis=-1)
     centres = (np.arange(dense) + 0.5) * (length / dense)
     before, beyond = slice(MIRRORED - 1, None, -1), slice(None, -MIRRORED - 1, -1)
     mirrored = np.concatenate([values[..., before], values, values[..., beyond]], axis=-1)

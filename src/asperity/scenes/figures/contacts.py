@@ -94,6 +94,10 @@ def contacts_table(tree: DataTree) -> ReportTable | None:
     return table("where_contacts_are", "Contacts", columns, "Static forces as on a rigid plane.")
 
 
+def _several(tree: DataTree) -> bool:
+    return len(data.values(tree, rolling.CONTACT)) > 1
+
+
 CONTACTS = (
     Figure(
         "contact_levels",
@@ -103,6 +107,7 @@ CONTACTS = (
         _levels,
         _levels_caption,
         (rolling.CONTACT, rolling.OFFSET),
+        worth=_several,
     ),
     Figure(
         "force_sum",
@@ -116,6 +121,6 @@ CONTACTS = (
             f"{tones_words(tree)}{panels.shaded_words(tree)}"
         ),
         (CONTACT_FORCE_PSD, rolling.CONTACT),
-        worth=lambda tree: len(data.values(tree, rolling.CONTACT)) > 1,
+        worth=_several,
     ),
 )

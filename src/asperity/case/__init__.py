@@ -1,0 +1,10 @@
+"""The case: what a person says of a scene, each key declared once; presets, one file and one line each."""
+
+from __future__ import annotations
+
+PRESETS: dict[str, str] = {
+    "ball-on-beam": "asperity.case.ball_on_beam.BallOnBeam",
+    "wheel-on-rail": "asperity.case.wheel_on_rail.WheelOnRail",
+    "bodies": "asperity.case.bodies.Bodies",
+}
+"""Kinds of case by name, each with its module and class."""

@@ -1,0 +1,440 @@
+"""What rolls: one body or several alike, each on one contact or several, with textures of their own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.case.surface import ADDED_LEVEL, LENGTH, LEVEL, LEVELS, POSITION, MeasuredLine
+from asperity.case.tables import TableFile, fitted_to, read_modes, read_receptance
+from asperity.errors import InputError
+from asperity.parameters import key, optional
+from asperity.reference.cnossos import WHEEL_ROUGHNESS
+from asperity.reference.materials import Material
+from asperity.structures.body import GRAVITY, Body, bogie, carriage, chain
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.units import written
+from asperity.values import Choice, Either, File, ListOf, MaterialOrName, Number, Quantity
+
+if TYPE_CHECKING:
+    from asperity.structures.wheel import Wheel
+
+MOST_CONTACTS = 200
+DEEPEST_FLAT = 0.01  # of the radius
+CLOSE_LENGTH = 0.05  # by which a measured length may differ from that of the chord
+COUNT = Number(at_least=1, at_most=MOST_CONTACTS, whole=True)
+MASS, FORCE = Quantity("kg", above=0), Quantity("N", above=0)
+STIFFNESS, DAMPING = Quantity("N/m", above=0), Quantity("N s/m", at_least=0)
+INERTIA = Quantity("kg m^2", above=0)
+_BODIES = "bodies that roll lie between"
+
+
+OF_SEVERAL = (
+    "type",
+    "positions",
+    "groove_radius",
+    "groove_width",
+    "raceway_radius",
+    "raceway",
+    "masses",
+    "springs",
+    "dampers",
+    "contacts",
+    "distance",
+    "inertia",
+    "flat_contacts",
+)
+"""Keys of what rolls on several contacts, or in a groove."""
+
+
+class FlatOnTread(MeasuredLine):
+    """What rolls on its tread: textures around it, and a flat on it."""
+
+    radius: float
+
+    roughness: str | Path | NDArray[np.float64] | None = optional(
+        Either(tuple(WHEEL_ROUGHNESS), LEVELS),
+        "disc",
+        "one-third-octave wavelength spectrum of what rolls, around its circumference, another texture at "
+        "each contact",
+        "smooth",
+    )
+    roughness_level: float = key(LEVEL, "+0 dB", "level added to it", ADDED_LEVEL, goes_with="roughness")
+    line: Path | HeightMap | Profile | None = optional(
+        File(held=(HeightMap, Profile)),
+        "wheels.csv",
+        "measured line around what rolls, once around; several side by side: across, with line_distance, or "
+        "one for each contact in turn",
+    )
+    flat_depth: float | None = optional(
+        LENGTH,
+        "0.5 mm",
+        "depth of a flat on the tread, which direct and table see; with flat_length alone, that of its chord",
+        within="10 nm to 100 mm: flats lie between",
+    )
+    flat_length: float | None = optional(
+        LENGTH,
+        "43 mm",
+        "length of the flat: that of its chord, sqrt(8 radius flat_depth); a worn one may be longer",
+        within="10 um to 1 m: flats lie between",
+    )
+    flat_shape: str = key(
+        Choice(("fresh", "worn")),
+        "fresh",
+        "a chord with sharp ends, or rounded",
+        goes_with="flat_depth or flat_length",
+    )
+    flat_position: float | None = optional(
+        POSITION,
+        "1 m",
+        "where the flat is on the tread, along the circumference from the point that touches at start",
+        "half a turn on, or half of the record if that is shorter, so that no impact is cut",
+        "0 m to 100 m: wheels are smaller",
+        goes_with="flat_depth or flat_length",
+    )
+    flat_contacts: tuple[int, ...] = key(
+        ListOf(COUNT),
+        (1,),
+        "contacts whose body has the flat, by number",
+        goes_with="flat_depth or flat_length",
+    )
+
+    @property
+    def circumference(self) -> float:
+        """Length of the tread around what rolls, m."""
+        return 2 * math.pi * self.radius
+
+    @property
+    def has_own_texture(self) -> bool:
+        """Whether the tread is rough."""
+        return self.roughness is not None or self.line is not None
+
+    @property
+    def flat(self) -> tuple[float, float] | None:
+        """Depth and length of the flat, m; None without one."""
+        depth, length = self.flat_depth, self.flat_length
+        if depth is None:
+            return None if length is None else (self._chord_depth(length), length)
+        chord = math.sqrt(8.0 * self.radius * depth)
+        return depth, chord if length is None or self.flat_shape == "fresh" else max(length, chord)
+
+    def _chord_depth(self, length: float) -> float:
+        return length**2 / (8.0 * self.radius)
+
+    def problems(self) -> Iterator[InputError]:
+        """One source of texture; a flat that is small against the body, its length as its depth."""
+        yield from super().problems()
+        if self.roughness is not None and self.line is not None:
+            yield InputError("", "both roughness and line", "one of them", "Remove one.")
+        if self.flat is None:
+            return
+        deepest = DEEPEST_FLAT * self.radius
+        allowed = f"at most {DEEPEST_FLAT:g} of the radius, {written(deepest, 'm', 'mm')}"
+        if self.flat_depth is None:
+            longest = math.sqrt(8.0 * self.radius * deepest)
+            if self.flat[1] > longest:
+                allowed = f"at most {longest * 1e3:.4g} mm, where the depth of its chord is {allowed}"
+                yield InputError("flat_length", written(self.flat[1], "m", "mm"), allowed)
+        elif self.flat_depth > deepest:
+            yield InputError("flat_depth", written(self.flat_depth, "m", "mm"), allowed)
+        elif self.flat_length is not None:
+            yield from self._problem_of_both(self.flat_depth, self.flat_length)
+        if self.flat_position is not None and self.flat_position >= self.circumference:
+            allowed = f"less than the circumference, {self.circumference:.4g} m"
+            yield InputError("flat_position", f"{self.flat_position:g} m", allowed)
+
+    def _problem_of_both(self, depth: float, length: float) -> Iterator[InputError]:
+        """A fresh flat is a chord; a worn one is at least as long, and at most as the radius."""
+        chord = math.sqrt(8.0 * self.radius * depth)
+        worn = self.flat_shape == "worn"
+        longest = self.radius if worn else chord * (1.0 + CLOSE_LENGTH)
+        if chord * (1.0 - CLOSE_LENGTH) <= length <= longest:
+            return
+        allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), within {CLOSE_LENGTH:.0%}"
+        remedy = f"The chord of this length is {self._chord_depth(length) * 1e3:.3g} mm deep."
+        if worn:
+            allowed = f"{chord * 1e3:.4g} mm, the chord sqrt(8 radius flat_depth), to the radius"
+        elif length > chord:
+            remedy += ' A worn flat may be longer: flat_shape = "worn".'
+        received = f"{written(length, 'm', 'mm')} beside a depth of {written(depth, 'm', 'mm')}"
+        yield InputError("flat_length", received, allowed, remedy)
+
+
+class Rolling(FlatOnTread):
+    """What rolls: one body, or several of the same kind behind one another."""
+
+    type: str = key(
+        Choice(("mass", "chain", "bogie", "carriage")),
+        "mass",
+        "a rigid mass; a chain of masses above it; a bogie on two; or a carriage on rolling elements",
+    )
+    positions: tuple[float, ...] = key(
+        ListOf(POSITION),
+        ["0 m"],
+        "where the bodies are, by their rearmost contacts, ahead of the position of the run",
+        "0 m to 100 km: trains are shorter",
+    )
+    radius: float = key(LENGTH, "25 mm", "rolling radius", f"10 um to 10 m: {_BODIES}")
+    transverse_radius: float | None = optional(
+        Quantity("m", above=0, infinite=True),
+        "inf",
+        "radius across the path of what rolls",
+        "the rolling radius: a ball",
+        '10 um to 100 km: beyond that it is flat: write "inf"',
+    )
+    profile: Path | Profile | None = optional(
+        File(held=(Profile,)),
+        "tread.csv",
+        "measured shape of what rolls across the path, instead of transverse_radius",
+    )
+    groove_radius: float | None = optional(
+        LENGTH,
+        "26 mm",
+        "radius of the groove that it rolls in, across the path",
+        "what is rolled over is flat; of a track, the head of the rail",
+        "10 um to 100 m: grooves lie between",
+    )
+    groove_width: float | None = optional(
+        LENGTH,
+        "4 mm",
+        "width of the groove between its edges",
+        "wider than the contact",
+        "10 um to 100 m: grooves lie between",
+        goes_with="groove_radius",
+    )
+    raceway_radius: float | None = optional(
+        LENGTH,
+        "50 mm",
+        "radius of a curved raceway along the path",
+        "what is rolled over is straight",
+        "10 um to 1 km: raceways lie between",
+    )
+    raceway: str = key(
+        Choice(("inner", "outer")),
+        "inner",
+        "whether it rolls around the raceway, or inside it",
+        goes_with="raceway_radius",
+    )
+    material: Material = key(MaterialOrName(), "steel", "material")
+    mass: float | None = optional(
+        MASS,
+        "600 kg",
+        "mass on each contact: of a ball, of a wheel with its share of the axle",
+        "that of a ball of this radius",
+        f"1e-12 kg to 1000 t: {_BODIES}",
+    )
+    load: float | None = optional(
+        FORCE,
+        "50 N",
+        "static force of each contact, all weights included; evened out over those of one body",
+        "the weights",
+        "1 nN to 1 GN: adhesion governs smaller loads",
+    )
+    masses: tuple[float, ...] | None = optional(
+        ListOf(MASS),
+        ["0.4 kg"],
+        "masses above: of a chain from below; the frame of a bogie; the carriage",
+        "none",
+        f"1e-12 kg to 1000 t: {_BODIES}",
+    )
+    springs: tuple[float, ...] | None = optional(
+        ListOf(STIFFNESS),
+        ["1.2 MN/m"],
+        "springs under these masses; of a bogie one for each wheel, of a carriage one for each element",
+        "of a carriage Hertz's stiffness at rest; else none",
+        "1e-3 N/m to 1e15 N/m: springs lie between",
+    )
+    dampers: tuple[float, ...] | None = optional(
+        ListOf(DAMPING),
+        ["10 kN s/m"],
+        "viscous dampers beside the springs",
+        "none",
+        "1e-9 N s/m to 1e12 N s/m: dampers lie between",
+    )
+    contacts: int = key(COUNT, 4, "rolling elements of a carriage", goes_with="type=carriage")
+    distance: float | None = optional(
+        LENGTH,
+        "2.5 m",
+        "distance of the contacts of a bogie, its wheelbase, or of a carriage",
+        "none",
+        "10 um to 100 m: bodies are shorter",
+    )
+    inertia: float | None = optional(
+        INERTIA,
+        "1500 kg m^2",
+        "moment of inertia of a bogie's frame, or of a carriage, in pitch",
+        "that of a bar as long as the contacts are apart",
+        f"1e-15 kg m^2 to 1e9 kg m^2: {_BODIES}",
+    )
+    modes: Path | NDArray[np.float64] | None = optional(
+        TableFile(columns=(3, 6), read=read_modes),
+        "modes.csv",
+        "table of the resonances of what touches, the same at each contact: frequency (Hz), damping ratio, "
+        "modal mass (kg); the sound of wheels needs three columns more: number of nodal diameters, and rms "
+        "axial velocity of the disc and rms radial velocity of the tread, both per radial velocity at the "
+        "contact",
+        "rigid",
+    )
+    receptance: Path | NDArray[np.float64] | None = optional(
+        TableFile(columns=(3,), read=read_receptance),
+        "receptance.csv",
+        "table of the receptance of a mass, which is fitted by modes: frequency (Hz), real and imaginary "
+        "part (m/N)",
+        "rigid",
+    )
+
+    @property
+    def across(self) -> float:
+        """Radius across the path, m."""
+        return self.radius if self.transverse_radius is None else self.transverse_radius
+
+    @property
+    def raceway_along(self) -> float:
+        """Radius of what is rolled over along the path, m: positive where it bulges, infinite if straight."""
+        if self.raceway_radius is None:
+            return math.inf
+        return self.raceway_radius if self.raceway == "inner" else -self.raceway_radius
+
+    @property
+    def contact_mass(self) -> float:
+        """Mass on each contact, kg."""
+        if self.mass is not None:
+            return self.mass
+        return float(4.0 / 3.0 * np.pi * self.radius**3 * self.material.density)
+
+    @property
+    def contact_load(self) -> float:
+        """Static force of each contact, N: as given, or the weights, evened out."""
+        above = sum(self.masses or ()) / len(self.places)
+        return self.load or GRAVITY * (self.contact_mass + above)
+
+    @property
+    def upper_load(self) -> float:
+        """What the contact above each element of a carriage carries, N."""
+        above = self.contact_load - GRAVITY * self.contact_mass
+        if not above > 0.0:
+            raise InputError("load", f"{above:.4g} N above each element", "a carriage that presses on them")
+        return above
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Contacts of one body ahead of its rearmost one, m."""
+        count = {"bogie": 2, "carriage": self.contacts}.get(self.type, 1)
+        return tuple((self.distance or 0.0) * i for i in range(count))
+
+    @property
+    def offsets(self) -> tuple[float, ...]:
+        """All contacts ahead of the position of the run, m, body by body."""
+        return tuple(position + place for position in self.positions for place in self.places)
+
+    @property
+    def degrees(self) -> dict[str, float]:
+        """Degrees of freedom of all bodies, each from its contacts upwards: 1, or the lever of a pitch, m."""
+        lever, above = 0.5 * self.places[-1], len(self.masses or ())
+        one = {"mass on the contact": 1.0} | {f"mass {n} above": 1.0 for n in range(1, above + 1)}
+        if self.type == "bogie":
+            one = {"rear wheel": 1.0, "front wheel": 1.0, "frame": 1.0, "frame, pitch at its end": lever}
+        if self.type == "carriage":
+            one = {f"element {n}": 1.0 for n in range(1, len(self.places) + 1)}
+            one |= {"carriage": 1.0, "carriage, pitch at its end": lever}
+        if len(self.positions) == 1:
+            return one
+        bodies = range(1, len(self.positions) + 1)
+        return {f"{name}, body {number}": each for number in bodies for name, each in one.items()}
+
+    @property
+    def described(self) -> str:
+        """What rolls, in words."""
+        words = {"mass": ("body", "bodies"), "chain": ("suspended body", "suspended bodies")}
+        one, many = words.get(self.type, (self.type, f"{self.type}s"))
+        return f"a {one}" if len(self.positions) == 1 else f"{len(self.positions)} {many}"
+
+    def model(self, upper_stiffness: float, highest_frequency: float, name: str = "body") -> Body:
+        """Build one of the bodies, with the resonances of what touches.
+
+        Stiffness of the contact above each element of a carriage, N/m, if the section gives none. Receptances
+        are fitted up to twice the highest frequency, Hz; shorter ones are warned of by `name`.
+        """
+        if self.receptance is not None:
+            from asperity.structures.modal_fit import REACH, warn_of_short_band
+            from asperity.structures.receptance_fit import fit_body
+
+            frequency, measured = read_receptance(self.receptance)
+            warn_of_short_band(name, frequency, highest_frequency)
+            within = frequency <= REACH * highest_frequency
+            with fitted_to(self.receptance):
+                return fit_body(self.contact_mass, self.contact_load, frequency[within], measured[within])
+        body = self._rigid(upper_stiffness)
+        return body if self.modes is None else body.with_modes(*read_modes(self.modes))
+
+    def _rigid(self, upper_stiffness: float) -> Body:
+        mass, places, above = self.contact_mass, self.places, list(self.masses or ())
+        extra = self.contact_load * len(places) - GRAVITY * (mass * len(places) + sum(above))
+        springs, dampers = list(self.springs or ()), list(self.dampers or [0.0] * len(above))
+        if self.type == "chain":
+            return chain([mass, *above], springs, dampers, load=extra)
+        if self.type == "mass":
+            return Body.rigid(mass, self.contact_load)
+        inertia = self.inertia or above[0] * (places[-1] or 2.0 * self.radius) ** 2 / 12.0
+        if self.type == "bogie":
+            return bogie(mass, places[1], above[0], inertia, springs[0], dampers[0], load=extra)
+        upper = springs[0] if springs else upper_stiffness
+        held = {"element_mass": mass, "upper_stiffness": upper, "upper_damping": dampers[0], "load": extra}
+        return carriage(above[0], inertia, places, **held)
+
+    @property
+    def tread(self) -> Wheel:
+        """What touches at each contact, by itself: its mass and its modes."""
+        from asperity.structures.wheel import Wheel
+
+        modes = () if self.modes is None else read_modes(self.modes)
+        return Wheel(self.contact_mass, self.contact_load, *modes)
+
+    def problems(self) -> Iterator[InputError]:
+        """What each type of body needs, and contacts that are apart."""
+        yield from super().problems()
+        if not self.positions:
+            yield InputError("positions", "an empty list", "at least one position", 'Take ["0 m"].')
+        if len(self.offsets) > MOST_CONTACTS:
+            yield InputError("positions", f"{len(self.offsets)} contacts", f"at most {MOST_CONTACTS}")
+        yield from self._problems_of_type()
+        if max(self.flat_contacts, default=0) > len(self.offsets):
+            received, allowed = f"{max(self.flat_contacts)}", f"numbers up to {len(self.offsets)}"
+            yield InputError("flat_contacts", received, allowed)
+        ordered = np.sort(self.offsets)
+        if len(ordered) > 1 and np.diff(ordered).min() <= 1e-9:
+            received = "two contacts in the same place"
+            yield InputError("positions", received, "contacts that are apart", "Move one of them.")
+        for one, other in (("profile", "transverse_radius"), ("modes", "receptance")):
+            if {one, other} <= self.given_names:
+                yield InputError("", f"both {one} and {other}", "one of them", "Remove one.")
+        if self.receptance is not None and self.type != "mass":
+            received, allowed = f"beside type {self.type}", "that of a mass, alone"
+            yield InputError("receptance", received, allowed, "Give modes, or the receptance.")
+
+    def _problems_of_type(self) -> Iterator[InputError]:
+        above = {"mass": 0, "bogie": 1, "carriage": 1}.get(self.type)
+        masses = len(self.masses or ())
+        if above is not None and masses != above:
+            allowed = {0: "no masses above", 1: "one mass above the contacts"}[above]
+            yield InputError("masses", f"{masses} of a {self.type}", allowed)
+        if self.type == "chain" and not masses:
+            yield InputError("masses", "none of a chain", "at least one mass above", 'As ["2500 kg"].')
+        springs, dampers = len(self.springs or ()), len(self.dampers or ())
+        if springs != masses and not (self.type == "carriage" and springs == 0):
+            yield InputError("springs", f"{springs} under {masses} masses", "one spring under each mass")
+        if dampers not in (0, masses):
+            allowed = "one beside each spring, or none"
+            yield InputError("dampers", f"{dampers} beside {masses} springs", allowed)
+        apart = len(self.places) > 1
+        if apart and self.distance is None:
+            yield InputError("distance", f"nothing for a {self.type}", "the distance of its contacts")
+        for name in ("distance", "inertia"):
+            if not apart and getattr(self, name) is not None:
+                allowed = 'only of a "bogie", or of a "carriage" on several elements'
+                yield InputError(name, f"of a {self.type}", allowed, "Remove the key.")

@@ -1,0 +1,140 @@
+"""Cases of any kind: from files, texts and mappings; and as a commented text."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+from collections.abc import Mapping, Sequence
+from importlib import resources
+from typing import Any
+
+from asperity.arguments import file_path, nearest, shown
+from asperity.case import PRESETS
+from asperity.case.describing import commented
+from asperity.case.scene import Case
+from asperity.case.toml import plain_data, read_definition, read_toml, refuse_vast
+from asperity.errors import CaseError, InputError
+from asperity.laws import family_of, law_keys, spec_of
+from asperity.values import FROM_PYTHON, Origin
+
+_HEAD = """\
+# {title} Run it with: asperity run CASE
+# Every key may be left out, but for kind and a source of texture, or smooth = true.
+# Lines that start with '#' show keys that have no fixed default, or that go with another key.
+
+"""
+
+
+def load_case(path: str | os.PathLike[str]) -> Case:
+    """Read a case from a TOML file; all errors in its keys are reported at once."""
+    remedy = f"Check the path, or write a case with 'asperity new {next(iter(PRESETS))} > case.toml'."
+    return parse_case(read_definition(path, "case", remedy), path)
+
+
+def as_case(case: object) -> Case:
+    """Take a case in any of its forms.
+
+    Parameters
+    ----------
+    case : path, mapping or case object
+        A TOML file; or its keys and values, sections as mappings, quantities in SI or as text with units;
+        relative paths then start at the working folder.
+
+    Returns
+    -------
+    Case
+        Of the class of its kind, in SI.
+
+    Raises
+    ------
+    InputError
+        If it is none of these, or the file cannot be read.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    if isinstance(case, Case):
+        return case
+    if isinstance(case, Mapping):
+        return case_of(plain_data(case))
+    allowed = "the path of a case file, its keys as a mapping, or a case object"
+    return load_case(file_path("case", case, allowed))
+
+
+def parse_case(text: str, source: str | os.PathLike[str] = "case") -> Case:
+    """Read a case from its text.
+
+    Parameters
+    ----------
+    text : str
+        The case in TOML.
+    source : str or path
+        Where the text comes from, for messages; relative paths in the case start at its folder.
+
+    Returns
+    -------
+    Case
+        Of the class of its kind, in SI.
+
+    Raises
+    ------
+    InputError
+        If the text is no TOML.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    return case_of(read_toml(text, "case", source), Origin.file(source))
+
+
+def case_of(data: dict[str, Any], origin: Origin = FROM_PYTHON) -> Case:
+    """Make a case of keys and values, sections as dicts; in SI.
+
+    Raises
+    ------
+    InputError
+        If there are more keys and values than a case can have.
+    CaseError
+        With all errors at once, if the keys are wrong.
+    """
+    refuse_vast(data, origin.source)
+    try:
+        model = case_class(data.get("kind"))
+    except InputError as error:
+        raise CaseError(origin.source, [str(error)]) from None
+    return model.read(data, origin)
+
+
+def case_class(kind: object) -> type[Case]:
+    """Class of the cases of a kind, one of `PRESETS`; an `InputError` says if there is none."""
+    if not isinstance(kind, str) or kind not in PRESETS:
+        raise not_a_kind(kind, tuple(PRESETS))
+    module, _, name = PRESETS[kind].rpartition(".")
+    model: type[Case] = getattr(importlib.import_module(module), name)
+    return model
+
+
+def not_a_kind(kind: object, names: Sequence[str]) -> InputError:
+    """Error about a kind of case that this version does not have; None stands for a missing key."""
+    allowed = ", ".join(f'"{name}"' for name in names)
+    if kind is None:
+        return InputError("kind", "nothing", allowed, f'Write kind = "{names[0]}" as the first line.')
+    return InputError("kind", shown(kind), allowed, nearest(kind, list(names)))
+
+
+def template(kind: str, laws: Sequence[str] = ()) -> str:
+    """Write a commented case of a kind: each key with its value, meaning, what is allowed and default.
+
+    With laws of one's own instead of the usual ones, where any are given.
+    """
+    model = case_class(kind)
+    chosen = [spec_of(law).name for law in laws]
+    own = {"laws": json.dumps(chosen)} if chosen else {}
+    rolled = {family_of(law) for law in chosen or model.keys["laws"].default}
+    shown_keys = {**dict.fromkeys(law_keys().keys() - rolled, ()), **model.SHOWN}
+    return _HEAD.format(title=model.TITLE) + commented(model, {**model.WRITTEN_OUT, **own}, shown_keys)
+
+
+def demo_case() -> Case:
+    """Return the case of ``asperity demo``: synthesised roughness, a few seconds of work."""
+    text = resources.files(__package__).joinpath("demo.toml").read_text(encoding="utf-8")
+    return parse_case(text, "demo.toml")

@@ -1,0 +1,97 @@
+"""Lengths that a case need not give: grid, window and waves follow from the contact of its smooth bodies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+if TYPE_CHECKING:
+    from asperity.case.scene import Case
+
+CELLS = 9.0
+"""Cells in the smaller semi-axis of the smooth contact, at least."""
+CELLS_PER_WAVE = 4.0
+"""Cells that the shortest wave has, so that single cells carry little of the load."""
+SIDE = 3.2
+"""Side of the window in larger semi-axes of the smooth contact: that under three loads, and a tenth more."""
+FINEST = 1e-7
+"""Least spacing that is chosen, m: heights are not known closer than light shows them."""
+PEAKS, MOST_PEAKS = 3.0, 30.0
+"""Peaks in the contact, in rms heights of waves shorter than the window, and at most in approaches."""
+LONGEST = 20.0
+"""Longest wave of a texture that is synthesised, in larger semi-axes: the contact follows it as a whole."""
+_STEPS = (1.0, 1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.3, 8.0)
+
+_FIT_FOR_ALL = {
+    "contact.spacing": min,
+    "contact.window": max,
+    "surface.shortest": min,
+    "surface.longest": max,
+}
+"""Which of several chosen lengths suits all cases."""
+
+
+class NominalPatch(NamedTuple):
+    """Contact of smooth bodies under the working load: within a tenth where radii differ by up to five."""
+
+    semi_axes: tuple[float, float]  # along and across the path, m
+    approach: float  # m
+
+    @classmethod
+    def of(cls, modulus: float, radius_x: float, radius_y: float, load: float) -> Self:
+        """Take the circle of mean relative radius, drawn out; E*, Pa, relative radii, m, and load, N."""
+        radius, stretch = math.sqrt(radius_x * radius_y), (radius_x / radius_y) ** (1.0 / 3.0)
+        a = (0.75 * load * radius / modulus) ** (1.0 / 3.0)
+        return cls((a * stretch, a / stretch), a**2 / radius)
+
+
+def chosen_lengths(case: Case, patch: NominalPatch) -> dict[str, dict[str, float]]:
+    """Grid, window and waves of a self-affine texture, m, by section: as given, else as fits the contact."""
+    small, large = min(patch.semi_axes), max(patch.semi_axes)
+    surface, contact = (
+        {name: getattr(section, name) for name in names if name in section.given_names}
+        for section, names in ((case.surface, ("longest", "shortest")), (case.contact, ("spacing", "window")))
+    )
+    fine = max(rounded(small / CELLS), FINEST)
+    longest = surface.get("longest", math.inf)
+    shortest = surface.get("shortest", 0.25 * longest)
+    spacing = max(rounded(min(fine, shortest / CELLS_PER_WAVE, case.coarsest_spacing)), FINEST)
+    spacing = contact.get("spacing", spacing)
+    roughness, rms = 0.0, case.surface.rms
+    if rms is not None:
+        usual = max(2.0 * spacing, min(CELLS_PER_WAVE * max(spacing, fine), 0.25 * longest))
+        shortest = surface.get("shortest", usual)
+        longest = surface.get("longest", max(rounded(LONGEST * large), 4.0 * shortest))
+        surface = {"shortest": shortest, "longest": longest}
+        roughness = rms * min(SIDE * large / longest, 1.0) ** case.surface.hurst
+    peaks = min(PEAKS * roughness / patch.approach, MOST_PEAKS)
+    window = rounded(max(SIDE * large * math.sqrt(1.0 + peaks), SIDE * large + case.defect_length), up=True)
+    return {"surface": surface, "contact": {"spacing": spacing, "window": window}}
+
+
+def rounded(length: float, *, up: bool = False) -> float:
+    """The next length below, or above, of ten in a decade: 1, 1.25, 1.6, 2, 2.5, 3.2, 4, 5, 6.3, 8, m."""
+    decade = math.floor(math.log10(length))
+    lengths = [float(f"{step}e{decade + more}") for more in (0, 1) for step in _STEPS]
+    if up:
+        return min(each for each in lengths if each >= length * (1 - 1e-9))
+    return max(each for each in lengths if each <= length * (1 + 1e-9))
+
+
+def with_chosen(case: Case, chosen: Mapping[str, Mapping[str, float]]) -> Case:
+    """Return a case with lengths, m, by section, where it gives none; they do not count as given."""
+    sections = {title: getattr(case, title).with_chosen(**lengths) for title, lengths in chosen.items()}
+    return case.with_chosen(**sections)
+
+
+def shared_lengths(cases: Sequence[Case]) -> dict[str, float]:
+    """Lengths that were chosen otherwise for some of these cases than for others, fit for all of them, m."""
+    shared = {}
+    for key, fit in _FIT_FOR_ALL.items():
+        title, _, name = key.partition(".")
+        sections = [getattr(case, title) for case in cases]
+        chosen = {getattr(each, name) for each in sections if name not in each.given_names} - {None}
+        if len(chosen) > 1:
+            shared[key] = fit(chosen)
+    return shared

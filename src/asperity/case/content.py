@@ -1,0 +1,118 @@
+"""What a value of a case says, whatever object it is: to compare cases, to name results, to tell people."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, runtime_checkable
+
+import numpy as np
+
+from asperity.reference.materials import Material
+from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.units import written
+
+if TYPE_CHECKING:
+    from asperity.parameters import Key
+
+
+class Keyed:
+    """What has keys, and sections of further ones, by name: each value is an attribute."""
+
+    keys: ClassVar[dict[str, Key]] = {}
+    inner: ClassVar[dict[str, Any]] = {}
+
+    @property
+    def section_names(self) -> tuple[str, ...]:
+        """Sections that matter."""
+        return tuple(self.inner)
+
+
+@runtime_checkable
+class Numbers(Protocol):
+    """Any other object that stands for a file: a structure by its modes, for instance."""
+
+    def numbers(self) -> dict[str, Any]:
+        """All arrays that it is made of, by name."""
+        ...
+
+
+InMemory = HeightMap | Profile | np.ndarray | Numbers
+"""What Python may hand over where a case file names a file."""
+
+
+def content(value: Any, of_file: Callable[[Path], str] = str) -> Any:
+    """Plain numbers, words, lists and dicts that are the same for values that mean the same.
+
+    `of_file` says what stands for a file: its path, or a digest of what it holds.
+    """
+    if isinstance(value, Keyed):
+        return {name: content(getattr(value, name), of_file) for name in (*value.keys, *value.section_names)}
+    if isinstance(value, Mapping):
+        return {name: content(item, of_file) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [content(item, of_file) for item in value]
+    if isinstance(value, Material):
+        return asdict(value)
+    if isinstance(value, Path):
+        return of_file(value)
+    return digest(value) if isinstance(value, InMemory) else value
+
+
+def digest(value: InMemory) -> str:
+    """SHA-256 over shape, spacing and numbers."""
+    if isinstance(value, Numbers):
+        held = [[name, digest(np.asarray(each))] for name, each in value.numbers().items()]
+        return hashlib.sha256(json.dumps(held).encode()).hexdigest()
+    numbers = np.ascontiguousarray(value if isinstance(value, np.ndarray) else value.heights)
+    spacing = None if isinstance(value, np.ndarray) else value.spacing
+    found = hashlib.sha256(f"{numbers.dtype.str} {numbers.shape} {spacing}".encode())
+    found.update(numbers.data)
+    return found.hexdigest()
+
+
+def file_digest(path: Path) -> str:
+    """SHA-256 over what a file holds."""
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def holds_memory(value: Any) -> bool:
+    """Whether there is something in a value that no case file can hold."""
+    if isinstance(value, Mapping):
+        return any(map(holds_memory, value.values()))
+    return any(map(holds_memory, value)) if isinstance(value, list | tuple) else isinstance(value, InMemory)
+
+
+def name_of(value: Path | InMemory | tuple[InMemory, ...]) -> str:
+    """Name of what was measured, for messages and records."""
+    if isinstance(value, Path):
+        return value.name
+    if isinstance(value, tuple):
+        return ", ".join(dict.fromkeys(map(name_of, value)))
+    if isinstance(value, np.ndarray):
+        return "a table in memory"
+    if isinstance(value, Numbers):
+        return f"a {type(value).__name__} in memory"
+    return value.source or f"a {'height map' if isinstance(value, HeightMap) else 'profile'} in memory"
+
+
+def described_value(value: object) -> str:
+    """Say what stands in memory: what it is, how large, and the start of its digest."""
+    if isinstance(value, list | tuple):
+        return "; ".join(map(described_value, value))
+    if isinstance(value, np.ndarray):
+        what = f"table of {' × '.join(map(str, value.shape))} numbers"
+    elif isinstance(value, HeightMap):
+        dx, dy = (written(each, "m", "um") for each in value.spacing)
+        what = f"height map of {value.shape[0]} × {value.shape[1]} points, {dx} × {dy} apart"
+    elif isinstance(value, Profile):
+        what = f"profile of {value.shape[0]} points, {written(value.spacing, 'm', 'um')} apart"
+    elif isinstance(value, Numbers):
+        what = f"{type(value).__name__} of {sum(map(np.size, value.numbers().values()))} numbers"
+    else:
+        return str(value)
+    return f"{what}, in memory, sha256 {digest(value)[:16]}"

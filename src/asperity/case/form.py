@@ -1,0 +1,240 @@
+"""A section of a case: keys with their defaults, read into a frozen object in SI, with all errors at once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple, NoReturn, Self
+
+from asperity.arguments import nearest, shown
+from asperity.case.content import Keyed, content, described_value, holds_memory
+from asperity.errors import CaseError, InputError
+from asperity.parameters import Key
+from asperity.values import FROM_PYTHON, Origin, Problems, outside
+
+
+class Inner(NamedTuple):
+    """A section inside another one."""
+
+    model: type[Section]
+    meaning: str
+
+
+def section(model: type[Section], meaning: str, **defaults: Any) -> Any:
+    """Declare a section inside another one, and other defaults that its keys have there, as in TOML."""
+    return Inner(model.with_defaults(**defaults) if defaults else model, meaning)
+
+
+class Section(Keyed):
+    """A frozen section of a case: unknown keys are errors, and all errors are reported together.
+
+    Its class attributes made by `key`, `optional` and `section` are its keys, in their order, those of its
+    bases first; a class may declare a key of its base anew.
+    """
+
+    given_names: frozenset[str]
+    """Keys that were given, not left out."""
+
+    def __init_subclass__(
+        cls, parameters: Mapping[str, Key] | None = None, defaults: Mapping[str, Any] | None = None
+    ) -> None:
+        """Collect the keys: with those of `parameters`, and other `defaults`, as in TOML, for some."""
+        declared: dict[str, Any] = {}
+        for base in reversed(cls.__mro__):
+            own = vars(base).get("keys", {}) | vars(base).get("inner", {}) | vars(base)
+            declared |= {name: each for name, each in own.items() if isinstance(each, Key | Inner)}
+        declared |= parameters or {}
+        declared |= {name: replace(declared[name], default=each) for name, each in (defaults or {}).items()}
+        for name in [name for name, each in vars(cls).items() if isinstance(each, Key | Inner)]:
+            delattr(cls, name)
+        cls.keys = {name: each for name, each in declared.items() if isinstance(each, Key)}
+        cls.inner = {name: each for name, each in declared.items() if isinstance(each, Inner)}
+
+    @classmethod
+    def sections(cls) -> Mapping[str, Inner]:
+        """Sections inside it, by name."""
+        return cls.inner
+
+    def __init__(self, **given: Any) -> None:
+        if errors := self._fill(given, FROM_PYTHON, type(self)):
+            raise CaseError(type(self).__name__, list(map(_told, errors)))
+
+    @classmethod
+    def read(cls, given: Mapping[str, Any], origin: Origin) -> Self:
+        """Make it of keys and values, sections as mappings; a `CaseError` has all that is wrong with them."""
+        made = cls.__new__(cls)
+        if errors := made._fill(given, origin, cls):
+            raise CaseError(origin.source, list(map(_told, errors)))
+        return made
+
+    @classmethod
+    def with_defaults(cls, **defaults: Any) -> type[Self]:
+        """The same section with other defaults, as in TOML."""
+        own = {"__doc__": cls.__doc__, "__module__": cls.__module__}
+        return type(cls.__name__, (cls,), own, defaults=defaults)
+
+    def _fill(
+        self, given: Mapping[str, Any], origin: Origin, whole: type[Section], title: str = ""
+    ) -> list[InputError]:
+        """Read all keys as a section of a whole, or the whole itself; return what is wrong with them."""
+        errors, held = list[InputError](), self.__dict__
+        try:
+            given = self.prepared(given)
+        except Problems as problems:
+            return problems.errors
+        held["given_names"] = frozenset(name for name, value in given.items() if value is not None)
+        for name, key in self.keys.items():
+            try:
+                left_out = name not in given or (given[name] is None and key.default is None)
+                held[name] = default_value(key) if left_out else key.kind(given[name], origin)
+            except InputError as error:
+                errors.append(InputError(name, error.received, error.allowed, error.remedy))
+            except Problems as problems:
+                errors += [_below(name, error) for error in problems.errors]
+        for name, inner in self.sections().items():
+            value = given.get(name)
+            value = value.given() if isinstance(value, Section) else value
+            made = held[name] = inner.model.__new__(inner.model)
+            if isinstance(value, Mapping | None):
+                errors += [_below(name, each) for each in made._fill(value or {}, origin, whole, name)]
+            else:
+                errors.append(InputError(name, shown(value), f"a section [{name}]"))
+        unknown = [name for name in given if name not in {*self.keys, *self.sections()}]
+        errors += [_unknown(name, type(self), whole, title) for name in unknown]
+        return errors or self._inconsistent()
+
+    def _inconsistent(self) -> list[InputError]:
+        """What is wrong with keys that are right one by one; what follows from others is filled in before."""
+        implausible = list[InputError]()
+        for name, key in self.keys.items():
+            value = getattr(self, name)
+            for each in value if isinstance(value, tuple) else (value,):
+                implausible += outside(name, each, key.one, key.within)
+        if implausible:
+            return implausible
+        self._choose()
+        return [*self._lonely(), *self.problems()]
+
+    @classmethod
+    def prepared(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Keys and values before they are read: what Python may hand over in other forms is put right."""
+        return given
+
+    def _choose(self) -> None:
+        """Fill in what follows from other keys."""
+
+    def problems(self) -> Iterator[InputError]:
+        """Errors between keys that are right one by one."""
+        yield from ()
+
+    def _lonely(self) -> Iterator[InputError]:
+        for name in sorted(self.given_names & self.keys.keys()):
+            if not self.is_active(name):
+                companion, _, value = self.keys[name].goes_with.partition("=")
+                wanted = f'{companion} = "{value}"' if value else companion
+                yield InputError(name, _shown(getattr(self, name)), f"only together with {wanted}")
+
+    def is_active(self, name: str) -> bool:
+        """Whether the key that `name` goes with is there."""
+        companion, _, value = self.keys[name].goes_with.partition("=")
+        if value:
+            return bool(getattr(self, companion) == value)
+        return not companion or any(getattr(self, each) is not None for each in companion.split(" or "))
+
+    def default_of(self, name: str) -> Any:
+        """Value of a key that is left out; without a fixed default, what was chosen for it."""
+        fixed = default_value(self.keys[name])
+        return getattr(self, name) if fixed is None and name not in self.given_names else fixed
+
+    def given(self) -> dict[str, Any]:
+        """Keys whose values differ from their defaults, sections as dicts."""
+        different = {
+            name: getattr(self, name)
+            for name in self.keys
+            if getattr(self, name) is not None
+            and content(getattr(self, name)) != content(self.default_of(name))
+        }
+        inner = {name: getattr(self, name).given() for name in self.section_names}
+        return different | {name: keys for name, keys in inner.items() if keys}
+
+    def with_chosen(self, **chosen: Any) -> Self:
+        """The same section with values, in SI, for keys that are left out, or other sections inside it.
+
+        What is chosen does not count as given.
+        """
+        made = type(self).__new__(type(self))
+        held = self.given_names - self.sections().keys()
+        made.__dict__.update(self.__dict__)
+        made.__dict__.update({name: each for name, each in chosen.items() if name not in held})
+        return made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (type(self), self._state())
+
+    def _state(self) -> dict[str, Any]:
+        """All that it holds, sections as dicts: their classes may have no name to be found by."""
+        return {
+            name: each._state() if isinstance(each, Section) else each for name, each in self.__dict__.items()
+        }
+
+    def __repr__(self) -> str:
+        from asperity.case.describing import in_toml
+
+        keys = in_toml(self, in_memory=lambda _, value: f"<{described_value(value)}>")
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in keys.items())})"
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        remedy = f"Make another case: case.with_({name}=…), or with the section before a dot."
+        raise AttributeError(f"{name} of {type(self).__name__} does not change. {remedy}")
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and content(self) == content(other)
+
+    def __hash__(self) -> int:
+        return hash(json.dumps(content(self)))
+
+
+def _restored(model: type[Section], state: Mapping[str, Any]) -> Section:
+    """Make a section of its state, as it was."""
+    made = model.__new__(model)
+    for name, each in state.items():
+        inner = model.sections().get(name)
+        made.__dict__[name] = each if inner is None else _restored(inner.model, each)
+    return made
+
+
+@cache
+def default_value(key: Key) -> Any:
+    """Default of a key, as a section has it."""
+    return None if key.default is None else key.kind(key.default)
+
+
+def _unknown(name: str, here: type[Section], whole: type[Section], title: str) -> InputError:
+    """Error about an unknown key: the nearest one here, or the section in which it would be known."""
+    place = f"keys of [{title}]" if title else "keys at the top of a case"
+    homes = [f"[{other}]" for other, inner in whole.sections().items() if name in inner.model.keys]
+    if title and name in {*whole.keys, *whole.sections()}:
+        homes.insert(0, "the top of the case, above the first section")
+    names = [*here.keys, *here.sections()]
+    remedy = f"Move it to {homes[0]}." if homes else nearest(name, names)
+    shown = getattr(whole, "SHOWN", {}).get(title, names)
+    return InputError(str(name), "an unknown key", f"{place}: {', '.join(shown)}", remedy)
+
+
+def _below(name: str, error: InputError) -> InputError:
+    """An error told of something inside what has a name."""
+    dot = "" if error.what.startswith("[") or not error.what else "."
+    return InputError(f"{name}{dot}{error.what}", error.received, error.allowed, error.remedy)
+
+
+def _told(error: InputError) -> str:
+    return str(error if error.what else _below("the case", error))
+
+
+def _shown(value: object) -> str:
+    if holds_memory(value):
+        return described_value(value)
+    return shown(str(value) if isinstance(value, Path) else value)

@@ -1,0 +1,459 @@
+"""What is rolled over: beams on supports, tracks, and structures known by their modes or receptances."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.case.body import INERTIA, MASS
+from asperity.case.content import Numbers, name_of
+from asperity.case.form import Section
+from asperity.case.surface import INDEX, LENGTH, POSITION
+from asperity.case.tables import RECEPTANCES, read_table
+from asperity.errors import InputError, PhysicsWarning
+from asperity.parameters import key, keys_of, optional
+from asperity.reference.materials import Material
+from asperity.reference.tracks import TRACKS
+from asperity.structures.track import Track
+from asperity.surfaces.heightmap import Profile
+from asperity.values import Choice, File, LengthUnit, ListOf, MaterialOrName, Number, Quantity
+
+if TYPE_CHECKING:
+    from asperity.structures.beam import Support
+    from asperity.structures.modal import Modal, ModalStructure
+
+MODES_BEYOND = 4.0
+"""Modes of a beam are kept up to this multiple of the highest frequency, where the case says nothing."""
+SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
+"""Of the length of a structure, where its acceleration is recorded if the case says nothing."""
+FREQUENCY = Quantity("Hz", above=0)
+
+
+class RolledOver(Section):
+    """What is rolled over, of whatever kind: a new one is a section with these."""
+
+    material: Material
+
+    @property
+    def radius_across(self) -> float:
+        """Radius across the path, m: positive where it bulges, infinite where it is flat."""
+        return math.inf
+
+    @property
+    def profile(self) -> Path | Profile | None:
+        """Its measured section across the path."""
+        return None
+
+    @property
+    def sides(self) -> dict[str, float]:
+        """Sides of its section that a contact has to be smaller than, m, by their keys."""
+        return {}
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """Where it begins and ends, m; None of what is endless."""
+        return None
+
+    @property
+    def sensor_positions(self) -> tuple[float, ...]:
+        """Where its acceleration is recorded, m."""
+        return ()
+
+    def point_positions(self, middle: float) -> tuple[float, ...]:
+        """Where the rail of a track is looked at, m, of a run whose middle is there, m."""
+        return ()
+
+    def model(self, highest_frequency: float) -> Modal | Track | None:
+        """Build it, as far as it moves below a frequency, Hz; None for a rigid plane."""
+        return None
+
+    def problems_of_run(self, speed: float, first: float, last: float) -> Iterator[InputError]:
+        """What does not fit to a speed, m/s, and to places passed in the record, from and to, m."""
+        yield from ()
+
+
+class BeamKeys(RolledOver):
+    """A finite Euler–Bernoulli beam, held at its ends, or on further supports along it."""
+
+    length: float = key(LENGTH, "1 m", "length, along the path", "1 mm to 1 km: beams lie between")
+    width: float = key(LENGTH, "50 mm", "width of the cross-section", "1 um to 10 m: beams lie between")
+    height: float = key(LENGTH, "10 mm", "height of the cross-section", "1 um to 10 m: beams lie between")
+    material: Material = key(MaterialOrName(), "steel", "material")
+    support: str = key(Choice(("simply-supported", "free", "clamped")), "simply-supported", "both ends")
+    loss_factor: float = key(Number(at_least=0, at_most=0.5), 0.005, "loss factor of every bending mode")
+    suspension_frequency: float = key(
+        FREQUENCY,
+        "5 Hz",
+        "natural frequency of the rigid beam on its soft suspension",
+        "1 mHz to 1 kHz: a suspension is softer than the beam",
+        goes_with="support=free",
+    )
+    supports: tuple[float, ...] | None = optional(
+        ListOf(POSITION),
+        ["0.4 m", "0.8 m"],
+        "positions of supports beside those of the ends",
+        "one span",
+        "0 m to 1 km: beams lie between",
+    )
+    support_stiffness: float = key(
+        Quantity("N/m", above=0, infinite=True),
+        "inf",
+        "stiffness of each of these supports",
+        '1 mN/m to 1e15 N/m: stiffer ones are rigid: write "inf"',
+        goes_with="supports",
+    )
+    support_loss_factor: float = key(
+        Number(at_least=0, at_most=1), 0.0, "loss factor of these supports", goes_with="supports"
+    )
+    modes_up_to: float | None = optional(
+        FREQUENCY,
+        "20 kHz",
+        "natural frequency up to which bending modes are kept",
+        "four times the highest frequency of the spectra",
+        "0.1 Hz to 100 MHz: rolling is slower than ultrasound",
+    )
+    sensors: tuple[float, ...] | None = optional(
+        ListOf(POSITION),
+        ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
+        "positions of the accelerometers from the beam's start",
+        "at 20, 35, 50, 65 and 80 % of the length",
+        "0 m to 1 km: beams are shorter",
+    )
+
+    @property
+    def sides(self) -> dict[str, float]:
+        """Sides of its section that a contact has to be smaller than, m, by their keys."""
+        return {"width": self.width, "height": self.height}
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Where it begins and ends, m."""
+        return 0.0, self.length
+
+    @property
+    def sensor_positions(self) -> tuple[float, ...]:
+        """Positions of the accelerometers, m, with the default filled in."""
+        return self.sensors or tuple(share * self.length for share in SENSOR_SHARES)
+
+    def highest_mode(self, highest_frequency: float) -> float:
+        """Frequency up to which modes are kept, Hz, for spectra up to a highest one, Hz."""
+        return self.modes_up_to or MODES_BEYOND * highest_frequency
+
+    def model(self, highest_frequency: float) -> Modal:
+        """Build the beam: of one span, or on further supports."""
+        from asperity.structures.beam import Beam, SupportedBeam
+
+        section = (self.length, self.width, self.height, self.material)
+        highest = self.highest_mode(highest_frequency)
+        if self.supports is not None:
+            return SupportedBeam.rectangular(
+                *section, self.held, loss_factor=self.loss_factor, highest_frequency=highest
+            )
+        return Beam.rectangular(
+            *section,
+            support=self.support,
+            loss_factor=self.loss_factor,
+            highest_frequency=highest,
+            suspension_frequency=self.suspension_frequency,
+        )
+
+    @property
+    def held(self) -> list[Support]:
+        """All supports, those of the ends among them."""
+        from asperity.structures.beam import Support
+
+        ends = {"simply-supported": 0.0, "clamped": math.inf}.get(self.support)
+        at_ends = [] if ends is None else [Support(x, rotational_stiffness=ends) for x in (0.0, self.length)]
+        stiffness, loss = self.support_stiffness, self.support_loss_factor
+        return [*at_ends, *(Support(x, stiffness, loss_factor=loss) for x in self.supports or ())]
+
+    def problems(self) -> Iterator[InputError]:
+        """Sensors, and supports on the beam, in places of their own."""
+        if self.sensors == ():
+            remedy = "Remove the key for the default."
+            yield InputError("sensors", "an empty list", "at least one position", remedy)
+        for position in self.sensors or ():
+            if position > self.length:
+                allowed = f"positions on the beam, 0 to {self.length:g} m"
+                yield InputError("sensors", f"{position:g} m", allowed)
+        if self.supports is None:
+            return
+        if not self.supports:
+            yield InputError("supports", "an empty list", "at least one position", "Remove the key.")
+        ends = () if self.support == "free" else (0.0, self.length)
+        places = [*ends, *self.supports]
+        if len(set(places)) < len(places) or max(places, default=0.0) > self.length:
+            received = ", ".join(f"{x:g} m" for x in self.supports)
+            allowed = f"different positions on the beam of {self.length:g} m, none where an end is held"
+            yield InputError("supports", received, allowed)
+        elif len(places) < 2:
+            remedy = "A beam on one support rocks: add another."
+            yield InputError("supports", f"{len(places)} of a free beam", "two supports or more", remedy)
+
+
+class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named set")):
+    """A track: a named, cited set, each single key of which overrides it; and its rail head."""
+
+    name: str = key(Choice(tuple(TRACKS)), "x2000", "named set of parameters")
+    rail_head_radius: float = key(
+        LENGTH, "0.3 m", "radius of the rail head across the rail", "1 mm to 1 km: rail heads lie between"
+    )
+    rail_profile: Path | Profile | None = optional(
+        File(held=(Profile,)),
+        "rail.csv",
+        "measured shape of the rail head across the rail, instead of rail_head_radius",
+    )
+    material: Material = key(MaterialOrName(), "steel", "material of the rail")
+    points: tuple[float, ...] | None = optional(
+        ListOf(POSITION),
+        ["9 m", "9.3 m"],
+        "positions at which the motion of the rail is recorded while it is passed, from a sleeper at 0 m",
+        "over a sleeper and at mid-span in the middle of the run",
+        "0 m to 100 km: tracks are rolled over for less",
+    )
+
+    @property
+    def radius_across(self) -> float:
+        """Radius of the rail head, m."""
+        return self.rail_head_radius
+
+    @property
+    def profile(self) -> Path | Profile | None:
+        """Its measured section across the path."""
+        return self.rail_profile
+
+    @property
+    def overrides(self) -> dict[str, float]:
+        """What the case says beside the name of its set, by the keywords of `Track`, in SI."""
+        told = {name: getattr(self, name) for name in keys_of(Track, "")}
+        return {name: value for name, value in told.items() if value is not None}
+
+    def model(self, highest_frequency: float = math.inf) -> Track:
+        """Build the track: the named set with the keys of the case in it."""
+        return Track.named(self.name, **self.overrides)
+
+    def default_of(self, name: str) -> float | str | None:
+        """Value of a key that is left out: that of the named set."""
+        if name in keys_of(Track, "") and name not in self.given_names:
+            value: float | None = getattr(Track.named(self.name, **self.overrides), name)
+            return value
+        return super().default_of(name)
+
+    def is_active(self, name: str) -> bool:
+        """Whether a key matters: one that neither the case nor the named set gives does not."""
+        given = getattr(self, name) is not None or name not in keys_of(Track, "")
+        return super().is_active(name) and (given or self.default_of(name) is not None)
+
+    def point_positions(self, middle: float) -> tuple[float, ...]:
+        """The points, m; by default over the sleeper nearest to the middle, m, and at mid-span after it."""
+        if self.points is not None:
+            return self.points
+        bay = self.model().sleeper_spacing
+        sleeper = bay * round(middle / bay)
+        return sleeper, sleeper + bay / 2
+
+    def problems(self) -> Iterator[InputError]:
+        """Each damping either viscous or by a loss factor, one rail head, at least one point."""
+        told = self.overrides
+        for part in ("pad", "ballast"):
+            viscous, loss = f"{part}_damping", f"{part}_loss_factor"
+            if viscous in told and loss in told:
+                received = f"{told[viscous]:g} N s/m and {loss} = {told[loss]:g}"
+                remedy = "Remove one: damping is either viscous or by a loss factor."
+                yield InputError(viscous, received, "one of them", remedy)
+        if {"rail_head_radius", "rail_profile"} <= self.given_names:
+            yield InputError("", "both rail_head_radius and rail_profile", "one of them", "Remove one.")
+        if self.points == ():
+            remedy = "Remove the key for the default."
+            yield InputError("points", "an empty list", "at least one position", remedy)
+
+    def problems_of_run(self, speed: float, first: float, last: float) -> Iterator[InputError]:
+        """A track that exists and is damped, slower passed than its waves run; points that are passed."""
+        try:
+            track = self.model()
+        except InputError as error:
+            yield InputError("track", error.received, error.allowed, error.remedy)
+            return
+        if not track.is_damped:
+            remedy = "Give the rail a loss factor, or damping to pads or ballast."
+            yield InputError("track", "no damping at all", "a track whose vibration dies away", remedy)
+        try:
+            track.refuse_speed(speed)
+        except InputError as error:
+            yield InputError("speed", f"{speed:g} m/s", error.allowed, error.remedy)
+        for point in self.points or ():
+            if not first <= point <= last:
+                allowed = f"positions that are passed, {first:g} m to {last:g} m"
+                yield InputError("track.points", f"{point:g} m", allowed)
+
+
+_UFF = "a universal file"
+_AXIS = Choice(("x", "y", "z"))
+
+
+class StructureKeys(RolledOver):
+    """Any structure, by its modes along the path; of a plane, its material alone."""
+
+    file: Path | ModalStructure | None = optional(
+        File(held=(Numbers,)),
+        "guide.csv",
+        f"its modes: a text table, netCDF, or {_UFF} (.uff, .unv); or, from Python, such modes",
+    )
+    along: str | None = optional(
+        _AXIS, "x", f"direction of the path in {_UFF}", "the file is none", goes_with="file"
+    )
+    force: str | None = optional(
+        _AXIS, "z", f"direction of the contact force in {_UFF}", "the file is none", goes_with="file"
+    )
+    length_unit: str | None = optional(
+        LengthUnit(), "mm", f"unit of length of {_UFF} that states none", "from the file", goes_with="file"
+    )
+    force_unit: str | None = optional(
+        Choice(("N", "kN", "mN", "lbf")),
+        "N",
+        f"unit of force of {_UFF} that states none",
+        "from the file",
+        goes_with="file",
+    )
+    damping_ratio: float | None = optional(
+        Number(at_least=0, at_most=0.99),
+        0.01,
+        f"damping ratio of all modes of {_UFF} that states none",
+        "from the file",
+        goes_with="file",
+    )
+    nodes: tuple[int, ...] | None = optional(
+        ListOf(INDEX),
+        [1, 2, 3],
+        f"numbers of the nodes along the path in {_UFF}",
+        "all that have mode shapes",
+        goes_with="file",
+    )
+    receptances: Path | NDArray[np.float64] | None = optional(
+        File(columns=(5,)),
+        "receptances.csv",
+        "its measured receptances instead, which are fitted by modes: frequency (Hz), position of the "
+        "response (m), position of the force (m), real and imaginary part (m/N)",
+    )
+    mass: float | None = optional(
+        MASS,
+        "20 kg",
+        "mass of the structure if nothing holds it and its rigid-body modes are not in the file",
+        "something holds it, or the file has all modes",
+        "1 mg to 100000 t: structures that are rolled over lie between",
+        goes_with="file or receptances",
+    )
+    inertia: float | None = optional(
+        INERTIA,
+        "1.5 kg m^2",
+        "its moment of inertia in pitch",
+        "it does not pitch",
+        "1e-12 kg m^2 to 1e12 kg m^2: structures that are rolled over lie between",
+        goes_with="mass",
+    )
+    sensors: tuple[float, ...] | None = optional(
+        ListOf(POSITION),
+        ["0.2 m", "0.5 m"],
+        "positions whose acceleration is recorded",
+        "at 20, 35, 50, 65 and 80 % of the length",
+        "0 m to 10 km: structures are shorter",
+        goes_with="file or receptances",
+    )
+
+    material: Material = key(MaterialOrName(), "steel", "material of its surface")
+
+    @property
+    def is_known(self) -> bool:
+        """Whether there is anything that it is known by."""
+        return self.file is not None or self.receptances is not None
+
+    @property
+    def modes(self) -> ModalStructure:
+        """The structure by its modes, if it is known."""
+        return self._made[0]
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """Where it begins and ends, m; None of a plane."""
+        return self.modes.extent if self.is_known else None
+
+    def model(self, highest_frequency: float) -> ModalStructure | None:
+        """The structure, with the warnings met when it was read or fitted; None for a plane."""
+        if not self.is_known:
+            return None
+        modes, doubts, measured_at = self._made
+        for doubt in doubts:
+            warnings.warn(doubt, stacklevel=2)
+        if measured_at is not None:
+            from asperity.structures.modal_fit import warn_of_short_band
+
+            warn_of_short_band("structure", measured_at, highest_frequency)
+        return modes
+
+    @cached_property
+    def _made(self) -> tuple[ModalStructure, list[Warning], NDArray[np.float64] | None]:
+        """Modes, what was warned of, and the frequencies of receptances, Hz, rising; None of modes."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", PhysicsWarning)
+            modes, lines = self._fitted() if self.file is None else (self._read(), None)
+        return modes, [each.message for each in caught if isinstance(each.message, Warning)], lines
+
+    def _fitted(self) -> tuple[ModalStructure, NDArray[np.float64]]:
+        """Modes that meet the receptances, and the frequencies of these."""
+        from asperity.structures.receptance_fit import fit_structure, receptances_in
+
+        assert self.receptances is not None
+        rows = read_table(self.receptances, RECEPTANCES)
+        at, driven, frequency, given = receptances_in(rows, name_of(self.receptances))
+        fitted = fit_structure(at, driven, frequency, given, mass=self.mass, inertia=self.inertia)
+        return fitted, frequency
+
+    def _read(self) -> ModalStructure:
+        """Modes of the file, with those of the rigid body."""
+        assert self.file is not None
+        modes = self.file
+        if isinstance(modes, Path):
+            from asperity.structures.modal_files import read_modal_structure
+
+            modes = read_modal_structure(
+                modes,
+                along=self.along,
+                force=self.force,
+                length_unit=self.length_unit,
+                force_unit=self.force_unit,
+                damping=self.damping_ratio,
+                nodes=self.nodes,
+            )
+        return modes if self.mass is None else modes.with_rigid_body(self.mass, inertia=self.inertia)
+
+    @property
+    def sensor_positions(self) -> tuple[float, ...]:
+        """Positions whose acceleration is recorded, m."""
+        if self.sensors is not None or not self.is_known:
+            return self.sensors or ()
+        first, last = self.modes.extent
+        return tuple(first + share * (last - first) for share in SENSOR_SHARES)
+
+    def problems(self) -> Iterator[InputError]:
+        """One source, which can be read, and sensors on the structure."""
+        if self.file is not None and self.receptances is not None:
+            yield InputError("", "both file and receptances", "one of them", "Remove one.")
+        if not self.is_known:
+            return
+        try:
+            first, last = self.modes.extent
+        except InputError as error:
+            name = "receptances" if self.file is None else "file"
+            yield InputError(name, f"{error.received} ({error.what})", error.allowed, error.remedy)
+            return
+        for position in self.sensors or ():
+            if not first <= position <= last:
+                allowed = f"positions on the structure, {first:g} to {last:g} m"
+                yield InputError("sensors", f"{position:g} m", allowed)

@@ -1,0 +1,549 @@
+"""The case of any scene: what rolls over what, by which laws, for how long; and what must fit together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from asperity.case.body import Rolling
+from asperity.case.chosen import NominalPatch, chosen_lengths
+from asperity.case.content import described_value
+from asperity.case.describing import in_toml, parameters, refused
+from asperity.case.form import Inner, Section, section
+from asperity.case.over import RolledOver, TrackKeys
+from asperity.case.sections import DURATION, DURATION_OR_ZERO, ContactKeys, NoiseKeys, NumericsKeys
+from asperity.case.surface import INDEX, POSITION, Surface
+from asperity.case.toml import toml_text
+from asperity.contact.hertz import Hertz, relative_radius
+from asperity.errors import InputError
+from asperity.laws import Need, family_of, law_keys, names, spec_of
+from asperity.parameters import Key, key, optional
+from asperity.reference.materials import contact_modulus
+from asperity.units import written
+from asperity.values import Choice, ListOf, Quantity, Text
+
+if TYPE_CHECKING:
+    from asperity.radiation.pass_by import Passage
+
+MOST_STEPS = 10**8
+SETTLED = 0.05
+"""Run-in after which the force of a record varies as in a long run, within some per cent, s."""
+LONGEST_SETTLING = 0.2
+"""Longest run-in that is chosen, s: after it no one-third octave from 40 Hz on holds the start from rest."""
+SETTLING_SHARE = 0.25
+"""Share of a structure that a chosen run-in takes at most, where the record lasts until its end."""
+RECORDED = 0.5
+"""Record on what is endless, of a case that says nothing of it, s."""
+STEPS_PER_PERIOD = 20  # of the highest frequency
+STEPS_PER_RESONANCE = 12
+"""Time steps in a period of the contact resonance, at least, where the case says nothing."""
+SAMPLING = 2.5  # points per period of the highest frequency, at least
+
+OVER_DEFECTS = ("direct", "linear-filtered", "linear")
+"""Laws that are rolled where a case names none, and where it rolls over a flat or a joint."""
+SMOOTH = "hertz-filtered"
+"""Main law of those where there is no sample of the surface."""
+OF_A_TRACK = ("surface.accept_levels", "numerics.kernel", "numerics.poles")
+"""Keys that mean nothing where no track is rolled over, beside those of the noise."""
+LAW = Choice(names)
+
+
+class Case(Section):
+    """Bodies roll over a rough surface; a preset names its sections and has defaults of its own.
+
+    Every length, time, force and so on is in SI here. A case does not change; `with_` makes another one.
+    Cases are equal if all their keys are.
+    """
+
+    TITLE: ClassVar[str]
+    """One sentence: what rolls over what."""
+    ROLLING: ClassVar[str]
+    """Section of what rolls; of a contact of several, its name in messages."""
+    OVER: ClassVar[str] = ""
+    """Section of what is rolled over; empty where the key `over` names it."""
+    DISPLACEMENTS: ClassVar[tuple[str, str]] = ("over_displacement", "rolling_displacement")
+    """What displacements at a contact are called in a result: of what is rolled over, and of what rolls."""
+    WRITTEN_OUT: ClassVar[Mapping[str, str]] = {}
+    """Values, in TOML, of keys that have no default and shall stand in a commented case."""
+    SHOWN: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    """Keys of some sections that a commented case shows; the others are for scenes of other kinds."""
+
+    kind: str = key(Text(), "", "what rolls")
+    speed: float = key(
+        Quantity("m/s", above=0),
+        "1 m/s",
+        "rolling speed",
+        "0.1 mm/s to 1 km/s: slower rolling is static, and nothing rolls faster",
+    )
+    laws: tuple[str, ...] = key(
+        ListOf(LAW),
+        ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
+        "laws of the contact force; the first is the main one, direct where a flat or a joint is rolled over",
+    )
+    seed: int = key(INDEX, 1, "seed of everything random")
+    start: float | None = optional(
+        POSITION,
+        "0.2 m",
+        "where the record starts",
+        "after the run-in, which begins where what is rolled over does",
+        "0 m to 100 km: paths are shorter",
+    )
+    duration: float | None = optional(
+        DURATION,
+        "1 s",
+        "time that is recorded",
+        "until the foremost contact is at the end of what is rolled over, or of the line; on what is endless "
+        "0.5 s",
+        "1 us to 1 h: records lie between",
+    )
+    settling: float | None = optional(
+        DURATION_OR_ZERO,
+        "0.2 s",
+        "time that is rolled before the record starts, so that the start from rest is forgotten",
+        "as long as the record, 50 ms to 0.2 s, as far as there is room before it; on what is endless 50 ms",
+        "1 us to 1 h: records lie between",
+    )
+    surface: Surface = section(Surface, "what is rolled over: a measured map, or synthesised roughness")
+
+    if TYPE_CHECKING:  # each preset declares these, the last two where a track may be rolled over
+        contact: ContactKeys
+        numerics: NumericsKeys
+        track: TrackKeys
+        noise: NoiseKeys
+
+    @classmethod
+    def sections(cls) -> Mapping[str, Inner]:
+        """Sections inside it, by name, those of laws that have keys of their own first."""
+        return {**_sections_of_laws(), **cls.inner}
+
+    @property
+    def section_names(self) -> tuple[str, ...]:
+        """Sections that matter: those of laws that are rolled among them."""
+        families = {family_of(law) for law in self.laws}
+        return (*self.inner, *(name for name in self.sections() if name in families))
+
+    def with_(self, **changes: Any) -> Self:
+        """Return the same case with other values for some keys.
+
+        Parameters
+        ----------
+        **changes
+            Keys with their new values, in SI or as text with a unit; None takes a key out. A key of a section
+            is written ``**{"contact.spacing": 4e-6}``, or in a mapping of keys of the section, of which the
+            others stay: ``contact={"spacing": "4 um"}``.
+
+        Returns
+        -------
+        Case
+            A new case of the same kind.
+
+        Raises
+        ------
+        CaseError
+            With all errors at once, if the keys are wrong or do not fit together.
+        """
+        data = self.given()
+        for name, value in changes.items():
+            title, _, key_in_section = name.rpartition(".")
+            _change(data, {title: {key_in_section: value}} if title else {name: value})
+        return type(self)(**data)
+
+    def to_toml(self) -> str:
+        """Write the case as a case file: its kind, and all keys that are not at their defaults.
+
+        Returns
+        -------
+        str
+            TOML that reads as the same case, to the last bit.
+
+        Raises
+        ------
+        InputError
+            If a surface or a table stands in memory, which no case file can hold.
+        """
+        return toml_text({"kind": self.kind, **in_toml(self, in_memory=refused)})
+
+    @property
+    def text(self) -> str:
+        """The case in TOML; what stands in memory is described, with its digest."""
+        keys = in_toml(self, in_memory=lambda _, value: described_value(value))
+        return toml_text({"kind": self.kind, **keys})
+
+    def parameters(self) -> list[dict[str, Any]]:
+        """List the keys that matter in this case, for people.
+
+        Returns
+        -------
+        list of dict
+            For each key: ``key`` (dotted), ``value`` and ``default`` (text with units), ``is_default`` and
+            ``note`` (what the key is).
+        """
+        return parameters(self, self.SHOWN)
+
+    # --- what rolls over what
+
+    @property
+    def rolling(self) -> Rolling:
+        """What rolls."""
+        rolling: Rolling = getattr(self, self.ROLLING)
+        return rolling
+
+    @property
+    def rolled_over(self) -> RolledOver:
+        """What is rolled over."""
+        over: RolledOver = getattr(self, self.OVER)
+        return over
+
+    @property
+    def over_name(self) -> str:
+        """What is rolled over, in a word."""
+        return self.OVER
+
+    @property
+    def title(self) -> str:
+        """Say what rolls over what in this case."""
+        described = self.rolling.described
+        return f"{described[0].upper()}{described[1:]} over a {self.over_name}"
+
+    def law_parameters(self, law: str) -> dict[str, Any]:
+        """Values of the keys that a law has of its own, by name."""
+        return {name: getattr(getattr(self, family_of(law)), name) for name in spec_of(law).parameters}
+
+    @cached_property
+    def smooth_contact(self) -> Hertz:
+        """Contact of the smooth bodies, by their relative curvatures along and across the path."""
+        body, over = self.rolling, self.rolled_over
+        across = over.radius_across if body.groove_radius is None else -body.groove_radius
+        named = "radius and {0}.raceway_radius (m)", "transverse_radius and {0}.groove_radius (m)"
+        pairs = zip(named, ((body.radius, body.raceway_along), (body.across, across)), strict=True)
+        radii = [
+            relative_radius(*each, what=f"{self.ROLLING}.{what}".format(self.ROLLING)) for what, each in pairs
+        ]
+        return Hertz(contact_modulus(body.material, over.material), *radii)
+
+    @property
+    def nominal_patch(self) -> NominalPatch:
+        """Contact of its smooth bodies, from which grid and window are chosen."""
+        hertz = self.smooth_contact
+        return NominalPatch.of(hertz.modulus, hertz.radius_x, hertz.radius_y, self.rolling.contact_load)
+
+    @property
+    def upper_stiffness(self) -> float:
+        """Stiffness, N/m, of the contact above each element of a carriage, which is shaped as that below."""
+        if self.rolling.type != "carriage":
+            return 0.0
+        if self.rolling.springs:
+            return self.rolling.springs[0]
+        hertz = self.smooth_contact
+        return hertz.tangent_stiffness(hertz.approach(self.rolling.upper_load))
+
+    @property
+    def contact_resonance(self) -> float:
+        """Natural frequency, Hz, of the mass on a contact between smooth bodies at rest."""
+        hertz = self.smooth_contact
+        below = hertz.tangent_stiffness(hertz.approach(self.rolling.contact_load))
+        return math.sqrt((below + self.upper_stiffness) / self.rolling.contact_mass) / (2.0 * math.pi)
+
+    @property
+    def has_defect(self) -> bool:
+        """Whether a flat or a joint is rolled over."""
+        return self.rolling.flat is not None or self.surface.joint_depth is not None
+
+    @property
+    def defect_length(self) -> float:
+        """Length in m of a defect that the window is to hold beside the contact; zero without one."""
+        return 0.0 if self.rolling.flat is None else self.rolling.flat[1]
+
+    @property
+    def contacts_behind(self) -> tuple[float, ...]:
+        """All contacts behind the foremost, m."""
+        ahead = sorted(self.rolling.offsets, reverse=True)
+        return tuple(ahead[0] - place for place in ahead)
+
+    @property
+    def axles(self) -> int:
+        """Number of axles whose sound power is added."""
+        return self.noise.axles or len(self.contacts_behind)
+
+    @property
+    def passage(self) -> Passage:
+        """The axles that pass a receiver beside the track."""
+        return self.noise.passage(self.contacts_behind, self.speed)
+
+    # --- time and place
+
+    @property
+    def room(self) -> tuple[float, float] | None:
+        """Positions of the run, m, at which the rearmost contact begins and the foremost is at the end."""
+        extent = self.rolled_over.extent
+        return None if extent is None else (extent[0], extent[1] - max(self.rolling.offsets))
+
+    @property
+    def coarsest_spacing(self) -> float:
+        """Spacing of the contact grid in m on which the highest frequency is still resolved."""
+        return self.speed / (SAMPLING * self.numerics.highest_frequency)
+
+    @property
+    def time_step(self) -> float:
+        """Time step in s: as given, or near 1/(20 f_max), and a twelfth of the contact resonance's period.
+
+        The latter governs light rolling elements alone. The distance rolled in one step is then a whole
+        multiple, or a whole fraction, of ``contact.spacing``.
+        """
+        if self.numerics.time_step is not None:
+            return self.numerics.time_step
+        per_cell = self.contact.spacing / self.speed
+        usual = time_step_on_grid(1 / (STEPS_PER_PERIOD * self.numerics.highest_frequency), per_cell)
+        finest = 1.0 / (STEPS_PER_RESONANCE * self.contact_resonance)
+        return usual if usual <= finest else time_step_on_grid(finest, per_cell)
+
+    @property
+    def record_start(self) -> float:
+        """Position in m where the record starts: as given, or after the run-in."""
+        beginning = 0.0 if self.room is None else self.room[0]
+        return self.start if self.start is not None else beginning + self.speed * self.settled_time
+
+    @property
+    def settled_time(self) -> float:
+        """Time in s that is rolled before the record starts.
+
+        As given; else as long as the record, from `SETTLED` to `LONGEST_SETTLING`, as far as there is room,
+        and `SETTLED` on what is endless.
+        """
+        if self.settling is not None:
+            return self.settling
+        if self.room is None:
+            return SETTLED
+        begin, end = self.room
+        whole = max(end - begin, 0.0) / self.speed
+        before = whole if self.start is None else max(self.start - begin, 0.0) / self.speed
+        if self.duration is None:
+            return min(LONGEST_SETTLING, before, SETTLING_SHARE * whole)
+        wanted = min(max(self.duration, SETTLED), LONGEST_SETTLING)
+        return max(min(wanted, before, whole - self.duration), 0.0)
+
+    @property
+    def rolled_time(self) -> float:
+        """Time in s that is recorded: as given, or until the foremost contact is at the end."""
+        if self.duration is not None:
+            return self.duration
+        return RECORDED if self.room is None else (self.room[1] - self.record_start) / self.speed
+
+    @property
+    def rolled_range(self) -> tuple[float, float]:
+        """First and last position of the contact in m, from the start of the run-in."""
+        first = self.record_start - self.speed * self.settled_time
+        return first, self.record_start + self.speed * self.rolled_time
+
+    @property
+    def point_positions(self) -> tuple[float, ...]:
+        """Positions in m at which the rail's motion is recorded."""
+        return self.rolled_over.point_positions(self.record_start + self.speed * self.rolled_time / 2)
+
+    # --- what is chosen, and what must fit together
+
+    def default_of(self, name: str) -> Any:
+        """Value of a key that is left out: laws as the surface and its defects ask for them."""
+        return self._usual_laws() if name == "laws" else super().default_of(name)
+
+    def _choose(self) -> None:
+        with suppress(InputError):  # bodies that do not touch in a point: `problems` say so
+            for title, lengths in chosen_lengths(self, self.nominal_patch).items():
+                self.__dict__[title] = getattr(self, title).with_chosen(**lengths)
+        if "laws" not in self.given_names:
+            self.__dict__["laws"] = self._usual_laws()
+
+    def _usual_laws(self) -> tuple[str, ...]:
+        """Laws of a case that names none."""
+        if self.has_defect:
+            return OVER_DEFECTS
+        usual: tuple[str, ...] = super().default_of("laws")
+        if not self.surface.has_line:
+            return usual
+        allowed = _allowed(line=True, samples=self.surface.has_samples)
+        smooth = () if self.surface.has_samples else (SMOOTH,)
+        return (*smooth, *(law for law in usual if law in allowed))
+
+    def problems(self) -> Iterator[InputError]:
+        """What must fit together across the sections: bodies that touch in a point first."""
+        try:
+            self.contact_resonance  # noqa: B018  of what it is made of, all is checked
+        except InputError as error:
+            what = f"{self.ROLLING}.{error.what}" if error.what == "load" else error.what
+            yield InputError(what, error.received, error.allowed, error.remedy)
+            return
+        yield from self._problems_of_laws()
+        yield from self._problems_of_texture()
+        yield from self._problems_of_sampling()
+        yield from self._problems_of_room()
+        yield from self._problems_of_over()
+        yield from self.own_problems()
+
+    def own_problems(self) -> Iterator[InputError]:
+        """What must fit together in scenes of this kind alone."""
+        yield from ()
+
+    def _problems_of_laws(self) -> Iterator[InputError]:
+        """At least one law, each once, that needs no more texture than there is."""
+        smooth = self.surface.has_line and not self.surface.has_samples
+        if not self.laws:
+            yield InputError("laws", "an empty list", "at least one law", 'Take laws = ["areal", "linear"].')
+        for name in _sections_of_laws():
+            if name not in self.section_names and getattr(self, name).given():
+                yield InputError(
+                    name, "keys of a law that is not rolled", f'"{name}" in laws', "Remove them."
+                )
+        for law in sorted(set(self.laws)):
+            if self.laws.count(law) > 1:
+                yield InputError("laws", f'"{law}" more than once', "each law once")
+            if self.surface.has_line and spec_of(law).needs_areal_path:
+                allowed = "laws that need no texture beside the line: " + _listed(line=True)
+                yield InputError("laws", f'"{law}" with a path given as a line', allowed)
+            elif smooth and Need.SAMPLES in spec_of(law).needs:
+                remedy = 'Give samples as well: file = "…" or rms = "…" in [surface].'
+                allowed = _listed(line=True, samples=False)
+                yield InputError("laws", f'"{law}" without samples of the surface', allowed, remedy)
+        if self.contact.linearise == "rough" and smooth:
+            yield InputError("contact.linearise", '"rough" without samples of the surface', '"hertz"')
+
+    def _problems_of_texture(self) -> Iterator[InputError]:
+        """Some texture, and waves that the grid resolves."""
+        surface, spacing = self.surface, self.contact.spacing
+        rolling = self.rolling.has_own_texture or self.rolling.flat is not None
+        if not (surface.has_texture or rolling or surface.smooth):
+            allowed = (
+                f"file, rms, line, spectrum or a defect in [surface]; roughness, line or a flat in "
+                f"[{self.ROLLING}]"
+            )
+            remedy = (
+                'Name a measured map (file = "…"), synthesise one (rms = "0.5 um"), or set smooth = true.'
+            )
+            yield InputError("surface", "no texture", allowed, remedy)
+        for name, unit in (("shortest", "um"), ("corrugation_wavelength", "mm")):
+            wave = getattr(surface, name)
+            if wave is not None and wave < 2 * spacing * (1 - 1e-9):
+                received = f"{written(wave, 'm', unit)} on a spacing of {written(spacing, 'm', unit)}"
+                allowed = f"at least two spacings, {written(2 * spacing, 'm', unit)}"
+                yield InputError(f"surface.{name}", received, allowed)
+
+    def _problems_of_sampling(self) -> Iterator[InputError]:
+        """Grid and time step resolve the highest frequency; the window is no wider than the bodies."""
+        yield from self.contact.problems_of_window()
+        highest, coarsest, spacing = (
+            self.numerics.highest_frequency, self.coarsest_spacing, self.contact.spacing,
+        )  # fmt: skip
+        if spacing > coarsest:
+            received = f"{written(spacing, 'm', 'um')} at {self.speed:g} m/s and {highest:g} Hz"
+            allowed = f"at most speed / ({SAMPLING} highest_frequency) = {coarsest * 1e6:.4g} um"
+            remedy = "Refine spacing, or lower highest_frequency."
+            yield InputError("contact.spacing", received, allowed, remedy)
+        if self.time_step > 1 / (SAMPLING * highest):
+            allowed = f"at most 1 / ({SAMPLING} highest_frequency) = {1e6 / (SAMPLING * highest):.4g} us"
+            yield InputError("numerics.time_step", f"{self.time_step * 1e6:g} us", allowed)
+        widest = 2 * min(self.rolling.radius, self.rolling.across, self.rolled_over.radius_across)
+        if self.contact.window > widest:
+            allowed = f"at most the smallest diameter of the bodies, {written(widest, 'm', 'mm')}"
+            yield InputError("contact.window", written(self.contact.window, "m", "mm"), allowed)
+
+    def _problems_of_room(self) -> Iterator[InputError]:
+        """The contacts stay on what they roll over for as long as they are rolled, in steps that are few."""
+        start, rolled, (first, last) = self.record_start, self.rolled_time, self.rolled_range
+        over, time = self.over_name, self.settled_time + rolled
+        begin, end = self.room or (-math.inf, math.inf)
+        foremost = ", where the foremost contact is at its end" if len(self.contacts_behind) > 1 else ""
+        if end <= begin:
+            received, length = f"contacts over {self.contacts_behind[-1]:g} m", end - begin
+            allowed = f"less than the length of the {over}, {length + max(self.rolling.offsets):g} m"
+            yield InputError(f"{self.ROLLING}.positions", received, allowed)
+        elif start >= end:
+            what = "start" if self.start is not None else "start, after settling"
+            allowed = f"a position on the {over}, less than {end:g} m{foremost}"
+            yield InputError(what, f"{start:g} m", allowed)
+        elif first < begin - 1e-9 * max(start, 1.0):
+            received = f"{self.settled_time:g} s, which begins at {first:g} m"
+            before = max(start - begin, 0.0) / self.speed
+            allowed = f"at most {before:.6g} s, so that the run-in begins on the {over}"
+            remedy = f"Shorten it, or start farther along the {over}."
+            yield InputError("settling", received, allowed, remedy)
+        elif last > end * (1 + 1e-9):
+            received = f"{rolled:g} s, which ends at {last:g} m"
+            allowed = f"at most {(end - start) / self.speed:.6g} s, up to {end:g} m on the {over}{foremost}"
+            yield InputError("duration", received, allowed)
+        elif rolled < self.time_step:
+            allowed = f"at least one time step, {self.time_step * 1e3:.4g} ms"
+            yield InputError("duration", f"{rolled * 1e3:.4g} ms", allowed)
+        elif time / self.time_step > MOST_STEPS:
+            received = f"{time / self.time_step:.2g} time steps"
+            allowed = f"at most {MOST_STEPS:g} time steps"
+            yield InputError("duration", received, allowed, "Roll faster or shorter.")
+
+    def _problems_of_over(self) -> Iterator[InputError]:
+        """What is rolled over suits the run; a joint is on the path; what a track alone has has a track."""
+        (first, last), joint = self.rolled_range, self.surface.joint_position
+        if joint is not None and not first <= joint <= last:
+            allowed = f"a position that is rolled over, {first:g} m to {last:g} m"
+            yield InputError("surface.joint_position", f"{joint:g} m", allowed)
+        ahead = self.rolling.offsets
+        start = self.record_start
+        yield from self.rolled_over.problems_of_run(self.speed, start + min(ahead), last + max(ahead))
+        if isinstance(self.rolled_over, TrackKeys):
+            yield from self.noise.problems_of_train(self.contacts_behind)
+            return
+        for dotted in OF_A_TRACK:
+            title, _, name = dotted.partition(".")
+            if name in getattr(self, title).given():
+                yield InputError(dotted, "a key of a track", f"what a {self.over_name} has", "Remove it.")
+
+
+def _change(data: dict[str, Any], changes: Mapping[str, Any]) -> None:
+    """Put keys into the dicts of a case; None takes them out."""
+    for name, value in changes.items():
+        if value is None:
+            data.pop(name, None)
+        elif isinstance(value, Mapping) and isinstance(inner := data.get(name, {}), dict):
+            data[name] = inner = dict(inner)
+            _change(inner, value)
+        else:
+            data[name] = value
+
+
+_law_sections: dict[str, tuple[Mapping[str, Key], Inner]] = {}
+
+
+def _sections_of_laws() -> dict[str, Inner]:
+    """Sections of laws that have keys of their own, by name; each is made once."""
+    for name, keys in law_keys().items():
+        if _law_sections.get(name, (None,))[0] is not keys:
+            model = type("LawKeys", (Section,), {"__doc__": f"Keys of the law {name}."}, parameters=keys)
+            _law_sections[name] = keys, Inner(model, f"keys of the law {name}")
+    return {name: _law_sections[name][1] for name in law_keys()}
+
+
+def _allowed(*, line: bool, samples: bool = True) -> list[str]:
+    """Laws that can be rolled over a line, without or with samples of the surface."""
+    return [
+        name
+        for name in names()
+        if not (line and spec_of(name).needs_areal_path)
+        and (samples or Need.SAMPLES not in spec_of(name).needs)
+    ]
+
+
+def _listed(*, line: bool, samples: bool = True) -> str:
+    return ", ".join(f'"{name}"' for name in _allowed(line=line, samples=samples))
+
+
+def time_step_on_grid(wanted: float, per_cell: float) -> float:
+    """Time step, s, near the one wanted, with positions on the grid of the contact solution.
+
+    A whole multiple, rounded down, or a whole fraction of the time, s, in which one cell is rolled over.
+    """
+    if wanted >= per_cell:
+        return per_cell * math.floor(wanted / per_cell * (1 + 1e-9))
+    parts = math.ceil(per_cell / wanted * (1 - 1e-9))
+    # on the grid the texture needs no interpolation: rather a slightly longer step than a finer one
+    nearest = min((parts, max(parts - 1, 1)), key=lambda n: abs(math.log(per_cell / n / wanted)))
+    return per_cell / nearest

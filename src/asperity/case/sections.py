@@ -1,0 +1,304 @@
+"""How the contact is solved and reduced, how finely time is resolved, and what radiates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.arguments import MOST_PASSES, SHAKEDOWN
+from asperity.case.body import DAMPING
+from asperity.case.form import Section
+from asperity.case.over import FREQUENCY
+from asperity.case.surface import LENGTH, POSITION
+from asperity.case.tables import TableFile, read_ratios
+from asperity.errors import InputError
+from asperity.parameters import key, optional
+from asperity.reference.cnossos import PAD_CLASSES, WHEEL_TRANSFER
+from asperity.units import written
+from asperity.values import Choice, Either, ListOf, Number, Quantity
+
+if TYPE_CHECKING:
+    from asperity.radiation.pass_by import Passage
+
+MOST_CELLS = 2048  # along one side of the window
+DURATION = Quantity("s", above=0)
+DURATION_OR_ZERO = Quantity("s", at_least=0)
+
+
+class ContactKeys(Section):
+    """How the rough contact is solved and reduced."""
+
+    spacing: float = optional(
+        LENGTH,
+        "8 um",
+        "grid spacing of the contact solution",
+        "a ninth of the smooth contact's smaller half-width, or a quarter of surface.shortest",
+        "1 nm to 10 mm: an elastic continuum is coarser than atoms, and contacts are smaller than 10 mm",
+    )
+    window: float = optional(
+        LENGTH,
+        "0.5 mm",
+        "side of the square window in which contact is solved; wider than the contact",
+        "that of the smooth contact under three times the load, wider by roughness and by a flat",
+        "10 nm to 1 m: contacts lie between atoms and bodies",
+    )
+    samples: int = key(
+        Number(at_least=1, at_most=10_000, whole=True),
+        8,
+        "number of surface samples for the stiffness and the filters",
+    )
+    sample_length: float | None = optional(
+        LENGTH,
+        "2 mm",
+        "length of the strips from which filters are estimated",
+        "16 windows, or the length of the map",
+        "10 nm to 100 m: samples lie between contacts and bodies",
+    )
+    approaches: tuple[float, ...] | None = optional(
+        ListOf(Quantity("m")),
+        ["-0.5 um", "0 um", "1 um"],
+        "increasing approaches at which the contact is reduced, from the plane that the nominal patch feels",
+        "chosen from the load and the roughness",
+        "-10 mm to 10 mm: contacts are closer than that",
+    )
+    damping: float = key(
+        DAMPING,
+        "0 N s/m",
+        "damping of the contact",
+        "1e-9 N s/m to 1e9 N s/m: less damps nothing, more is rigid",
+    )
+    hardness: float | None = optional(
+        Quantity("Pa", above=0),
+        "3 GPa",
+        "largest pressure",
+        "elastic contact",
+        "1 kPa to 1 TPa: no solid is as soft, or as hard",
+    )
+    running_in: int | str | None = optional(
+        Either((SHAKEDOWN,), Number(at_least=1, at_most=MOST_PASSES, whole=True), last=True),
+        "shakedown",
+        "passes under the working load that samples and path have had before, in which asperities yielded, "
+        "or until a pass changes nothing",
+        "an untouched surface",
+        goes_with="hardness",
+    )
+    datum: str = key(
+        Choice(("samples", "path")),
+        "samples",
+        "from whose first touch the state r = approach + d0 counts: that of the samples (as printed), or of "
+        "samples and path",
+    )
+    normalise: str | None = optional(
+        Choice(("low-wavenumber", "tangent")),
+        "tangent",
+        "what the contact filter is 1 at: its own low wavenumbers (as printed), or the tangent stiffness",
+        "as printed for the law printed, tangent for every other",
+    )
+    linearise: str = key(
+        Choice(("hertz", "rough", "secant")),
+        "hertz",
+        "stiffness of the linear laws under the load: dF/dr of smooth bodies, dF/dr of rough ones, or F/r",
+    )
+    filter_degree: int | None = optional(
+        Number(at_least=1, at_most=20, whole=True),
+        6,
+        "degree of a polynomial that is fitted to each filter, in dB over wavenumber",
+        "the filter is averaged over a sixth of an octave",
+    )
+    filter_taps: int | None = optional(
+        Number(at_least=2, at_most=4096, whole=True),
+        64,
+        "order J of the filter (J + 1 taps), even, designed by window",
+        "the first that meets the fitted filter within 0.3 dB down to -30 dB",
+    )
+
+    @property
+    def cells(self) -> int:
+        """Number of grid cells along one side of the window."""
+        return round(self.window / self.spacing)
+
+    def problems(self) -> Iterator[InputError]:
+        """Approaches increase; the filter order is even."""
+        if self.approaches is not None and len(self.approaches) < 2:
+            received = f"{len(self.approaches)} values"
+            yield InputError("approaches", received, "at least 2", "Or remove the key.")
+        if any(later <= earlier for earlier, later in pairwise(self.approaches or ())):
+            received = ", ".join(written(value, "m", "um") for value in self.approaches or ())
+            yield InputError("approaches", received, "increasing values", "Sort them, each once.")
+        if self.filter_taps is not None and self.filter_taps % 2:
+            remedy = "An odd order would shift the texture by half a step."
+            yield InputError("filter_taps", self.filter_taps, "an even number", remedy)
+
+    def problems_of_window(self) -> Iterator[InputError]:
+        """The window holds a sensible number of cells, and strips more than one window."""
+        if not 8 <= self.cells <= MOST_CELLS:
+            window, spacing = (written(length, "m", "um") for length in (self.window, self.spacing))
+            received = f"{window}, {self.cells} cells of {spacing}"
+            allowed = f"8 to {MOST_CELLS} cells of the spacing"
+            yield InputError("contact.window", received, allowed, "Change window or spacing.")
+        if self.sample_length is not None and self.sample_length < 2 * self.window:
+            received, allowed = written(self.sample_length, "m", "um"), f"{2e6 * self.window:g} um"
+            yield InputError("contact.sample_length", received, f"at least two windows, {allowed}")
+
+
+class NumericsKeys(Section):
+    """How finely time, and a track, are resolved."""
+
+    highest_frequency: float = key(
+        FREQUENCY,
+        "5 kHz",
+        "upper end of the spectra",
+        "0.1 Hz to 10 MHz: rolling is slower than ultrasound",
+    )
+    time_step: float | None = optional(
+        DURATION,
+        "8 us",
+        "time step",
+        "near 1/20 of the highest frequency's period, of a wheel on a rail 1/8; on the grid of the contact",
+        "1 ns to 1 s: the spectra lie between",
+    )
+    rtol: float = key(
+        Number(above=0, at_most=0.01),
+        1e-6,
+        "tolerance of single contact solutions and of the law direct, relative to the largest overlap",
+        "1e-12 to 0.01: double precision carries no more digits",
+    )
+    force_accuracy: float = key(
+        Number(above=0, at_most=0.01),
+        1e-4,
+        "relative accuracy of the forces of scans and loading curves; of scans for filters a tenth",
+        "1e-07 to 0.01: the tables that are interpolated carry no more digits",
+    )
+    kernel: str = key(
+        Choice(("poles", "scatter")),
+        "poles",
+        "how a track's response is carried on in time: by fitted poles, or by its whole past",
+    )
+    poles: int | None = optional(
+        Number(at_least=10, at_most=1000, whole=True),
+        100,
+        "largest number of poles, even; no more are taken than tell anything of the track",
+        "100, or a tenth of the time steps that the track remembers if that is less",
+        goes_with="kernel=poles",
+    )
+
+    def problems(self) -> Iterator[InputError]:
+        """Poles come in pairs."""
+        if self.poles is not None and self.poles % 2:
+            yield InputError("poles", self.poles, "an even number", "Poles come in conjugate pairs.")
+
+
+class NoiseKeys(Section):
+    """What radiates where a track is rolled over, the labels of CNOSSOS-EU, and the train that passes."""
+
+    rail_foot_width: float = key(
+        LENGTH, "150 mm", "width of the rail's foot", "10 mm to 1 m: rails lie between"
+    )
+    rail_head_width: float = key(
+        LENGTH, "72 mm", "width of the rail's head", "10 mm to 1 m: rails lie between"
+    )
+    rail_radiation: Path | NDArray[np.float64] | None = optional(
+        TableFile(columns=(2,), read=read_ratios),
+        "rail_radiation.csv",
+        "table of the rail's radiation ratio: frequency (Hz), ratio of its sound power per length to "
+        "impedance of air, twice the width of its foot and mean square velocity",
+        "that of a section with the widths of foot and head",
+    )
+    sleeper_length: float = key(
+        LENGTH, "2.6 m", "length of a whole sleeper", "0.1 m to 10 m: sleepers lie between"
+    )
+    sleeper_width: float = key(
+        LENGTH,
+        "0.25 m",
+        "width of a sleeper that radiates: of its top, with its sloping sides",
+        "10 mm to 10 m: sleepers lie between",
+    )
+    wheel_width: float = key(
+        LENGTH, "135 mm", "width of the wheel's tread", "10 mm to 1 m: wheels lie between"
+    )
+    track_pad: str | None = optional(
+        Choice(tuple(PAD_CLASSES)),
+        "medium",
+        "rail pads of CNOSSOS-EU's transfer to the sound power of the track, on mono-block sleepers",
+        "those nearest to track.pad_stiffness",
+    )
+    wheel_transfer: str | None = optional(
+        Choice(tuple(WHEEL_TRANSFER)),
+        "920 mm",
+        "wheel diameter of CNOSSOS-EU's transfer to the sound power of the wheel",
+        "that nearest to twice the rolling radius",
+    )
+    axles: int | None = optional(
+        Number(at_least=1, at_most=1000, whole=True),
+        4,
+        "number of axles whose sound power is added; each has two wheels, on two rails",
+        "one for each contact",
+    )
+    axle_positions: tuple[float, ...] | None = optional(
+        ListOf(POSITION),
+        ["0 m", "2.5 m", "19 m", "21.5 m"],
+        "axles of the vehicle that passes, behind its first; each has two wheels",
+        "the contacts that roll",
+        "0 m to 1 km: trains are shorter",
+    )
+    wheelbase: float | None = optional(
+        LENGTH,
+        "2.5 m",
+        "distance of the two axles of a bogie that passes, instead of axle_positions",
+        "the contacts that roll",
+        "0.1 m to 100 m: axles are as far apart",
+    )
+    vehicle_length: float | None = optional(
+        LENGTH,
+        "26.4 m",
+        "length of the vehicle over its buffers, from which the pass-by time follows",
+        "half a mean distance of the axles beyond the outer ones",
+        "0.1 m to 1 km: vehicles lie between",
+    )
+    vehicles: int = key(
+        Number(at_least=1, at_most=100, whole=True),
+        1,
+        "number of such vehicles, one behind the other",
+        goes_with="vehicle_length",
+    )
+
+    def axles_behind(self, contacts: tuple[float, ...]) -> tuple[float, ...]:
+        """Axles of one vehicle behind its first, m: as given, else the contacts, which are so far behind."""
+        if self.axle_positions is not None:
+            return self.axle_positions
+        return contacts if self.wheelbase is None else (0.0, self.wheelbase)
+
+    def passage(self, contacts: tuple[float, ...], speed: float) -> Passage:
+        """All axles of the train, of contacts so far behind the first, m, passing at a speed, m/s."""
+        from asperity.radiation.pass_by import Passage
+
+        axles, length = self.axles_behind(contacts), self.vehicle_length
+        if length is None:
+            return Passage(axles, speed)
+        train = tuple(number * length + axle for number in range(self.vehicles) for axle in axles)
+        return Passage(train, speed, self.vehicles * length)
+
+    def problems(self) -> Iterator[InputError]:
+        """One description of the axles, one behind the other."""
+        if {"axle_positions", "wheelbase"} <= self.given_names:
+            yield InputError("", "both axle_positions and wheelbase", "one of them", "Remove one.")
+        axles = self.axle_positions
+        if axles is not None and (axles[:1] != (0.0,) or any(b <= a for a, b in pairwise(axles))):
+            received = ", ".join(written(axle, "m", "m") for axle in axles) or "an empty list"
+            yield InputError("axle_positions", received, "positions that rise from 0 m, the first axle")
+
+    def problems_of_train(self, contacts: tuple[float, ...]) -> Iterator[InputError]:
+        """Axles of one contact alone may be told otherwise; a vehicle is longer than they are apart."""
+        told = [name for name in ("axles", "axle_positions", "wheelbase") if getattr(self, name) is not None]
+        if told and len(contacts) > 1:
+            allowed = "nothing where several contacts roll, which are the axles"
+            yield InputError(f"noise.{told[0]}", "a train", allowed, "Remove it.")
+        length, last = self.vehicle_length, self.axles_behind(contacts)[-1]
+        if length is not None and length <= last:
+            allowed = f"more than that over its axles, {written(last, 'm', 'm')}"
+            yield InputError("noise.vehicle_length", written(length, "m", "m"), allowed)

@@ -1,0 +1,335 @@
+"""Tables that a case names, as text with columns or as netCDF: what they hold, read in SI and checked."""
+
+from __future__ import annotations
+
+import math
+import re
+from array import array
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice, pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from asperity.arguments import no_file, shown
+from asperity.case.content import name_of
+from asperity.errors import InputError
+from asperity.files import amount
+from asperity.sandbox import Answer, sandboxed
+from asperity.surfaces.readers.guards import hostile
+from asperity.text_files import lines_in, lines_of_cells, number_in, read_text
+from asperity.units import factor, unit_in_brackets
+from asperity.values import FROM_PYTHON, File, Origin, Problems
+
+LARGEST_TABLE = 10 * 2**20  # bytes of text
+NETCDF = (".nc", ".nc4")
+LARGEST_LEVEL = 60.0  # dB re 1 um, either side: 1 nm to 1 mm in one band
+FEWEST_LINES = 10  # of a receptance
+MOST_LINES = 2**22
+"""Lines of a table that is laid out: 160 MiB of five columns."""
+MOST_DIMENSIONS = 3
+_BAND = 0.1  # of a decade
+
+Array = NDArray[np.float64]
+TableSource = Path | Array
+"""A file, or from Python the array that it would hold."""
+
+
+class Column(NamedTuple):
+    """A column of a table."""
+
+    name: str
+    dimension: str  # SI unit; "" for a pure number
+
+
+_FREQUENCY = Column("frequency", "Hz")
+LEVELS = (Column("wavelength", "m"), Column("level", "dB"))
+MODES = (_FREQUENCY, Column("damping ratio", ""), Column("modal mass", "kg"))
+RADIATION = (
+    Column("nodal diameters", ""),
+    Column("axial velocity over the disc", ""),
+    Column("radial velocity of the tread", ""),
+)
+"""Further columns of modes: how they move the whole wheel, rms per radial velocity at the contact."""
+RATIOS = (_FREQUENCY, Column("radiation ratio", ""))
+RECEPTANCE = (_FREQUENCY, Column("real part", "m/N"), Column("imaginary part", "m/N"))
+RECEPTANCES = (
+    _FREQUENCY,
+    Column("position of the response", "m"),
+    Column("position of the force", "m"),
+    *RECEPTANCE[1:],
+)
+
+
+@dataclass(frozen=True)
+class TableFile(File):
+    """A file that holds a table, or an array in its place, which is read to see that it is right."""
+
+    read: Callable[[TableSource], object] = name_of
+
+    def __call__(self, value: Any, origin: Origin = FROM_PYTHON) -> Any:
+        """Return the path, absolute, or the array."""
+        table = super().__call__(value, origin)
+        try:
+            self.read(table)
+        except InputError as error:
+            told = f"{error.received} in {name_of(table)}"
+            raise Problems([InputError("", told, error.allowed, error.remedy)]) from None
+        return table
+
+
+def read_levels(table: TableSource) -> tuple[Array, Array]:
+    """Read one-third-octave band levels of a texture over wavelength, from a table of two columns.
+
+    Wavelengths (n,), m, falling, and levels (n,), dB re 1 µm; no band may be missing.
+    """
+    wavelength, level = read_table(table, LEVELS).T
+    order = np.argsort(-wavelength)
+    wavelength, level = wavelength[order], level[order]
+    if wavelength[-1] <= 0:
+        raise InputError(
+            name_of(table), f"a wavelength of {wavelength[-1]:g} m", "wavelengths greater than 0"
+        )
+    for longer, shorter in pairwise(wavelength):
+        step = math.log10(longer / shorter)
+        if abs(step - _BAND) > _BAND / 5:
+            kind = "a gap in the bands" if step > _BAND else "bands closer than one-third octaves"
+            received = f"{kind} between {longer * 1e3:.4g} mm and {shorter * 1e3:.4g} mm"
+            remedy = "Complete the table; nothing is filled in silently."
+            raise InputError(
+                name_of(table), received, "every one-third octave of wavelength, each once", remedy
+            )
+    return wavelength, level
+
+
+def check_band_levels(levels: Array, name: str) -> None:
+    """Ask for the unit where levels, dB re 1 µm, are those of no wheel or rail: beyond 60 dB."""
+    worst = levels[np.argmax(np.abs(levels))]
+    if abs(worst) > LARGEST_LEVEL:
+        received = f"a level of {worst:.3g} dB re 1 um"
+        allowed = f"-{LARGEST_LEVEL:g} to {LARGEST_LEVEL:g} dB re 1 um"
+        remedy = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
+        raise InputError(name, received, allowed, remedy)
+
+
+@contextmanager
+def fitted_to(table: TableSource) -> Iterator[None]:
+    """Name the table where modes cannot be fitted to its receptance."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            f"{error.what} in {name_of(table)}", error.received, error.allowed, error.remedy
+        ) from None
+
+
+def read_modes(table: TableSource) -> tuple[Array, Array, Array]:
+    """Read the modes of a wheel: frequencies, Hz, damping ratios and modal masses, kg, (n,) each."""
+    frequency, ratio, mass = read_table(table, MODES, RADIATION)[:, : len(MODES)].T
+    read_mode_shapes(table)  # which may stand beside them
+    for name, values, right, allowed in (
+        ("frequency", frequency, frequency > 0, "greater than 0 Hz"),
+        ("damping ratio", ratio, (ratio > 0) & (ratio < 1), "greater than 0 and less than 1"),
+        ("modal mass", mass, mass > 0, "greater than 0 kg"),
+    ):
+        if not right.all():
+            raise InputError(name_of(table), f"a {name} of {values[~right][0]:g}", allowed)
+    return frequency, ratio, mass
+
+
+def read_mode_shapes(table: TableSource) -> Array | None:
+    """Read how the modes of a wheel move its disc and tread, the further columns (n, 3); None without them.
+
+    Number of nodal diameters, rms axial velocity over the disc and rms radial velocity of the tread, both per
+    radial velocity of the mode at the contact.
+    """
+    shapes = read_table(table, MODES, RADIATION)[:, len(MODES) :]
+    if not shapes.shape[1]:
+        return None
+    diameters, ratios = shapes[:, 0], shapes[:, 1:]
+    if (wrong := (diameters < 0) | (diameters % 1 != 0)).any():
+        received = f"a number of nodal diameters of {diameters[wrong][0]:g}"
+        raise InputError(name_of(table), received, "a whole number, zero or more")
+    if (ratios < 0).any():
+        received = f"an rms velocity of {ratios[ratios < 0][0]:g}"
+        raise InputError(name_of(table), received, "zero or more, per radial velocity at the contact")
+    return shapes
+
+
+def read_ratios(table: TableSource) -> tuple[Array, Array]:
+    """Read radiation ratios (n,) over rising frequencies (n,), Hz, all above zero."""
+    frequency, ratio = read_table(table, RATIOS).T
+    _refuse_disorder(table, frequency)
+    if (ratio <= 0).any():
+        received = f"a radiation ratio of {ratio[ratio <= 0][0]:g}"
+        raise InputError(name_of(table), received, "greater than 0")
+    return frequency, ratio
+
+
+def read_receptance(table: TableSource) -> tuple[Array, NDArray[np.complex128]]:
+    """Read the receptance of a wheel, (n,), m/N, e^{+iωt}, with its rising frequencies, Hz.
+
+    A table of three columns: frequency, real and imaginary part.
+    """
+    frequency, real, imaginary = read_table(table, RECEPTANCE).T
+    if frequency.size < FEWEST_LINES:
+        raise InputError(name_of(table), f"{frequency.size} frequencies", f"at least {FEWEST_LINES}")
+    _refuse_disorder(table, frequency)
+    return frequency, real + 1j * imaginary
+
+
+def _refuse_disorder(table: TableSource, frequency: Array) -> None:
+    if frequency[0] <= 0 or (np.diff(frequency) <= 0).any():
+        raise InputError(name_of(table), "frequencies that do not rise", "rising frequencies, all above 0 Hz")
+
+
+def read_table(table: TableSource, columns: tuple[Column, ...], further: tuple[Column, ...] = ()) -> Array:
+    """Read a table of numbers (lines, columns), in SI; all of its lines may have all `further` columns.
+
+    An array is taken as it is, in SI. In a file, columns are apart by comma, semicolon (with decimal commas)
+    or white space; text from '#' on is left out. A heading, or a comment right above the numbers, names the
+    unit of each column that has one in brackets, as ``wavelength (cm)``; a table that does not is refused. So
+    is a line that does not hold one finite number for each column. A netCDF-4 file holds `columns` alone.
+    """
+    allowed = f"a table with the columns {_named(columns)}"
+    if further:
+        allowed += f", or with these and {_named(further)}"
+    if isinstance(table, np.ndarray):
+        if not len(table) or not np.isfinite(table).all():
+            raise InputError(name_of(table), "no rows, or numbers that are not finite", allowed)
+        return table
+    if table.suffix.lower() in NETCDF:
+        return read_columns(table, columns)
+    remedy = f"Write it as netCDF ({NETCDF[0]}), which may be larger."
+    content = read_text(table, table.name, allowed, largest=LARGEST_TABLE, shorten=remedy)
+    heading: list[str] = []
+    found = array("d")
+    for number, cells in lines_of_cells(content):
+        if not found and not heading and len(cells) == len(columns) + len(further):
+            columns += further
+        values = [_number(cell) for cell in cells]
+        if len(cells) == len(columns) and all(map(math.isfinite, values)):
+            heading = heading or _comment_above(content, number)
+            found.extend(values)
+        elif len(cells) == len(columns) and not (found or heading) and all(map(math.isnan, values)):
+            heading = cells
+        else:
+            raise InputError(name_of(table), f"'{', '.join(cells)[:40]}' in line {number}", allowed)
+    if not found:
+        raise InputError(name_of(table), "no line of numbers", allowed)
+    return np.array(found).reshape(-1, len(columns)) * _scales(heading, columns, table)
+
+
+def _named(columns: tuple[Column, ...]) -> str:
+    return ", ".join(f"{column.name} ({column.dimension or '1'})" for column in columns)
+
+
+def _number(cell: str) -> float:
+    try:
+        return number_in(cell)
+    except ValueError:
+        return math.nan
+
+
+def _comment_above(content: str, number: int) -> list[str]:
+    """Cells of the comment in the line before a line, as programs write a heading; none without one."""
+    above = "".join(islice(lines_in(content), max(number - 2, 0), number - 1)).strip()
+    text = above.lstrip("#") if above.startswith("#") else ""
+    return next((cells for _, cells in lines_of_cells(text)), [])
+
+
+def _scales(heading: list[str], columns: tuple[Column, ...], path: Path) -> list[float]:
+    """SI values of the units that a heading names in brackets, for each column."""
+    units = [unit_in_brackets(cell) for cell in heading]
+    if len(units) != len(columns) or any(
+        not unit and column.dimension for unit, column in zip(units, columns, strict=True)
+    ):
+        received = f"the heading {shown(', '.join(heading))}" if len(units) == len(columns) else "no heading"
+        example = f"'{', '.join(c.name + f' ({c.dimension})' * bool(c.dimension) for c in columns)}'"
+        remedy = f"Add the line {example} above the numbers, with the units that they are in."
+        raise InputError(path.name, received, "a heading with the units in brackets", remedy)
+    for cell, column in zip(heading, columns, strict=True):
+        for other in columns:
+            if _words(cell) & (_words(other.name) - _words(column.name)) and not (
+                _words(cell) & (_words(column.name) - _words(other.name))
+            ):
+                received = f"the heading {shown(cell)} for the {column.name}"
+                allowed = f"columns in the order {_named(columns)}"
+                raise InputError(path.name, received, allowed, "Exchange the columns.")
+    return [_scale(cell, column, path) for cell, column in zip(heading, columns, strict=True)]
+
+
+def _words(text: str) -> set[str]:
+    return set(re.findall(r"[a-z]+", text.lower()))
+
+
+def _scale(heading: str, column: Column, path: Path) -> float:
+    """SI value of the unit that a heading names in brackets; 1 for a pure number."""
+    unit = unit_in_brackets(heading)
+    if column.dimension == "dB":
+        unit = re.sub(r" ?re ?1 ?[uµμ]m$", "", unit)
+    if not column.dimension and unit in ("", "-", "1"):
+        return 1.0
+    try:
+        return factor(unit, column.dimension)
+    except InputError as error:
+        allowed = f"{column.name} in {column.dimension or 'no unit'}"
+        raise InputError(path.name, f"the heading {shown(heading)}", allowed, error.remedy) from None
+
+
+def read_columns(file: Path, columns: Sequence[tuple[str, str]]) -> Array:
+    """Read a table (lines, columns), in SI, of columns by name and SI unit.
+
+    Each column is a variable of that name, with _ for blanks, along one or more dimensions. Those of the
+    table are all of these: a variable that lacks one is the same along it.
+    """
+    from asperity.structures.modal_files import LARGEST_FILE
+
+    if found := no_file(file):
+        raise InputError(str(file), found, "a netCDF-4 file with a table", "Check the path.")
+    size = file.stat().st_size
+    if size > LARGEST_FILE:
+        raise InputError(file.name, amount(size), f"at most {amount(LARGEST_FILE)}")
+    arguments = [str(file.absolute()), list(columns)]
+    _, (table,) = sandboxed(columns_of_netcdf, arguments, file.name, size, "netCDF-4")
+    return table
+
+
+def columns_of_netcdf(path: str, columns: list[tuple[str, str]]) -> Answer:
+    """Lay out the table of a netCDF-4 file."""
+    import h5netcdf
+
+    from asperity.structures.modal_files import netcdf_numbers
+
+    file = Path(path)
+    with hostile(file.name, "netCDF-4"), h5netcdf.File(file, "r") as opened:
+        found: list[tuple[tuple[str, ...], Array]] = []
+        for heading, unit in columns:
+            name = heading.replace(" ", "_")
+            if name not in opened.variables:
+                allowed = f"the variables {', '.join(each.replace(' ', '_') for each, _ in columns)}"
+                raise InputError(file.name, f"no variable {name}", allowed)
+            variable = opened.variables[name]
+            numbers = netcdf_numbers(variable, name, unit, MOST_DIMENSIONS, file)
+            found.append((tuple(variable.dimensions), numbers))
+        return None, [_laid_out(found, file)]
+
+
+def _laid_out(found: list[tuple[tuple[str, ...], Any]], file: Path) -> Array:
+    sizes = {name: size for along, numbers in found for name, size in zip(along, numbers.shape, strict=True)}
+    lines = int(np.prod([float(size) for size in sizes.values()]))
+    if lines > MOST_LINES:
+        raise InputError(file.name, f"a table of {lines} lines", f"at most {MOST_LINES}")
+    table = np.empty((*sizes.values(), len(found)))
+    for column, (along, numbers) in enumerate(found):
+        order = [along.index(name) for name in sizes if name in along]
+        shape = [size if name in along else 1 for name, size in sizes.items()]
+        table[..., column] = numbers.transpose(order).reshape(shape)
+    table = table.reshape(-1, len(found))
+    if not (len(table) and np.isfinite(table).all()):
+        raise InputError(file.name, "no lines, or numbers that are not finite", "a table of finite numbers")
+    return table

@@ -1,1 +1,0 @@
-"""A ball rolls over a rough beam."""

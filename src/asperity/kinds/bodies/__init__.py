@@ -1,1 +1,0 @@
-"""Bodies roll, one or many, over any structure."""

@@ -1,1 +1,0 @@
-"""A wheel rolls on an infinite track."""
