@@ -1,0 +1,32 @@
+"""Texts of small cases of each kind, and the files that they name."""
+
+import re
+
+SURFACES = {
+    "ball-on-beam": 'rms = "0.5 um"',
+    "wheel-on-rail": 'spectrum = "iso3095"',
+    "bodies": 'rms = "50 nm"',
+}
+LEVELS = "wavelength (mm), level (dB re 1 um)\n100, 3\n80, 2\n63, 1\n50, 0\n"
+
+
+def case_text(kind, text=""):
+    """Text of a case from lines, or pieces between "|": keys of its top, then "[ball] load = …"."""
+    lines = [line.strip() for line in text.replace("|", "\n").splitlines()]
+    if "[surface]" not in text:
+        lines += ["[surface] " + SURFACES[kind]]
+    heading = re.compile(r"^(\[\w+\])\s*")
+    return "\n".join([f'kind = "{kind}"', *(heading.sub(r"\1\n", line) for line in lines)])
+
+
+def write_files(folder):
+    """Write the files that the cases here name into a folder, most of them without sense."""
+    (folder / "levels.csv").write_text(LEVELS)
+    (folder / "ratios.csv").write_text("frequency (kHz), ratio\n0.1, 0.01\n1, 0.8\n")
+    modes = "frequency (Hz), ratio, mass (kg)\n2000, 1e-4, 300\n3100, 1e-4, 250\n"
+    (folder / "modes.csv").write_text(modes)
+    rows = "".join(f"{100 * n}, {-1e-9 / n:.3g}, -1e-11\n" for n in range(1, 30))
+    (folder / "receptance.csv").write_text("frequency (Hz), real (m/N), imaginary (m/N)\n" + rows)
+    for name in ("line.csv", "map.npy", "tread.csv", "rail.csv", "beam.x3p", "wheels.csv", "recipe.toml"):
+        (folder / name).write_bytes(b"heights")
+    return folder / "case.toml"

@@ -1,0 +1,158 @@
+"""Keys: those that messages name exist, each has plausible limits, and none is read by nothing."""
+
+import ast
+import math
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import asperity
+from asperity.case import PRESETS
+from asperity.case.cases import as_case, case_class
+from asperity.case.describing import entries
+from asperity.errors import CaseError
+from asperity.units import quantity
+from asperity.values import ListOf, Number, Quantity
+
+SOURCE = Path(asperity.__file__).parent
+MODULES = sorted(SOURCE.rglob("*.py"))
+FILES = (".png", ".x3p", ".csv", ".nc", ".toml")
+
+
+@cache
+def keys():
+    """All keys of all kinds of case, as ``"contact.window"``, and those of studies."""
+    known = {entry.dotted for kind in PRESETS for entry in entries(case_class(kind))}
+    return known | {f"sweep.{key}" for key in known}
+
+
+@cache
+def sections():
+    return {key.partition(".")[0] for key in keys() if "." in key}
+
+
+def texts(module):
+    """Pieces of text that people may see, with the line they stand in; no documentation."""
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    silent = {
+        id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)
+    }  # docstrings, also of constants
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in silent:
+            yield node.lineno, node.value
+
+
+def named(text):
+    """Keys with their sections, as messages name them: not paths of files, modules or results."""
+    pattern = rf"(?<![\w./])({'|'.join(sections())})\.([a-z]\w*)(?![\w./(])"
+    return {match[0] for match in re.finditer(pattern, text)}
+
+
+def test_keys_are_found_in_a_text():
+    assert named("Raise contact.samples, or give track.name; see wheel.csv") >= {
+        "contact.samples",
+        "track.name",
+    }
+    assert not named("/spectra/surface.nc, contact/force, surface.")
+
+
+def test_messages_name_keys_that_exist():
+    found = [
+        (key, f"{module}:{line}") for module in MODULES for line, text in texts(module) for key in named(text)
+    ]
+    assert len(found) > 50
+    modules = {".".join(m.relative_to(SOURCE).with_suffix("").parts) for m in MODULES}  # for lazy imports
+    wrong = {where for where in found if where[0] not in keys() | modules}
+    assert {where for where in wrong if not where[0].endswith(FILES)} == set()
+
+
+def test_keys_in_brackets_exist():
+    """``fill = true in [surface]``."""
+    for module in MODULES:
+        for line, text in texts(module):
+            for match in re.finditer(r"(\w+) = [^=\n]*? in \[(\w+)\]", text):
+                if match[2] in sections():
+                    assert f"{match[2]}.{match[1]}" in keys(), f"{module}:{line}: {match[0]}"
+
+
+@pytest.mark.parametrize("length", ["1e-7 mm", "300 km"])
+def test_numbers_in_messages_read_well_and_are_what_was_given(length):
+    """No "1e-07 mm": a number is shown with a unit that suits it."""
+    with pytest.raises(CaseError, match=r"ball\.radius: received") as caught:
+        as_case({"kind": "ball-on-beam", "surface": {"rms": "0.5 um"}, "ball": {"radius": length}})
+    received = re.search(r"received ([^;,]*)[;,]", str(caught.value))[1]
+    assert received == {"1e-7 mm": "0.1 nm"}.get(length, length)
+    assert quantity(received, "m") == pytest.approx(quantity(length, "m"))
+
+
+# --- limits of what is plausible
+
+
+def plausible(entry):
+    """Least and largest value in SI, and the unit; those of the kind, where it has both."""
+    kind = entry.key.one
+    unit = kind.dimension if isinstance(kind, Quantity) else ""
+    if entry.key.within is not None:
+        low, high, reason = entry.key.within
+        assert len(reason) > 10
+        return *(quantity(each, unit) for each in (low, high)), unit
+    return kind.above if kind.at_least is None else kind.at_least, kind.at_most, unit
+
+
+@pytest.mark.parametrize("kind", PRESETS)
+def test_every_number_has_limits_and_beyond_them_is_told_why(kind):
+    texture = {"surface": {"smooth": True} if kind == "wheel-on-rail" else {"rms": "0.3 um"}}
+    for entry in entries(case_class(kind)):
+        if not isinstance(entry.key.one, Quantity | Number):
+            continue
+        low, high, unit = plausible(entry)
+        assert -math.inf < low < high < math.inf, entry.dotted
+        for value in (1.01 * high, low / 1.01 if low > 0 else 1.01 * low):
+            if value == 0.0 or entry.key.within is None:
+                continue
+            given = f"{value!r} {unit}" if unit else value
+            keys = {entry.name: [given] if isinstance(entry.key.kind, ListOf) else given}
+            with pytest.raises(CaseError) as caught:
+                as_case({"kind": kind, **texture, **({entry.section: keys} if entry.section else keys)})
+            message = str(caught.value)
+            stricter = "; allowed: a" in message  # its kind is, as a length greater than 0
+            assert entry.dotted in message
+            assert stricter or entry.key.within[2][1:] in message, entry.dotted
+
+
+# --- keys that nothing reads
+
+
+DECLARES = ("key", "optional", "section", "parameter", "goes_with")
+
+
+def asked_for(text):
+    """Names that are taken of an object, or named as text, but for those of declarations and defaults."""
+    tree = ast.parse(text)
+    declared = {
+        id(inside)
+        for call in ast.walk(tree)
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in DECLARES
+        for inside in ast.walk(call)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load):
+            yield node.attr
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in declared:
+            yield node.value
+
+
+def test_every_key_is_asked_for():
+    """One that nothing reads would be shown and ignored."""
+    asked = {name for path in MODULES for name in asked_for(path.read_text(encoding="utf-8"))}
+    known = {entry.dotted: entry.name for kind in PRESETS for entry in entries(case_class(kind))}
+    assert len(known) > 150
+    assert {key for key, name in known.items() if name not in asked} == set()
+
+
+def test_a_key_that_is_only_declared_is_not_asked_for():
+    text = 'class Mine:\n    share: float = key(Number(), 1.0, "a share", goes_with="other")\n'
+    assert not {"share", "other"} & set(asked_for(text))
+    assert "share" in set(asked_for(text + "    def of(self):\n        return self.share\n"))

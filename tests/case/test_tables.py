@@ -1,0 +1,235 @@
+"""Tables that a case names: read in SI as text, netCDF or array, or refused with what is wrong and where."""
+
+import math
+
+import h5netcdf
+import numpy as np
+import pytest
+from case_texts import case_text, write_files
+
+from asperity import WheelOnRail
+from asperity.case import tables
+from asperity.case.cases import parse_case
+from asperity.case.tables import RECEPTANCES, read_table
+from asperity.errors import CaseError, InputError
+from asperity.structures.receptance_fit import receptances_in
+
+LEVELS = "wavelength (m), level (dB)\n"
+ASKED = "a heading with the units in brackets. Add the line 'wavelength (m), level (dB)' above the numbers"
+MODES = "frequency (Hz), damping ratio, modal mass (kg)\n"
+SHAPES = MODES.replace("\n", ", diameters, axial, radial\n")
+RATIOS = "frequency (Hz), ratio\n"
+RECEPTANCE = "f (Hz), real (m/N), imaginary (m/N)\n"
+TWELVE = "".join(f"{n}, 1, 1\n" for n in range(1, 13))
+READ = {
+    "levels": (tables.read_levels, '[surface] spectrum = "levels.csv"', "surface.spectrum"),
+    "modes": (tables.read_modes, '[wheel] modes = "modes.csv"', "wheel.modes"),
+    "ratios": (tables.read_ratios, '[noise] rail_radiation = "ratios.csv"', "noise.rail_radiation"),
+    "receptance": (tables.read_receptance, '[wheel] receptance = "receptance.csv"', "wheel.receptance"),
+}
+
+
+@pytest.fixture
+def source(tmp_path):
+    return write_files(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("levels", ([0.1, 0.08, 0.063, 0.05], [3, 2, 1, 0])),
+        ("modes", ([2000, 3100], [1e-4, 1e-4], [300, 250])),
+        ("ratios", ([100, 1000], [0.01, 0.8])),
+        ("receptance", (100.0 * np.arange(1, 30), [-1e-9 / n - 1e-11j for n in range(1, 30)])),
+    ],
+)
+def test_they_are_read_in_si(name, expected, source):
+    for found, wanted in zip(READ[name][0](source.parent / f"{name}.csv"), expected, strict=True):
+        np.testing.assert_allclose(found, wanted, rtol=1e-2 if name == "receptance" else 1e-12)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "wavelength (m), level (dB)\n0.08 2\n0.1 3\n",
+        "measured [mm],of [dB re 1 um]\n100,3\n80,2\n",
+        "# lathe 3\n# wavelength (m); level (dB)\n0,1; 3\n0,08; 2  # the shorter one\n",
+        "\ufeffwavelength [cm];level [dB]\r\n10;3\r\n8;2\r\n",
+    ],
+)
+def test_levels_are_read_in_the_ways_they_are_written(text, tmp_path):
+    (tmp_path / "levels.txt").write_text(text, encoding="utf-8")
+    wavelengths, levels = tables.read_levels(tmp_path / "levels.txt")
+    assert (list(wavelengths), list(levels)) == (pytest.approx([0.1, 0.08]), [3, 2])
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("levels", LEVELS + "0.1, 3\n0.063, 1", "a gap in the bands between 100 mm and 63 mm"),
+        ("levels", LEVELS + "0.1, 3\n0.09, 1", "bands closer than one-third octaves between 100 mm and 90"),
+        ("levels", LEVELS + "0.1, 3\n0.1, 1", "bands closer than one-third octaves"),
+        ("levels", LEVELS + "0.1, 3\n0, 1", "a wavelength of 0 m"),
+        (
+            "levels",
+            LEVELS + "0.1, 3\n0.08",
+            "'0.08' in line 3; allowed: a table with the columns wave",
+        ),
+        ("levels", LEVELS + "0.1, 3\n0.08, nan", "'0.08, nan' in line 3"),
+        ("levels", LEVELS + "0.1, 3\n0.08, inf", "'0.08, inf' in line 3"),
+        ("levels", "wavelength (kg), level (dB)\n0.1, 3", "'wavelength (kg)'; allowed: wavelength in m"),
+        ("levels", "100, 3\n80, 2", f"no heading; allowed: {ASKED}"),
+        ("levels", "# from the lab (PDF)\n100, 3\n80, 2", f"no heading; allowed: {ASKED}"),
+        ("levels", "wavelength, level (dB)\n100, 3", f"heading 'wavelength, level (dB)'; allowed: {ASKED}"),
+        (
+            "levels",
+            "level [dB], wavelength [mm]\n3, 100",
+            "'level [dB]' for the wavelength; allowed: columns",
+        ),
+        ("levels", "wavelength (m), level (dB re 1 nm)\n0.1, 3", "the heading 'level (dB re 1 nm)'"),
+        ("levels", "# nothing", "no line of numbers"),
+        ("levels", "100 mm, 3\n80 mm, 2", "'100 mm, 3' in line 1"),
+        ("modes", MODES + "0, 0.1, 300", "a frequency of 0; allowed: greater than 0 Hz"),
+        ("modes", MODES + "2000, 0, 300", "a damping ratio of 0; allowed: greater than 0 and less than 1"),
+        ("modes", MODES + "2000, 1, 300", "a damping ratio of 1"),
+        ("modes", MODES + "2000, 0.1, -3", "a modal mass of -3; allowed: greater than 0 kg"),
+        ("modes", MODES + "2000, 0.1", "'2000, 0.1' in line 2"),
+        ("modes", SHAPES + "2000, 0.1, 300, 1.5, 4, 0.5", "nodal diameters of 1.5; allowed: a whole number"),
+        ("modes", SHAPES + "2000, 0.1, 300, -1, 4, 0.5", "a number of nodal diameters of -1"),
+        ("modes", SHAPES + "2000, 0.1, 300, 2, -4, 0.5", "an rms velocity of -4; allowed: zero or more, per"),
+        (
+            "modes",
+            SHAPES + "2000, 0.1, 300, 2, 4",
+            "or with these and nodal diameters (1), axial velo",
+        ),
+        ("modes", SHAPES + "2000, 0.1, 300, 2, 4, 1\n2100, 0.1, 300", "'2100, 0.1, 300' in line 3"),
+        ("ratios", RATIOS + "100, 0.1\n100, 0.2", "do not rise; allowed: rising frequencies, all above 0 Hz"),
+        ("ratios", RATIOS + "0, 0.1\n100, 0.2", "frequencies that do not rise"),
+        ("ratios", RATIOS + "100, 0\n200, 0.2", "a radiation ratio of 0; allowed: greater than 0"),
+        ("receptance", RECEPTANCE + "100, 1, 1\n" * 3, "3 frequencies; allowed: at least 10"),
+        ("receptance", RECEPTANCE + "100, 1, 1\n" * 12, "frequencies that do not rise"),
+        ("receptance", RECEPTANCE + "0, 1, 1\n" + TWELVE, "frequencies that do not rise; allowed: rising"),
+        (
+            "receptance",
+            "f (Hz), imaginary (m/N), real (m/N)\n" + TWELVE,
+            "'imaginary (m/N)' for the real",
+        ),
+    ],
+)
+def test_tables_that_are_wrong(name, text, message, source):
+    """By themselves, and as the key of a case that names them."""
+    read, keys, key = READ[name]
+    (source.parent / f"{name}.csv").write_text(text + "\n")
+    with pytest.raises(InputError) as caught:
+        read(source.parent / f"{name}.csv")
+    assert message in str(caught.value)
+    with pytest.raises(CaseError) as caught:
+        parse_case(case_text("wheel-on-rail", keys), source)
+    (error,) = caught.value.errors
+    assert error.startswith(f"{key}: received ")
+    assert message.partition(";")[0] in error
+    assert f"in {name}.csv" in error
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [(b"\xff\xfe\x00", "no UTF-16 in line 1"), (b"#" * (10 * 2**20 + 1), "more than 10 MiB")],
+)
+def test_a_table_that_is_no_text_or_too_large(content, message, tmp_path):
+    (tmp_path / "levels.csv").write_bytes(content)
+    with pytest.raises(InputError, match=message):
+        tables.read_levels(tmp_path / "levels.csv")
+
+
+def test_levels_in_another_unit_ask_for_it(source):
+    (source.parent / "levels.csv").write_text(LEVELS + "0.1, -95\n0.08, -96\n")
+    text = case_text("wheel-on-rail", '[surface] spectrum = "levels.csv" | [wheel] roughness = "levels.csv"')
+    with pytest.raises(CaseError) as caught:
+        parse_case(text, source)
+    keys = [error.partition(":")[0] for error in caught.value.errors]
+    assert keys == ["surface.spectrum", "wheel.roughness"]
+    asked = "Is the unit right? If these levels are meant, set surface.accept_levels = true."
+    assert asked in caught.value.errors[0]
+    assert parse_case(text.replace("[surface]", "[surface]\naccept_levels = true"), source)
+
+
+def test_modes_say_how_they_move_the_wheel(tmp_path):
+    path, row = tmp_path / "modes.csv", np.array([[2000.0, 1e-4, 300.0, 2.0, 4.0, 0.5]])
+    path.write_text(SHAPES.replace("Hz", "kHz") + "2, 1e-4, 300, 2, 4, 0.5\n")
+    assert [list(each) for each in tables.read_modes(path)] == [[2000.0], [1e-4], [300.0]]
+    for table in (path, row):
+        assert tables.read_mode_shapes(table).tolist() == [[2.0, 4.0, 0.5]]
+    assert tables.read_mode_shapes(row[:, :3]) is None
+    with pytest.raises(CaseError, match=r"an array of shape \(n, 3\) or \(n, 6\) of real numbers"):
+        WheelOnRail(surface={"spectrum": "iso3095"}, wheel={"modes": np.ones((2, 4))})
+
+
+# --- netCDF
+
+
+F, AT, FORCES = np.arange(10.0, 40.0), np.array([0.1, 0.3, 0.4]), np.array([0.1, 0.4])
+GIVEN = np.random.default_rng(1).standard_normal((F.size, AT.size, FORCES.size)) - 1j
+GRID = {
+    "frequency": (("f",), F / 1e3, "kHz"),
+    "position_of_the_response": (("r",), 1e3 * AT, "mm"),
+    "position_of_the_force": (("e",), 1e3 * FORCES, "mm"),
+    "real_part": (("f", "r", "e"), GIVEN.real, "m/N"),
+    "imaginary_part": (("e", "f", "r"), np.moveaxis(GIVEN.imag, 2, 0), "m/N"),
+}
+
+
+def write(path, variables):
+    with h5netcdf.File(path, "w") as file:
+        for along, values, _ in variables.values():
+            for name, size in zip(along, np.shape(values), strict=True):
+                if name not in file.dimensions:
+                    file.dimensions[name] = size
+        for name, (along, values, unit) in variables.items():
+            file.create_variable(name, along, data=values)
+            if unit:
+                file.variables[name].attrs["units"] = unit
+    return path
+
+
+def test_receptances_lie_as_a_matrix_along_frequencies_and_places(tmp_path):
+    rows = read_table(write(tmp_path / "matrix.nc", GRID), RECEPTANCES)
+    for found, expected in zip(receptances_in(rows, "matrix.nc"), (AT, FORCES, F, GIVEN), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_a_receptance_of_a_wheel_is_three_variables(tmp_path):
+    point = GIVEN[:, 0, 0]
+    parts = {"real_part": (("f",), point.real, "m/N"), "imaginary_part": (("f",), point.imag, "m/N")}
+    path = write(tmp_path / "wheel.nc", {"frequency": GRID["frequency"]} | parts)
+    for found, expected in zip(tables.read_receptance(path), (F, point), strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "variable", "message"),
+    [
+        ("real_part", None, "no variable real_part; allowed: the variables frequency, position_of_the_resp"),
+        ("frequency", (("f",), F, ""), "frequency without a unit"),
+        ("frequency", (("f",), F, "kg"), "'kg'"),
+        ("frequency", (("f",), np.where(F > 20, F, math.nan), "Hz"), "numbers that are not finite"),
+        ("position_of_the_force", (("e", "a", "b", "c"), np.ones((2, 1, 1, 1)), "m"), "at most 3 dimensions"),
+    ],
+)
+def test_what_is_no_table_is_said(tmp_path, name, variable, message):
+    variables = {key: value for key, value in (GRID | {name: variable}).items() if value is not None}
+    with pytest.raises(InputError, match=message):
+        read_table(write(tmp_path / "wrong.nc", variables), RECEPTANCES)
+
+
+def test_tables_have_a_most_of_lines(tmp_path, monkeypatch):
+    monkeypatch.setattr(tables, "MOST_LINES", 179)
+    found = [(along, np.asarray(values)) for along, values, _ in GRID.values()]
+    with pytest.raises(InputError, match="a table of 180 lines; allowed: at most 179"):
+        tables._laid_out(found, write(tmp_path / "matrix.nc", GRID))
+
+
+@pytest.mark.parametrize("content", [b"", b"frequency (Hz), 1", b"\x89HDF\r\n\x1a\n" + bytes(300)])
+def test_damaged_files_are_said(tmp_path, content):
+    (tmp_path / "broken.nc").write_bytes(content)
+    with pytest.raises(InputError, match=r"an empty file|intact netCDF-4"):
+        read_table(tmp_path / "broken.nc", RECEPTANCES)
