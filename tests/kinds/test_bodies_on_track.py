@@ -102,7 +102,7 @@ def test_axles_of_a_vehicle_pass_one_after_the_other(bogie):
 
 
 def test_sound_is_that_of_a_track():
-    case = {"kind": "bodies", "over": "plane", "surface": SURFACE, "noise": {"rail_head_width": 0.07}}
+    case = {"kind": "bodies", "over": "plane", "surface": SURFACE, "noise": {"wheel_width": 0.14}}
     with pytest.raises(asperity.errors.InputError, match=r"noise: .*rolled over a plane.*over = \"track\""):
         asperity.run(case)
 

@@ -34,6 +34,7 @@ MODES_BEYOND = 4.0
 SENSOR_SHARES = (0.2, 0.35, 0.5, 0.65, 0.8)
 """Of the length of a structure, where its acceleration is recorded if the case says nothing."""
 FREQUENCY = Quantity("Hz", above=0)
+_WIDTHS = "10 mm to 1 m: rails lie between"
 
 
 class RolledOver(Section):
@@ -210,6 +211,8 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         "rail.csv",
         "measured shape of the rail head across the rail, instead of rail_head_radius",
     )
+    rail_foot_width: float = key(LENGTH, "150 mm", "width of the rail's foot, which radiates", _WIDTHS)
+    rail_head_width: float = key(LENGTH, "72 mm", "width of the rail's head, which radiates", _WIDTHS)
     material: Material = key(MaterialOrName(), "steel", "material of the rail")
     points: tuple[float, ...] | None = optional(
         ListOf(POSITION),

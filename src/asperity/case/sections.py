@@ -196,12 +196,6 @@ class NumericsKeys(Section):
 class NoiseKeys(Section):
     """What radiates where a track is rolled over, the labels of CNOSSOS-EU, and the train that passes."""
 
-    rail_foot_width: float = key(
-        LENGTH, "150 mm", "width of the rail's foot", "10 mm to 1 m: rails lie between"
-    )
-    rail_head_width: float = key(
-        LENGTH, "72 mm", "width of the rail's head", "10 mm to 1 m: rails lie between"
-    )
     rail_radiation: Path | NDArray[np.float64] | None = optional(
         TableFile(columns=(2,), read=read_ratios),
         "rail_radiation.csv",

@@ -201,8 +201,8 @@ PICOWATT = 1e-12
 
 def rail_section(case: Any, track: Track) -> RailSection:
     """Section of the rail of a case: its widths, and the area that its mass makes of steel."""
-    keys = case.noise
-    table = None if keys.rail_radiation is None else read_ratios(keys.rail_radiation)
+    keys, given = case.track, case.noise.rail_radiation
+    table = None if given is None else read_ratios(given)
     area = track.mass_per_length / STEEL_DENSITY
     return RailSection(keys.rail_foot_width, keys.rail_head_width, area, table)
 
