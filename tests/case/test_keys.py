@@ -125,7 +125,7 @@ def test_every_number_has_limits_and_beyond_them_is_told_why(kind):
 # --- keys that nothing reads
 
 
-DECLARES = ("key", "optional", "section", "parameter", "goes_with")
+DECLARES = ("key", "optional", "section", "parameter", "of_line", "of_file")
 
 
 def asked_for(text):

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from asperity.case.cases import parse_case
-from asperity.case.recipe import read_recipe
+from asperity.case.surface import read_recipe
 from asperity.cli import main
 from asperity.errors import CaseError, InputError
 from asperity.scenarios.records import read_maps

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from asperity.case.body import INERTIA, MASS
 from asperity.case.content import Numbers, name_of
 from asperity.case.form import Section
-from asperity.case.surface import INDEX, LENGTH, POSITION
+from asperity.case.surface import INDEX, LENGTH, POSITION, of_file
 from asperity.case.tables import RECEPTANCES, read_table
 from asperity.errors import InputError, PhysicsWarning
 from asperity.parameters import key, keys_of, optional
@@ -309,35 +309,25 @@ class StructureKeys(RolledOver):
         "guide.csv",
         f"its modes: a text table, netCDF, or {_UFF} (.uff, .unv); or, from Python, such modes",
     )
-    along: str | None = optional(
-        _AXIS, "x", f"direction of the path in {_UFF}", "the file is none", goes_with="file"
+    along: str | None = of_file(_AXIS, "x", f"direction of the path in {_UFF}", "the file is none")
+    force: str | None = of_file(_AXIS, "z", f"direction of the contact force in {_UFF}", "the file is none")
+    length_unit: str | None = of_file(
+        LengthUnit(), "mm", f"unit of length of {_UFF} that states none", "from the file"
     )
-    force: str | None = optional(
-        _AXIS, "z", f"direction of the contact force in {_UFF}", "the file is none", goes_with="file"
+    force_unit: str | None = of_file(
+        Choice(("N", "kN", "mN", "lbf")), "N", f"unit of force of {_UFF} that states none", "from the file"
     )
-    length_unit: str | None = optional(
-        LengthUnit(), "mm", f"unit of length of {_UFF} that states none", "from the file", goes_with="file"
-    )
-    force_unit: str | None = optional(
-        Choice(("N", "kN", "mN", "lbf")),
-        "N",
-        f"unit of force of {_UFF} that states none",
-        "from the file",
-        goes_with="file",
-    )
-    damping_ratio: float | None = optional(
+    damping_ratio: float | None = of_file(
         Number(at_least=0, at_most=0.99),
         0.01,
         f"damping ratio of all modes of {_UFF} that states none",
         "from the file",
-        goes_with="file",
     )
-    nodes: tuple[int, ...] | None = optional(
+    nodes: tuple[int, ...] | None = of_file(
         ListOf(INDEX),
         [1, 2, 3],
         f"numbers of the nodes along the path in {_UFF}",
         "all that have mode shapes",
-        goes_with="file",
     )
     receptances: Path | NDArray[np.float64] | None = optional(
         File(columns=(5,)),

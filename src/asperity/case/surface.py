@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -13,9 +15,12 @@ from asperity.arguments import FORMS, shown
 from asperity.case.content import holds_memory
 from asperity.case.form import Section
 from asperity.case.tables import TableFile, read_levels
+from asperity.case.toml import read_definition, read_toml, toml_text
 from asperity.errors import InputError
 from asperity.parameters import key, optional
+from asperity.surfaces import steps
 from asperity.surfaces.heightmap import HeightMap, Profile
+from asperity.surfaces.readers import read_surface, read_surfaces
 from asperity.units import factor, written
 from asperity.values import (
     Choice,
@@ -25,6 +30,7 @@ from asperity.values import (
     LengthUnit,
     ListOf,
     Number,
+    Origin,
     Problems,
     Quantity,
     Text,
@@ -39,6 +45,7 @@ LEVEL = Quantity("dB")
 SPECTRA = ("iso3095", "cnossos-average")
 _POINTS = "0.1 nm to 10 mm: atoms are 0.1 nm apart, and contacts are smaller than 10 mm"
 _MORE_THAN_A_TURN = "-360 deg to 360 deg: more is a full turn and an angle"
+of_line, of_file = partial(optional, goes_with="line"), partial(optional, goes_with="file")
 ADDED_LEVEL = "-120 dB to 120 dB: a million times is another texture"
 
 
@@ -62,27 +69,19 @@ class MeasuredLine(Section):
     line: Path | HeightMap | Profile | None = optional(
         File(held=(HeightMap, Profile)), "line.csv", "measured long line, or several side by side"
     )
-    line_array: str | None = optional(
-        Text(), "lines", "name of the array in a file that holds several", "the only one", goes_with="line"
+    line_array: str | None = of_line(
+        Text(), "lines", "name of the array in a file that holds several", "the only one"
     )
-    line_unit: str | None = optional(
-        LengthUnit(), "um", "unit of lines that carry none", "from the file", goes_with="line"
+    line_unit: str | None = of_line(LengthUnit(), "um", "unit of lines that carry none", "from the file")
+    line_spacing: float | None = of_line(
+        LENGTH, "1 mm", "spacing of points along lines that carry none", "from the file", _POINTS
     )
-    line_spacing: float | None = optional(
-        LENGTH,
-        "1 mm",
-        "spacing of points along lines that carry none",
-        "from the file",
-        _POINTS,
-        goes_with="line",
-    )
-    line_distance: float | None = optional(
+    line_distance: float | None = of_line(
         LENGTH,
         "5 mm",
         "distance across between neighbouring lines; with it, a single line holds all across",
         "for a single line",
         "1 um to 1 m: lines lie beside each other on one body",
-        goes_with="line",
     )
     processing: tuple[str, ...] = key(
         ListOf(Choice(("fill", "spikes", "curvature"))),
@@ -113,18 +112,14 @@ class MeasuredMap(Section):
         "beam.x3p",
         "measured map: the samples, and the path where it is long enough",
     )
-    array: str | None = optional(
-        Text(), "polished", "name of the array in a file that holds several", "the only one", goes_with="file"
+    array: str | None = of_file(
+        Text(), "polished", "name of the array in a file that holds several", "the only one"
     )
-    height_unit: str | None = optional(
-        LengthUnit(), "um", "unit of heights that carry none", "from the file", goes_with="file"
+    height_unit: str | None = of_file(LengthUnit(), "um", "unit of heights that carry none", "from the file")
+    pixel: float | None = of_file(
+        LENGTH, "1.5625 um", "spacing of points that carry none", "from the file", _POINTS
     )
-    pixel: float | None = optional(
-        LENGTH, "1.5625 um", "spacing of points that carry none", "from the file", _POINTS, goes_with="file"
-    )
-    index: int | None = optional(
-        INDEX, 0, "which one of an ensemble of maps, from 0", "all of them", goes_with="file"
-    )
+    index: int | None = of_file(INDEX, 0, "which one of an ensemble of maps, from 0", "all of them")
     fill: bool = key(Flag(), False, "fill points without a height", goes_with="file")
     spikes: bool = key(
         Flag(),
@@ -132,12 +127,11 @@ class MeasuredMap(Section):
         "take points that stand out of their neighbours by 8 standard deviations for points without a height",
         goes_with="file",
     )
-    recipe: Path | None = optional(
+    recipe: Path | None = of_file(
         File(),
         "recipe.toml",
         "file that says how the map is read and prepared, before anything else; 'asperity surface FILE "
         "--store recipe.toml' writes it",
-        goes_with="file",
     )
     form: str = key(
         Choice(tuple(FORMS), tuple(FORMS.values())),
@@ -359,3 +353,78 @@ def _foreign(section: Section, name: str, keys: tuple[str, ...]) -> Iterator[Inp
         if (value := getattr(section, key_of_file)) is not None:
             remedy = "What stands in memory has its own points."
             yield InputError(key_of_file, value, f"only together with a {name} on disk", remedy)
+
+
+# --- recipes: how a measured file is read and prepared, stored once and named in cases
+
+STEPS = ("crop", "form", "longest", "shortest", "direction")
+
+
+class Recipe(Section):
+    """How a measured file is read and prepared; steps are taken in the order of these keys."""
+
+    array: str | None = key(Text(), None, "name of the array in a file that holds several")
+    index: int | None = key(INDEX, None, "which one of an ensemble of maps, from 0")
+    height_unit: str | None = key(LengthUnit(), None, "unit of heights that carry none")
+    pixel: float | None = key(LENGTH, None, "spacing of points that carry none")
+    pixel_unit: str | None = key(LengthUnit(), None, "unit of coordinates that carry none")
+    decimal: str | None = key(Choice((".", ",")), None, "decimal mark of a text")
+    spikes: bool = key(Flag(), False, "take spikes for points without a height")
+    transpose: bool = key(Flag(), False, "exchange x and y")
+    lines: bool | None = key(Flag(), None, "take an array for lines side by side, or for a map")
+    fill: bool = key(Flag(), False, "fill points without a height")
+    crop: tuple[float, ...] | None = key(
+        ListOf(POSITION), None, "x, y and both lengths of the piece of a map that is kept"
+    )
+    form: str | None = key(Choice(steps.FORMS), None, "form that is removed")
+    longest: float | None = key(LENGTH, None, "nesting index of the L-filter: longer waves are removed")
+    shortest: float | None = key(LENGTH, None, "nesting index of the S-filter: shorter waves are removed")
+    direction: float | None = key(ANGLE, None, "direction of rolling, from x towards y")
+
+    @property
+    def steps(self) -> dict[str, Any]:
+        """What is done after reading, as `surfaces.steps.stepped` takes it."""
+        return {name: getattr(self, name) for name in STEPS}
+
+    @property
+    def hints(self) -> dict[str, Any]:
+        """What is said of the file, as `read_measured` takes it."""
+        found = {name: value for name, value in self.given().items() if name not in STEPS}
+        if self.pixel is not None:
+            found["pixel"] = f"{self.pixel!r} m"  # whatever the unit of coordinates
+        return found
+
+    def surfaces(self, file: Path) -> list[HeightMap | Profile]:
+        """Read the map, the line, or all maps of an ensemble, and prepare them."""
+        return [steps.stepped(surface, **self.steps) for surface in read_measured(file, **self.hints)]
+
+
+def read_measured(
+    file: Path, *, index: int | None = None, lines: bool | None = None, **hints: Any
+) -> list[HeightMap | Profile]:
+    """Read the map, the line, or all maps of an ensemble; hints are as `read_surface` takes them."""
+    if index is not None:
+        return [read_surface(file, index=index, lines=lines, **hints)]
+    try:
+        return [read_surface(file, lines=lines, **hints)]
+    except InputError as error:
+        if error.allowed != "one sample":
+            raise
+    return list(read_surfaces(file, **hints))
+
+
+def read_recipe(path: str | os.PathLike[str]) -> Recipe:
+    """Read a recipe from a TOML file, as ``asperity surface FILE --store recipe.toml`` writes it."""
+    return Recipe.read(typed_recipe(path), Origin.file(path))
+
+
+def typed_recipe(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Keys and values of a recipe as they stand in its file."""
+    remedy = "Check the path, or store one with 'asperity surface FILE --store recipe.toml'."
+    return read_toml(read_definition(path, "recipe", remedy), "recipe", path)
+
+
+def recipe_text(typed: dict[str, Any]) -> str:
+    """Write keys and values as the text of a file that `read_recipe` reads."""
+    head = '# How a measured surface is read and prepared: recipe = "…" in [surface] of a case\n'
+    return head + toml_text(typed)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from asperity.arguments import Array, shown
-from asperity.case import recipe as recipes
+from asperity.case import surface as recipes
 from asperity.errors import InputError
 from asperity.files import write_bytes
 from asperity.reporting.figure import write_chart, write_columns

@@ -16,7 +16,7 @@ from asperity.case.sections import ContactKeys
 from asperity.contact import HalfSpace, Hertz
 from asperity.contact.hertz import check_half_space, groove_gap
 from asperity.contact.scan import window_for
-from asperity.errors import CoarseSamplingWarning, HalfSpaceWarning, InputError
+from asperity.errors import CoarseSamplingWarning, InputError
 from asperity.scenarios.records import read_section
 from asperity.surfaces.heightmap import Profile
 from asperity.surfaces.levelling import level
@@ -130,47 +130,74 @@ def parabola(contact: ContactKeys, radius: float) -> NDArray[np.float64]:
 def geometry_of(case: Case) -> Geometry:
     """Lay what rolls and what it rolls over out on the contact grid, under the static load.
 
-    Where a section is measured, Hertz's contact is that of the paraboloid fitted to the gap over the width of
-    the contact; in a groove the gap is that of circle in circle, and the half-space is asked for the angle
-    that it fills. Refused are contacts that are not small against the bodies, wider than a beam's section, or
-    not held by the window.
+    The gap x²/2R + section is that of the smooth contact along the path; the section across is x²/2R, too, or
+    measured: then Hertz's contact is that of the paraboloid fitted to the gap over the width of the contact;
+    or in a groove that of circle in circle. Refused are contacts that are not small against the bodies, wider
+    than a beam's section, or not held by the window, and a grid that is coarser than they are.
     """
     body, over, contact, hertz = case.rolling, case.rolled_over, case.contact, case.smooth_contact
-    load = body.contact_load
-    smallest = min(body.radius, body.across, over.radius_across, abs(body.raceway_along), hertz.radius_y)
+    load, n, h = body.contact_load, window_cells(contact), contact.spacing
     section = parabola(contact, hertz.radius_y)
     if body.groove_radius is not None:
-        smallest = math.inf  # looked at below
         section = groove_gap(across_window(contact), body.across, body.groove_radius)
-        _check_groove(case, hertz, load)
     elif body.profile is not None or over.profile is not None:
         section, hertz = _measured_gap(case, hertz, load)
-        smallest = min(smallest, hertz.radius_y)
-    shape = _geometry(contact, section, hertz, load, smallest_radius=smallest, body=case.ROLLING)
-    width = 2.0 * max(shape.semi_axes)
+    gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
+    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
+    carried = math.inf if contact.hardness is None else contact.hardness * h**2 * gap.size
+    of_class = HIGHEST_FORCE * shape.class_load
+    shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)
+    _check_half_space(case, hertz, load)
     for side, size in over.sides.items():
-        if size < width:
+        if size < (width := 2.0 * max(shape.semi_axes)):
             allowed = f"at least {width * 1e6:.3g} um, the width of the smooth contact under {load:.3g} N"
             remedy = "A beam smaller than its contact is no elastic half-space: enlarge it, or press less."
             raise InputError(f"{case.over_name}.{side}", f"{size * 1e6:.3g} um", allowed, remedy)
+    _check_grid(n, h, shape.semi_axes, load)
     return shape.within_window()
 
 
-def _check_groove(case: Case, hertz: Hertz, load: float) -> None:
-    """Hold the contact under the load, and in the highest state given, to the half-space in a groove."""
+def _check_half_space(case: Case, hertz: Hertz, load: float) -> None:
+    """Hold the contact under the load, and in the highest state given, to the half-space."""
     body, top = case.rolling, case.contact.approaches
     asked = [(hertz.approach(load), f"a working load of {load:.3g} N")]
     if top is not None:
         asked.append((top[-1], f"an approach of {top[-1] * 1e6:.3g} µm"))
-    assert body.groove_radius is not None
+    bent = abs(body.raceway_along)
+    smallest = min(body.radius, body.across, case.rolled_over.radius_across, bent, hertz.radius_y)
     for approach, cause in asked:
-        check_half_space(
-            hertz.semi_axes(approach),
-            body.across,
-            groove_radius=body.groove_radius,
-            raceway_radius=body.raceway_along,
-            groove_width=body.groove_width,
-            cause=cause,
+        along, across = axes = hertz.semi_axes(approach)
+        if body.groove_radius is None:
+            check_half_space((along, 0.0) if along >= across else (0.0, across), smallest, cause=cause)
+        else:
+            check_half_space(
+                axes,
+                body.across,
+                groove_radius=body.groove_radius,
+                raceway_radius=body.raceway_along,
+                groove_width=body.groove_width,
+                cause=cause,
+            )
+
+
+def _check_grid(cells: int, spacing: float, axes: tuple[float, float], load: float) -> None:
+    """Hold the grid to the smooth contact under the load, N: the window holds it, cells are finer than it."""
+    wide, small = 2.2e6 * max(axes), min(axes)
+    if wide > cells * spacing * 1e6:
+        allowed = f"at least {wide:.4g} um, 1.1 times the width of the smooth contact under {load:.3g} N"
+        received = f"{cells * spacing * 1e6:.4g} um"
+        raise InputError("contact.window", received, allowed, "Enlarge the window.")
+    if spacing > 2.0 * small:
+        allowed = f"less than {2e6 * small:.2g} um, the width of the smooth contact under {load:.3g} N"
+        remedy = "Refine the spacing and the window with it, or press harder."
+        raise InputError("contact.spacing", f"{spacing * 1e6:.3g} um", allowed, remedy)
+    if spacing > small / 8:
+        warnings.warn(
+            f"contact.spacing = {spacing * 1e6:.3g} µm is coarser than an eighth of the contact radius "
+            f"({small * 1e6:.3g} µm under {load:.3g} N): forces carry an error of some per cent. "
+            "Refine the spacing.",
+            CoarseSamplingWarning,
+            stacklevel=2,
         )
 
 
@@ -244,74 +271,3 @@ def _lowest_in_the_middle(
         allowed = "sections that touch in one place, convex against each other"
         raise InputError(keys, "bodies that touch outside the window's middle", allowed)
     return np.maximum(gap, 0.0)
-
-
-def _geometry(
-    contact: ContactKeys,
-    section: NDArray[np.float64],
-    hertz: Hertz,
-    load: float,
-    *,
-    smallest_radius: float,
-    body: str,
-) -> Geometry:
-    """Lay the gap x²/2R + section (n,), m, of two bodies out on the contact grid.
-
-    The section is across the rolling direction, from `parabola` or of given profiles; the radius in the
-    rolling direction is that of the smooth contact `hertz`, under the working load, N. The gap is checked
-    against the half-space assumption: a contact that is not small against the smallest radius of curvature, m
-    (a > R/3), is refused, and a window that does not hold it. `body` names what rolls in messages.
-    """
-    n, h = window_cells(contact), contact.spacing
-    gap = parabola(contact, hertz.radius_x)[:, None] + section[None, :]
-    shape = Geometry(gap, (h, h), hertz.modulus, hertz, load, load)
-    carried = math.inf if contact.hardness is None else contact.hardness * h**2 * gap.size
-    of_class = HIGHEST_FORCE * shape.class_load
-    shape = replace(shape, largest_force=of_class if of_class < carried else HIGHEST_FORCE * load)
-    axes = shape.semi_axes
-    _check_half_space(max(axes), smallest_radius, f"a working load of {load:.3g} N", body)
-    if contact.approaches is not None:
-        top = contact.approaches[-1]
-        cause = f"an approach of {top * 1e6:.3g} µm"
-        _check_half_space(max(hertz.semi_axes(top)), smallest_radius, cause, body)
-    if 2.2 * max(axes) > n * h:
-        raise InputError(
-            "contact.window",
-            f"{n * h * 1e6:.4g} um",
-            f"at least {2.2e6 * max(axes):.4g} um, 1.1 times the width of the smooth contact under "
-            f"{load:.3g} N",
-            "Enlarge the window.",
-        )
-    if h > 2.0 * min(axes):
-        raise InputError(
-            "contact.spacing",
-            f"{h * 1e6:.3g} um",
-            f"less than {2e6 * min(axes):.2g} um, the width of the smooth contact under {load:.3g} N",
-            "Refine the spacing and the window with it, or press harder.",
-        )
-    if h > min(axes) / 8:
-        warnings.warn(
-            f"contact.spacing = {h * 1e6:.3g} µm is coarser than an eighth of the contact radius "
-            f"({min(axes) * 1e6:.3g} µm under {load:.3g} N): forces carry an error of some per cent. "
-            "Refine the spacing.",
-            CoarseSamplingWarning,
-            stacklevel=2,
-        )
-    return shape
-
-
-def _check_half_space(a: float, radius: float, cause: str, body: str) -> None:
-    if a > radius / 3:
-        raise InputError(
-            "contact",
-            f"{cause}, a contact radius of {a / radius:.2g} R",
-            f"a contact radius of at most R/3, where the {body} is an elastic half-space",
-            f"Lower the load or the approaches, or take a larger {body}.",
-        )
-    if a > radius / 10:
-        warnings.warn(
-            f"{cause} makes a contact radius of {a / radius:.2g} R, above 0.1 R: the elastic half-space "
-            "overestimates the stiffness by some per cent. Lower the load.",
-            HalfSpaceWarning,
-            stacklevel=3,
-        )

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from asperity.case.body import Rolling
 from asperity.case.content import name_of
-from asperity.case.recipe import read_recipe
-from asperity.case.surface import MeasuredLine, Surface
+from asperity.case.surface import MeasuredLine, Surface, read_recipe
 from asperity.case.tables import TableSource, read_levels
 from asperity.errors import InputError, MissingPointsWarning, ShortRecordWarning
 from asperity.reference import cnossos
