@@ -16,7 +16,11 @@ os.environ.setdefault("ASPERITY_KERNELS", str(Path(__file__).parents[1] / ".pyte
 _cache = tempfile.TemporaryDirectory(prefix="asperity-tests-", ignore_cleanup_errors=True)
 os.environ["ASPERITY_CACHE"] = _cache.name
 
+import asperity  # noqa: E402
 from asperity import sandbox  # noqa: E402
+from asperity.case import PRESETS  # noqa: E402
+from asperity.case.cases import as_case  # noqa: E402
+from small_cases import Made, changed  # noqa: E402
 
 hypothesis.settings.register_profile("untimed", deadline=None)
 hypothesis.settings.load_profile("untimed")
@@ -57,6 +61,38 @@ def cache_of_module(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ASPERITY_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+@pytest.fixture(scope="session")
+def runs(tmp_path_factory):
+    """Results of cases, in any form, each computed once in a session."""
+    cache, made = str(tmp_path_factory.mktemp("cache")), {}
+
+    def run(case):
+        case = as_case(case)
+        if case.text not in made:
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setenv("ASPERITY_CACHE", cache)
+                made[case.text] = asperity.run(case)
+        return made[case.text]
+
+    return run
+
+
+HARDNESS = {"ball-on-beam": "0.6 GPa", "wheel-on-rail": "1.2 GPa", "bodies": "0.6 GPa"}
+"""Of which the highest crests yield, so that results hold what is said of running-in, too."""
+
+
+@pytest.fixture(scope="session")
+def real_runs(runs):
+    """Results by kind of case."""
+    return Made(lambda kind: runs(changed(kind, contact={"hardness": HARDNESS[kind], "running_in": 1})))
+
+
+@pytest.fixture(scope="session", params=list(PRESETS))
+def real_run(request, real_runs):
+    """Result of one kind of case after the other."""
+    return real_runs[request.param]
 
 
 @pytest.fixture(scope="module")

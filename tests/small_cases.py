@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from asperity.case.cases import as_case
+
 BALL = {
     "kind": "ball-on-beam",
     "laws": ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
@@ -43,6 +45,28 @@ BODIES = {
     "numerics": {"highest_frequency": "2 kHz"},
 }
 CASES = {case["kind"]: case for case in (BALL, WHEEL, BODIES)}
+
+
+def changed(kind, **keys):
+    """A small case of a kind with other keys, in its sections too; a surface is another one altogether."""
+    base = CASES[kind]
+    for name, value in keys.items():
+        if isinstance(value, dict) and name != "surface":
+            keys[name] = base.get(name, {}) | value
+    return as_case(base | keys)
+
+
+class Made(dict):
+    """Values that are made when they are first asked for: not every process needs every one."""
+
+    def __init__(self, make):
+        super().__init__()
+        self.make = make
+
+    def __missing__(self, key):
+        self[key] = self.make(key)
+        return self[key]
+
 
 COARSE = {
     "kind": "ball-on-beam",
