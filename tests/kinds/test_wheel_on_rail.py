@@ -2,25 +2,18 @@
 
 import json
 import tracemalloc
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-import xarray
 
 import asperity
 from asperity.case.cases import parse_case
 from asperity.contact import Hertz
 from asperity.errors import InputError, OutOfRangeWarning
 from asperity.reference.cnossos import rail_roughness
-from asperity.reference.decay_rate_limit import iso_3095_decay_rate
 from asperity.running import prepare_case, run
 from asperity.scenarios.geometry import geometry_of
 from asperity.scenarios.textures import textures_of
-from asperity.scenes.track import described_losses, loss_factor_error, relaxed
-from asperity.structures.track import Track
-from asperity.structures.wheel import Wheel
-from asperity.studies.running import study
 from asperity.surfaces.bands import band_levels_of
 from asperity.surfaces.heightmap import Profile
 
@@ -103,131 +96,6 @@ class TestResult:
         ):
             found = run(case(surface=surface, wheel="", laws=["linear"]))["surface"]
             assert all(s["symbol"].startswith("R") for s in json.loads(found.attrs["statistics"]))
-
-    def test_groups_and_fixed_variables(self, tree):
-        groups = {"scenario", "surface", "track", "contact", "rolling", "spectra", "pass_by"}
-        assert set(tree.children) == groups
-        assert tree["contact/filter"].dims == ("approach", "wavenumber")
-        for name in ("contact_force", "relative_displacement", "rail_displacement", "wheel_displacement"):
-            assert tree[f"rolling/{name}"].dims == ("law", "contact", "time")
-        assert tree["rolling/point_velocity"].dims == ("law", "point", "time")
-        assert tree["track/moving_kernel"].dims == ("start_position", "lag")
-        assert tree["spectra/force_psd"].dims == ("law", "frequency")
-        assert tree["spectra/roughness_level"].dims == ("part", "surface_band")
-        assert tree["spectra/sound_power_level"].dims == ("law", "source", "noise_band")
-        assert tree["scenario"].attrs["kind"] == "wheel-on-rail"
-        assert "wheel" in tree.attrs["verdict"]
-
-    def test_file_round_trip(self, tree, tmp_path):
-        from asperity.results import save
-
-        again = asperity.open_result(save(tree, tmp_path / "run.nc"))
-        xarray.testing.assert_identical(again["spectra"].to_dataset(), tree["spectra"].to_dataset())
-
-    def test_mean_force_is_the_load(self, tree):
-        mean = tree["rolling/contact_force"].mean("time")
-        np.testing.assert_allclose(mean, 65e3, rtol=0.1)
-
-    def test_approach_closes_the_geometry(self, tree):
-        """Without texture the wheel sinks into the rail by the approach: δ = w_wheel − w_rail."""
-        rolling = tree["rolling"]
-        sunk = rolling["wheel_displacement"] - rolling["rail_displacement"]
-        np.testing.assert_allclose(sunk, rolling["relative_displacement"], atol=1e-9)
-
-    def test_difference_to_the_linear_laws(self, tree):
-        level = tree["spectra/force_level"]
-        for law in ("linear", "linear-filtered"):
-            difference = tree[f"spectra/force_level_difference_to_{law.replace('-', '_')}"]
-            assert difference.attrs["reference"] == law
-            np.testing.assert_allclose(difference.values, (level - level.sel(law=law)).values)
-        assert tree["spectra/force_level_difference_to_reference"].attrs["reference"] == "table"
-
-    def test_products_of_band_and_averaging_are_in_the_result(self, tree):
-        spectra, width = tree["spectra"], 10**0.05 - 10**-0.05
-        time = spectra["band_time_product"].values / (width * spectra["band"].values)
-        assert 18 / 35 < time[0] / float(tree["rolling/time"][-1]) < 1.0
-        np.testing.assert_allclose(time, time[0])
-        noise = spectra["noise_band_time_product"].values / (width * spectra["noise_band"].values)
-        np.testing.assert_allclose(noise, time[0])
-        length = spectra["surface_band_length_product"].values * spectra["surface_band"].values / width
-        np.testing.assert_allclose(length, length[0])
-        rolled = float(np.ptp(tree["rolling/position"].values))
-        assert 18 / 35 * rolled < length[0] < rolled
-
-    def test_areal_explains_table_better_than_a_bare_line(self, tree):
-        correlation = tree["rolling/contact_force"].sel(contact=1).to_pandas().T.corr()["table"]
-        assert correlation["areal"] > 0.95
-        assert correlation["areal"] > correlation["hertz"]
-
-    def test_sound_power_differs_by_the_force(self, tree):
-        spectra = tree["spectra"]
-        change = spectra["sound_power_level"] - spectra["sound_power_level"].sel(law="linear")
-        force = spectra["force_level_difference_to_linear"].interp(band=spectra["noise_band"].values)
-        track = change.sel(source="track").values
-        inside = np.isfinite(force.values)
-        assert inside.sum() > 50
-        np.testing.assert_allclose(track[inside], force.values[inside], atol=1e-6)
-
-    def test_marks(self, tree):
-        spectra, spacing = tree["spectra"].attrs, 0.6
-        assert spectra["sleeper_passing_frequency"] == pytest.approx(56 / spacing)
-        middle = 0.5 * (spectra["pinned_pinned_low"] + spectra["pinned_pinned_high"])
-        assert middle == pytest.approx(tree["track"].attrs["pinned_pinned_frequency"])
-        assert spectra["wheel_revolution_frequency"] == pytest.approx(56 / (2 * np.pi * 0.46))
-
-
-class TestLossFactors:
-    def test_the_result_holds_the_error_of_every_band(self, tree):
-        track, errors = tree["track"], tree["track/loss_factor_force_error"]
-        assert errors.dims == ("band",)
-        assert float(errors.band[0]) == pytest.approx(5.01, abs=0.01)
-        assert set(np.round(tree["spectra/band"].values)) <= set(np.round(errors.band.values))
-        assert 0.01 < float(np.abs(errors).max()) < 0.2  # x2000: the rail alone has a loss factor
-        assert list(track["layer"].values) == ["rail"]
-        assert float(track["loss_factor"].sel(layer="rail")) == 0.02
-        assert track["relaxed_stiffness"].dims == ("layer", "band")
-        assert track.attrs["static_deflection_in_time"] > track.attrs["static_deflection"]
-        assert "constant loss factors" in tree["spectra/linear_reference_psd"].attrs["long_name"]
-        numerics = {entry["name"]: entry["value"] for entry in json.loads(tree["scenario"].attrs["numerics"])}
-        assert "else below 0.05" in numerics["loss factors in time"]
-        assert "of the nominal one: rail 0.9" in numerics["stiffness at rest"]
-
-    def test_a_large_one_is_warned_of(self, tree, monkeypatch):
-        monkeypatch.setattr("asperity.scenes.track.DOUBTFUL", 0.01)
-        again = run(case(laws=["linear"]))  # the same track, kept
-        assert "LossFactorWarning" in [entry["category"] for entry in json.loads(again.attrs["warnings"])]
-        assert "LossFactorWarning" not in tree.attrs["warnings"]
-
-    def test_viscous_tracks_have_nothing_to_tell(self):
-        viscous = loss_factor_error(
-            Track.named("nordborg", rail_loss_factor=0.0), Wheel(600.0, 65e3), 1.2e9, 2e3
-        )
-        assert relaxed(viscous) == {}
-        assert list(described_losses(viscous, 65e3)) == []
-
-
-@pytest.fixture(scope="module")
-def short():
-    text = case(laws=["direct", "table", "areal", "linear"]).text
-    return run(parse_case(text.replace('"40 ms"', '"12 ms"').replace('"20 ms"', '"5 ms"'), "case.toml"))
-
-
-class TestAgainstDirect:
-    def test_table_and_areal_follow_the_solved_contact(self, short):
-        force = short["rolling/contact_force"].sel(contact=1)
-        direct = force.sel(law="direct")
-        spread = (force - direct).std("time") / direct.std()
-        assert float(spread.sel(law="table")) < 0.01
-        assert float(spread.sel(law="areal")) < 0.03
-        assert float(spread.sel(law="linear")) > 0.1
-
-    def test_poles_follow_the_scattered_kernel(self):
-        poles = run(case(laws=["shifted"]))["rolling/contact_force"]
-        text = case(laws=["shifted"]).text.replace("poles = 60", 'kernel = "scatter"')
-        scattered = run(parse_case(text, "case.toml"))
-        assert scattered["track"].attrs["kernel_method"] == "scatter"
-        difference = np.abs(poles.values - scattered["rolling/contact_force"].values).max()
-        assert difference < 0.005 * float(poles.std())
 
 
 class TestTextures:
@@ -391,35 +259,6 @@ class TestGeometry:
         expected = Hertz(shape.modulus, 0.46, 0.3)
         assert expected.stiffness_constant == pytest.approx(9.413e10, rel=1e-3)
         assert shape.semi_axes == pytest.approx((6.20e-3, 4.67e-3), rel=1e-3)
-
-
-class TestSweep:
-    def test_speed_and_load_in_one_call(self):
-        small, sweep = (
-            case(laws=["areal", "linear"]),
-            {"speed": ["40 m/s", "56 m/s"], "wheel.load": ["65 kN"]},
-        )
-        with ThreadPoolExecutor(1) as executor:
-            table = study(small, sweep, executor=executor)
-        assert table["force_level"].dims == ("speed", "wheel.load", "law", "band")
-        assert dict(table.sizes) | {"speed": 2, "wheel.load": 1, "law": 2, "point": 2} == dict(table.sizes)
-        assert table["sound_power_level_a"].dims == ("speed", "wheel.load", "law")
-        assert table["point_velocity_level"].dims == ("speed", "wheel.load", "law", "point", "band")
-        for values in table.variables.values():
-            assert {"units", "long_name"} <= values.attrs.keys()
-        one, member = run(small), table.sel({"speed": 56.0, "wheel.load": 65e3})
-        np.testing.assert_array_equal(member["rms_force"], one["rolling/contact_force"][:, 0].std("time"))
-        shown = member["force_level"].dropna("band")
-        np.testing.assert_array_equal(shown, one["spectra/force_level"].sel(band=shown.band))
-        total = one["spectra/sound_power_level_a"].sel(source="total")
-        np.testing.assert_array_equal(member["sound_power_level_a"], total)
-
-
-def test_decay_rate_limit():
-    np.testing.assert_array_equal(
-        iso_3095_decay_rate([100.0, 250.0, 500.0, 800.0, 2000.0, 9000.0]),
-        [np.nan, 2.0, 6.0, 2.19, 0.8, np.nan],
-    )
 
 
 def test_a_record_that_holds_the_start_is_marked(tree):

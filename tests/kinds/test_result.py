@@ -1,0 +1,275 @@
+"""What the result of any scene holds: the whole chain on small cases, by every law."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+
+import asperity
+from asperity.case.cases import parse_case
+from asperity.laws import names
+from asperity.reference.decay_rate_limit import iso_3095_decay_rate
+from asperity.scenes.track import described_losses, loss_factor_error, relaxed
+from asperity.spectra import nominal_frequency
+from asperity.structures.track import Track
+from asperity.structures.wheel import Wheel
+from small_cases import changed
+
+EVERY = {
+    "ball-on-beam": changed("ball-on-beam", laws=list(names())),
+    "wheel-on-rail": changed("wheel-on-rail", laws=list(names()), contact={"window": "20 mm"}),
+    "bodies": changed("bodies", laws=["table", "direct", "linear-filtered", "linear"]),
+}
+GROUPS = {"scenario", "surface", "contact", "rolling", "spectra"}
+OF_TRACKS = {"track", "pass_by"}
+MOVING = ("law", "contact", "time")
+DIMS = {
+    "contact/force": ("approach",),
+    "contact/stiffness": ("approach",),
+    "contact/filter": ("approach", "wavenumber"),
+    "surface/psd_path": ("surface_wavenumber",),
+    "rolling/contact_force": MOVING,
+    "rolling/relative_displacement": MOVING,
+    "spectra/force_psd": ("law", "frequency"),
+    "spectra/force_level": ("law", "band"),
+}
+ON_TRACKS = {
+    "rolling/point_velocity": ("law", "point", "time"),
+    "track/moving_kernel": ("start_position", "lag"),
+    "spectra/roughness_level": ("part", "surface_band"),
+    "spectra/sound_power_level": ("law", "source", "noise_band"),
+}
+ELSEWHERE = {"rolling/acceleration": ("law", "sensor", "time")}
+
+
+@pytest.fixture(params=EVERY)
+def kind(request):
+    return request.param
+
+
+@pytest.fixture
+def tree(kind, runs):
+    return runs(EVERY[kind])
+
+
+@pytest.fixture
+def ball(runs):
+    return runs(EVERY["ball-on-beam"])
+
+
+@pytest.fixture
+def wheel(runs):
+    return runs(EVERY["wheel-on-rail"])
+
+
+def warned(tree):
+    return {each["category"] for each in json.loads(tree.attrs["warnings"])}
+
+
+def numerics(tree):
+    return {entry["name"]: entry["value"] for entry in json.loads(tree["scenario"].attrs["numerics"])}
+
+
+def test_groups_and_fixed_variables(tree, kind):
+    assert isinstance(tree, xarray.DataTree)
+    on_track = kind == "wheel-on-rail"
+    assert set(tree.children) == GROUPS | (OF_TRACKS if on_track else set())
+    displacements = {f"rolling/{name}": MOVING for name in EVERY[kind].DISPLACEMENTS}
+    for name, dims in (DIMS | displacements | (ON_TRACKS if on_track else ELSEWHERE)).items():
+        assert tree[name].dims == dims
+    for node in tree.subtree:
+        for name, values in node.variables.items():
+            assert values.attrs["units"], name
+            assert values.attrs["long_name"], name
+
+
+def test_provenance(tree, kind):
+    assert parse_case(tree.attrs["case"]) == EVERY[kind]
+    assert (tree.attrs["seed"], tree["scenario"].attrs["kind"]) == (1, kind)
+    assert tree.attrs["asperity_version"] == asperity.__version__
+    assert any("Lundberg" in each for each in json.loads(tree.attrs["citations"]))
+    assert "ShortRecordWarning" in warned(tree)
+    lost = {"bodies": "None of the 2 contacts is ever lost"}
+    verdict = lost.get(kind, f"The {kind.partition('-')[0]} never loses contact")
+    assert tree.attrs["verdict"].startswith(verdict)
+
+
+def test_a_run_on_its_own_has_the_same_digits(tree, kind, monkeypatch, tmp_path):
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
+    again = asperity.run(EVERY[kind].with_(laws=["linear", "table"]))["rolling/contact_force"]
+    assert np.array_equal(again, tree["rolling/contact_force"].sel(law=["linear", "table"]))
+
+
+def test_time_is_uniform_energy_closes_and_the_mean_force_is_the_load(tree):
+    rolling, time = tree["rolling"], tree["rolling/time"].values
+    np.testing.assert_allclose(np.diff(time), time[1], rtol=1e-9)
+    np.testing.assert_allclose(rolling["contact_force"].mean("time") / rolling["static_load"], 1.0, rtol=0.01)
+    assert float(rolling["energy_residual"].max()) < 1e-5
+
+
+def test_bodies_approach_as_far_as_they_sink(tree, kind):
+    """δ = w of what rolls − w of what is rolled over."""
+    over, rolling = EVERY[kind].DISPLACEMENTS
+    sunk = tree["rolling"][rolling] - tree["rolling"][over]
+    np.testing.assert_allclose(sunk, tree["rolling/relative_displacement"], atol=1e-9)
+
+
+def test_table_follows_direct(tree):
+    force, level = tree["rolling/contact_force"], tree["spectra/force_level_difference_to_reference"]
+    direct = force.sel(law="direct")
+    assert float(((force.sel(law="table") - direct).std("time") / direct.std("time")).max()) < 0.01
+    assert level.attrs["reference"] == "direct"
+    assert level.sizes["band"] >= 10
+    assert float(abs(level.sel(law="table")).max()) < 0.3
+
+
+def test_areal_explains_direct_better_than_a_line_does(ball, wheel):
+    for tree, least in ((ball, 0.98), (wheel, 0.9996)):
+        correlation = tree["rolling/contact_force"].sel(contact=1).to_pandas().T.corr()["direct"]
+        assert correlation["areal"] > least > correlation["shifted"] > 0.8 > 0.8 * correlation["hertz"]
+
+
+def test_a_bare_line_overestimates_high_frequencies(ball):
+    level = ball["spectra/force_level"].sel(band=slice(1200, 2100)).mean("band")
+    assert float(level.sel(law="linear")) > float(level.sel(law="direct")) + 3.0
+
+
+def test_the_psd_integrates_to_the_variance_in_its_band(tree):
+    psd = tree["spectra/force_psd"]
+    variance = psd.sum("frequency") * float(psd.frequency[1] - psd.frequency[0])
+    total = tree["rolling/contact_force"].var("time").mean("contact")
+    assert np.all((0.7 * total < variance) & (variance < 1.2 * total))
+
+
+def test_differences_to_the_linear_laws(tree):
+    level = tree["spectra/force_level"]
+    for law in ("linear", "linear-filtered"):
+        difference = tree[f"spectra/force_level_difference_to_{law.replace('-', '_')}"]
+        assert difference.attrs["reference"] == law
+        np.testing.assert_allclose(difference.values, (level - level.sel(law=law)).values)
+
+
+def test_products_of_bandwidth_and_averaging(tree, kind):
+    """A record in one Hann window and half-overlapping ones: 18/35 of it at least; noise and lengths too."""
+    spectra, width = tree["spectra"], 10**0.05 - 10**-0.05
+    product = spectra["band_time_product"]
+    time = product / (width * spectra["band"])
+    assert (product.dims, product.attrs["least"]) == (("band",), 10.0)
+    np.testing.assert_allclose(time, time[0], rtol=1e-2)
+    record = float(tree["rolling/time"][-1])
+    assert 0.99 * 18 / 35 < time[0] / record < 1.0
+    if kind != "wheel-on-rail":
+        return
+    noise = spectra["noise_band_time_product"].values / (width * spectra["noise_band"].values)
+    np.testing.assert_allclose(noise, time[0])
+    length = spectra["surface_band_length_product"].values * spectra["surface_band"].values / width
+    np.testing.assert_allclose(length, length[0])
+    assert 18 / 35 < length[0] / (56.0 * record) < 1.0
+
+
+class TestVerdict:
+    def test_it_keeps_quiet_of_bands_that_say_little(self, ball):
+        assert float(ball["spectra/band_time_product"].max()) < 10.0
+        assert "The record is too short to compare its one-third octaves" in ball.attrs["verdict"]
+        assert "per one-third octave" not in ball.attrs["verdict"].lower()
+
+    def test_it_compares_with_practice_first(self, runs):
+        found = runs(changed("ball-on-beam", laws=["areal", "linear", "linear-filtered"], duration="0.15 s"))
+        verdict = found.attrs["verdict"]
+        assert 0 < verdict.index("over linear-filtered") < verdict.index("over linear.")
+        bands = found["spectra"].to_dataset().where(found["spectra/band_time_product"] >= 10.0, drop=True)
+        difference = bands["force_level_difference_to_linear_filtered"].sel(law="areal", band=slice(90, 5500))
+        for at in (np.argmin(difference.values), np.argmax(difference.values)):
+            band = nominal_frequency(float(difference["band"][at]))
+            assert f"{float(difference[at]):+.1f} dB ({band})".replace("-", "−") in verdict
+
+    def test_it_names_the_secant(self, runs):
+        secant = {"linearise": "secant"}
+        found = runs(changed("ball-on-beam", laws=["areal", "linear"], contact=secant, duration="0.15 s"))
+        assert "over linear (linear with the stiffness F/r)" in found.attrs["verdict"]
+
+
+class TestTrack:
+    def test_sound_power_differs_by_the_force(self, wheel):
+        spectra = wheel["spectra"]
+        power = spectra["sound_power_level"].sel(source="track")
+        force = spectra["force_level_difference_to_linear"].interp(band=spectra["noise_band"].values)
+        inside = np.isfinite(force.values)
+        assert inside.sum() > 50
+        change = (power - power.sel(law="linear")).values
+        np.testing.assert_allclose(change[inside], force.values[inside], atol=1e-6)
+
+    def test_marks(self, wheel):
+        spectra = wheel["spectra"].attrs
+        assert spectra["sleeper_passing_frequency"] == pytest.approx(56 / 0.6)
+        middle = 0.5 * (spectra["pinned_pinned_low"] + spectra["pinned_pinned_high"])
+        assert middle == pytest.approx(wheel["track"].attrs["pinned_pinned_frequency"])
+        assert spectra["wheel_revolution_frequency"] == pytest.approx(56 / (2 * np.pi * 0.46))
+
+    def test_loss_factors_err_by_what_the_result_says_in_every_band(self, wheel):
+        track, errors = wheel["track"], wheel["track/loss_factor_force_error"]
+        assert errors.dims == ("band",)
+        assert float(errors.band[0]) == pytest.approx(5.01, abs=0.01)
+        assert set(np.round(wheel["spectra/band"].values)) <= set(np.round(errors.band.values))
+        assert 0.01 < float(np.abs(errors).max()) < 0.2  # x2000: the rail alone has a loss factor
+        assert list(track["layer"].values) == ["rail"]
+        assert float(track["loss_factor"].sel(layer="rail")) == 0.02
+        assert track["relaxed_stiffness"].dims == ("layer", "band")
+        assert track.attrs["static_deflection_in_time"] > track.attrs["static_deflection"]
+        assert "constant loss factors" in wheel["spectra/linear_reference_psd"].attrs["long_name"]
+        assert "else below 0.05" in numerics(wheel)["loss factors in time"]
+        assert "of the nominal one: rail 0.9" in numerics(wheel)["stiffness at rest"]
+
+    def test_a_large_error_is_warned_of(self, wheel, monkeypatch):
+        monkeypatch.setattr("asperity.scenes.track.DOUBTFUL", 0.01)
+        again = asperity.run(EVERY["wheel-on-rail"].with_(laws=["linear"]))
+        assert "LossFactorWarning" in warned(again) - warned(wheel)
+
+    def test_viscous_tracks_have_nothing_to_tell(self):
+        track = Track.named("nordborg", rail_loss_factor=0.0)
+        viscous = loss_factor_error(track, Wheel(600.0, 65e3), 1.2e9, 2e3)
+        assert relaxed(viscous) == {}
+        assert list(described_losses(viscous, 65e3)) == []
+
+    def test_the_limit_of_decay_rates(self):
+        limits = iso_3095_decay_rate([100.0, 250.0, 500.0, 800.0, 2000.0, 9000.0])
+        np.testing.assert_array_equal(limits, [np.nan, 2.0, 6.0, 2.19, 0.8, np.nan])
+
+    def test_poles_follow_the_scattered_kernel(self, runs, wheel):
+        scatter = changed("wheel-on-rail", laws=["shifted"], numerics={"poles": None, "kernel": "scatter"})
+        scattered, poles = runs(scatter), wheel["rolling/contact_force"].sel(law="shifted")
+        assert scattered["track"].attrs["kernel_method"] == "scatter"
+        difference = np.abs(poles.values - scattered["rolling/contact_force"].values[0]).max()
+        assert difference < 0.005 * float(poles.std())
+
+
+def test_long_work_says_what_it_does(monkeypatch, tmp_path):
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
+    seen = {}
+    case = changed("ball-on-beam", laws=["areal", "table"], duration="6 ms")
+    asperity.run(case, lambda done, total, what: seen.setdefault(what, []).append((done, total)))
+    assert [what for what in seen if what.startswith("compiled functions")]
+    wanted = {"pressing the samples", "scanning for the contact filters", "scanning the path", "rolling"}
+    assert wanted <= set(seen)
+    for steps in seen.values():
+        assert steps[-1][0] == steps[-1][1]
+
+
+def test_an_interrupted_direct_run_goes_on_and_ends_the_same(runs, monkeypatch, tmp_path):
+    case = changed("ball-on-beam", laws=["direct"], duration="10 ms")
+    whole = runs(case)["rolling/contact_force"].values
+    monkeypatch.setenv("ASPERITY_CACHE", str(tmp_path))
+    rolled = []
+
+    def interrupt(done, total, what):
+        rolled.extend([done] * (what == "rolling"))
+        if what == "rolling" and done > total // 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        asperity.run(case, interrupt)
+    resumed = []
+    result = asperity.run(case, lambda done, total, what: resumed.extend([done] * (what == "rolling")))
+    assert resumed[0] >= rolled[-1] > 0
+    assert np.array_equal(result["rolling/contact_force"].values, whole)
