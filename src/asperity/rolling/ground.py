@@ -14,7 +14,7 @@ from asperity.rolling.path import Path
 from asperity.rolling.stability import Limit
 from asperity.rolling.steps import alternating_of_modes, padded, resolved_step
 from asperity.structures.beam import Beam, SupportedBeam
-from asperity.structures.modal import STATIC, Modal
+from asperity.structures.modal import HIGHEST, Modal
 from asperity.structures.moving_kernel import MovingKernel
 from asperity.structures.rail_poles import CELLS, RailBetween, RailPoles, over_the_bay
 
@@ -67,7 +67,7 @@ def _modes(over: Modal | None, path: Path, sensors: Array) -> Ground:
     least = float(np.linalg.eigvalsh((along * each) @ along.transpose(0, 2, 1)).min())
     softest = float(((along / natural) ** 2).sum(axis=2).max()) if natural.all() else np.inf
     frequencies = natural / (2.0 * np.pi)
-    followed = frequencies[frequencies < STATIC]  # others are meant to be static
+    followed = frequencies[frequencies <= HIGHEST]  # others are meant to be static
     limit = "the highest mode of the structure", float(followed.max(initial=0.0)), 4.0
     none, first = np.zeros(0, dtype=np.int64), np.zeros(n + 1, dtype=np.int64)
     decay, residue, now, scattered = map(np.zeros, ((0, 0), (0, 1, 0), (0, 1), (0, 1, 1)))
