@@ -49,6 +49,10 @@ class InputError(AsperityError, ValueError):
         message = f"{_cut(what)}: received {_cut(received)}; allowed: {allowed}."
         super().__init__(printable(f"{message} {remedy}".strip()))
 
+    def about(self, what: str, received: object = None) -> InputError:
+        """The same error, told of something else; what was received may be told in other words."""
+        return InputError(what, self.received if received is None else received, self.allowed, self.remedy)
+
 
 class CaseError(InputError):
     """One or more errors in a case, reported at once: the first ten, and how many there are.

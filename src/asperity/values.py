@@ -38,6 +38,7 @@ _WORDS = {
 LEAST, MOST = 1e-30, 1e30
 """Numbers in SI lie between these: nothing in mechanics is outside, and ten multiplied are finite."""
 
+EMPTY = "Add to it, or remove the key."
 BACKSLASH = (
     "In double quotes a backslash changes the letter after it: write Windows paths in single quotes, as in "
     r"file = 'C:\data\beam.x3p', or with / instead."
@@ -363,9 +364,10 @@ class Either(ValueKind):
 
 @dataclass(frozen=True)
 class ListOf(ValueKind):
-    """A list of values of one kind."""
+    """A list of values of one kind, of at least so many."""
 
     each: ValueKind
+    least: int = 0
 
     @property
     def allowed(self) -> str:
@@ -377,12 +379,15 @@ class ListOf(ValueKind):
         value = value.tolist() if isinstance(value, np.ndarray) else value
         if not isinstance(value, list | tuple):
             self.refuse(value)
+        if len(value) < self.least:
+            received = f"{len(value)} values" if len(value) else "an empty list"
+            raise InputError("value", received, f"at least {self.least}, each {self.each.allowed}", EMPTY)
         read, errors = [], []
         for number, item in enumerate(value, 1):
             try:
                 read.append(self.each(item, origin))
             except InputError as error:
-                errors.append(InputError(f"[{number}]", error.received, error.allowed, error.remedy))
+                errors.append(error.about(f"[{number}]"))
         if errors:
             raise Problems(errors)
         return tuple(read)
@@ -445,7 +450,7 @@ def _own_material(given: Mapping[Any, Any], origin: Origin) -> Material:
             read[name] = kind(given[name], origin)
             errors += outside(name, read[name], kind, within)
         except InputError as error:
-            errors.append(InputError(name, error.received, error.allowed, error.remedy))
+            errors.append(error.about(name))
     if errors:
         raise Problems(errors)
     return Material(**({"name": name_of_numbers(read["youngs_modulus"]), "citation": GIVEN} | read))

@@ -35,7 +35,7 @@ ball: [beam] loss_factor = -0.1 → a number at least 0 and at most 0.5
 ball: [beam] loss_factor = "0.1" → Write it without quotes and unit
 ball: [beam] sensors = "0.5 m" → beam.sensors: received '0.5 m'; allowed: a list, each a length
 ball: [beam] sensors = ["0.5 m", 3] → beam.sensors[2]: received 3
-ball: [beam] sensors = [] → at least one position
+ball: [beam] sensors = [] → at least 1, each a length at least 0
 ball: [beam] sensors = ["1.2 m"] → beam.sensors: received 1.2 m; allowed: positions on the beam, 0 to 1 m
 ball: [beam] sensors = ["-0.2 m"] → a length at least 0
 ball: [beam] suspension_frequency = "3 Hz" → only together with support = "free"
@@ -57,7 +57,7 @@ ball: [numerics] time_step = "1 ns" → 1e+09 time steps; allowed: at most 1e+08
 ball: [numerics] rtol = 0 → a number greater than 0 and at most 0.01
 ball: [numerics] rtol = inf → rtol: received inf
 ball: speed = "0 m/s" → a speed greater than 0
-ball: laws = [] → laws: received an empty list; allowed: at least one law
+ball: laws = [] → laws: received an empty list; allowed: at least 1, each "areal", 
 ball: laws = ["arreal"] → laws[1]: received 'arreal'; allowed: "areal"
 ball: laws = ["arreal"] → Did you mean "areal"?
 ball: laws = "areal" → laws: received 'areal'; allowed: a list

@@ -127,10 +127,8 @@ class FlatOnTread(MeasuredLine):
         return length**2 / (8.0 * self.radius)
 
     def problems(self) -> Iterator[InputError]:
-        """One source of texture; a flat that is small against the body, its length as its depth."""
+        """A flat that is small against the body, its length as its depth."""
         yield from super().problems()
-        if self.roughness is not None and self.line is not None:
-            yield InputError("", "both roughness and line", "one of them", "Remove one.")
         if self.flat is None:
             return
         deepest = DEEPEST_FLAT * self.radius
@@ -168,13 +166,15 @@ class FlatOnTread(MeasuredLine):
 class Rolling(FlatOnTread):
     """What rolls: one body, or several of the same kind behind one another."""
 
+    ALTERNATIVES = (("roughness", "line"), ("profile", "transverse_radius"), ("modes", "receptance"))
+
     type: str = key(
         Choice(("mass", "chain", "bogie", "carriage")),
         "mass",
         "a rigid mass; a chain of masses above it; a bogie on two; or a carriage on rolling elements",
     )
     positions: tuple[float, ...] = key(
-        ListOf(POSITION),
+        ListOf(POSITION, least=1),
         ["0 m"],
         "where the bodies are, by their rearmost contacts, ahead of the position of the run",
         "0 m to 100 km: trains are shorter",
@@ -398,8 +398,6 @@ class Rolling(FlatOnTread):
     def problems(self) -> Iterator[InputError]:
         """What each type of body needs, and contacts that are apart."""
         yield from super().problems()
-        if not self.positions:
-            yield InputError("positions", "an empty list", "at least one position", 'Take ["0 m"].')
         if len(self.offsets) > MOST_CONTACTS:
             yield InputError("positions", f"{len(self.offsets)} contacts", f"at most {MOST_CONTACTS}")
         yield from self._problems_of_type()
@@ -410,9 +408,6 @@ class Rolling(FlatOnTread):
         if len(ordered) > 1 and np.diff(ordered).min() <= 1e-9:
             received = "two contacts in the same place"
             yield InputError("positions", received, "contacts that are apart", "Move one of them.")
-        for one, other in (("profile", "transverse_radius"), ("modes", "receptance")):
-            if {one, other} <= self.given_names:
-                yield InputError("", f"both {one} and {other}", "one of them", "Remove one.")
         if self.receptance is not None and self.type != "mass":
             received, allowed = f"beside type {self.type}", "that of a mass, alone"
             yield InputError("receptance", received, allowed, "Give modes, or the receptance.")

@@ -51,7 +51,7 @@ class CaseKey(NamedTuple):
             error = problems.errors[0]
         except InputError as wrong:
             error = wrong
-        raise InputError(self.dotted, error.received, error.allowed, error.remedy)
+        raise error.about(self.dotted)
 
 
 def entries(model: type[Section], title: str = "") -> Iterator[CaseKey]:

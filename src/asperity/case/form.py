@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn, Self
+from typing import Any, ClassVar, NamedTuple, NoReturn, Self
 
 from asperity.arguments import nearest, shown
 from asperity.case.content import Keyed, content, described_value, holds_memory
@@ -35,6 +35,8 @@ class Section(Keyed):
     bases first; a class may declare a key of its base anew.
     """
 
+    ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
+    """Pairs of keys of which one may be given."""
     given_names: frozenset[str]
     """Keys that were given, not left out."""
 
@@ -91,7 +93,7 @@ class Section(Keyed):
                 left_out = name not in given or (given[name] is None and key.default is None)
                 held[name] = default_value(key) if left_out else key.kind(given[name], origin)
             except InputError as error:
-                errors.append(InputError(name, error.received, error.allowed, error.remedy))
+                errors.append(error.about(name))
             except Problems as problems:
                 errors += [_below(name, error) for error in problems.errors]
         for name, inner in self.sections().items():
@@ -116,7 +118,7 @@ class Section(Keyed):
         if implausible:
             return implausible
         self._choose()
-        return [*self._lonely(), *self.problems()]
+        return [*self._lonely(), *self._both_given(), *self.problems()]
 
     @classmethod
     def prepared(cls, given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -136,6 +138,11 @@ class Section(Keyed):
                 companion, _, value = self.keys[name].goes_with.partition("=")
                 wanted = f'{companion} = "{value}"' if value else companion
                 yield InputError(name, _shown(getattr(self, name)), f"only together with {wanted}")
+
+    def _both_given(self) -> Iterator[InputError]:
+        for pair in self.ALTERNATIVES:
+            if self.given_names.issuperset(pair):
+                yield InputError("", f"both {pair[0]} and {pair[1]}", "one of them", "Remove one.")
 
     def is_active(self, name: str) -> bool:
         """Whether the key that `name` goes with is there."""
@@ -227,7 +234,7 @@ def _unknown(name: str, here: type[Section], whole: type[Section], title: str) -
 def _below(name: str, error: InputError) -> InputError:
     """An error told of something inside what has a name."""
     dot = "" if error.what.startswith("[") or not error.what else "."
-    return InputError(f"{name}{dot}{error.what}", error.received, error.allowed, error.remedy)
+    return error.about(f"{name}{dot}{error.what}")
 
 
 def _told(error: InputError) -> str:

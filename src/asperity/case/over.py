@@ -97,7 +97,7 @@ class BeamKeys(RolledOver):
         goes_with="support=free",
     )
     supports: tuple[float, ...] | None = optional(
-        ListOf(POSITION),
+        ListOf(POSITION, least=1),
         ["0.4 m", "0.8 m"],
         "positions of supports beside those of the ends",
         "one span",
@@ -121,7 +121,7 @@ class BeamKeys(RolledOver):
         "0.1 Hz to 100 MHz: rolling is slower than ultrasound",
     )
     sensors: tuple[float, ...] | None = optional(
-        ListOf(POSITION),
+        ListOf(POSITION, least=1),
         ["0.2 m", "0.35 m", "0.5 m", "0.65 m", "0.8 m"],
         "positions of the accelerometers from the beam's start",
         "at 20, 35, 50, 65 and 80 % of the length",
@@ -177,17 +177,12 @@ class BeamKeys(RolledOver):
 
     def problems(self) -> Iterator[InputError]:
         """Sensors, and supports on the beam, in places of their own."""
-        if self.sensors == ():
-            remedy = "Remove the key for the default."
-            yield InputError("sensors", "an empty list", "at least one position", remedy)
         for position in self.sensors or ():
             if position > self.length:
                 allowed = f"positions on the beam, 0 to {self.length:g} m"
                 yield InputError("sensors", f"{position:g} m", allowed)
         if self.supports is None:
             return
-        if not self.supports:
-            yield InputError("supports", "an empty list", "at least one position", "Remove the key.")
         ends = () if self.support == "free" else (0.0, self.length)
         places = [*ends, *self.supports]
         if len(set(places)) < len(places) or max(places, default=0.0) > self.length:
@@ -202,6 +197,8 @@ class BeamKeys(RolledOver):
 class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named set")):
     """A track: a named, cited set, each single key of which overrides it; and its rail head."""
 
+    ALTERNATIVES = (("rail_head_radius", "rail_profile"),)
+
     name: str = key(Choice(tuple(TRACKS)), "x2000", "named set of parameters")
     rail_head_radius: float = key(
         LENGTH, "0.3 m", "radius of the rail head across the rail", "1 mm to 1 km: rail heads lie between"
@@ -215,7 +212,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
     rail_head_width: float = key(LENGTH, "72 mm", "width of the rail's head, which radiates", _WIDTHS)
     material: Material = key(MaterialOrName(), "steel", "material of the rail")
     points: tuple[float, ...] | None = optional(
-        ListOf(POSITION),
+        ListOf(POSITION, least=1),
         ["9 m", "9.3 m"],
         "positions at which the motion of the rail is recorded while it is passed, from a sleeper at 0 m",
         "over a sleeper and at mid-span in the middle of the run",
@@ -263,7 +260,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         return sleeper, sleeper + bay / 2
 
     def problems(self) -> Iterator[InputError]:
-        """Each damping either viscous or by a loss factor, one rail head, at least one point."""
+        """Each damping either viscous or by a loss factor."""
         told = self.overrides
         for part in ("pad", "ballast"):
             viscous, loss = f"{part}_damping", f"{part}_loss_factor"
@@ -271,18 +268,13 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
                 received = f"{told[viscous]:g} N s/m and {loss} = {told[loss]:g}"
                 remedy = "Remove one: damping is either viscous or by a loss factor."
                 yield InputError(viscous, received, "one of them", remedy)
-        if {"rail_head_radius", "rail_profile"} <= self.given_names:
-            yield InputError("", "both rail_head_radius and rail_profile", "one of them", "Remove one.")
-        if self.points == ():
-            remedy = "Remove the key for the default."
-            yield InputError("points", "an empty list", "at least one position", remedy)
 
     def problems_of_run(self, speed: float, first: float, last: float) -> Iterator[InputError]:
         """A track that exists and is damped, slower passed than its waves run; points that are passed."""
         try:
             track = self.model()
         except InputError as error:
-            yield InputError("track", error.received, error.allowed, error.remedy)
+            yield error.about("track")
             return
         if not track.is_damped:
             remedy = "Give the rail a loss factor, or damping to pads or ballast."
@@ -290,7 +282,7 @@ class TrackKeys(RolledOver, parameters=keys_of(Track, otherwise="of the named se
         try:
             track.refuse_speed(speed)
         except InputError as error:
-            yield InputError("speed", f"{speed:g} m/s", error.allowed, error.remedy)
+            yield error.about("speed", f"{speed:g} m/s")
         for point in self.points or ():
             if not first <= point <= last:
                 allowed = f"positions that are passed, {first:g} m to {last:g} m"
@@ -303,6 +295,8 @@ _AXIS = Choice(("x", "y", "z"))
 
 class StructureKeys(RolledOver):
     """Any structure, by its modes along the path; of a plane, its material alone."""
+
+    ALTERNATIVES = (("file", "receptances"),)
 
     file: Path | ModalStructure | None = optional(
         File(held=(Numbers,)),
@@ -435,16 +429,14 @@ class StructureKeys(RolledOver):
         return tuple(first + share * (last - first) for share in SENSOR_SHARES)
 
     def problems(self) -> Iterator[InputError]:
-        """One source, which can be read, and sensors on the structure."""
-        if self.file is not None and self.receptances is not None:
-            yield InputError("", "both file and receptances", "one of them", "Remove one.")
+        """A source that can be read, and sensors on the structure."""
         if not self.is_known:
             return
         try:
             first, last = self.modes.extent
         except InputError as error:
             name = "receptances" if self.file is None else "file"
-            yield InputError(name, f"{error.received} ({error.what})", error.allowed, error.remedy)
+            yield error.about(name, f"{error.received} ({error.what})")
             return
         for position in self.sensors or ():
             if not first <= position <= last:

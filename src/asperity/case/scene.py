@@ -79,7 +79,7 @@ class Case(Section):
         "0.1 mm/s to 1 km/s: slower rolling is static, and nothing rolls faster",
     )
     laws: tuple[str, ...] = key(
-        ListOf(LAW),
+        ListOf(LAW, least=1),
         ["areal", "shifted", "printed", "table", "linear-filtered", "linear"],
         "laws of the contact force; the first is the main one, direct where a flat or a joint is rolled over",
     )
@@ -372,8 +372,7 @@ class Case(Section):
         try:
             self.contact_resonance  # noqa: B018  of what it is made of, all is checked
         except InputError as error:
-            what = f"{self.ROLLING}.{error.what}" if error.what == "load" else error.what
-            yield InputError(what, error.received, error.allowed, error.remedy)
+            yield error.about(f"{self.ROLLING}.{error.what}") if error.what == "load" else error
             return
         yield from self._problems_of_laws()
         yield from self._problems_of_texture()
@@ -389,8 +388,6 @@ class Case(Section):
     def _problems_of_laws(self) -> Iterator[InputError]:
         """At least one law, each once, that needs no more texture than there is."""
         smooth = self.surface.has_line and not self.surface.has_samples
-        if not self.laws:
-            yield InputError("laws", "an empty list", "at least one law", 'Take laws = ["areal", "linear"].')
         for name in _sections_of_laws():
             if name not in self.section_names and getattr(self, name).given():
                 yield InputError(

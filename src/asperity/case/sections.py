@@ -60,7 +60,7 @@ class ContactKeys(Section):
         "10 nm to 100 m: samples lie between contacts and bodies",
     )
     approaches: tuple[float, ...] | None = optional(
-        ListOf(Quantity("m")),
+        ListOf(Quantity("m"), least=2),
         ["-0.5 um", "0 um", "1 um"],
         "increasing approaches at which the contact is reduced, from the plane that the nominal patch feels",
         "chosen from the load and the roughness",
@@ -124,9 +124,6 @@ class ContactKeys(Section):
 
     def problems(self) -> Iterator[InputError]:
         """Approaches increase; the filter order is even."""
-        if self.approaches is not None and len(self.approaches) < 2:
-            received = f"{len(self.approaches)} values"
-            yield InputError("approaches", received, "at least 2", "Or remove the key.")
         if any(later <= earlier for earlier, later in pairwise(self.approaches or ())):
             received = ", ".join(written(value, "m", "um") for value in self.approaches or ())
             yield InputError("approaches", received, "increasing values", "Sort them, each once.")
@@ -195,6 +192,8 @@ class NumericsKeys(Section):
 
 class NoiseKeys(Section):
     """What radiates where a track is rolled over, the labels of CNOSSOS-EU, and the train that passes."""
+
+    ALTERNATIVES = (("axle_positions", "wheelbase"),)
 
     rail_radiation: Path | NDArray[np.float64] | None = optional(
         TableFile(columns=(2,), read=read_ratios),
@@ -278,9 +277,7 @@ class NoiseKeys(Section):
         return Passage(train, speed, self.vehicles * length)
 
     def problems(self) -> Iterator[InputError]:
-        """One description of the axles, one behind the other."""
-        if {"axle_positions", "wheelbase"} <= self.given_names:
-            yield InputError("", "both axle_positions and wheelbase", "one of them", "Remove one.")
+        """Axles one behind the other."""
         axles = self.axle_positions
         if axles is not None and (axles[:1] != (0.0,) or any(b <= a for a, b in pairwise(axles))):
             received = ", ".join(written(axle, "m", "m") for axle in axles) or "an empty list"

@@ -166,6 +166,7 @@ class MeasuredMap(Section):
 class Surface(MeasuredLine, MeasuredMap):
     """What is rolled over: samples (measured or synthesised), the line of the path, and defects on top."""
 
+    ALTERNATIVES = (("file", "rms"), ("line", "spectrum"))
     IN_STRIPS: ClassVar[bool] = False
     """Whether spectra and lines are laid out as strips of any length, with the texture beside the line."""
 
@@ -293,14 +294,8 @@ class Surface(MeasuredLine, MeasuredMap):
         return any(each is not None for each in sources)
 
     def problems(self) -> Iterator[InputError]:
-        """At most one source of samples, at most one of the path, and wavelengths in order."""
+        """One source of samples, and wavelengths in order."""
         yield from super().problems()
-        for one, other, remedy in (
-            ("file", "rms", "Remove one: samples are either measured or synthesised."),
-            ("line", "spectrum", "Remove one: the path has one line."),
-        ):
-            if getattr(self, one) is not None and getattr(self, other) is not None:
-                yield InputError("", f"both {one} and {other}", "one of them", remedy)
         beside = [name for name in ("rms", "file") if getattr(self, name) is not None]
         if beside and self.has_areal_spectrum and not self.IN_STRIPS:
             remedy = "Remove one: samples have one source."
@@ -342,7 +337,7 @@ def surfaces_from(
             for each in (heights if heights.ndim == 3 else [heights])
         )
     except InputError as error:
-        raise Problems([InputError(name, error.received, error.allowed, error.remedy)]) from None
+        raise Problems([error.about(name)]) from None
     return keys | {name: made if len(made) > 1 else made[0]}
 
 

@@ -77,8 +77,7 @@ class TableFile(File):
         try:
             self.read(table)
         except InputError as error:
-            told = f"{error.received} in {name_of(table)}"
-            raise Problems([InputError("", told, error.allowed, error.remedy)]) from None
+            raise Problems([error.about("", f"{error.received} in {name_of(table)}")]) from None
         return table
 
 
@@ -122,9 +121,7 @@ def fitted_to(table: TableSource) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise InputError(
-            f"{error.what} in {name_of(table)}", error.received, error.allowed, error.remedy
-        ) from None
+        raise error.about(f"{error.what} in {name_of(table)}") from None
 
 
 def read_modes(table: TableSource) -> tuple[Array, Array, Array]:

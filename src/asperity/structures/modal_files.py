@@ -272,7 +272,7 @@ def _structure(found: dict[str, Any], source: str) -> ModalStructure:
         given: list[Any] = [found.get(name) for name in VARIABLES]
         return ModalStructure(*given)
     except InputError as error:
-        raise InputError(f"{error.what} in {source}", error.received, error.allowed, error.remedy) from None
+        raise error.about(f"{error.what} in {source}") from None
 
 
 def _table_of_modes(file: Path) -> dict[str, Array]:

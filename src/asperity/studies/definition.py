@@ -304,7 +304,7 @@ def _checked(data: dict[str, Any], origin: Origin, sweep: object, source: str | 
             axes.append(_axis(data.get("kind"), dotted, values, origin))
         except InputError as error:
             name = error.what if error.what == "kind" else f"sweep.{error.what}"
-            errors.append(str(InputError(name, error.received, error.allowed, error.remedy)))
+            errors.append(str(error.about(name)))
     count = math.prod(len(axis.values) for axis in axes)
     if count > MOST_MEMBERS:
         received = f"{' × '.join(str(len(axis.values)) for axis in axes)} = {count} members"
@@ -343,7 +343,7 @@ def _axis(kind: object, dotted: str, values: object, origin: Origin) -> SweptAxi
         try:
             found = entry.read(value, origin)
         except InputError as error:
-            raise InputError(f"{dotted}[{number}]", error.received, error.allowed, error.remedy) from None
+            raise error.about(f"{dotted}[{number}]") from None
         told = json.dumps(content(found))
         if told in read:
             raise InputError(dotted, f"{shown(value)} more than once", "each value once")
