@@ -1,10 +1,16 @@
-"""Sound power of rolling by CNOSSOS-EU."""
+"""Sound power of rolling by CNOSSOS-EU, and its labels against the track and the wheel of a case."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
+from asperity import WheelOnRail
+from asperity.errors import Grade, InputError, OutOfRangeWarning
 from asperity.reference import cnossos
-from asperity.scenes.noise import SOURCES, rolling_sound_power
+from asperity.running import prepare_case
+from asperity.scenes import noise
+from asperity.scenes.noise import rolling_sound_power
+from asperity.scenes.plan import planned_rows
 from asperity.spectra import a_weighted_total
 
 RAIL = cnossos.rail_roughness("iso3095")
@@ -15,40 +21,26 @@ FILTER = cnossos.contact_filter("50 kN, 920 mm")
 MATCHED = 10.0**1.7  # m/s: frequency bands fall on wavelength bands, 1 kHz on 50 mm
 
 
-def band(power, frequency):
+def at_1_khz(power):
     centres, levels = power
-    return levels[:, np.argmin(np.abs(centres - frequency))]
-
-
-def total(power):
-    return a_weighted_total(power[1], power[0])
+    return levels[:, np.argmin(np.abs(centres - 1000.0))]
 
 
 def test_levels_by_hand_where_bands_match():
     # 1 kHz at 50.1 m/s is 50 mm: rail −1.1 dB, disc-braked wheel −1.6 dB, filter −1.1 dB,
     # medium pad 104.4 dB, wheel 94.9 dB, four axles
     power = rolling_sound_power(MATCHED, RAIL, DISC, TRACK, WHEEL, contact_filter=FILTER, axles=4)
-    # 10^-0.11 + 10^-0.16 = 0.77625 + 0.69183 = 1.46808, 1.667 dB; −1.1 dB; 10 lg 4 = 6.021 dB: 6.588 dB
-    assert_allclose(band(power, 1000.0)[:2], [6.588 + 104.4, 6.588 + 94.9], atol=1e-3)
+    # 10^-0.11 + 10^-0.16 = 0.77625 + 0.69183 = 1.46808, 1.667 dB; −1.1 dB; 10 lg 4 = 6.021 dB: 6.588 dB;
     # the wheel, 9.5 dB below the track, adds 10 lg(1 + 10^-0.95) = 0.462 dB
-    assert_allclose(band(power, 1000.0)[2], 6.588 + 104.4 + 0.462, atol=1e-3)
-    assert SOURCES == ("track", "wheel", "total")
+    assert_allclose(at_1_khz(power), 6.588 + np.array([104.4, 94.9, 104.4 + 0.462]), atol=1e-3)
+    assert noise.SOURCES == ("track", "wheel", "total")
 
 
 def test_levels_by_hand_between_two_bands():
     # half a band faster: 1 kHz takes half of 50 mm (−1.1 dB) and half of 63 mm (0.9 dB)
     power = rolling_sound_power(10.0**1.75, RAIL, None, TRACK, WHEEL)
     # (10^-0.11 + 10^0.09)/2 = (0.77625 + 1.23027)/2 = 1.00326, 0.014 dB
-    assert_allclose(band(power, 1000.0)[0], 0.014 + 104.4, atol=1e-3)
-
-
-def test_smooth_wheel_and_smooth_rail():
-    both, rail, wheel = (
-        rolling_sound_power(MATCHED, r, w, TRACK, WHEEL)
-        for r, w in ((RAIL, DISC), (RAIL, None), (None, DISC))
-    )
-    energy = 10.0 ** (rail[1][0] / 10) + np.nan_to_num(10.0 ** (wheel[1][0] / 10))
-    assert_allclose(both[1][0], 10 * np.log10(energy), rtol=1e-12)
+    assert_allclose(at_1_khz(power)[0], 0.014 + 104.4, atol=1e-3)
 
 
 def test_bands_without_roughness_are_unknown_and_left_out():
@@ -56,19 +48,91 @@ def test_bands_without_roughness_are_unknown_and_left_out():
     centres, levels = rolling_sound_power(100.0, None, DISC, TRACK, WHEEL)
     assert np.isnan(levels[:, centres < 90.0]).all()
     assert np.isfinite(levels[:, centres > 90.0]).all()
-    assert np.isfinite(total((centres, levels))).all()
+    assert np.isfinite(a_weighted_total(levels, centres)).all()
 
 
 def test_order_and_nominal_centres_do_not_matter():
-    reversed_rail = (RAIL[0][::-1], RAIL[1][::-1])
     exact = (10.0 ** (np.rint(10 * np.log10(TRACK[0])) / 10), TRACK[1])
     a = rolling_sound_power(56.0, RAIL, DISC, TRACK, WHEEL)
-    b = rolling_sound_power(56.0, reversed_rail, DISC, exact, WHEEL)
+    b = rolling_sound_power(56.0, (RAIL[0][::-1], RAIL[1][::-1]), DISC, exact, WHEEL)
     assert_allclose(a[1], b[1], rtol=1e-14)
 
 
-def test_faster_is_louder():
-    slow, fast = (
-        rolling_sound_power(v, RAIL, DISC, TRACK, WHEEL, contact_filter=FILTER) for v in (20.0, 80.0)
+def case(noise=None, track=None, wheel=None, **keys):
+    sections = {"noise": noise or {}, "track": track or {}, "wheel": wheel or {}}
+    return WheelOnRail(surface={"spectrum": "iso3095"}, **sections, **keys)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "name"),
+    [(80e6, "soft"), (200e6, "soft"), (250e6, "medium"), (799e6, "medium"), (900e6, "hard"), (2e9, "hard")],
+)
+def test_pads_have_the_class_of_the_directive(stiffness, name):
+    """Table [2.3.b]: 150 to 250, 250 to 800, 800 to 1000 MN/m; or that which is given."""
+    track = {"pad_stiffness": stiffness}
+    assert noise.track_label(case(track=track)) == name
+    assert noise.track_label(case({"track_pad": "hard"}, track)) == "hard"
+
+
+@pytest.mark.parametrize(
+    ("diameter", "name"), [(0.6, "680 mm"), (0.8, "840 mm"), (0.9, "920 mm"), (1.25, "1200 mm")]
+)
+def test_wheels_have_the_nearest_diameter(diameter, name):
+    wheel = {"radius": diameter / 2}
+    assert noise.wheel_label(case(wheel=wheel)) == name
+    assert noise.wheel_label(case({"wheel_transfer": "680 mm"}, wheel=wheel)) == "680 mm"
+
+
+@pytest.mark.parametrize(
+    ("nearest", "message"),
+    [
+        (cnossos.nearest_pad_class, "stiffness of a rail pad"),
+        (cnossos.nearest_wheel_transfer, "wheel diameter"),
+    ],
+)
+def test_what_is_not_positive_has_no_class(nearest, message):
+    with pytest.raises(InputError, match=message):
+        nearest(0.0)
+
+
+NO_PADS = "It has no class for such pads; take the sound power from the vibration."
+
+
+@pytest.mark.parametrize(
+    ("sections", "told"),
+    [
+        ({}, None),
+        ({"noise": {"track_pad": "medium"}, "track": {"pad_stiffness": 250e6}}, None),
+        (
+            {"noise": {"track_pad": "hard"}, "track": {"pad_stiffness": 300e6}},
+            "dynamic stiffness of the rail pads, for CNOSSOS-EU: 300 MN/m, in range 800 to 1000 MN/m, those "
+            'of the class "hard". CNOSSOS-EU\'s sound power is that of another track or wheel. '
+            'Set noise.track_pad = "medium", or leave it out.',
+        ),
+        ({"track": {"pad_stiffness": 100e6}}, f'the class "soft". … {NO_PADS}'),
+        ({"track": {"pad_stiffness": 1200e6}}, f'the class "hard". … {NO_PADS}'),
+        ({"track": {"sleeper_mass": 40.0}}, "half a sleeper, for CNOSSOS-EU: 40 kg, in range 110 to 210 kg"),
+        ({"track": {"sleeper_mass": 400.0}}, "for CNOSSOS-EU: 400 kg, in range 110 to 210 kg"),
+        (
+            {"noise": {"wheel_transfer": "920 mm"}, "wheel": {"radius": 0.34}},
+            "diameter of the wheel, for CNOSSOS-EU: 680 mm, in range within 15 % of 920 mm … "
+            'Set noise.wheel_transfer = "680 mm", or leave it out.',
+        ),
+        ({"wheel": {"radius": 0.25}}, "It has no class for such a wheel."),
+    ],
+)
+def test_a_label_that_does_not_fit_is_told_with_what_to_do(sections, told):
+    found = noise.findings_of_labels(case(**sections))
+    assert [finding.grade for finding in found] == [Grade.WARNING] * (told is not None)
+    assert all(part in finding.message for finding in found for part in told.split(" … "))
+
+
+def test_a_check_says_whose_sound_power_is_computed():
+    found = dict(planned_rows(prepare_case(case())))
+    assert found["sound power"] == (
+        "of rail and sleepers, for the wheel is rigid; by CNOSSOS-EU for soft pads and a wheel of 920 mm"
     )
-    assert (total(fast) > total(slow) + 10.0).all()
+    with pytest.warns(OutOfRangeWarning, match='those of the class "hard"'):
+        planned_rows(prepare_case(case({"track_pad": "hard"})))
+    without = prepare_case(case({"track_pad": "hard"}, laws=["hertz"]))
+    assert "CNOSSOS" not in dict(planned_rows(without))["sound power"]

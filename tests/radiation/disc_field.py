@@ -14,7 +14,7 @@ _FARTHEST = 4000.0
 
 def axial_ratio(order, ka, terms=12):
     """Sound power over ρ c 2πa² ⟨v²⟩."""
-    node, weight = np.polynomial.legendre.leggauss(200)
+    node, weight = np.polynomial.legendre.leggauss(60)
     angle = 0.25 * np.pi * (node + 1.0)
     zeta, share = [ka * np.sin(angle)], [0.25 * np.pi * weight * ka * np.cos(angle)]
     root = [1j * ka * np.cos(angle)]

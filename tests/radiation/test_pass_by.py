@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
-from scipy.special import sici
 
 from asperity.errors import ComputationError, InputError
 from asperity.radiation import pass_by
@@ -21,9 +20,9 @@ def decibels(ratio):
     return 10 * np.log10(ratio)
 
 
-def levels(source, passage, receiver=FLAT):
-    time = passage.times(receiver, float(np.max(source.length)))
-    return pass_by.pass_by_levels(time, squared_pressure(source, passage, receiver, time), passage.passed)
+def levels(source, passage):
+    time = passage.times(FLAT, float(np.max(source.length)))
+    return pass_by.pass_by_levels(time, squared_pressure(source, passage, FLAT, time), passage.passed)
 
 
 def test_a_source_opposite_is_that_of_a_half_sphere():
@@ -36,18 +35,9 @@ def test_a_source_opposite_is_that_of_a_half_sphere():
     assert_allclose(found, IMPEDANCE / (2 * np.pi * (56.25 + 0.5476)), rtol=1e-9)
 
 
-@pytest.mark.parametrize("length", [0.05, 0.5, 3.0, 30.0, 300.0])
-def test_spread_opposite_the_receiver_against_the_auxiliary_function(length):
-    # ∫_0^∞ exp(−aξ)/(d² + ξ²) dξ = f(ad)/d, f(x) = Ci(x) sin x + (π/2 − Si(x)) cos x
-    x = 2.0 * D / length
-    si, ci = sici(x)
-    auxiliary = ci * np.sin(x) + (np.pi / 2 - si) * np.cos(x)
-    assert_allclose(divergence(length, D, 0.0), 2.0 / (length * D) * auxiliary, rtol=1e-9)
-
-
 @pytest.mark.parametrize("length", [0.3, 4.0, 60.0])
-@pytest.mark.parametrize("along", [-90.0, -11.0, 2.0, 35.0])
-def test_spread_elsewhere_against_quadrature(length, along):
+@pytest.mark.parametrize("along", [-90.0, -11.0, 0.0, 2.0, 35.0])
+def test_the_spread_against_quadrature(length, along):
     def integrand(xi):
         return np.exp(-2.0 * abs(xi) / length) / (D**2 + (along + xi) ** 2) / length
 
@@ -66,22 +56,16 @@ def test_limits_of_the_spread():
     assert_allclose(divergence(1e6, D, 0.0), np.pi / D / 1e6, rtol=2e-4)  # W/ℓ per length near the middle
 
 
-@pytest.mark.parametrize("length", [0.0, 1.0, 10.0, 40.0])
+@pytest.mark.parametrize("length", [0.0, 10.0, 40.0])
 def test_exposure_does_not_depend_on_the_spread(length):
     """∫ W ρc Q/(4π (d² + v² t²)) dt = W ρc Q/(4 d v), and a spread only delays parts of it."""
-    passage, source = Passage([0.0], 20.0), AxleSource(WATT, length)
-    closed = 1.0 * IMPEDANCE * 2.0 / (4.0 * D * 20.0)
-    assert_allclose(pass_by.exposure(source, passage, FLAT), closed, rtol=1e-12)
-    for axles, speed, receiver, share in (
-        ([0.0, 2.5], 20.0, FLAT, 2.0),
-        ([0.0, 2.5], 40.0, FLAT, 1.0),
-        ([0.0, 2.5], 20.0, Receiver(2 * D, 0.0), 1.0),
-    ):
-        found = pass_by.exposure(source, Passage(axles, speed), receiver)
+    source, closed = AxleSource(WATT, length), 1.0 * IMPEDANCE * 2.0 / (4.0 * D * 20.0)
+    for axles, speed, distance, share in (([0.0], 20.0, D, 1.0), ([0.0, 2.5], 40.0, 2 * D, 0.5)):
+        found = pass_by.exposure(source, Passage(axles, speed), Receiver(distance, 0.0))
         assert_allclose(found, share * closed, rtol=1e-12)
     half = 4000.0  # m: arctan leaves 2/π d/half beyond it
     time = np.linspace(-half, half, 400_001) / 20.0
-    integral = np.trapezoid(squared_pressure(source, passage, FLAT, time)[0], time)
+    integral = np.trapezoid(squared_pressure(source, Passage([0.0], 20.0), FLAT, time)[0], time)
     assert_allclose(integral, closed * (1.0 - 2.0 / np.pi * D / half), rtol=2e-5)
 
 
@@ -89,19 +73,10 @@ def test_axles_pass_one_after_the_other_the_same_before_and_after():
     source, time = AxleSource(np.array([1.0, 2.0]), np.array([0.0, 6.0])), np.linspace(-1.0, 2.0, 601)
     both = squared_pressure(source, Passage([0.0, 20.0], 40.0), HERE, time)
     first, second = (squared_pressure(source, Passage([0.0], 40.0), HERE, time - lag) for lag in (0.0, 0.5))
-    assert both.shape == (2, 601)
     assert_allclose(both, first + second, rtol=1e-4)
     for passed, lag in ((first, 0.0), (second, 0.5)):
         assert time[passed.argmax(axis=1)] == pytest.approx(lag, abs=0.006)
     assert_allclose(first[:, :401], first[:, 400::-1], rtol=1e-6)
-
-
-def test_many_axles_are_a_line_source():
-    """An infinite line of W' = 1 W/3 m: p² = W' ρc Q/(4 d)."""
-    passage = Passage(3.0 * np.arange(3001), 30.0)
-    middle = passage.axles[-1] / 2 / passage.speed
-    found = squared_pressure(AxleSource(WATT, 4.0), passage, FLAT, middle + np.linspace(0.0, 0.1, 30))
-    assert_allclose(found[0].mean(), IMPEDANCE * 2.0 / (4.0 * D) / 3.0, rtol=2e-3)  # 2/π d/4500 m is missing
 
 
 def test_front_and_rear():
@@ -112,10 +87,7 @@ def test_front_and_rear():
 
 
 @pytest.mark.parametrize("length", [0.0, 3.0, 40.0])
-@pytest.mark.parametrize(
-    "passage",
-    [Passage([0.0], 56.0), Passage([0.0], 56.0, 200.0), Passage([0.0, 2.5, 19.0, 21.5], 20.0, 26.4)],
-)
+@pytest.mark.parametrize("passage", [ONE, Passage([0.0, 2.5, 19.0, 21.5], 20.0, 26.4)])
 def test_the_record_holds_the_whole_rise_and_fall(passage, length):
     time = passage.times(HERE, length)
     found = squared_pressure(AxleSource(WATT, length), passage, HERE, time)[0]
@@ -132,15 +104,9 @@ def test_time_weighting_of_steps():
     # the ramp of one sample before the step: its middle lies half a sample before zero
     assert_allclose(found[after], 1.0 - np.exp(-(time[after] + step / 2) / FAST), atol=1e-5)
     assert (found[time < -1.5 * step] == 0.0).all()
-    values = np.ones((2, 400))
-    values[1, 100:] = 0.0
-    steady, falling = pass_by.time_weighted(values, 5e-3)
+    steady, falling = pass_by.time_weighted(np.stack([np.ones(400), np.arange(400) < 100.0]), 5e-3)
     assert_allclose(steady, 1.0, rtol=1e-12)
     assert_allclose(np.diff(pass_by.pressure_level(falling[110:])) / 5e-3, -34.7, atol=0.05)
-    time = np.linspace(-2.0, 2.0, 16_001)  # nothing depends on the step
-    pressure, step = 1.0 / (1.0 + (time / 0.1) ** 2), time[1] - time[0]
-    coarse = pass_by.time_weighted(pressure[::40], 40 * step)
-    assert_allclose(coarse, pass_by.time_weighted(pressure, step)[::40], rtol=2e-3)
 
 
 def test_levels_of_a_point_source_with_a_train_of_known_length():
@@ -154,18 +120,15 @@ def test_levels_of_a_point_source_with_a_train_of_known_length():
         assert_allclose(level, decibels(mean / 4e-10), atol=1e-2)
 
 
-@pytest.mark.parametrize("speed", [0.5, 20.0, 56.0, 100.0])
+@pytest.mark.parametrize("speed", [0.5, 20.0, 100.0])
 def test_the_maximum_is_that_of_the_weighted_pressure(speed):
-    """Against quadrature of ∫ exp(−(t − u)/τ) p²(u) du/τ at its maximum; slowly, the level at rest."""
+    """Against quadrature of ∫ exp(−(t − u)/τ) p²(u) du/τ at its maximum."""
     lags = np.linspace(0.0, 60.0 * FAST, 40_001)
     t = np.linspace(0.0, 2.0, 41)[:, None] * min(D / speed, FAST)
     weighted = np.exp(-lags / FAST) / FAST / (D**2 + (speed * (t - lags)) ** 2)
     largest = 1e-3 * IMPEDANCE / (2 * np.pi) * np.trapezoid(weighted, lags).max()
     found = levels(MILLIWATT, Passage([0.0], speed)).maximum[0]
     assert found == pytest.approx(pass_by.pressure_level(largest), abs=0.02)
-    if speed == 0.5:
-        at_rest = pass_by.pressure_level(1e-3 * IMPEDANCE / (2 * np.pi * D**2))
-        assert found == pytest.approx(at_rest, abs=0.01)
 
 
 def test_a_long_train_has_the_level_of_its_line_of_axles():
@@ -185,6 +148,9 @@ def test_a_long_train_has_the_level_of_its_line_of_axles():
     assert found.maximum[0] == pytest.approx(line, abs=0.3)
 
 
+TIME = np.linspace(-1.0, 1.0, 101)
+
+
 def test_sources_share_the_measured_time_and_add_up():
     passage = Passage([0.0, 2.5], 30.0)
     time = passage.times(FLAT, 20.0)
@@ -192,19 +158,14 @@ def test_sources_share_the_measured_time_and_add_up():
     found = pass_by.pass_by_levels(time, [*parts, sum(parts)], passage.passed)
     for one in (found.equivalent, found.transit_exposure):
         assert decibels(np.sum(10 ** (one[:2] / 10))) == pytest.approx(one[2], abs=1e-9)
-    assert found.maximum[2] < decibels(np.sum(10 ** (found.maximum[:2] / 10))) + 1e-9
+    without = pass_by.pass_by_levels(TIME, 1.0 / (1.0 + TIME[None] ** 2), None)
+    assert np.isfinite(without.maximum).all()
+    assert np.isnan([without.equivalent, without.transit_exposure]).all()
 
 
-TIME = np.linspace(-1.0, 1.0, 101)
-
-
-def test_without_a_length_there_is_a_maximum_only():
-    found = pass_by.pass_by_levels(TIME, 1.0 / (1.0 + TIME[None] ** 2), None)
-    assert np.isfinite(found.maximum).all()
-    assert np.isnan([found.equivalent, found.transit_exposure]).all()
-    with pytest.raises(
-        ComputationError, match="does not fall by 10 dB before and after the train between -1"
-    ):
+def test_a_level_that_does_not_fall_is_refused():
+    message = "does not fall by 10 dB before and after the train between -1"
+    with pytest.raises(ComputationError, match=message):
         pass_by.pass_by_levels(TIME, np.ones((1, 101)), (-0.5, 0.5))
 
 
