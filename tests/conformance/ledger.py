@@ -8,17 +8,20 @@ Expected values come from outside: closed forms evaluated by mpmath, printed val
 from __future__ import annotations
 
 import importlib
+import inspect
 import math
 import sys
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 from asperity.errors import PhysicsWarning
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
 
 PAGE = Path(__file__).parents[2] / "CONFORMANCE.md"
 ROOMS = {
@@ -36,20 +39,39 @@ ROOMS = {
 """Modules of this folder that hold the checks, and their headings."""
 
 
+SIZES = {
+    "µm": 1e-6, "mm": 1e-3, "nm": 1e-9, "1/mm": 1e3, "µm²": 1e-12, "µm³": 1e-18, "1e-3/m2": 1e-3,
+    "kN": 1e3, "MPa": 1e6, "GPa": 1e9, "MPa²·10⁶": 1e18, "MN/m": 1e6, "GN/m": 1e9,
+    "µm/N": 1e-6, "nm/N": 1e-9, "pm/N": 1e-12,
+}  # fmt: skip
+"""Units of rows that are not those of SI."""
+
+
 @dataclass(frozen=True)
 class Check:
     """One row: what is checked, where the expected value comes from, and how near it has to be.
 
-    `tolerance` is relative to the expected value, absolute where `absolute` is set (in the unit).
+    Both values are single numbers of any type, given in SI and kept in the unit. `tolerance` is relative to
+    the expected value, absolute where `absolute` is set (in the unit).
     """
 
-    what: str
-    source: str
+    quantity: str
     expected: float
     obtained: float
-    tolerance: float
     unit: str = ""
-    absolute: bool = False
+    body: str = field(default="", kw_only=True)  # that has the quantity, where several rows are of one
+    source: str = field(kw_only=True)
+    tolerance: float = field(kw_only=True)
+    absolute: bool = field(default=False, kw_only=True)
+
+    def __post_init__(self) -> None:
+        for name in ("expected", "obtained"):
+            number = float(np.asarray(getattr(self, name)).item())
+            object.__setattr__(self, name, number / SIZES.get(self.unit, 1.0))
+
+    @property
+    def what(self) -> str:
+        return f"{self.body}: {self.quantity}" if self.body else self.quantity
 
     @property
     def deviation(self) -> float:
@@ -66,8 +88,12 @@ Checks = Callable[[], Iterator[Check]]
 
 
 def all_checks() -> dict[str, list[Checks]]:
-    """Functions that yield checks, by module."""
-    return {name: list(importlib.import_module(name).CHECKS) for name in ROOMS}
+    """Functions that yield checks, by module: all generators of it."""
+    modules = {name: importlib.import_module(name) for name in ROOMS}
+    return {
+        name: [each for each in vars(module).values() if inspect.isgeneratorfunction(each)]
+        for name, module in modules.items()
+    }
 
 
 @cache

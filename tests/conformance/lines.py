@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import mpmath as mp
 import numpy as np
 from ledger import Check
@@ -17,94 +19,47 @@ A_WEIGHTING = {
 
 
 def weighting():
+    row = partial(Check, source="IEC 61672-1, Table 3, printed to 0.1 dB", tolerance=0.0501, absolute=True)
     for nominal, printed in A_WEIGHTING.items():
         exact = 1000 * 10 ** (round(10 * np.log10(nominal / 1000)) / 10)
-        found = float(a_weighting(exact))
-        yield Check(
-            f"A-weighting at {nominal:g} Hz",
-            "IEC 61672-1, Table 3, printed to 0.1 dB",
-            printed,
-            found,
-            0.0501,
-            "dB",
-            absolute=True,
-        )
+        yield row(f"A-weighting at {nominal:g} Hz", printed, a_weighting(exact), "dB")
 
 
 def bands():
-    centres, low, high = third_octave_bands(90.0, 5500.0)
-    source = "IEC 61260-1, 1000·10^(n/10), edges ·10^±(1/20)"
+    found = np.array(third_octave_bands(90.0, 5500.0))  # centres, lower and upper edges
+    row = partial(Check, source="IEC 61260-1, 1000·10^(n/10), edges ·10^±(1/20)", tolerance=1e-12)
+
+    def of(n):
+        return found[:, np.argmin(np.abs(np.log10(found[0] / 1000) - n / 10))]
+
     for n in (-10, -3, 2, 7):
-        i = int(np.argmin(np.abs(np.log10(centres / 1000) - n / 10)))
-        yield Check(
-            f"one-third octave n = {n}: centre",
-            source,
-            float(1000 * mp.mpf(10) ** (mp.mpf(n) / 10)),
-            centres[i],
-            1e-12,
-            "Hz",
-        )
-    i = int(np.argmin(np.abs(centres - 1000)))
-    yield Check(
-        "one-third octave of 1 kHz: lower edge",
-        source,
-        float(1000 * mp.mpf(10) ** mp.mpf("-0.05")),
-        low[i],
-        1e-12,
-        "Hz",
-    )
-    yield Check(
-        "one-third octave of 1 kHz: upper edge",
-        source,
-        float(1000 * mp.mpf(10) ** mp.mpf("0.05")),
-        high[i],
-        1e-12,
-        "Hz",
-    )
+        yield row(f"one-third octave n = {n}: centre", 1000 * mp.mpf(10) ** (mp.mpf(n) / 10), of(n)[0], "Hz")
+    for which, edge, exponent in (("lower", 1, "-0.05"), ("upper", 2, "0.05")):
+        expected = 1000 * mp.mpf(10) ** mp.mpf(exponent)
+        yield row(f"one-third octave of 1 kHz: {which} edge", expected, of(0)[edge], "Hz")
     lengths = 1.0 / third_octave_bands(1 / 0.3, 1 / 3e-3)[0]
     nearest = lengths[np.argmin(np.abs(lengths - 0.05))]
-    yield Check(
-        "wavelength band called 50 mm: centre",
-        "base 10 in wavenumber, 10^(13/10) 1/m",
-        float(1 / mp.mpf(10) ** mp.mpf("1.3")) * 1e3,
-        nearest * 1e3,
-        1e-12,
-        "mm",
-    )
+    expected, source = 1 / mp.mpf(10) ** mp.mpf("1.3"), "base 10 in wavenumber, 10^(13/10) 1/m"
+    yield row("wavelength band called 50 mm: centre", expected, nearest, "mm", source=source)
 
 
 def densities():
-    step, n = 1e-4, 8000
-    t = step * np.arange(n)
-    sine = 3.0 * np.sin(2 * np.pi * 1000.0 * t)
+    step = 1e-4
+    sine = 3.0 * np.sin(2 * np.pi * 1000.0 * step * np.arange(8000))
     frequency, density = psd(sine, step, segment=2000)
-    total = float(density.sum() * (frequency[1] - frequency[0]))
-    yield Check("PSD of a sine of 3 N: its integral", "A²/2", 4.5, total, 1e-9, "N²")
-    level = band_levels(frequency, density)
-    i = int(np.argmin(np.abs(level[0] - 1000.0)))
-    yield Check(
-        "level of that sine in its one-third octave",
-        "10 lg 4.5",
-        float(10 * mp.log10(4.5)),
-        float(level[1][i]),
-        1e-4,
-        "dB",
-        absolute=True,
-    )
-    yield Check(
-        "two equal levels together",
-        "10 lg 2",
-        float(80 + 10 * mp.log10(2)),
-        float(energy_sum([80.0, 80.0])),
-        1e-12,
-        "dB",
-    )
+    total = density.sum() * (frequency[1] - frequency[0])
+    yield Check("PSD of a sine of 3 N: its integral", 4.5, total, "N²", source="A²/2", tolerance=1e-9)
+    band, level = band_levels(frequency, density)
+    row = partial(Check, unit="dB", absolute=True)
+    expected, found = 10 * mp.log10(4.5), level[np.argmin(np.abs(band - 1000.0))]
+    what = "level of that sine in its one-third octave"
+    yield row(what, expected, found, source="10 lg 4.5", tolerance=1e-4)
+    expected, found = 80 + 10 * mp.log10(2), energy_sum([80.0, 80.0])
+    yield row("two equal levels together", expected, found, source="10 lg 2", tolerance=1e-12, absolute=False)
 
 
 def units():
-    yield Check("unit door: 1 inch", "international inch", 25.4, quantity("1 inch", "m") * 1e3, 1e-12, "mm")
-    yield Check("unit door: 1 kgf", "standard gravity", 9.80665, quantity("1 kgf", "N"), 1e-12, "N")
-    yield Check("unit door: 200 km/h", "SI", 200 / 3.6, quantity("200 km/h", "m/s"), 1e-12, "m/s")
-
-
-CHECKS = (weighting, bands, densities, units)
+    row = partial(Check, body="unit door", tolerance=1e-12)
+    yield row("1 inch", 25.4e-3, quantity("1 inch", "m"), "mm", source="international inch")
+    yield row("1 kgf", 9.80665, quantity("1 kgf", "N"), "N", source="standard gravity")
+    yield row("200 km/h", 200 / 3.6, quantity("200 km/h", "m/s"), "m/s", source="SI")

@@ -1,4 +1,4 @@
-"""Make `data/peers.json`: forces of tamaas and ContactMechanics on a rough contact.
+"""Make `data/peers.json` and `data/plastic_peer.json`: rough contacts of tamaas and ContactMechanics.
 
     benchmarks/peers.sh FOLDER && FOLDER/bin/python tests/conformance/make_peers.py
 
@@ -14,45 +14,84 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-from peers_worker import contact_mechanics, tamaas
+DATA = Path(__file__).parent / "data"
+APPROACH = 0.9e-6
+GRID = {"cells": 48, "stride": 5, "spacing": 8e-6, "radius": 25e-3, "modulus": 115e9, "approach": APPROACH}
+HARDNESS = 0.6e9
 
-CELLS, STRIDE, SPACING, RADIUS, MODULUS, APPROACH = 48, 5, 8e-6, 25e-3, 115e9, 0.9e-6
+
+def ball_on_cells(n, spacing, radius):
+    x = (np.arange(n) - n // 2) * spacing
+    return (x[:, None] ** 2 + x[None, :] ** 2) / (2 * radius)
 
 
-def main() -> None:
+def heights_of(problem):
+    """Heights under all positions of the ball."""
+    n, spacing = problem["cells"], problem["spacing"]
+    rows = np.arange(n + 2 * problem["stride"])[:, None] * spacing
+    columns = np.arange(n)[None, :] * spacing
+    return sum(a * np.cos(kx * rows + ky * columns + phase) for a, kx, ky, phase in problem["waves"])
+
+
+def gaps_of(problem):
+    """Gaps of the three contacts."""
+    n, heights = problem["cells"], heights_of(problem)
+    body = ball_on_cells(n, problem["spacing"], problem["radius"])
+    return [body - heights[m * problem["stride"] :][:n] for m in range(3)]
+
+
+def waves():
+    """Amplitude, wavenumbers along and across, and phase of each wave of the surface."""
     rng = np.random.default_rng(23)
     wavelength = np.exp(rng.uniform(np.log(40e-6), np.log(300e-6), 24))
     angle, phase = rng.uniform(0, np.pi, 24), rng.uniform(0, 2 * np.pi, 24)
     size = 0.2e-6 * wavelength / np.sqrt((wavelength**2).sum() / 2)
-    waves = np.stack(
-        [size, 2 * np.pi / wavelength * np.cos(angle), 2 * np.pi / wavelength * np.sin(angle), phase], 1
-    )
-    x = (np.arange(CELLS) - CELLS // 2) * SPACING
-    body = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * RADIUS)
-    rows = np.arange(CELLS + 2 * STRIDE)[:, None] * SPACING
-    columns = np.arange(CELLS)[None, :] * SPACING
-    heights = sum(a * np.cos(kx * rows + ky * columns + p) for a, kx, ky, p in waves)
-    problem = {
-        "body": body, "heights": heights, "offsets": np.array([0, STRIDE, 2 * STRIDE]),
-        "approaches": np.full(3, APPROACH), "spacing": SPACING, "modulus": MODULUS, "rtol": 1e-9,
-        "smooth_force": 4 / 3 * MODULUS * np.sqrt(RADIUS) * APPROACH**1.5,
+    number = 2 * np.pi / wavelength
+    return np.stack([size, number * np.cos(angle), number * np.sin(angle), phase], 1).tolist()
+
+
+def elastic(problem):
+    """Forces by program."""
+    from peers_worker import contact_mechanics, tamaas
+
+    spacing, forces = problem["spacing"], {}
+    body = ball_on_cells(problem["cells"], spacing, problem["radius"])
+    asked = {
+        "body": body, "heights": heights_of(problem), "offsets": problem["stride"] * np.arange(3),
+        "approaches": np.full(3, APPROACH), "spacing": spacing, "modulus": problem["modulus"], "rtol": 1e-9,
+        "smooth_force": 4 / 3 * problem["modulus"] * np.sqrt(problem["radius"]) * APPROACH**1.5,
     }  # fmt: skip
-    forces = {}
     for name, make in (("tamaas", tamaas), ("ContactMechanics", contact_mechanics)):
-        solve, _ = make(problem, "cold")
-        pressures = [solve(body - heights[m : m + CELLS], i)[0] for i, m in enumerate(problem["offsets"])]
-        forces[name] = [float(p.sum() * SPACING**2) for p in pressures]
-    stored = {
-        "problem": {
-            "cells": CELLS, "stride": STRIDE, "spacing": SPACING, "radius": RADIUS, "modulus": MODULUS,
-            "approach": APPROACH, "waves": waves.tolist(),
-        },
-        "versions": {name: version(name) for name in forces},
-        "forces": forces,
-    }  # fmt: skip
-    (Path(__file__).parent / "data" / "peers.json").write_text(json.dumps(stored, indent=1))
+        solve, _ = make(asked, "cold")
+        pressures = [solve(gap, i)[0] for i, gap in enumerate(gaps_of(problem))]
+        forces[name] = [float(p.sum() * spacing**2) for p in pressures]
+    return {"problem": problem, "versions": {name: version(name) for name in forces}, "forces": forces}
+
+
+def plastic(problem):
+    """Force and marks of the same contacts with hardness, by ContactMechanics."""
+    from ContactMechanics import FreeFFTElasticHalfSpace
+    from ContactMechanics.PlasticSystemSpecialisations import PlasticNonSmoothContactSystem
+    from SurfaceTopography import PlasticTopography, Topography
+
+    n, area = problem["cells"], problem["spacing"] ** 2
+    size = (n * problem["spacing"], n * problem["spacing"])
+    half_space = FreeFFTElasticHalfSpace((n, n), problem["modulus"], size)
+    contacts = []
+    for gap in gaps_of(problem):
+        surface = PlasticTopography(Topography(-gap, size), HARDNESS)
+        system = PlasticNonSmoothContactSystem(half_space, surface)
+        within = {"pentol": 1e-10 * (APPROACH - gap.min()), "forcetol": 1e-9, "maxiter": 5000}
+        found = system.minimize_proxy(offset=APPROACH, **within)
+        assert found.success
+        lowered, force = -np.asarray(surface.plastic_displ), np.maximum(found.jac, 0.0).sum()
+        sums = {"force": force, "volume": lowered.sum() * area, "deepest": lowered.max()}
+        contacts.append({name: float(value) for name, value in sums.items()})
+    return {"version": version("ContactMechanics"), "hardness": HARDNESS, "contacts": contacts}
 
 
 if __name__ == "__main__":
-    main()
+    sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+    problem = GRID | {"waves": waves()}
+    for name, make in (("peers", elastic), ("plastic_peer", plastic)):
+        (DATA / f"{name}.json").write_text(json.dumps(make(problem), indent=1))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 
 import mpmath as mp
@@ -26,146 +27,83 @@ MM, UM = 1e-3, 1e-6
 
 
 def circle():
-    heights = np.zeros(401)
-    heights[200] = 50 * UM
-    rolled = roll_over(Profile(heights, MM), 0.375).heights
+    def drop(away):  # of a circle of 0.375 m, m
+        return mp.mpf("0.375") - mp.sqrt(mp.mpf("0.375") ** 2 - mp.mpf(away * MM) ** 2)
+
+    heights, slot = np.zeros(401), np.zeros(401)
+    heights[200], slot[195:206] = 50 * UM, -1 * MM
+    rolled, left = (roll_over(Profile(each, MM), 0.375).heights for each in (heights, slot))
     source = "a circle of 0.375 m that rests on a point"
     for away in (1, 4):
-        drop = mp.mpf("0.375") - mp.sqrt(mp.mpf("0.375") ** 2 - mp.mpf(away * MM) ** 2)
         what = f"EN 15610: rolled over a point of 50 µm, height {away} mm beside it"
-        yield Check(what, source, float(50 - drop * 1e6), rolled[200 + away] * 1e6, 1e-9, "µm")
-    slot = np.zeros(401)
-    slot[195:206] = -1 * MM
-    rolled = roll_over(Profile(slot, MM), 0.375).heights
-    sagitta = mp.mpf("0.375") - mp.sqrt(mp.mpf("0.375") ** 2 - mp.mpf(6 * MM) ** 2)
-    yield Check(
-        "EN 15610: rolled over a slot of 12 mm, depth that is left",
-        "sagitta of the circle",
-        float(sagitta * 1e6),
-        -rolled[200] * 1e6,
-        1e-6,
-        "µm",
-    )
+        yield Check(what, 50 * UM - drop(away), rolled[200 + away], "µm", source=source, tolerance=1e-9)
+    what, source = "EN 15610: rolled over a slot of 12 mm, depth that is left", "sagitta of the circle"
+    yield Check(what, drop(6), -left[200], "µm", source=source, tolerance=1e-6)
 
 
 def spikes():
     x = (np.arange(401) - 200) * MM
+    source = "removed where higher than w²/3 m and sharper than 1e7 µm/m²"
     for height, width, left in ((40, 6, 0.0), (10, 6, 10.0), (20, 10, 20.0)):
         line = Profile(height * UM * np.clip(1 - np.abs(x) / (width * MM / 2), 0, None), MM)
-        found = remove_spikes(line)[0].heights.max() * 1e6
+        found = remove_spikes(line)[0].heights.max()
         what = f"EN 15610: spike of {height} µm, {width} mm wide, what is left"
-        yield Check(
-            what,
-            "removed where higher than w²/3 m and sharper than 1e7 µm/m²",
-            left,
-            found,
-            1e-9,
-            "µm",
-            absolute=True,
-        )
+        yield Check(what, left * UM, found, "µm", source=source, tolerance=1e-9, absolute=True)
 
 
 def flats():
     radius, depth = mp.mpf("0.46"), mp.mpf("0.5e-3")
-    chord = 2 * mp.sqrt(2 * radius * depth - depth**2)
-    yield Check(
-        "fresh flat of 0.5 mm on R = 0.46 m: length",
-        "chord of the circle",
-        float(chord) * 1e3,
-        flat_length(0.5e-3, 0.46) * 1e3,
-        1e-3,
-        "mm",
-    )
-    lowest = float(np.min(flat_trajectory(np.linspace(-0.05, 0.05, 2001), 0.5e-3, 0.46))) * 1e3
-    yield Check(
-        "fresh flat: deepest point of the wheel's centre", "the depth itself", 0.5, abs(lowest), 2e-3, "mm"
-    )
+    chord, found = 2 * mp.sqrt(2 * radius * depth - depth**2), flat_length(0.5e-3, 0.46)
+    what = "fresh flat of 0.5 mm on R = 0.46 m: length"
+    yield Check(what, chord, found, "mm", source="chord of the circle", tolerance=1e-3)
+    lowest = np.min(flat_trajectory(np.linspace(-0.05, 0.05, 2001), 0.5e-3, 0.46))
+    what = "fresh flat: deepest point of the wheel's centre"
+    yield Check(what, depth, abs(lowest), "mm", source="the depth itself", tolerance=2e-3)
 
 
 def statistics():
     n, dx = 2048, 1e-6
     wave = np.sin(2 * np.pi * 32 * np.arange(n) / n)[:, None] * np.ones((1, 64))
     found = {s.symbol: s.value for s in areal_statistics(HeightMap(wave * UM, (dx, dx)))}
-    k = 2 * mp.pi * 32 / (n * mp.mpf(dx))
-    source = "a sine wave"
-    yield Check(
-        "ISO 25178: Sq of a sine of 1 µm",
-        f"{source}, A/√2",
-        float(1 / mp.sqrt(2)),
-        found["Sq"] * 1e6,
-        1e-6,
-        "µm",
-    )
-    yield Check("ISO 25178: Ssk of a sine", f"{source}, 0", 0.0, found["Ssk"], 1e-6, absolute=True)
-    yield Check("ISO 25178: Sku of a sine", f"{source}, 3/2", 1.5, found["Sku"], 1e-6)
-    slope = float(k * mp.mpf(UM) / mp.sqrt(2))
-    yield Check(
-        "ISO 25178: Sdq of a sine",
-        f"{source}, kA/√2; tolerance: the ends, where it has no differences",
-        slope,
-        found["Sdq"],
-        2e-3,
-    )
+    slope = 2 * mp.pi * 32 / (n * mp.mpf(dx)) * mp.mpf(UM) / mp.sqrt(2)
+    row = partial(Check, body="ISO 25178", tolerance=1e-6)
+    yield row("Sq of a sine of 1 µm", UM / mp.sqrt(2), found["Sq"], "µm", source="a sine wave, A/√2")
+    yield row("Ssk of a sine", 0.0, found["Ssk"], source="a sine wave, 0", absolute=True)
+    yield row("Sku of a sine", 1.5, found["Sku"], source="a sine wave, 3/2")
+    source = "a sine wave, kA/√2; tolerance: the ends, where it has no differences"
+    yield row("Sdq of a sine", slope, found["Sdq"], source=source, tolerance=2e-3)
 
 
 def spectra_of_surfaces():
-    surface = self_affine(
-        (512, 512), (1e-6, 1e-6), rms=0.4e-6, hurst=0.8, longest=60e-6, shortest=6e-6, seed=5
-    )
+    waves = {"rms": 0.4 * UM, "hurst": 0.8, "longest": 60 * UM, "shortest": 6 * UM, "seed": 5}
+    surface = self_affine((512, 512), (UM, UM), **waves)
     wavenumber, density = psd_1d(surface, 0)
-    total = float(density.sum() * (wavenumber[1] - wavenumber[0]))
-    yield Check(
-        "one-sided PSD along x: its integral",
-        "Parseval, the mean square of the heights; tolerance: the window",
-        float(np.mean((surface.heights - surface.heights.mean()) ** 2)) * 1e12,
-        total * 1e12,
-        0.05,
-        "µm²",
-    )
-    yield Check(
-        "self-affine surface of 0.4 µm rms: rms of one realisation",
-        "its spectrum; tolerance: scatter of one window",
-        0.4,
-        float(surface.heights.std()) * 1e6,
-        0.08,
-        "µm",
-    )
+    total, deviation = density.sum() * (wavenumber[1] - wavenumber[0]), surface.heights.std()
+    source = "Parseval, the mean square of the heights; tolerance: the window"
+    what = "one-sided PSD along x: its integral"
+    yield Check(what, deviation**2, total, "µm²", source=source, tolerance=0.05)
+    what = "self-affine surface of 0.4 µm rms: rms of one realisation"
+    source = "its spectrum; tolerance: scatter of one window"
+    yield Check(what, 0.4 * UM, deviation, "µm", source=source, tolerance=0.08)
 
 
 def filters_and_form():
-    n, dx = 4096, 1e-5
-    x = dx * np.arange(n)
-    wave = Profile(1e-6 * np.sin(2 * np.pi * x / 0.8e-3), dx)
-    kept = band_limit(wave, shortest=0.8e-3).heights[1000:3000]
-    yield Check(
-        "Gaussian filter: a wave at the cut-off",
-        "ISO 16610-21, 50 %",
-        0.5,
-        float(np.sqrt(2) * kept.std()) * 1e6,
-        1e-3,
-    )
-    half = band_limit(wave, shortest=1.6e-3).heights[1000:3000]
-    alpha = mp.sqrt(mp.log(2) / mp.pi)
-    expected = float(mp.exp(-mp.pi * (alpha * 2) ** 2))
-    yield Check(
-        "Gaussian filter: a wave of half the cut-off",
-        "ISO 16610-21, e^(−π(αλc/λ)²)",
-        expected,
-        float(np.sqrt(2) * half.std()) * 1e6,
-        5e-3,
-    )
+    dx = 1e-5
+    wave = Profile(np.sin(2 * np.pi * dx * np.arange(4096) / 0.8e-3), dx)
+
+    def kept(shortest):  # of its amplitude
+        return np.sqrt(2) * band_limit(wave, shortest=shortest).heights[1000:3000].std()
+
+    row = partial(Check, body="Gaussian filter")
+    yield row("a wave at the cut-off", 0.5, kept(0.8e-3), source="ISO 16610-21, 50 %", tolerance=1e-3)
+    expected = mp.exp(-mp.pi * (mp.sqrt(mp.log(2) / mp.pi) * 2) ** 2)
+    source = "ISO 16610-21, e^(−π(αλc/λ)²)"
+    yield row("a wave of half the cut-off", expected, kept(1.6e-3), source=source, tolerance=5e-3)
     u, v = np.meshgrid(np.linspace(-1, 1, 40), np.linspace(-1, 1, 30), indexing="ij")
     bowed = HeightMap(2e-6 * u**2 - 1e-6 * u * v + 3e-6, (1e-6, 1e-6))
-    left = float(np.abs(level(bowed, 2).heights).max()) * 1e6
-    yield Check(
-        "levelling of a paraboloid by degree 2: what is left",
-        "projection",
-        0.0,
-        left,
-        1e-9,
-        "µm",
-        absolute=True,
-    )
+    left = np.abs(level(bowed, 2).heights).max()
+    what = "levelling of a paraboloid by degree 2: what is left"
+    yield Check(what, 0.0, left, "µm", source="projection", tolerance=1e-9, absolute=True)
 
 
 def files():
@@ -184,17 +122,8 @@ def files():
             ("d.npy", "NumPy's format", {"height_unit": "nm", "pixel": "2 um"}),
         ):
             surface = read_surface(folder / file, **hints)
-            what = f"file {file[-3:].upper()}: height of the point x = 2, y = 1"
-            yield Check(what, source, float(heights[2, 1]), float(surface.heights[2, 1]) * 1e9, 1e-9, "nm")
+            row = partial(Check, body=f"file {file[-3:].upper()}", source=source)
+            found = surface.heights[2, 1]
+            yield row("height of the point x = 2, y = 1", heights[2, 1] * 1e-9, found, "nm", tolerance=1e-9)
             if not hints:
-                yield Check(
-                    f"file {file[-3:].upper()}: spacing across",
-                    source,
-                    3.0,
-                    surface.spacing[1] * 1e6,
-                    1e-12,
-                    "µm",
-                )
-
-
-CHECKS = (circle, spikes, flats, statistics, spectra_of_surfaces, filters_and_form, files)
+                yield row("spacing across", 3 * UM, surface.spacing[1], "µm", tolerance=1e-12)

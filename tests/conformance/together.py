@@ -42,7 +42,7 @@ def two_moving_forces():
     source = "Frýba, sum over the modes; tolerance: the time step"
     for k, which in enumerate(("rear", "front")):
         what = f"two forces of 50 N at 8 m/s on a beam of 1 m: displacement under the {which} one"
-        yield Check(what, source, float(found[k]) * 1e3, run.over_displacement[k, -1] * 1e3, 1e-6, "mm")
+        yield Check(what, found[k], run.over_displacement[k, -1], "mm", source=source, tolerance=1e-6)
 
 
 def rig():
@@ -72,14 +72,9 @@ def rig():
         None, [body], [HertzLaw(stiffness, texture)], speed=1.0, start=start, duration=0.01, time_step=2.5e-7,
         positions=[0.0],
     )  # fmt: skip
-    yield Check(
-        "rig of two masses, Hertzian contact over a sine, after 10 ms: contact force",
-        "DOP853 of SciPy, rtol 1e-12",
-        force(0.01, peer.y[:, -1]),
-        run.contact_force[0, -1],
-        1e-6,
-        "N",
-    )
+    expected, found = force(0.01, peer.y[:, -1]), run.contact_force[0, -1]
+    what = "rig of two masses, Hertzian contact over a sine, after 10 ms: contact force"
+    yield Check(what, expected, found, "N", source="DOP853 of SciPy, rtol 1e-12", tolerance=1e-6)
 
 
 def passing_balls():
@@ -101,15 +96,11 @@ def passing_balls():
         omega = 2 * mp.pi / mp.mpf(wave)
         spring = 4 * (stiffness + 1j * damper * omega)
         mean = abs(sum(mp.expj(omega * mp.mpf(float(place))) for place in places)) / 4
-        expected = mean * abs(spring / (spring - mass * omega**2)) * 10
+        expected = mp.chop(mean * abs(spring / (spring - mass * omega**2)) * 10)
         heave = run.degrees_of_freedom[0][0, :-1]
         line = round(len(heave) * h / wave)
-        found = 2 * np.abs(np.fft.rfft(heave)[line]) / len(heave)
+        found = round(2e9 * np.abs(np.fft.rfft(heave)[line]) / len(heave), 3)
         what = f"carriage on four balls 2 mm apart, waves of {wave * 1e3:g} mm: amplitude of heave per 10 nm"
         source = "mean over the balls · K/(K − Mω²)"
-        yield Check(
-            what, source, float(mp.chop(expected)), round(float(found) * 1e9, 3), 0.02, "nm", absolute=True
-        )
-
-
-CHECKS = (two_moving_forces, rig, passing_balls)
+        amplitudes = (1e-9 * float(expected), 1e-9 * found)
+        yield Check(what, *amplitudes, "nm", source=source, tolerance=0.02, absolute=True)
